@@ -162,32 +162,32 @@ SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const TrackedObject& state = state_->inputs.objects[object];
-  return {.age_ns = state.age_ns,
-          .stale = state.late,
-          .contradicted = state.contradicted,
+  return {.age_ns = state.input.age_ns,
+          .stale = state.input.late,
+          .contradicted = state.input.contradicted,
           .follows_joints = state.follows_joints,
           .absent = state.absent,
-          .source = state.owner.source(),
-          .other_source = state.owner.other_source()};
+          .source = state.input.owner.source(),
+          .other_source = state.input.owner.other_source()};
 }
 
 // Joints of a robot that was never heard are not advanced, so that they are stale here.
 InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
   const TrackedVariable& state = state_->inputs.robots.variables()[variable];
-  return {.age_ns = state.age_ns,
-          .stale = !state.seen || state.late,
-          .contradicted = state.contradicted,
-          .source = state.owner.source(),
-          .other_source = state.owner.other_source()};
+  return {.age_ns = state.input.age_ns,
+          .stale = !state.input.has_value || state.input.late,
+          .contradicted = state.input.contradicted,
+          .source = state.input.owner.source(),
+          .other_source = state.input.owner.other_source()};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected_joints(
     std::uint32_t variable) const noexcept {
-  return state_->inputs.robots.variables()[variable].rejected;
+  return state_->inputs.robots.variables()[variable].input.rejected;
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {
-  return state_->inputs.objects[object].rejected;
+  return state_->inputs.objects[object].input.rejected;
 }
 
 const Pose& Monitor::pose(std::uint32_t object) const noexcept {
@@ -195,7 +195,7 @@ const Pose& Monitor::pose(std::uint32_t object) const noexcept {
 }
 
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
-  return state_->inputs.objects[object].stamp_ns;
+  return state_->inputs.objects[object].input.stamp_ns;
 }
 
 Monitor::State::State(const Scene& the_scene)

@@ -7,11 +7,11 @@
 #include <span>
 
 #include "config/scene/scene.hpp"
-#include "monitor/joint_batch.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/tick_time.hpp"
 #include "monitor/report.hpp"
 #include "monitor/swept/swept_bounds.hpp"
-#include "monitor/tick_time.hpp"
 
 namespace clearance {
 

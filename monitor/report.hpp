@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "core/vec.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 
@@ -31,8 +31,8 @@ enum class PairStatus : std::uint8_t {
   // The pair rests on no input: it makes no zone active, and the minimum and lower_all leave it
   // out.
   kAbsent = 7,
+  kCount,
 };
-inline constexpr std::size_t kPairStatuses = 8;
 // A word for each enumerator; "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 

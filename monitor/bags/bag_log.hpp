@@ -5,18 +5,13 @@
 #include <map>
 #include <memory>
 #include <optional>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "monitor/bags/bag.hpp"
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
-#include "monitor/bags/input_rate.hpp"
-#include "monitor/frames/tracked_frames.hpp"
-#include "monitor/wire/cdr.hpp"
-#include "monitor/wire/joint_names.hpp"
-#include "monitor/wire/ros_types.hpp"
+#include "monitor/intake/intake.hpp"
 
 namespace clearance {
 
@@ -41,46 +36,31 @@ class BagLog final : public InputLog {
   [[nodiscard]] std::vector<std::string> notes() const override;
 
  private:
-  enum class Use : std::uint8_t { kNothing, kJoints, kTransforms, kStaticTransforms };
   struct Topic {
     std::string type;
-    Use use = Use::kNothing;
-    std::optional<JointNames> names;  // of joint states: whose they are depends on the topic
+    std::optional<std::uint32_t> number;  // as the intake numbers it; nothing: it is not used
     std::uint64_t messages = 0;
-    std::uint64_t undecodable = 0, empty = 0, unstamped = 0, of_another_clock = 0;
-    std::int64_t clock_difference_ns = 0;  // of the first such stamp
-    InputRate rate;
+    std::uint64_t empty = 0;  // joint states without a position of a joint of the cell
   };
 
   void read_ahead();
   void take(const BagMessage& message);
-  void take_joints(const BagMessage& message, Topic& topic);
-  void take_transforms(const BagMessage& message, Topic& topic);
-  void give(const std::string& source, std::int64_t log_ns, PoseBatch batch, Topic& topic);
-  void wait(const std::string& source, std::int64_t log_ns, PoseBatch batch);
-  [[nodiscard]] Use use_of(const BagTopic& topic) const;
-  void note_unknown(const JointNames& names);
-  [[nodiscard]] RosStamps stamps_of(const JointNames& names) const;
-  [[nodiscard]] std::int64_t stamp_of(std::int64_t stamp_ns, std::int64_t log_ns, Topic& topic);
+  void use(PoseBatch batch);
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;
-  const RosSettings& ros_;
   InputLogOptions options_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;
-  TrackedFrames frames_;
-  TfTree tree_;
-  CdrDecoder decoder_;
-  Sample<sensor_msgs_msg_dds__JointState_> joint_state_;
-  Sample<tf2_msgs_msg_dds__TFMessage_> transforms_;
-  std::set<std::string> roots_met_;
+  Intake intake_;
 
-  std::map<std::string, Topic> topics_;
-  std::set<std::string> unknown_joints_;
-  std::vector<bool> heard_;  // by variable
-  std::map<std::string, std::uint64_t> sequence_;
-  std::multimap<std::int64_t, PoseBatch> waiting_;  // by log time; ties in file order
+  std::map<std::string, Topic> topics_;  // by name
+  std::vector<bool> heard_;              // by variable
+  std::vector<std::string> slow_;        // inputs that come too seldom, a sentence each
+  std::map<std::string, std::uint64_t, std::less<>> sequence_;  // by source
+  std::multimap<std::int64_t, PoseBatch> waiting_;              // by log time; ties in file order
+  Topic* topic_ = nullptr;   // of the message that is being taken
+  std::int64_t log_ns_ = 0;  // of that message
   std::int64_t read_to_ns_ = 0, last_ns_ = 0;
   GivenJoints given_;
   bool ended_ = false, given_out_ = false;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

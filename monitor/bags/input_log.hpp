@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

@@ -22,7 +22,8 @@ JointCsvLog::JointCsvLog(const std::filesystem::path& file, const Scene& scene,
       header_(csv_column_names(file)),
       given_(scene, options.joints),
       given_positions_(options.joints),
-      heard_(scene.variables.size()) {
+      heard_(scene.variables.size()),
+      slow_(scene) {
   error_ = given_.error();
   choose_columns();
   if (!error_.empty()) return;
@@ -93,8 +94,8 @@ bool JointCsvLog::next(LoggedBatch& batch) {
     if (error_.empty() && sequence_ == 0) error_ = fmt::format("{} has no rows", file_.string());
     return false;
   }
-  rate_.note(scene_, batch.batch);
   batch.batch.source = SourceName("csv");
+  slow_.note(batch.batch, slow_notes_);
   batch.batch.sequence_number = ++sequence_;
   if (!given_.empty()) given_batch_ = LoggedBatch{given_.at(batch.log_ns), batch.log_ns};
   return true;
@@ -106,7 +107,7 @@ std::vector<std::string> JointCsvLog::notes() const {
   for (const std::string& column : left_out_) names += (names.empty() ? "" : ", ") + column;
   if (!names.empty())
     notes.push_back(fmt::format("columns that are no joints of the cell were left out: {}", names));
-  rate_.add_note("rows", notes);
+  notes.insert(notes.end(), slow_notes_.texts.begin(), slow_notes_.texts.end());
   note_unheard(scene_, heard_, given_positions_, notes);
   return notes;
 }

@@ -13,8 +13,8 @@
 
 #include "monitor/bags/given_joints.hpp"
 #include "monitor/bags/input_log.hpp"
-#include "monitor/bags/input_rate.hpp"
 #include "monitor/csv/table.hpp"
+#include "monitor/intake/slow_inputs.hpp"
 
 namespace clearance {
 
@@ -37,6 +37,13 @@ class JointCsvLog final : public InputLog {
     std::optional<std::size_t> velocity;
   };
 
+  // What SlowInputs tells becomes notes.
+  struct SlowNotes final : public Outlet {
+    void give(PoseBatch&, std::uint64_t, std::size_t) override {}
+    void tell(News news) override { texts.push_back(std::move(news.text)); }
+    std::vector<std::string> texts;
+  };
+
   void choose_columns();
 
   const Scene& scene_;
@@ -50,7 +57,8 @@ class JointCsvLog final : public InputLog {
   std::vector<bool> heard_;  // by variable
   std::optional<CsvTable> table_;
   std::optional<LoggedBatch> given_batch_;
-  InputRate rate_;
+  SlowInputs slow_;
+  SlowNotes slow_notes_;
   std::uint64_t sequence_ = 0;
   std::string error_;
 };

@@ -71,7 +71,7 @@ void BroadPhase::begin(const OpenTick& tick, std::span<const std::uint32_t> chan
     usual = usual > kStandstill ? (1.0 - kSmoothing) * usual : 0.0;
   for (const std::uint32_t i : changed) {
     const TrackedObject& object = tick.objects[i];
-    if (!object.seen) continue;
+    if (!object.input.has_value) continue;
     Body& body = bodies_[i];
     if (body.forgotten || !(object.displacement < kInfinity)) jump(i, tick.table);
     body.forgotten = false;

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/frames/tracked_frames.hpp"
+#include "monitor/intake/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
 

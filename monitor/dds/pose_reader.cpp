@@ -4,6 +4,7 @@
 #include "monitor/dds/pose_reader.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <spdlog/spdlog.h>
 
@@ -13,8 +14,6 @@
 
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/source_numbers.hpp"
-#include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
@@ -49,41 +48,6 @@ void log_matched_joints(dds_entity_t, const dds_subscription_matched_status_t st
                status.current_count_change > 0 ? "appeared" : "left", status.current_count);
 }
 
-// What a person should know of a batch's source. Writers are named by their GUIDs.
-void log_news(const Admission& admission, const SourceName& source, dds_entity_t reader,
-              std::uint64_t writer) {
-  const auto guid = [reader](std::uint64_t handle) {
-    const WriterFacts facts = writer_facts(reader, handle);
-    return facts.present ? facts.guid : std::string("that has left");
-  };
-  switch (admission.news) {
-    case Admission::News::kNothing:
-      return;
-    case Admission::News::kNewSource:
-      if (admission.place_of.view().empty()) {
-        spdlog::info("poses from source '{}'", source.view());
-      } else {
-        spdlog::info("poses from source '{}', in the place of '{}'", source.view(),
-                     admission.place_of.view());
-      }
-      return;
-    case Admission::News::kTakenOver:
-      spdlog::warn("source '{}' is now writer {}; before, it was writer {}", source.view(),
-                   guid(writer), guid(admission.former_writer));
-      return;
-    case Admission::News::kFirstRefusal:
-      if (admission.cause == SourceRefusal::kTooMany) {
-        spdlog::warn("source '{}' is one too many: {} sources are heard, its poses are not used",
-                     source.view(), kMaxSources);
-      } else {
-        spdlog::warn(
-            "writer {} uses the name of source '{}', which is writer {}: its poses are not used",
-            guid(writer), source.view(), guid(admission.former_writer));
-      }
-      return;
-  }
-}
-
 // What a ROS 2 node started from the same shell would join.
 std::string ros_domain() {
   const char* const id = std::getenv("ROS_DOMAIN_ID");
@@ -102,46 +66,33 @@ std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
   return std::min<std::size_t>(2 * scene.variables.size() + 64, clearance_msg_kMaxJoints);
 }
 
-// All memory is reserved before the thread starts; only a source that sends for the first time
-// allocates later.
+// All memory is reserved before the thread starts; only what is heard for the first time allocates
+// later.
 PoseReader::PoseReader(const Cell& cell, Participant& participant)
-    : scene_(cell.scene),
-      topics_(cell.topics),
-      samples_a_batch_(samples_a_batch(cell.scene)),
+    : topics_(cell.topics),
       undecodable_before_(undecodable_samples()),
-      reader_(make_reader(participant, TopicKind::kPoses)),
-      joint_reader_(cell.scene.robots.empty() ? 0
-                                              : make_reader(participant, TopicKind::kJointStates)),
       where_(participant.where()),
-      present_(participant),
-      ros_joints_(cell.scene, participant),
-      ros_transforms_(cell, participant, present_),
-      wait_(participant, readers()),
-      joint_names_(cell.scene),
-      ring_(kBatches),
-      sources_(named_sources(cell.scene)),
-      slow_log_(cell.scene) {
-  for (auto& sample : taken_) reserve_sequence(sample->poses, samples_a_batch_);
+      intake_(cell,
+              {.admits_sources = true,
+               .most_samples = samples_a_batch(cell.scene),
+               .most_joints = joints_a_batch(cell.scene),
+               .writer_name = [this](std::uint64_t writer) { return guid_of(writer); }},
+              [this](PoseBatch& batch) { return hand_over(batch); }),
+      ros_(participant, intake_),
+      wait_(participant, {}),
+      ring_(kBatches) {
+  open(participant, TopicKind::kPoses);
+  if (!cell.scene.robots.empty()) open(participant, TopicKind::kJointStates);
+  wait_.add(ros_.present().reader());
   ring_.prepare([&](PoseBatch& slot) {
-    slot.samples.resize(samples_a_batch_);
+    slot.samples.resize(samples_a_batch(cell.scene));
     slot.joints.resize(joints_a_batch(cell.scene));
   });
   thread_ = std::thread([this] { run(); });
 }
 
-// A cell without robots and frames has no use for what ROS 2 says.
-bool PoseReader::hears_ros() const noexcept { return joint_reader_ != 0 || ros_transforms_.any(); }
-
-std::vector<dds_entity_t> PoseReader::readers() const {
-  std::vector<dds_entity_t> readers = ros_transforms_.readers();
-  readers.push_back(reader_);
-  if (joint_reader_ != 0) readers.push_back(joint_reader_);
-  if (hears_ros()) readers.push_back(present_.reader());
-  return readers;
-}
-
 // The listener and the filter are copied by Cyclone; what they point to is here.
-dds_entity_t PoseReader::make_reader(Participant& participant, TopicKind kind) {
+void PoseReader::open(Participant& participant, TopicKind kind) {
   const bool of_joints = kind == TopicKind::kJointStates;
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
@@ -152,17 +103,17 @@ dds_entity_t PoseReader::make_reader(Participant& participant, TopicKind kind) {
   const dds_entity_t reader =
       participant.reader(kind, topics_.*topic(kind).name, kDepth, listener, &filter);
   dds_delete_listener(listener);
-  return reader;
+  own_.push_back({reader, intake_.topic(kind)->number});
+  wait_.add(reader);
 }
 
-// Ends the thread before the ring is destroyed, and the reader before what its listener and filter
-// point to.
+// Ends the thread before the ring is destroyed, and the readers before what their listeners and
+// filters point to.
 PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
   thread_.join();
-  dds_delete(reader_);
-  if (joint_reader_ != 0) dds_delete(joint_reader_);
+  for (const OwnReader& reader : own_) dds_delete(reader.handle);
 }
 
 // The slot lent by the last call is given back by this one. No lock: the ring has one filler and
@@ -176,18 +127,18 @@ const PoseBatch* PoseReader::next() noexcept {
 
 // A copy, since the taking thread goes on changing them.
 std::vector<SourceTally> PoseReader::tallies() const {
-  const std::lock_guard lock(tallies_mutex_);
-  return sources_.tallies();
+  const std::lock_guard lock(mutex_);
+  return intake_.sources().tallies();
 }
 
 std::vector<RefusedSource> PoseReader::refused_sources() const {
-  const std::lock_guard lock(tallies_mutex_);
-  return sources_.refused();
+  const std::lock_guard lock(mutex_);
+  return intake_.sources().refused();
 }
 
 SourceTally PoseReader::departed() const {
-  const std::lock_guard lock(tallies_mutex_);
-  return sources_.departed();
+  const std::lock_guard lock(mutex_);
+  return intake_.sources().departed();
 }
 
 std::uint64_t PoseReader::undecodable() const {
@@ -195,19 +146,16 @@ std::uint64_t PoseReader::undecodable() const {
 }
 
 std::string PoseReader::senders_of_joints() const {
-  const std::lock_guard lock(tallies_mutex_);
-  const std::size_t own = joint_reader_ == 0 ? 0 : writers_of(joint_reader_).size();
-  const std::size_t heard = own + ros_joints_.writers();
+  const std::lock_guard lock(mutex_);
+  const std::size_t own = own_.size() < 2 ? 0 : writers_of(own_.back().handle).size();
+  const std::size_t heard = own + intake_.joint_states().writers();
   if (heard > 0) {
-    std::string unknown;
-    for (const std::string& name : ros_joints_.unknown_names()) {
-      unknown += (unknown.empty() ? "" : ", ") + name;
-    }
+    const auto& names = intake_.joint_states().unknown_names();
     return fmt::format(
-        "{} publishers of joint states are heard{}", heard,
-        unknown.empty() ? "" : ", of joints that the cell does not have: " + unknown);
+        "{} publishers of joint states are heard{}{}", heard,
+        names.empty() ? "" : ", of joints that the cell does not have: ", fmt::join(names, ", "));
   }
-  for (const auto& [handle, writer] : present_.writers()) {
+  for (const auto& [handle, writer] : ros_.present().writers()) {
     if (writer.type != kRosJointState.descriptor->m_typename) continue;
     return fmt::format("{} is published in {} and does not reach {}", writer.topic,
                        writer.partition.empty() ? "the default partition"
@@ -218,152 +166,87 @@ std::string PoseReader::senders_of_joints() const {
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
       "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
       "(rmw_zenoh)",
-      topics_.joint_states, where_, present_.listed(), ros_domain());
+      topics_.joint_states, where_, ros_.present().listed(), ros_domain());
 }
 
-// Takes until nothing is left, into samples that are reused: no allocation for batches that fit,
-// but for the names of joints.
-template <class Taken>
-void PoseReader::take_all(dds_entity_t reader, Taken& taken) {
-  std::array<void*, kDepth> pointers;
-  std::array<dds_sample_info_t, kDepth> infos;
-  for (std::size_t i = 0; i < kDepth; ++i) pointers[i] = &*taken[i];
-  for (;;) {
-    const dds_return_t count = dds_take(reader, pointers.data(), infos.data(), kDepth, kDepth);
-    if (count < 0) spdlog::error("taking poses failed: {}", dds_strretcode(count));
-    if (count <= 0) return;
-    if (writers_changed_.exchange(false)) note_writers();
-    for (std::size_t i = 0; i < static_cast<std::size_t>(count); ++i) {
-      if (infos[i].valid_data) hand_over(*taken[i], infos[i].publication_handle);
-      if (infos[i].instance_state != DDS_IST_ALIVE) names_.forget_name(infos[i].instance_handle);
-    }
-  }
-}
-
-// Waits for data, for the time at which frames want to be looked at, or for the destructor.
+// Waits for data, for the time at which the intake wants to settle, or for the destructor.
 void PoseReader::run() {
   name_thread("poses");
+  SystemClock clock;
   while (!stop_) {
-    if (wait_.wait(ros_transforms_.patience_ns())) {
-      take_all(reader_, taken_);
-      if (joint_reader_ != 0) take_all(joint_reader_, taken_joints_);
+    wait_.wait(intake_.patience_ns());
+    if (stop_) return;
+    const std::lock_guard lock(mutex_);
+    try {
+      look();
+      take_all({.realtime_ns = clock.realtime_ns(), .monotonic_ns = clock.monotonic_ns()});
+    } catch (const DdsError& error) {
+      spdlog::error("taking inputs failed: {}", error.what());
     }
-    if (hears_ros()) take_from_ros();
+    log_news();
   }
 }
 
-void PoseReader::take_from_ros() {
-  bool changed = false;
-  {
-    const std::lock_guard lock(tallies_mutex_);
-    changed = present_.look();
-    if (changed) ros_transforms_.look();
-    if (changed && joint_reader_ != 0) ros_joints_.look(present_, wait_);
-  }
-  if (changed) note_writers();
-  const std::lock_guard lock(tallies_mutex_);
-  ros_joints_.take_all([this](const RosStates& states) { hand_over(states); });
-  if (!ros_transforms_.any()) return;
-  ros_transforms_.take_all([this](const PoseBatch& batch) { hand_over(batch); });
+// What others publish, and who has left.
+void PoseReader::look() {
+  const bool changed = ros_.look();
+  if (writers_changed_.exchange(false) || changed) note_writers();
+  const std::vector<RosReaders::Reader>& readers = ros_.readers();
+  for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);
 }
 
 // Names and places of writers that have left are free.
 void PoseReader::note_writers() {
-  std::vector<std::uint64_t> writers = writers_of(reader_);
-  if (joint_reader_ != 0) {
-    const std::vector<std::uint64_t> of_joints = writers_of(joint_reader_);
-    writers.insert(writers.end(), of_joints.begin(), of_joints.end());
+  std::vector<std::uint64_t> writers = ros_.writers();
+  for (const OwnReader& reader : own_) {
+    const std::vector<std::uint64_t> heard = writers_of(reader.handle);
+    writers.insert(writers.end(), heard.begin(), heard.end());
   }
-  for (const auto& [handle, writer] : present_.writers()) writers.push_back(handle);
-  writers.push_back(RosTransforms::kWriter);
   names_.keep(writers);
-  const std::lock_guard lock(tallies_mutex_);
-  sources_.keep(writers);
+  intake_.keep(std::move(writers));
 }
 
-// The log gets what is new.
-SourceTally* PoseReader::admit(dds_entity_t reader, const SourceName& source,
-                               std::uint64_t sequence_number, std::size_t count,
-                               std::uint64_t writer) {
-  const std::int64_t now_ns = SystemClock().monotonic_ns();
-  const Admission admission = sources_.admit(source, writer, count, now_ns);
-  log_news(admission, source, reader, writer);
-  if (admission.tally == nullptr) return nullptr;
-  admission.tally->note_sequence(sequence_number);
-  admission.tally->last_ns = now_ns;
-  return admission.tally;
+void PoseReader::take_all(const Now& now) {
+  for (const OwnReader& reader : own_) {
+    take_into(intake_, reader.topic, reader.handle, now, taken_, &ended_);
+  }
+  for (const std::uint64_t name : std::exchange(ended_, {})) names_.forget_name(name);
+  for (const RosReaders::Reader& reader : ros_.readers()) {
+    take_into(intake_, reader.topic, reader.handle, now, taken_);
+  }
+  intake_.settle(now);
 }
 
-// Counts what is missing, converts into a free slot, and hands it to the tick thread.
-void PoseReader::hand_over(clearance_msg_PoseBatch& batch, std::uint64_t writer) {
-  const std::lock_guard lock(tallies_mutex_);
-  SourceTally* tally =
-      admit(reader_, SourceName(batch.source), batch.sequence_number, batch.poses._length, writer);
-  if (tally == nullptr) return;
-  PoseBatch* slot = ring_.back();
-  if (slot == nullptr) {
-    ++tally->lost;
-    return;
-  }
-  if (batch.poses._length > samples_a_batch_) {
-    tally->cut_poses += batch.poses._length - samples_a_batch_;
-    batch.poses._length = static_cast<std::uint32_t>(samples_a_batch_);
-  }
-  from_wire(batch, *slot);
-  if (!made_for(*slot, scene_.revision) && !std::exchange(tally->warned_of_revision, true)) {
-    spdlog::warn(
-        "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used",
-        tally->source.view(), batch.scene_revision, scene_.revision);
-  }
-  if (made_for(*slot, scene_.revision)) slow_log_.note(*slot);
-  ++tally->batches;
+// Into a free slot, whose memory the intake gets in exchange.
+bool PoseReader::hand_over(PoseBatch& batch) noexcept {
+  PoseBatch* const slot = ring_.back();
+  if (slot == nullptr) return false;
+  std::swap(*slot, batch);
   ring_.push();
+  return true;
 }
 
-// The same of what is no sample of the poses topic; more names than a cell has any use for are cut.
-template <class Fill>
-void PoseReader::hand_over_filled(SourceTally& tally, const Fill& fill) {
-  PoseBatch* slot = ring_.back();
-  if (slot == nullptr) {
-    ++tally.lost;
-    return;
+void PoseReader::log_news() {
+  for (const News& news : intake_.take_news()) {
+    const std::string instead =
+        news.cause == News::Cause::kNoTransforms
+            ? fmt::format(" on {}; there is: {}", where_, ros_.present().listed())
+            : "";
+    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{}{}", news.text,
+                instead);
   }
-  fill(*slot);
-  if (const std::size_t most = joints_a_batch(scene_); slot->joints.size() > most) {
-    tally.cut_poses += slot->joints.size() - most;
-    slot->joints.resize(most);
+}
+
+std::string PoseReader::guid_of(std::uint64_t writer) const {
+  for (const OwnReader& reader : own_) {
+    const WriterFacts facts = writer_facts(reader.handle, writer);
+    if (facts.present) return facts.guid;
   }
-  slow_log_.note(*slot);
-  ++tally.batches;
-  ring_.push();
-}
-
-void PoseReader::hand_over(clearance_msg_JointStates& states, std::uint64_t writer) {
-  const std::lock_guard lock(tallies_mutex_);
-  SourceTally* tally = admit(joint_reader_, SourceName(states.source), states.sequence_number,
-                             states.names._length, writer);
-  if (tally == nullptr) return;
-  hand_over_filled(*tally, [&](PoseBatch& slot) { from_wire(states, joint_names_, slot); });
-}
-
-// The lock is held.
-void PoseReader::hand_over(const RosStates& states) {
-  SourceTally* tally = admit(states.reader, states.source, states.number,
-                             states.message.name._length, states.writer);
-  if (tally == nullptr) return;
-  hand_over_filled(*tally, [&](PoseBatch& slot) {
-    from_wire(states.message, states.names, states.stamp_ns, slot);
-    slot.source = states.source;
-    slot.sequence_number = states.number;
-  });
-}
-
-// The lock is held. Fewer than objects and variables, so it fits.
-void PoseReader::hand_over(const PoseBatch& of_frames) {
-  SourceTally* tally = admit(reader_, of_frames.source, of_frames.sequence_number, of_frames.size(),
-                             RosTransforms::kWriter);
-  if (tally == nullptr) return;
-  hand_over_filled(*tally, [&](PoseBatch& slot) { slot = of_frames; });
+  for (const RosReaders::Reader& reader : ros_.readers()) {
+    const WriterFacts facts = writer_facts(reader.handle, writer);
+    if (facts.present) return facts.guid;
+  }
+  return "that has left";
 }
 
 }  // namespace clearance

@@ -166,7 +166,7 @@ std::vector<std::uint32_t> first_parts(const Scene& scene) {
 void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
                 std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept {
   for (const std::uint32_t i : changed) {
-    if (!objects[i].seen) continue;
+    if (!objects[i].input.has_value) continue;
     for (std::uint32_t part = first[i]; part < first[i + 1]; ++part) place(objects[i], parts[part]);
   }
 }

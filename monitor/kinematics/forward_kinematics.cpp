@@ -58,11 +58,11 @@ ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std
                                                     std::span<const TrackedVariable> variables,
                                                     Placement& placed) noexcept {
   const TrackedVariable& state = variables[joint.variable + which];
-  placed.known = placed.known && state.seen;
-  placed.velocity_known = placed.velocity_known && state.velocity_known && !state.late;
-  placed.late = placed.late || state.late;
-  placed.contradicted = placed.contradicted || state.contradicted;
-  placed.stamp_ns = std::min(placed.stamp_ns, state.stamp_ns);
+  placed.known = placed.known && state.input.has_value;
+  placed.velocity_known = placed.velocity_known && state.velocity_known && !state.input.late;
+  placed.late = placed.late || state.input.late;
+  placed.contradicted = placed.contradicted || state.input.contradicted;
+  placed.stamp_ns = std::min(placed.stamp_ns, state.input.stamp_ns);
   const double scaled = joint.multiplier * state.position;
   const double factor = std::abs(joint.multiplier);
   return {.value = scaled + joint.offset,

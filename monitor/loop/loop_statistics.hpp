@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/monitor.hpp"
-#include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {

@@ -8,8 +8,8 @@
 #include <cstdint>
 #include <span>
 
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/loop/loop_statistics.hpp"
-#include "monitor/pose_batch.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 
+#include "monitor/inputs/tick_time.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/tick_time.hpp"
 
 namespace clearance {
 

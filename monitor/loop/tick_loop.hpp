@@ -8,10 +8,10 @@
 #include <span>
 #include <vector>
 
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/monitor.hpp"
-#include "monitor/source_numbers.hpp"
 
 namespace clearance {
 

@@ -30,11 +30,11 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
   for (const std::uint32_t i : moving) {
     const TrackedObject& object = objects[i];
     displaced.any_lost = displaced.any_lost || !object.known() || object.discontinuous;
-    if (!object.seen) continue;
+    if (!object.input.has_value) continue;
     displaced.newest_pose_ns =
-        any ? std::max(displaced.newest_pose_ns, object.stamp_ns) : object.stamp_ns;
+        any ? std::max(displaced.newest_pose_ns, object.input.stamp_ns) : object.input.stamp_ns;
     displaced.oldest_pose_ns =
-        any ? std::min(displaced.oldest_pose_ns, object.stamp_ns) : object.stamp_ns;
+        any ? std::min(displaced.oldest_pose_ns, object.input.stamp_ns) : object.input.stamp_ns;
     any = true;
     if (!object.known()) continue;
     unseen.add(object.may_have_moved);
@@ -73,11 +73,11 @@ void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs&
       placed = true;
     }
     TrackedObject& object = objects[i];
-    const bool was_late = object.late;
+    const bool was_late = object.input.late;
     const double might_have_moved = object.may_have_moved;
     advance(scene.objects[i], inputs.time.now_ns, object);
     const bool changes =
-        object.moved || object.late != was_late || object.may_have_moved != might_have_moved;
+        object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
     if (changes && inputs.cycle > 1) displaced.changed.push_back(i);
   }
   for (const std::uint32_t i : moving) displace(objects[i].reach, objects[i]);

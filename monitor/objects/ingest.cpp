@@ -1,46 +1,65 @@
 #include "monitor/objects/ingest.hpp"
 
 #include <optional>
+#include <span>
 
-#include "monitor/source_numbers.hpp"
+#include "monitor/inputs/input_record.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 
 namespace clearance {
 namespace {
 
-// Why not, if the sample is not taken.
-std::optional<Reject> take_in_time(const PoseSample& sample, const Scene& scene,
-                                   Inputs& inputs) noexcept {
+// When the sample's value held, in the tick's time.
+template <class Sample>
+std::int64_t tick_stamp(const Sample& sample, std::int64_t age_limit_ns, const Scene& scene,
+                        Inputs& inputs) noexcept {
+  return inputs.sources[sample.source].in_tick_time(
+      sample.stamp_ns, inputs.time, {.future_ns = scene.future_limit_ns, .age_ns = age_limit_ns});
+}
+
+// Of the input that the sample names; null: the scene has no such input.
+InputRecord* record_of(const PoseSample& sample, Inputs& inputs) noexcept {
+  return sample.object < inputs.objects.size() ? &inputs.objects[sample.object].input : nullptr;
+}
+InputRecord* record_of(const JointSample& sample, Inputs& inputs) noexcept {
+  const std::span<TrackedVariable> variables = inputs.robots.variables();
+  const bool known = sample.variable < variables.size() && sample.source < kMaxSources;
+  return known ? &variables[sample.variable].input : nullptr;
+}
+
+std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+  if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
+      sample.source >= kMaxSources || inputs.objects[sample.object].absent) {
+    return Reject::kUnknownObject;
+  }
+  if (inputs.robots.follows_joints(sample.object)) return Reject::kOtherSource;
   const Object& object = scene.objects[sample.object];
-  TrackedObject& state = inputs.objects[sample.object];
-  const std::int64_t stamp_ns = inputs.sources[sample.source].in_tick_time(
-      sample.stamp_ns, inputs.time,
-      {.future_ns = scene.future_limit_ns, .age_ns = object.age_limit_ns});
-  return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns}, state);
+  const std::int64_t stamp_ns = tick_stamp(sample, object.age_limit_ns, scene, inputs);
+  return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
+              inputs.objects[sample.object]);
 }
 
-std::optional<Reject> take_in_time(const JointSample& sample, const Scene& scene,
-                                   Inputs& inputs) noexcept {
+std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
+  if (record_of(sample, inputs) == nullptr) return Reject::kUnknownObject;
   const JointVariable& variable = scene.variables[sample.variable];
-  TrackedVariable& state = inputs.robots.variables()[sample.variable];
-  const std::int64_t now_ns = inputs.time.now_ns;
-  const std::int64_t stamp_ns = inputs.sources[sample.source].in_tick_time(
-      sample.stamp_ns, inputs.time,
-      {.future_ns = scene.future_limit_ns, .age_ns = variable.age_limit_ns});
-  const auto cause = refusal(variable, sample, stamp_ns, {now_ns, scene.future_limit_ns}, state);
-  if (cause) return cause;
-  accept(variable, sample, stamp_ns, now_ns, state);
-  inputs.robots.hear(sample.variable);
-  return std::nullopt;
+  const std::int64_t stamp_ns = tick_stamp(sample, variable.age_limit_ns, scene, inputs);
+  const auto cause = take(variable, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
+                          inputs.robots.variables()[sample.variable]);
+  if (!cause) inputs.robots.hear(sample.variable);
+  return cause;
 }
 
-void ingest(std::span<const JointSample> joints, const Scene& scene, Inputs& inputs) noexcept {
-  for (const JointSample& sample : joints) {
-    const bool known = sample.variable < scene.variables.size() && sample.source < kMaxSources;
-    const auto cause = known ? take_in_time(sample, scene, inputs) : Reject::kUnknownObject;
-    if (!cause) continue;
-    ++inputs.rejected[static_cast<std::size_t>(*cause)];
-    if (known) {
-      ++inputs.robots.variables()[sample.variable].rejected[static_cast<std::size_t>(*cause)];
+void count(Reject cause, InputRecord* input, Inputs& inputs) noexcept {
+  const auto index = static_cast<std::size_t>(cause);
+  ++inputs.rejected[index];
+  if (input != nullptr) ++input->rejected[index];
+}
+
+template <class Sample>
+void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& inputs) noexcept {
+  for (const Sample& sample : samples) {
+    if (const auto cause = take(sample, scene, inputs)) {
+      count(*cause, record_of(sample, inputs), inputs);
     }
   }
 }
@@ -49,7 +68,7 @@ void ingest(std::span<const JointSample> joints, const Scene& scene, Inputs& inp
 void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
   for (SourceClock& source : inputs.sources) source.forget();
   for (TrackedObject& object : inputs.objects) {
-    if (object.seen) forget_age(time.now_ns, object);
+    if (object.input.has_value) forget_age(time.now_ns, object);
   }
   inputs.robots.forget_ages(time.now_ns);
 }
@@ -62,13 +81,13 @@ Inputs initial_inputs(const Scene& scene) {
   for (const Object& object : scene.objects) {
     TrackedObject& state = inputs.objects.emplace_back(initial_state(object));
     if (!object.source.empty()) {
-      state.owner = InputOwner(numbers.of(SourceName(object.source)));
+      state.input.owner = InputOwner(numbers.of(SourceName(object.source)));
     }
   }
   for (std::size_t i = 0; i < scene.variables.size(); ++i) {
     const std::string& source = scene.variables[i].source;
     if (source.empty()) continue;
-    inputs.robots.variables()[i].owner = InputOwner(numbers.of(SourceName(source)));
+    inputs.robots.variables()[i].input.owner = InputOwner(numbers.of(SourceName(source)));
   }
   return inputs;
 }
@@ -78,23 +97,12 @@ void ingest(std::span<const PoseSample> samples, std::span<const JointSample> jo
   ++inputs.cycle;
   if (time.now_ns < inputs.time.now_ns) forget_ages(time, inputs);
   inputs.time = time;
-  ingest(joints, scene, inputs);
-  for (const PoseSample& sample : samples) {
-    if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
-        sample.source >= kMaxSources || inputs.objects[sample.object].absent) {
-      refuse(sample.object, Reject::kUnknownObject, inputs);
-    } else if (inputs.robots.follows_joints(sample.object)) {
-      refuse(sample.object, Reject::kOtherSource, inputs);
-    } else if (const auto cause = take_in_time(sample, scene, inputs)) {
-      refuse(sample.object, *cause, inputs);
-    }
-  }
+  take_all(joints, scene, inputs);
+  take_all(samples, scene, inputs);
 }
 
 void refuse(std::uint32_t object, Reject cause, Inputs& inputs) noexcept {
-  const auto index = static_cast<std::size_t>(cause);
-  ++inputs.rejected[index];
-  if (object < inputs.objects.size()) ++inputs.objects[object].rejected[index];
+  count(cause, object < inputs.objects.size() ? &inputs.objects[object].input : nullptr, inputs);
 }
 
 }  // namespace clearance

@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "monitor/inputs/source_clock.hpp"
 #include "monitor/objects/robot_inputs.hpp"
-#include "monitor/objects/source_clock.hpp"
 #include "monitor/objects/tracked_object.hpp"
 
 namespace clearance {

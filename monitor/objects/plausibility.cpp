@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/model/curved_extent.hpp"
-#include "monitor/motion/elapsed.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {

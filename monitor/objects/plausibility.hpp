@@ -17,7 +17,7 @@
 #include <cstdint>
 
 #include "config/scene/scene.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 

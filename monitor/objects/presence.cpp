@@ -10,8 +10,8 @@ void make_absent(TrackedObject& state) noexcept {
   fresh.reach = state.reach;
   fresh.accumulated = fresh.accumulated_last_tick = state.accumulated;
   fresh.accumulated_turn = state.accumulated_turn;
-  fresh.rejected = state.rejected;
-  fresh.owner = state.owner;
+  fresh.input.rejected = state.input.rejected;
+  fresh.input.owner = state.input.owner;
   state = fresh;
 }
 

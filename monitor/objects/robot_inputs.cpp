@@ -16,11 +16,11 @@ std::uint32_t first_link_of(const Scene& scene) {
 
 LinkState base_at(const TrackedObject& object) noexcept {
   LinkState base;
-  base.known = object.seen;
+  base.known = object.input.has_value;
   base.velocity_known = object.velocity_known();
-  base.late = object.late;
-  base.contradicted = object.contradicted;
-  base.stamp_ns = object.stamp_ns;
+  base.late = object.input.late;
+  base.contradicted = object.input.contradicted;
+  base.stamp_ns = object.input.stamp_ns;
   base.pose = object.pose;
   base.twist = object.twist;
   return base;
@@ -45,7 +45,7 @@ RobotInputs::RobotInputs(const Scene& scene)
 
 void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
   for (TrackedVariable& variable : variables_) {
-    if (variable.seen) forget_age(now_ns, variable);
+    if (variable.input.has_value) variable.input.forget_age(now_ns);
   }
 }
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -63,7 +63,7 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
 // Whether the object can have come to this pose; if not, whether it has to be taken all the same.
 bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
                TrackedObject& state) noexcept {
-  const std::int64_t passed_ns = elapsed(state.stamp_ns, stamp_ns);
+  const std::int64_t passed_ns = elapsed(state.input.stamp_ns, stamp_ns);
   if (can_reach(object, state.landmarks, state.pose, pose, passed_ns) &&
       state.anchor.allows(pose, stamp_ns, object, state.landmarks)) {
     return true;
@@ -73,32 +73,50 @@ bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
   return true;
 }
 
-// What is against a well-formed sample of the object's source, given those before it. `pose` is the
-// sample's, as queries take it.
-std::optional<Reject> contradiction(const Object& object, const PoseSample& sample,
-                                    const Pose& pose, std::int64_t stamp_ns,
-                                    const SampleLimits& limits, TrackedObject& state) noexcept {
-  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
-  if (state.seen && stamp_ns < state.stamp_ns) return Reject::kBackwards;
+// One sample of an object, as clearance::take asks for it.
+struct PoseCandidate {
+  const Object& object;
+  const PoseSample& sample;
+  std::int64_t stamp_ns;
+  TrackedObject& state;
+  Pose pose = {};  // the sample's, as queries take it; set by malformed()
+
+  [[nodiscard]] std::optional<Reject> malformed() noexcept {
+    const auto cause = clearance::malformed(sample);
+    if (!cause) pose = as_queries_take_it(sample.world_from_object);
+    return cause;
+  }
+  [[nodiscard]] std::optional<Reject> implausible() noexcept;
+  void use() noexcept;
+  // A twist that led elsewhere takes longer to be believed again.
+  [[nodiscard]] std::int64_t agree_for_ns() const noexcept {
+    const std::int64_t age_limits =
+        state.reckoning.leads_elsewhere() ? Reckoning::kAgreesAfterAgeLimits : 1;
+    return age_limits * object.age_limit_ns;
+  }
+};
+
+std::optional<Reject> PoseCandidate::implausible() noexcept {
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
-  const bool same = state.seen && same_pose(pose, state.pose);
+  const bool same = state.input.has_value && same_pose(pose, state.pose);
   state.repetition.add(same, stamp_ns);
   if (same && state.repetition.frozen(object)) return Reject::kFrozen;
-  if (state.seen && !same && !can_be_at(object, pose, stamp_ns, state)) return Reject::kTooFast;
+  if (state.input.has_value && !same && !can_be_at(object, pose, stamp_ns, state)) {
+    return Reject::kTooFast;
+  }
   if (!state.reckoning.follows(sample, pose, stamp_ns, same, object, state.landmarks)) {
     return same ? Reject::kFrozen : Reject::kOtherWay;
   }
   return std::nullopt;
 }
 
-void use(const Object& object, const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
-         std::int64_t now_ns, TrackedObject& state) noexcept {
-  const std::int64_t apart_ns = elapsed(state.stamp_ns, stamp_ns);
+void PoseCandidate::use() noexcept {
+  const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
   if (sample.has_twist) {
     state.twist = sample.twist;
     state.twist_known = true;
-  } else if (state.seen && apart_ns > 0) {  // the same stamp again says nothing about speed
+  } else if (state.input.has_value && apart_ns > 0) {  // the same stamp again tells no speed
     // A mean over some time is the velocity of half that time ago, which counts as long as a pose
     // of that age does.
     state.twist_known = apart_ns / 2 <= object.age_limit_ns;
@@ -107,13 +125,9 @@ void use(const Object& object, const PoseSample& sample, const Pose& pose, std::
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
   state.pose = pose;
-  if (!state.seen) state.anchor.set(state.pose, stamp_ns);
+  if (!state.input.has_value) state.anchor.set(state.pose, stamp_ns);
   state.anchor.follow(state.pose, stamp_ns, object);
   state.other_place.clear();
-  state.contradiction.agree();
-  state.stamp_ns = stamp_ns;
-  state.owner.take(sample.source, now_ns);
-  state.seen = true;
 }
 
 }  // namespace
@@ -122,9 +136,9 @@ TrackedObject initial_state(const Object& object) {
   TrackedObject state;
   state.landmarks = Landmarks(object);
   if (!object.fixed) return state;
-  state.seen = state.seen_last_tick = true;
+  state.input.has_value = state.seen_last_tick = true;
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
-  state.age_ns = 0;
+  state.input.age_ns = 0;
   state.twist_known = true;  // at rest
   state.plain = true;
   return state;
@@ -132,22 +146,8 @@ TrackedObject initial_state(const Object& object) {
 
 std::optional<Reject> take(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
                            const SampleLimits& limits, TrackedObject& state) noexcept {
-  if (const auto cause = malformed(sample)) return cause;
-  if (state.owner.refuses(sample.source, limits.now_ns, object.age_limit_ns)) {
-    return Reject::kOtherSource;
-  }
-  const Pose pose = as_queries_take_it(sample.world_from_object);
-  const auto cause = contradiction(object, sample, pose, stamp_ns, limits, state);
-  if (!cause) use(object, sample, pose, stamp_ns, limits.now_ns, state);
-  // Of poses that come in another order than they were made one is as good as the other.
-  const bool reordered =
-      cause == Reject::kBackwards && elapsed(stamp_ns, state.stamp_ns) <= object.age_limit_ns;
-  if (cause && !reordered) {
-    const std::int64_t age_limits =
-        state.reckoning.leads_elsewhere() ? Reckoning::kAgreesAfterAgeLimits : 1;
-    state.contradiction.meet(limits.now_ns, age_limits * object.age_limit_ns);
-  }
-  return cause;
+  return take(PoseCandidate{object, sample, stamp_ns, state}, {sample.source, stamp_ns}, limits,
+              object.age_limit_ns, state.input);
 }
 
 void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
@@ -158,24 +158,23 @@ void follow(const LinkState& link, const Object& object, TrackedObject& state) n
   if (!known) return;
   state.joints_contradicted = link.contradicted;
   state.pose = as_queries_take_it(link.pose);
-  state.stamp_ns = link.stamp_ns;
+  state.input.stamp_ns = link.stamp_ns;
   state.twist = link.twist;
   state.twist_known = link.velocity_known;
-  state.seen = true;
+  state.input.has_value = true;
 }
 
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
-  state.stamp_ns = less(now_ns, kForgottenNs);
-  state.owner.forget_age(now_ns);
-  state.contradiction.forget_age();
-  state.anchor.set(state.pose, state.stamp_ns);
+  state.input.forget_age(now_ns);
+  state.anchor.set(state.pose, state.input.stamp_ns);
   state.repetition.add(false, now_ns);
   state.reckoning = {};
   state.other_place = {};
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
-  if (object.fixed || !state.seen) return;
+  InputRecord& input = state.input;
+  if (object.fixed || !input.has_value) return;
   const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
   state.first_seen = !(unseen_before < kInfinity);
   state.moved = !state.seen_last_tick || !same_pose(state.pose_last_tick, state.pose);
@@ -188,16 +187,14 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   }
   state.seen_last_tick = true;
 
-  state.age_ns = elapsed(state.stamp_ns, now_ns);
+  input.advance(now_ns, object.age_limit_ns);
   if (state.follows_joints) {
-    state.contradicted = state.joints_contradicted;
-    state.late = state.joints_late;
+    input.contradicted = state.joints_contradicted;
+    input.late = state.joints_late;
     state.may_have_moved = state.unseen_by_joints;
   } else {
-    state.contradicted = state.contradiction.holds(now_ns);
-    state.late = state.contradicted || state.age_ns > object.age_limit_ns;
-    state.may_have_moved = state.contradicted ? kInfinity
-                           : state.late       ? rounded_up(object.max_speed * seconds(state.age_ns))
+    state.may_have_moved = input.contradicted ? kInfinity
+                           : input.late       ? rounded_up(object.max_speed * seconds(input.age_ns))
                                               : 0.0;
   }
   state.unseen_since =
@@ -218,8 +215,8 @@ void displace(double reach, TrackedObject& state) noexcept {
   } else if (state.displacement > 0.0) {
     state.accumulated = rounded_up(state.accumulated + state.displacement);
   }
-  state.plain = state.seen && !state.first_seen && !state.late && !state.discontinuous &&
-                state.unseen_since == 0.0;
+  state.plain = state.input.has_value && !state.first_seen && !state.input.late &&
+                !state.discontinuous && state.unseen_since == 0.0;
 }
 
 }  // namespace clearance

@@ -2,27 +2,23 @@
 // moves.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 
 #include "config/scene/scene.hpp"
-#include "monitor/kinematics/contradiction.hpp"
+#include "monitor/inputs/input_record.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
-#include "monitor/kinematics/input_owner.hpp"
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
 #include "monitor/motion/relative_displacement.hpp"
 #include "monitor/objects/plausibility.hpp"
-#include "monitor/pose_batch.hpp"
 
 namespace clearance {
 
 struct TrackedObject {
   // What every pair asks of both its objects each tick comes first: one cache line, to
   // `accumulated_turn`.
-  bool seen = false;           // some pose is in use; always so for a fixed object
-  bool late = false;           // that pose is older than the object's limit
   bool moved = false;          // it is not that of the last tick
   bool first_seen = false;     // nothing was known of it at the last tick
   bool discontinuous = false;  // something was, but that is farther off than anything moves
@@ -42,23 +38,15 @@ struct TrackedObject {
   double bend = 0.0;
   double accumulated_turn = 0.0;  // Motion::turn, in all
   double reach = kInfinity;       // no point of it is farther from its origin, m; set by displace()
-  std::int64_t age_ns = -1;  // now - stamp, never negative; 0 for a fixed object, -1: never seen
+  InputRecord input;  // of its poses; of a link that follows joints, what they say of them
 
   // As sent, but for an orientation that is off unit length by more than 5e-7.
   Pose pose;
-  std::int64_t stamp_ns = 0;  // in the tick's time
   // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
   // after a gap longer than twice the age limit: over that a difference says nothing about now.
   Twist twist;
   bool twist_known = false;
   Motion motion;  // since the last tick; none when first seen
-  std::array<std::uint64_t, kRejects> rejected{};
-
-  InputOwner owner;  // who sends its poses
-  // Poses have come that contradict the pose in use or the cell, not longer ago than the age limit
-  // or none since that does not: nothing is known of it.
-  bool contradicted = false;
-  Contradiction contradiction;
   // Of a link whose pose follows from joints: they say how late it is, and how far it may have
   // moved since, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
@@ -74,9 +62,11 @@ struct TrackedObject {
   bool seen_last_tick = false;
 
   // Whether anything can be said about where it is now.
-  [[nodiscard]] bool known() const noexcept { return seen && may_have_moved < kInfinity; }
+  [[nodiscard]] bool known() const noexcept {
+    return input.has_value && may_have_moved < kInfinity;
+  }
   // Whether `twist` is how it moves now: a late object may do anything since its stamp.
-  [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !late; }
+  [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !input.late; }
 
   // Since the last tick, where it was known then: as seen from another, and the way it is taken to
   // have gone.

@@ -23,7 +23,7 @@ void KnownPairs::update(const std::vector<TrackedObject>& objects,
   regained_.clear();
   for (const std::uint32_t i : changed) {
     const bool known = objects[i].known();
-    const bool fresh = known && !objects[i].late;
+    const bool fresh = known && !objects[i].input.late;
     set(i, !objects[i].absent, present_);
     if (known_.has(i) == known && fresh_.has(i) == fresh) continue;
     if (set(i, known, known_) && known) regained_.push_back(i);

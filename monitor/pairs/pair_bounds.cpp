@@ -138,7 +138,7 @@ void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
     bounds.swept_lower = rounded_down(bounds.swept_lower - rounded_up(unseen_since));
     bounds.swept_upper = rounded_up(bounds.swept_upper + rounded_up(unseen_since));
   }
-  if (!a.late && !b.late) return;
+  if (!a.input.late && !b.input.late) return;
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   bounds.lower = rounded_down(bounds.lower - may_have_moved);
   bounds.upper = rounded_up(bounds.upper + may_have_moved);
@@ -199,8 +199,8 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   const TrackedObject& b = view.objects[table.entries[pair].object_b];
   if (!is_known(bounds.status)) report = unknown_report();
   report.pair = pair;
-  report.age_a_ns = a.age_ns;
-  report.age_b_ns = b.age_ns;
+  report.age_a_ns = a.input.age_ns;
+  report.age_b_ns = b.input.age_ns;
   report.refresh_age_cycles = view.cycle - table.refreshed_cycle[pair];
   report.status = bounds.status;
   if (!is_known(bounds.status)) return;

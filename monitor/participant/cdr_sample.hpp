@@ -1,4 +1,4 @@
-// Samples in CDR, not decoded: for programs that record them or count them.
+// Samples in CDR, not decoded: for programs that record them, count them or decode them elsewhere.
 #pragma once
 
 #include <dds/dds.h>
@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 struct ddsi_serdata;
@@ -23,8 +24,8 @@ class CdrSample {
   [[nodiscard]] std::int64_t source_ns() const noexcept { return source_ns_; }
   // The writer that sent it, as its reader knows it.
   [[nodiscard]] dds_instance_handle_t writer() const noexcept { return writer_; }
-  // The bytes with their header of four.
-  void copy_to(std::vector<std::byte>& bytes) const;
+  // The bytes with their header of four, valid as long as this is.
+  [[nodiscard]] std::span<const std::byte> bytes() const;
 
  private:
   struct Release {
@@ -36,8 +37,10 @@ class CdrSample {
 };
 
 // Appends at most kMostAtOnce of the waiting samples, without those that have no content. Returns
-// how many it took, those included; 0: none was waiting. Throws DdsError.
+// how many it took, those included; 0: none was waiting. `ended`, unless null, gets the handles of
+// keys that no writer has any more. Throws DdsError.
 inline constexpr std::size_t kMostAtOnce = 64;
-std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken);
+std::size_t take_cdr(dds_entity_t reader, std::vector<CdrSample>& taken,
+                     std::vector<std::uint64_t>* ended = nullptr);
 
 }  // namespace clearance

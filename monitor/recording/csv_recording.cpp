@@ -11,7 +11,7 @@
 
 #include "config/text/spelling.hpp"
 #include "monitor/csv/pose_log.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/gradient_message.hpp"

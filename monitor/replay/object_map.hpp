@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/reference_totals.hpp"
 #include "monitor/report.hpp"

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/wire/convert.hpp"
-
 namespace clearance {
 namespace {
 
@@ -50,7 +48,7 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
                    const RecordingOutline& outline, double tick_hz)
     : reader_(files),
       objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
-      joint_names_(scene),
+      own_(std::make_unique<OwnBatches>(scene)),
       sources_(scene),
       by_report_(outline.has_reports),
       tick_hz_(tick_hz),
@@ -60,7 +58,6 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene&
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
       objects_(scene, nullptr),
-      joint_names_(scene),
       sources_(scene),
       by_report_(false),
       tick_hz_(tick_hz),
@@ -100,8 +97,9 @@ bool TickFeed::read_one() {
 
 // Into the queue of its kind.
 void TickFeed::read_message(const RecordedMessage& message) {
-  if (message.kind == TopicKind::kPoses) read_batch(message);
-  if (message.kind == TopicKind::kJointStates) read_joints(message);
+  if (message.kind == TopicKind::kPoses || message.kind == TopicKind::kJointStates) {
+    read_inputs(message);
+  }
   if (message.kind == TopicKind::kDistances) {
     WaitingReport waiting{.report = {}, .log_ns = message.log_ns};
     if (decoder_.decode(message.cdr, waiting.report)) {
@@ -118,31 +116,19 @@ void TickFeed::read_message(const RecordedMessage& message) {
   }
 }
 
-// Decodes a batch and gives it the ids of the scene.
-void TickFeed::read_batch(const RecordedMessage& message) {
-  if (!decoder_.decode(message.cdr, wire_batch_)) {
+// Poses get the ids of the scene; joints are found again by name, in whatever cell.
+void TickFeed::read_inputs(const RecordedMessage& message) {
+  PoseBatch* const batch = own_->decode(message.kind, message.cdr);
+  if (batch == nullptr) {
     ++undecodable_;
     return;
   }
-  Waiting waiting{.batch = {}, .log_ns = message.log_ns};
-  from_wire(*wire_batch_, waiting.batch);
   // The daemon took such a batch in, but not its poses.
-  if (!objects_.translate(waiting.batch)) {
-    waiting.batch.samples.clear();
+  if (!objects_.translate(*batch)) {
+    batch->samples.clear();
     ++of_other_scenes_;
   }
-  batches_waiting_.push_back(std::move(waiting));
-}
-
-// Joints are found again by name, in whatever cell.
-void TickFeed::read_joints(const RecordedMessage& message) {
-  if (!decoder_.decode(message.cdr, wire_joints_)) {
-    ++undecodable_;
-    return;
-  }
-  Waiting waiting{.batch = {}, .log_ns = message.log_ns};
-  from_wire(*wire_joints_, joint_names_, waiting.batch);
-  batches_waiting_.push_back(std::move(waiting));
+  batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
 }
 
 // A report names the last batch of each source that its tick used. Recorded over DDS, that batch

@@ -21,13 +21,13 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/bags/input_log.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/tick_time.hpp"
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
-#include "monitor/source_numbers.hpp"
-#include "monitor/tick_time.hpp"
 #include "monitor/wire/cdr.hpp"
-#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -125,8 +125,7 @@ class TickFeed {
 
   [[nodiscard]] bool read_one();
   void read_message(const RecordedMessage& message);
-  void read_batch(const RecordedMessage& message);
-  void read_joints(const RecordedMessage& message);
+  void read_inputs(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] bool read_ahead();
   [[nodiscard]] bool next_by_time(TickInput& tick);
@@ -142,7 +141,7 @@ class TickFeed {
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
   ObjectMap objects_;
-  JointNames joint_names_;
+  std::unique_ptr<OwnBatches> own_;  // null: somebody else's log
   SourceNumbers sources_;
   bool by_report_;
   double tick_hz_;             // 0: at log times
@@ -150,8 +149,6 @@ class TickFeed {
   std::int64_t last_batch_ns_ = 0;
   std::uint64_t at_rate_ = 0;  // ticks since then
   CdrDecoder decoder_;
-  Sample<clearance_msg_PoseBatch> wire_batch_;
-  Sample<clearance_msg_JointStates> wire_joints_;
 
   std::deque<Waiting> batches_waiting_;        // in file order
   std::deque<WaitingReport> reports_waiting_;  // in file order

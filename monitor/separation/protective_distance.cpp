@@ -2,8 +2,8 @@
 
 #include <cmath>
 
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/motion/elapsed.hpp"
 
 namespace clearance {
 namespace {

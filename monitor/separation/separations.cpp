@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
-#include "monitor/motion/elapsed.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/separation/closing.hpp"
 #include "monitor/separation/protective_distance.hpp"
@@ -15,7 +15,7 @@ namespace {
 // The age that S_p has to cover, s. A late object counts as 0: the pair's lower bound already has
 // what the object may have moved since its pose.
 double age_to_count_in(const TrackedObject& object) noexcept {
-  return object.late ? 0.0 : rounded_up(seconds(object.age_ns));
+  return object.input.late ? 0.0 : rounded_up(seconds(object.input.age_ns));
 }
 
 PairSeparation unknown_separation(std::uint32_t zone, std::uint32_t pair) noexcept {
@@ -116,8 +116,8 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const Separation& terms = *scene_.zones[zone.zone].separation;
   const TrackedObject &human = objects[member.human], &robot = objects[member.robot];
   out = unknown_separation(zone.zone, member.pair);
-  out.age_human_ns = human.age_ns;
-  out.age_robot_ns = robot.age_ns;
+  out.age_human_ns = human.input.age_ns;
+  out.age_robot_ns = robot.input.age_ns;
 
   if (human.absent || robot.absent) {
     out.validity = SeparationValidity::kAbsent;
@@ -147,7 +147,7 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
       .human_age = age_to_count_in(human),
       .robot_age = age_to_count_in(robot)};
 
-  const bool on_time = !human.late && !robot.late && human_known && robot_known;
+  const bool on_time = !human.input.late && !robot.input.late && human_known && robot_known;
   out.validity = on_time ? SeparationValidity::kMeasured : SeparationValidity::kAssumed;
   out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;
   out.human_speed = approach.human_speed;

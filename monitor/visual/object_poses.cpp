@@ -7,7 +7,6 @@
 
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
-#include "monitor/wire/convert.hpp"
 
 namespace clearance {
 namespace {
@@ -38,11 +37,7 @@ Inputs inputs_of(const Scene& scene) {
 }  // namespace
 
 ObjectPoses::ObjectPoses(const Scene& scene)
-    : scene_(scene),
-      joint_names_(scene),
-      numbers_(scene),
-      nothing_known_(inputs_of(scene)),
-      inputs_(nothing_known_) {}
+    : scene_(scene), numbers_(scene), nothing_known_(inputs_of(scene)), inputs_(nothing_known_) {}
 
 void ObjectPoses::forget() {
   waiting_.clear();
@@ -50,19 +45,11 @@ void ObjectPoses::forget() {
   inputs_.emplace(nothing_known_);
 }
 
-void ObjectPoses::take(const clearance_msg_PoseBatch& wire) {
-  PoseBatch batch;
-  from_wire(wire, batch);
-  if (made_for(batch, scene_.revision)) wait(std::move(batch), wire.sequence_number);
+void ObjectPoses::take(PoseBatch batch, Numbers numbers) {
+  if (!made_for(batch, scene_.revision)) return;
+  const std::uint64_t number = numbers == Numbers::kOfSender ? batch.sequence_number : kNeverNamed;
+  wait(std::move(batch), number);
 }
-
-void ObjectPoses::take(const clearance_msg_JointStates& wire) {
-  PoseBatch batch;
-  from_wire(wire, joint_names_, batch);
-  wait(std::move(batch), wire.sequence_number);
-}
-
-void ObjectPoses::take_joints(PoseBatch batch) { wait(std::move(batch), kNeverNamed); }
 
 void ObjectPoses::wait(PoseBatch batch, std::uint64_t sequence_number) {
   Waiting& waiting = waiting_[std::string(batch.source.view())];

@@ -1,5 +1,5 @@
 // Where the objects of a cell are, as a client can know it: the poses that the latest report used,
-// from the batches of the topics of poses and joint states.
+// from the batches that come in (intake/).
 //
 // The report names the last batch of each source that its tick took in, and where it took in none,
 // the stamp of the newest pose in use. Later batches wait for the report that uses them, so that
@@ -18,10 +18,9 @@
 
 #include "clearance.h"
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/objects/ingest.hpp"
-#include "monitor/pose_batch.hpp"
-#include "monitor/source_numbers.hpp"
-#include "monitor/wire/joint_names.hpp"
 
 namespace clearance {
 
@@ -30,11 +29,11 @@ class ObjectPoses {
   // Fixed objects have their poses from the start; `scene` must outlive this.
   explicit ObjectPoses(const Scene& scene);
 
-  // Batches of another scene are passed over.
-  void take(const clearance_msg_PoseBatch& batch);
-  void take(const clearance_msg_JointStates& states);
-  // Joints from elsewhere than our own topic; only their stamps say which report has used them.
-  void take_joints(PoseBatch batch);
+  // Who has numbered a batch: its sender, as reports name it; or nobody, as of ROS 2's topics: then
+  // only its stamps say which report has used it.
+  enum class Numbers : std::uint8_t { kOfSender, kUnnumbered };
+  // A batch of another scene is passed over.
+  void take(PoseBatch batch, Numbers numbers);
 
   // Moves the objects to where they were for this report.
   void use(const clearance_msg_Distances& report);
@@ -42,7 +41,7 @@ class ObjectPoses {
   // World from object; null until the first pose.
   [[nodiscard]] const Pose* pose(std::size_t object) const {
     const TrackedObject& state = inputs_->objects[object];
-    return state.seen ? &state.pose : nullptr;
+    return state.input.has_value ? &state.pose : nullptr;
   }
   void forget();  // all but the fixed ones
 
@@ -63,7 +62,6 @@ class ObjectPoses {
   void take_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns, Waiting& waiting);
 
   const Scene& scene_;
-  JointNames joint_names_;
   SourceNumbers numbers_;
   const Inputs nothing_known_;
   std::optional<Inputs> inputs_;                         // made anew to forget

@@ -38,6 +38,12 @@ class CdrEncoder {
   std::vector<std::byte> bytes_;
 };
 
+// Who vouches for bytes.
+enum class CdrBytes : std::uint8_t {
+  kUnchecked,  // nobody: every length is checked before it is followed
+  kOfReader,   // Cyclone, whose reader has checked them and has put them into native byte order
+};
+
 // Decodes bytes of any origin into samples: malformed, truncated or over-long input is refused,
 // never followed. Keeps a scratch buffer between calls.
 class CdrDecoder {
@@ -45,12 +51,14 @@ class CdrDecoder {
   // False leaves `sample` as it was. True replaces its content, reusing its sequences where they
   // fit.
   template <class T>
-  [[nodiscard]] bool decode(std::span<const std::byte> cdr, Sample<T>& sample) {
-    return decode(cdr, &*sample, topic_descriptor<T>());
+  [[nodiscard]] bool decode(std::span<const std::byte> cdr, Sample<T>& sample,
+                            CdrBytes bytes = CdrBytes::kUnchecked) {
+    return decode(cdr, &*sample, topic_descriptor<T>(), bytes);
   }
   // `sample` must own what it points to, as Sample does.
   [[nodiscard]] bool decode(std::span<const std::byte> cdr, void* sample,
-                            const dds_topic_descriptor_t& type);
+                            const dds_topic_descriptor_t& type,
+                            CdrBytes bytes = CdrBytes::kUnchecked);
 
  private:
   std::vector<std::uint64_t> scratch_;  // 8-byte words: the stream functions read aligned values

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "config/cell/cell.hpp"
-#include "monitor/pose_batch.hpp"
+#include "monitor/inputs/pose_batch.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"

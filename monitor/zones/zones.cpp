@@ -11,9 +11,9 @@ constexpr std::uint32_t kAnyObject = ~0u;
 
 // Why a pair with this object is inside a zone, as far as the object is the reason.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
-  if (!object.seen) return ZoneCause::kUnknown;
+  if (!object.input.has_value) return ZoneCause::kUnknown;
   if (object.unseen_since > 0.0)
-    return object.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
+    return object.input.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 

@@ -64,7 +64,7 @@ TEST(RobotsInTheTick, BoundsAccountForTheRoundingOfTheChain) {
   bases[0].pose = test::at(60.0, -50.0, 50.0);
   for (const double angle : {0.1, 3.0, -999.0}) {
     for (TrackedVariable& variable : variables) {
-      variable.seen = true;
+      variable.input.has_value = true;
       variable.position = angle;
     }
     variables[2].position = 0.2;
@@ -105,7 +105,7 @@ TEST(RobotsInTheTick, JointStatesAndLinkPosesOfOneMotionGiveTheSameDistances) {
     const std::array rates{1.3 * std::cos(1.3 * t), -2.0 * std::sin(t), 0.2 * std::cos(2.0 * t)};
     std::array<TrackedVariable, 3> states;
     for (std::size_t i = 0; i < 3; ++i) {
-      samples[i].has_velocity = states[i].velocity_known = states[i].seen = true;
+      samples[i].has_velocity = states[i].velocity_known = states[i].input.has_value = true;
       samples[i].velocity = states[i].velocity = rates[i];
       states[i].position = samples[i].position;
     }

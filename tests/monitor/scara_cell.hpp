@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "monitor/joint_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

@@ -11,6 +11,9 @@
 
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/ros_frames.hpp"
+#include "tests/shared/ros_joints.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
@@ -326,6 +329,45 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   EXPECT_EQ(bodies[0]["points"], 36);  // a box: twelve triangles
   EXPECT_EQ(found["last"]["/tf"]["transforms"].size(), 3u);
   EXPECT_EQ(found["last"]["/clearance/closest"][0]["type"], 5);
+  EXPECT_EQ(view.end(), 0);
+}
+
+// An arm on a cart that follows a frame, and a box that follows another.
+TEST(View, DrawsLiveWhatFollowsFrames) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  test::write_text(folder / "cell.yaml",
+                   "name: frames\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+                   "defaults: {age_limit_ms: 10000}\nros2: {world_frame: map}\n"
+                   "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir}}]\n"
+                   "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
+                   "pairs: [{between: [arm, box]}]\n");
+  const std::string cell = (folder / "cell.yaml").string();
+  const DdsOptions own = test::own_dds();
+  const auto dds = test::dds_arguments(own);
+  Participant robot(own);
+  test::RosFrames frames(robot), fixed(robot, test::RosFrames::Kind::kStatic);
+  test::RosJoints joints(robot);
+  fixed.send({{"mir", "box_link", {0.5, 0, 0}}});
+  ChildProcess daemon(test::kDaemon, test::with({cell}, dds));
+  View view(test::with({cell}, dds));
+  ChildProcess client("/usr/bin/env",
+                      {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "120", "/tf"});
+  ASSERT_TRUE(eventually([&] {
+    frames.send({{"map", "mir", {1, 0, 0}}});
+    joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1});
+    return client.wrote("\"cycles\"");
+  })) << client.output();
+  EXPECT_EQ(client.wait(), 0) << client.output();
+  std::map<std::string, double> drawn;  // x of what is drawn, by name
+  for (const json& each : lines_of(client).front()["last"]["/tf"]["transforms"]) {
+    drawn[each["child_frame_id"]] = each["transform"]["translation"]["x"];
+  }
+  ASSERT_TRUE(drawn.contains("box") && drawn.contains("foot") && drawn.contains("finger"))
+      << client.output();
+  EXPECT_NEAR(drawn["box"], 1.5, 1e-12);
+  EXPECT_NEAR(drawn["foot"], 1.0, 1e-12);
+  EXPECT_NEAR(drawn["finger"], 1.0 + 2.1, 1e-12);
   EXPECT_EQ(view.end(), 0);
 }
 

@@ -51,7 +51,8 @@ class MovingRobots {
   void place(std::int64_t now_ns) noexcept {
     for (const JointSample& joint : joints_) {
       const JointVariable& variable = scene_.variables[joint.variable];
-      accept(variable, joint, now_ns, now_ns, variables_[joint.variable]);
+      static_cast<void>(
+          take(variable, joint, now_ns, {.now_ns = now_ns}, variables_[joint.variable]));
       advance(variable, now_ns, variables_[joint.variable]);
     }
     kinematics_.place(variables_, bases_);

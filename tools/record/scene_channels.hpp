@@ -2,8 +2,11 @@
 // pairs of some reports.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -19,6 +22,7 @@ class SceneChannels {
       : scene_(scene),
         writer_(writer),
         poses_(scene),
+        own_(scene),
         transforms_(writer.add_channel(ros::transforms_schema(), kTransformsTopic)),
         closest_(writer.add_channel(ros::markers_schema(), kClosestTopic)),
         bodies_(writer.add_channel(ros::markers_schema(), kBodiesTopic)) {
@@ -28,8 +32,12 @@ class SceneChannels {
   // Every file needs this.
   void write_bodies(std::int64_t now_ns) { write(bodies_, now_ns, bodies_message(scene_)); }
 
-  void take(const clearance_msg_PoseBatch& batch) { poses_.take(batch); }
-  void take(const clearance_msg_JointStates& states) { poses_.take(states); }
+  // Poses and joints as they came; `kind`: of which topic.
+  void take(TopicKind kind, std::span<const std::byte> cdr) {
+    if (PoseBatch* const batch = own_.decode(kind, cdr)) {
+      poses_.take(std::move(*batch), ObjectPoses::Numbers::kOfSender);
+    }
+  }
 
   // Written 60 times a second, as fast as a screen shows it.
   void take(const clearance_msg_Distances& report, std::int64_t now_ns) {
@@ -51,6 +59,7 @@ class SceneChannels {
   RecordingWriter& writer_;
   ObjectPoses poses_;
   CdrEncoder encoder_;
+  OwnBatches own_;
   std::uint16_t transforms_, closest_, bodies_;
   std::int64_t written_ns_ = 0;
 };

@@ -76,9 +76,9 @@ class Subscription {
 
  private:
   void record(TopicKind kind, std::int64_t now_ns, const CdrSample& taken) {
-    taken.copy_to(bytes_);
+    const std::span<const std::byte> bytes = taken.bytes();
     ++counts_[index(kind)];
-    const bool decoded = look_into(kind);
+    const bool decoded = look_into(kind, bytes);
     const bool is_report = decoded && kind == TopicKind::kDistances;
     if (decoded && kind == TopicKind::kGradients && !keeps_pairs(options_, gradients_->cycle)) {
       return;
@@ -89,12 +89,11 @@ class Subscription {
                !keeps_pairs(options_, separation_->cycle)) {
       write_without_pairs(kind, *separation_, now_ns, taken.source_ns());
     } else {
-      writer_.write(kind, now_ns, taken.source_ns(), std::span<const std::byte>(bytes_));
+      writer_.write(kind, now_ns, taken.source_ns(), bytes);
     }
     if (scene_ == nullptr) return;
-    if (kind == TopicKind::kPoses) scene_->take(*batch_);
-    if (kind == TopicKind::kJointStates) scene_->take(*joints_);
-    if (kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
+    if (kind == TopicKind::kPoses || kind == TopicKind::kJointStates) scene_->take(kind, bytes);
+    if (decoded && kind == TopicKind::kDistances) scene_->take(*report_, now_ns);
   }
 
   template <class Message>
@@ -106,19 +105,19 @@ class Subscription {
   }
 
   // False: the sample does not decode, or nothing needs to be known of its kind.
-  bool look_into(TopicKind kind) {
-    if (kind == TopicKind::kCatalogue && decoder_.decode(bytes_, catalogue_)) {
+  bool look_into(TopicKind kind, std::span<const std::byte> bytes) {
+    if (kind == TopicKind::kCatalogue && decoder_.decode(bytes, catalogue_)) {
       writer_.describe(*catalogue_);
-    } else if (kind == TopicKind::kPoses && decoder_.decode(bytes_, batch_)) {
+    } else if (kind == TopicKind::kPoses && decoder_.decode(bytes, batch_)) {
       gaps_.note("batches", fmt::format("of source '{}'", batch_->source), batch_->sequence_number);
-    } else if (kind == TopicKind::kJointStates && decoder_.decode(bytes_, joints_)) {
+    } else if (kind == TopicKind::kJointStates && decoder_.decode(bytes, joints_)) {
       gaps_.note("batches", fmt::format("of source '{}'", joints_->source),
                  joints_->sequence_number);
-    } else if (kind == TopicKind::kDistances && decoder_.decode(bytes_, report_)) {
+    } else if (kind == TopicKind::kDistances && decoder_.decode(bytes, report_)) {
       gaps_.note("reports", "of the daemon", report_->cycle);
     } else {
-      return (kind == TopicKind::kGradients && decoder_.decode(bytes_, gradients_)) ||
-             (kind == TopicKind::kSeparation && decoder_.decode(bytes_, separation_));
+      return (kind == TopicKind::kGradients && decoder_.decode(bytes, gradients_)) ||
+             (kind == TopicKind::kSeparation && decoder_.decode(bytes, separation_));
     }
     return true;
   }
@@ -129,7 +128,6 @@ class Subscription {
   std::array<dds_entity_t, kTopics.size()> readers_{};
   std::array<std::uint64_t, kTopics.size()> counts_{};
   std::vector<CdrSample> taken_;
-  std::vector<std::byte> bytes_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;
   Sample<clearance_msg_PoseBatch> batch_;

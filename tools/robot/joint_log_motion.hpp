@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/joint_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
 

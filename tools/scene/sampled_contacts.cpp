@@ -17,7 +17,8 @@ class Posable {
   explicit Posable(const Scene& scene)
       : scene_(scene), robot_(scene.robots.front()), kinematics_(scene.robots) {
     variables_.resize(scene.variables.size());
-    for (TrackedVariable& variable : variables_) variable.seen = variable.velocity_known = true;
+    for (TrackedVariable& variable : variables_)
+      variable.input.has_value = variable.velocity_known = true;
     for (const RobotJoint& joint : robot_.joints) {
       if (joint.type == JointType::kFloating) variables_[joint.variable + 6].position = 1.0;
       if (variables_of(joint.type) == 1) single_.push_back({joint.variable, joint.type});

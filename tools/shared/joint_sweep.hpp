@@ -6,7 +6,7 @@
 
 #include "config/cell/simulation.hpp"
 #include "config/scene/scene.hpp"
-#include "monitor/joint_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
 

@@ -24,20 +24,14 @@ void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte
 // A key keeps messages from replacing each other: zones by id, batches by source. Poses and joints
 // are taken here as well.
 std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
-  const auto of_source = [this,
-                          next = static_cast<std::uint32_t>(sources_.size())](const char* source) {
-    return sources_.try_emplace(source, next).first->second;
-  };
   if (kind == TopicKind::kZones && decoder_.decode(cdr, zone_)) return zone_->zone;
-  if (kind == TopicKind::kPoses && decoder_.decode(cdr, batch_)) {
-    poses_.take(*batch_);
-    return of_source(batch_->source);
-  }
-  if (kind == TopicKind::kJointStates && decoder_.decode(cdr, joints_)) {
-    poses_.take(*joints_);
-    return of_source(joints_->source);
-  }
-  return 0;
+  if (kind != TopicKind::kPoses && kind != TopicKind::kJointStates) return 0;
+  PoseBatch* const batch = own_.decode(kind, cdr);
+  if (batch == nullptr) return 0;
+  const auto next = static_cast<std::uint32_t>(sources_.size());
+  const std::uint32_t key = sources_.try_emplace(batch->source.c_str(), next).first->second;
+  poses_.take(std::move(*batch), ObjectPoses::Numbers::kOfSender);
+  return key;
 }
 
 void Frame::keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,

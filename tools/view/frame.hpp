@@ -10,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "monitor/intake/own_batches.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/view/server.hpp"
@@ -18,13 +19,15 @@ namespace clearance::view {
 
 class Frame {
  public:
-  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene) {}
+  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene), own_(scene) {}
 
   // Takes one message of our topics. It only keeps the bytes of a report and the numbers of poses
   // and joints, which is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
-  // Takes joints that did not come from our own topic.
-  void take_joints(PoseBatch batch) { poses_.take_joints(std::move(batch)); }
+  // Poses or joints of a topic of ROS 2.
+  void take_from_ros(PoseBatch batch) {
+    poses_.take(std::move(batch), ObjectPoses::Numbers::kUnnumbered);
+  }
 
   // Sends the messages that came since the last call.
   void publish(Server& server);
@@ -46,10 +49,9 @@ class Frame {
 
   const Scene& scene_;
   ObjectPoses poses_;
+  OwnBatches own_;
   CdrDecoder decoder_;
   CdrEncoder encoder_;
-  Sample<clearance_msg_PoseBatch> batch_;
-  Sample<clearance_msg_JointStates> joints_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;

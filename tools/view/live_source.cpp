@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "monitor/loop/ports.hpp"
-#include "monitor/wire/convert.hpp"
 
 namespace clearance::view {
 namespace {
@@ -34,10 +33,13 @@ LiveSource::LiveSource(const Cell& cell, const DdsOptions& dds)
     : scene_(cell.scene),
       topics_(cell.topics),
       participant_(dds),
-      present_(participant_),
-      ros_joints_(cell.scene, participant_),
-      wait_(participant_, {}),
-      frame_(cell.scene) {
+      frame_(cell.scene),
+      intake_(cell, {},
+              [this](PoseBatch& batch) {
+                frame_.take_from_ros(std::move(batch));
+                return true;
+              }),
+      ros_(participant_, intake_) {
   for (const Topic& topic : kTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
@@ -54,8 +56,8 @@ void LiveSource::advance(Server& server) {
     if (kind == TopicKind::kDistances || server.is_wanted(channel(kind))) join(kind);
   }
   for (const Topic& topic : kTopics) take(topic.kind);
-  if (!scene_.robots.empty()) take_from_ros();
   const std::int64_t now_ns = SystemClock().realtime_ns();
+  take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
   tell_of_the_daemon(server, now_ns);
   server.set_time(now_ns);
   frame_.publish(server);
@@ -86,22 +88,20 @@ void LiveSource::take(TopicKind kind) {
   while (take_cdr(readers_[index(kind)], taken_) == kMostAtOnce) {
   }
   for (const CdrSample& sample : taken_) {
-    sample.copy_to(bytes_);
-    frame_.take(kind, sample.source_ns(), bytes_);
+    frame_.take(kind, sample.source_ns(), sample.bytes());
   }
   heard_ = heard_ || (kind == TopicKind::kDistances && !taken_.empty());
   taken_.clear();
 }
 
-// As the daemon does (dds/pose_reader.cpp).
-void LiveSource::take_from_ros() {
-  if (present_.look()) ros_joints_.look(present_, wait_);
-  ros_joints_.take_all([this](const RosStates& states) {
-    PoseBatch batch;
-    from_wire(states.message, states.names, states.stamp_ns, batch);
-    batch.source = states.source;
-    frame_.take_joints(std::move(batch));
-  });
+// As the daemon does (dds/pose_reader.cpp). Its log names what is wrong, not the page.
+void LiveSource::take_from_ros(const Now& now) {
+  if (ros_.look()) intake_.keep(ros_.writers());
+  for (const RosReaders::Reader& reader : ros_.readers()) {
+    take_into(intake_, reader.topic, reader.handle, now, taken_);
+  }
+  intake_.settle(now);
+  static_cast<void>(intake_.take_news());
 }
 
 // The same states as clearance-watch tells apart.

@@ -6,8 +6,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/dds/present_topics.hpp"
-#include "monitor/dds/ros_joint_states.hpp"
+#include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "tools/view/frame.hpp"
@@ -28,19 +27,17 @@ class LiveSource final : public Source {
   void join(TopicKind kind);
   void leave(Server& server);
   void take(TopicKind kind);
-  void take_from_ros();
+  void take_from_ros(const Now& now);
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   const Scene& scene_;
   const Topics& topics_;
   Participant participant_;
   std::array<dds_entity_t, kTopics.size()> readers_{};  // 0: there is none
-  PresentTopics present_;
-  RosJointStates ros_joints_;
-  DataWait wait_;  // for whoever makes readers of topics that appear: nothing waits here
   std::vector<CdrSample> taken_;
-  std::vector<std::byte> bytes_;
   Frame frame_;
+  Intake intake_;  // of ROS 2's topics
+  RosReaders ros_;
   bool heard_ = false;           // a report has come since somebody looks
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC
 };

@@ -38,7 +38,7 @@ bool ArmModel::has(std::uint32_t object) const {
 
 void ArmModel::place(const std::vector<double>& positions) {
   for (std::size_t i = 0; i < states_.size(); ++i) {
-    states_[i].seen = true;
+    states_[i].input.has_value = true;
     states_[i].position = positions[i];
   }
   kinematics_.place(states_, {});

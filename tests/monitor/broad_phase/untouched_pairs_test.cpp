@@ -30,7 +30,7 @@ TEST(BroadPhaseInvariant, FailsForACulledPairThatIsNearerThanTheHorizon) {
   const std::vector<PosedPart> parts = parts_of(scene);
   PairTable table(scene, parts);
   std::vector<TrackedObject> objects(2);
-  for (TrackedObject& object : objects) object.seen = true;
+  for (TrackedObject& object : objects) object.input.has_value = true;
   const ZoneLevels levels(scene);
   BroadPhase broad_phase(scene, parts, levels, {0.0, 0.0}, {}, 100);
   const std::vector<std::uint32_t> changed{0, 1};

@@ -90,10 +90,10 @@ Written random_robot(Random& random, int joints, JointType only = JointType::kFi
 std::vector<TrackedVariable> random_positions(Random& random, const Written& written) {
   std::vector<TrackedVariable> states(written.variables.size());
   for (TrackedVariable& state : states) {
-    state.seen = state.velocity_known = true;
+    state.input.has_value = state.velocity_known = true;
     state.position = random.uniform(-4.0, 4.0);
     state.velocity = random.uniform(-2.0, 2.0);
-    state.stamp_ns = random.integer(1, 1000);
+    state.input.stamp_ns = random.integer(1, 1000);
   }
   for (const RobotJoint& joint : written.robot.joints) {
     if (joint.type != JointType::kFloating) continue;
@@ -216,8 +216,8 @@ TEST(ForwardKinematics, NoPointOfALateLinkIsFartherThanItMayHaveMoved) {
     const Written written = random_robot(random, random.integer(1, 8));
     auto states = random_positions(random, written);
     for (TrackedVariable& state : states) {
-      state.late = random.chance(0.4);
-      if (state.late) state.may_have_moved = random.log_uniform(1e-4, 1.0);
+      state.input.late = random.chance(0.4);
+      if (state.input.late) state.may_have_moved = random.log_uniform(1e-4, 1.0);
     }
     ForwardKinematics kinematics(std::span(&written.robot, 1));
     kinematics.place(states, {});
@@ -247,15 +247,15 @@ TEST(ForwardKinematics, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
   for (int i = 0; i < 200; ++i) {
     const Written written = random_robot(random, 8, JointType::kRevolute);
     auto states = random_positions(random, written);
-    for (TrackedVariable& state : states) state.seen = random.chance(0.7);
+    for (TrackedVariable& state : states) state.input.has_value = random.chance(0.7);
     ForwardKinematics kinematics(std::span(&written.robot, 1));
     kinematics.place(states, {});
     std::vector<bool> known = {true};
     std::vector<std::int64_t> oldest = {std::numeric_limits<std::int64_t>::max()};
     for (std::size_t k = 0; k < written.robot.joints.size(); ++k) {
       const RobotJoint& joint = written.robot.joints[k];
-      known.push_back(known[joint.parent] && states[joint.variable].seen);
-      oldest.push_back(std::min(oldest[joint.parent], states[joint.variable].stamp_ns));
+      known.push_back(known[joint.parent] && states[joint.variable].input.has_value);
+      oldest.push_back(std::min(oldest[joint.parent], states[joint.variable].input.stamp_ns));
       const LinkState& link = kinematics.links(0)[k + 1];
       ASSERT_EQ(link.known, known.back());
       if (!link.known) continue;
@@ -273,8 +273,8 @@ TEST(ForwardKinematics, ALateJointMakesWhatItCarriesLateAndItsVelocityUnknown) {
     written.robot.joints[i].multiplier = 1.0;
   }
   std::vector<TrackedVariable> states(3);
-  for (TrackedVariable& state : states) state.seen = state.velocity_known = true;
-  states[1].late = true;
+  for (TrackedVariable& state : states) state.input.has_value = state.velocity_known = true;
+  states[1].input.late = true;
   states[1].may_have_moved = std::numeric_limits<double>::infinity();
   ForwardKinematics kinematics(std::span(&written.robot, 1));
   kinematics.place(states, {});
@@ -303,7 +303,7 @@ TEST(ForwardKinematics, ARobotStandsOnALinkOfAnotherOrOnAnObject) {
   robots[2].base.kind = RobotBase::Kind::kObject;
   std::vector<TrackedVariable> states(3);
   for (TrackedVariable& state : states) {
-    state.seen = state.velocity_known = true;
+    state.input.has_value = state.velocity_known = true;
     state.position = random.uniform(-1.0, 1.0);
     state.velocity = 1.0;
   }
@@ -329,7 +329,7 @@ TEST(ForwardKinematics, ARobotStandsOnALinkOfAnotherOrOnAnObject) {
   EXPECT_EQ(kinematics.links(2)[1].stamp_ns, 0);
 
   bases[2].late = true;
-  states[0].seen = false;
+  states[0].input.has_value = false;
   kinematics.place(states, bases);
   EXPECT_EQ(kinematics.links(2)[1].may_have_moved(0.0), std::numeric_limits<double>::infinity());
   EXPECT_TRUE(kinematics.links(0)[0].known);
@@ -341,7 +341,7 @@ TEST(ForwardKinematics, AnAngleThatMimicryMakesTooLargeIsUnknown) {
   Random random(9);
   Written written = random_robot(random, 1, JointType::kRevolute);
   std::vector<TrackedVariable> states(1);
-  states[0].seen = true;
+  states[0].input.has_value = true;
   states[0].position = 1.0;
   for (const double multiplier : {1e3, 1e9}) {
     written.robot.joints[0].multiplier = multiplier;

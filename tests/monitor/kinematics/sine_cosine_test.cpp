@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "monitor/joint_batch.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance {

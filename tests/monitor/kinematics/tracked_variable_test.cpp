@@ -33,9 +33,8 @@ class Variable : public testing::Test {
   // A tick at the sample's stamp, or later.
   std::optional<Reject> take(const JointSample& sample, std::int64_t after_ns = 0) {
     const std::int64_t now = sample.stamp_ns + after_ns;
-    const auto cause =
-        refusal(joint_, sample, sample.stamp_ns, {.now_ns = now, .future_ns = 5 * kMs}, state_);
-    if (!cause) accept(joint_, sample, sample.stamp_ns, now, state_);
+    const auto cause = clearance::take(joint_, sample, sample.stamp_ns,
+                                       {.now_ns = now, .future_ns = 5 * kMs}, state_);
     advance(joint_, now, state_);
     return cause;
   }
@@ -46,10 +45,10 @@ class Variable : public testing::Test {
 
 TEST_F(Variable, IsUnknownUntilItsFirstPosition) {
   advance(joint_, 5 * kMs, state_);
-  EXPECT_FALSE(state_.seen);
-  EXPECT_EQ(state_.age_ns, -1);
+  EXPECT_FALSE(state_.input.has_value);
+  EXPECT_EQ(state_.input.age_ns, -1);
   EXPECT_EQ(take(at(5 * kMs, 0.3)), std::nullopt);
-  EXPECT_TRUE(state_.seen);
+  EXPECT_TRUE(state_.input.has_value);
   EXPECT_EQ(state_.position, 0.3);
   EXPECT_FALSE(state_.velocity_known);
 }
@@ -78,10 +77,10 @@ TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
 TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
   EXPECT_EQ(take(at(0, 0.5)), std::nullopt);
   advance(joint_, 20 * kMs, state_);
-  EXPECT_FALSE(state_.late);
+  EXPECT_FALSE(state_.input.late);
   EXPECT_EQ(state_.may_have_moved, 0.0);
   advance(joint_, 30 * kMs, state_);
-  EXPECT_TRUE(state_.late);
+  EXPECT_TRUE(state_.input.late);
   EXPECT_NEAR(state_.may_have_moved, 0.06, 1e-12);
   advance(joint_, 10'000 * kMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
@@ -110,15 +109,15 @@ TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
 TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnown) {
   EXPECT_EQ(take(at(0, 0.8)), std::nullopt);
   EXPECT_EQ(take(at(10 * kMs, 0.0)), Reject::kTooFast);
-  EXPECT_TRUE(state_.late);
-  EXPECT_TRUE(state_.contradicted);
+  EXPECT_TRUE(state_.input.late);
+  EXPECT_TRUE(state_.input.contradicted);
   EXPECT_EQ(state_.position, 0.8);
   EXPECT_NEAR(state_.may_have_moved, 1.8, 1e-12);
   // Until one agrees again and an age limit has passed.
   EXPECT_EQ(take(at(11 * kMs, 0.79)), std::nullopt);
-  EXPECT_TRUE(state_.contradicted);
+  EXPECT_TRUE(state_.input.contradicted);
   EXPECT_EQ(take(at(31 * kMs, 0.79)), std::nullopt);
-  EXPECT_FALSE(state_.late);
+  EXPECT_FALSE(state_.input.late);
   // Where they stay there, they are taken when the joint can have got there.
   EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
   EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
@@ -156,10 +155,10 @@ TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
   EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);
   EXPECT_EQ(take(at(11 * kMs, 2e6)), Reject::kNonFinite);
   EXPECT_EQ(take(at(9 * kMs, 0.0), 2 * kMs), Reject::kBackwards);
-  EXPECT_FALSE(state_.contradicted);
+  EXPECT_FALSE(state_.input.contradicted);
   EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
-  EXPECT_TRUE(state_.contradicted);
-  EXPECT_EQ(state_.stamp_ns, 10 * kMs);
+  EXPECT_TRUE(state_.input.contradicted);
+  EXPECT_EQ(state_.input.stamp_ns, 10 * kMs);
 }
 
 TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
@@ -167,21 +166,21 @@ TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
   other.source = 3;
   EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
   EXPECT_EQ(take(other), Reject::kOtherSource);
-  EXPECT_EQ(state_.owner.other_source(), 3u);
+  EXPECT_EQ(state_.input.owner.other_source(), 3u);
   other.stamp_ns = 1002 * kMs;
   EXPECT_EQ(take(other), std::nullopt);
-  EXPECT_EQ(state_.owner.source(), 3u);
-  state_.owner = InputOwner(3);
+  EXPECT_EQ(state_.input.owner.source(), 3u);
+  state_.input.owner = InputOwner(3);
   EXPECT_EQ(take(at(9000 * kMs, 0.0)), Reject::kOtherSource);
 }
 
 TEST_F(Variable, AfterTimeThatNobodyCanTellItIsLate) {
   EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
-  forget_age(-5 * kMs, state_);
+  state_.input.forget_age(-5 * kMs);
   advance(joint_, -5 * kMs, state_);
-  EXPECT_TRUE(state_.late);
+  EXPECT_TRUE(state_.input.late);
   EXPECT_EQ(take(at(-4 * kMs, 0.9)), std::nullopt);
-  EXPECT_FALSE(state_.late);
+  EXPECT_FALSE(state_.input.late);
 }
 
 }  // namespace

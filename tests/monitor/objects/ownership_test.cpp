@@ -1,7 +1,7 @@
 // Who may say where an object is, through the tick.
 #include <gtest/gtest.h>
 
-#include "monitor/source_numbers.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "tests/monitor/two_balls.hpp"
 
 namespace clearance {

@@ -192,13 +192,13 @@ TEST(TrackedObject, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   TrackedObject state;
   take(good(), state);
   advance(stated, kStart + 20 * kTick, state);
-  EXPECT_FALSE(state.late);
+  EXPECT_FALSE(state.input.late);
   EXPECT_EQ(state.may_have_moved, 0.0);
   advance(stated, kStart + 100 * kTick, state);
-  EXPECT_TRUE(state.late);
+  EXPECT_TRUE(state.input.late);
   EXPECT_GE(state.may_have_moved, 0.2);
   EXPECT_NEAR(state.may_have_moved, 0.2, 1e-12);
-  EXPECT_EQ(state.age_ns, 100 * kTick);
+  EXPECT_EQ(state.input.age_ns, 100 * kTick);
   EXPECT_TRUE(state.known());
 
   advance(late_after(20 * kTick, kInfinity), kStart + 100 * kTick, state);
@@ -211,11 +211,11 @@ TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   TrackedObject state;
   take(sample, state);
   advance(late_after(0, 1.0), kLatest, state);
-  EXPECT_EQ(state.age_ns, kLatest);
+  EXPECT_EQ(state.input.age_ns, kLatest);
   sample.stamp_ns = kLatest;
   take(sample, state);
   advance(late_after(0, 1.0), kEarliest, state);
-  EXPECT_EQ(state.age_ns, 0);
+  EXPECT_EQ(state.input.age_ns, 0);
 }
 
 }  // namespace

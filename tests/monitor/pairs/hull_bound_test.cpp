@@ -72,7 +72,7 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
     ASSERT_TRUE(hulls.possible(table.entries[0]));
     std::vector<TrackedObject> objects(2);
     for (TrackedObject& object : objects) {
-      object.seen = object.moved = true;
+      object.input.has_value = object.moved = true;
       object.pose.position = random.in_box(4.0);
     }
     for (PosedPart& part : parts) place(objects[part.object], part);

@@ -13,7 +13,7 @@ constexpr std::uint32_t kNoIndex = RefreshQueue::kNoIndex;
 class RefreshQueueTest : public testing::Test {
  protected:
   RefreshQueueTest() {
-    for (TrackedObject& object : objects) object.seen = true;
+    for (TrackedObject& object : objects) object.input.has_value = true;
   }
 
   static Scene four_balls() {

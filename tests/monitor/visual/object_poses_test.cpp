@@ -13,6 +13,8 @@
 namespace clearance::test {
 namespace {
 
+using Numbers = ObjectPoses::Numbers;
+
 // A report that used batches of the source "arm" up to this one; 0: none in its tick.
 Sample<clearance_msg_Distances> report_of(const Scene& scene, std::uint64_t number,
                                           std::int64_t newest_ns) {
@@ -31,9 +33,7 @@ class ObjectPosesTest : public testing::Test {
             std::string_view source = "arm") {
     PoseBatch batch{SourceName(source), number, scene.revision, {}};
     batch.samples.push_back(sample(0, at(0, 0, height), stamp_ns));
-    Sample<clearance_msg_PoseBatch> wire = make_batch(1);
-    to_wire(batch, *wire);
-    poses.take(*wire);
+    poses.take(std::move(batch), Numbers::kOfSender);
   }
   void use(std::uint64_t number, std::int64_t newest_ns) {
     poses.use(*report_of(scene, number, newest_ns));
@@ -108,7 +108,7 @@ class JointPosesTest : public testing::Test {
     return batch;
   }
   void take(double shoulder, std::uint64_t number, std::int64_t stamp_ns) {
-    poses.take(*make_joint_states(batch_of(shoulder, number, stamp_ns), scene));
+    poses.take(batch_of(shoulder, number, stamp_ns), Numbers::kOfSender);
   }
   // By its name: of the finger, two metres and a tenth from the foot when the elbow is straight.
   [[nodiscard]] const Pose* finger() const { return poses.pose(5); }
@@ -143,7 +143,7 @@ TEST_F(JointPosesTest, LaterJointsWaitForTheirReport) {
 
 // Of a topic of ROS 2: the numbers that a viewer gives its messages are not the daemon's.
 TEST_F(JointPosesTest, JointsFromElsewhereAreUsedByTheirStamps) {
-  poses.take_joints(batch_of(0.3, 1, kStart + kTick));
+  poses.take(batch_of(0.3, 1, kStart + kTick), Numbers::kUnnumbered);
   poses.use(*report_of(scene, 900, kStart));
   EXPECT_EQ(finger(), nullptr);
   poses.use(*report_of(scene, 901, kStart + kTick));

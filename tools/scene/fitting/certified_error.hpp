@@ -1,4 +1,4 @@
-// How far a model extends beyond the bodies that it encloses.
+// A certified bound on the error of a model that encloses bodies.
 #pragma once
 
 #include <span>

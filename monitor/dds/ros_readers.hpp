@@ -1,0 +1,48 @@
+// The readers of ROS 2's topics that an intake wants: each is made when somebody begins to publish
+// the topic.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "monitor/dds/present_topics.hpp"
+#include "monitor/intake/intake.hpp"
+#include "monitor/participant/cdr_sample.hpp"
+#include "monitor/participant/participant.hpp"
+
+namespace clearance {
+
+class RosReaders {
+ public:
+  struct Reader {
+    dds_entity_t handle = 0;
+    std::uint32_t topic = 0;  // as the intake numbers it
+  };
+
+  // Participant and intake must outlive this.
+  RosReaders(Participant& participant, Intake& intake)
+      : participant_(participant), intake_(intake), present_(participant) {}
+  ~RosReaders();
+  RosReaders(const RosReaders&) = delete;
+  RosReaders& operator=(const RosReaders&) = delete;
+
+  // Makes readers of topics that have appeared. True: writers have come or gone.
+  bool look();
+  [[nodiscard]] const std::vector<Reader>& readers() const noexcept { return readers_; }
+  // What others publish, and the publication handles of all of them.
+  [[nodiscard]] const PresentTopics& present() const noexcept { return present_; }
+  [[nodiscard]] std::vector<std::uint64_t> writers() const;
+
+ private:
+  Participant& participant_;
+  Intake& intake_;
+  PresentTopics present_;
+  std::vector<Reader> readers_;
+};
+
+// Takes all that waits in a reader into the intake. `taken` is empty before and after, and keeps
+// its memory.
+void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
+               std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended = nullptr);
+
+}  // namespace clearance

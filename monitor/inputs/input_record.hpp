@@ -1,0 +1,88 @@
+// What the tick knows of one input, whatever its value is: the pose of an object, or the position
+// of a joint's variable. And the one rule by which a sample is taken into use or refused.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+
+#include "monitor/inputs/contradiction.hpp"
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/input_owner.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+
+namespace clearance {
+
+// The time of a tick and what it allows.
+struct SampleLimits {
+  std::int64_t now_ns = 0;
+  std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
+};
+
+struct InputRecord {
+  bool has_value = false;     // a value is in use; always so for a fixed object
+  bool late = false;          // the value is older than its limit, or contradicted
+  bool contradicted = false;  // as of the last advance()
+  std::int64_t stamp_ns = 0;  // of the value in use, in the tick's time
+  std::int64_t age_ns = -1;   // now - stamp, never negative; 0 for a fixed object, -1: no value
+  InputOwner owner;           // who sends it
+  Contradiction contradiction;
+  std::array<std::uint64_t, kRejects> rejected{};  // samples, by cause
+
+  // Nobody can say how old the value is: it is late until the next one comes.
+  void forget_age(std::int64_t now_ns) noexcept {
+    stamp_ns = less(now_ns, kForgottenNs);
+    owner.forget_age(now_ns);
+    contradiction.forget_age();
+  }
+
+  // Ends the tick's input.
+  void advance(std::int64_t now_ns, std::int64_t age_limit_ns) noexcept {
+    age_ns = elapsed(stamp_ns, now_ns);
+    contradicted = contradiction.holds(now_ns);
+    late = contradicted || age_ns > age_limit_ns;
+  }
+};
+
+// Who sent a sample, and when its value held in the tick's time.
+struct SampleOrigin {
+  std::uint32_t source = 0;
+  std::int64_t stamp_ns = 0;
+};
+
+// Takes a sample into use; else says why it must not be used, and notes what that says of the
+// input. A `Candidate` is one sample of one input:
+//   std::optional<Reject> malformed()    no value at all, whoever sends it
+//   std::optional<Reject> implausible()  what is against it, given the values before it
+//   void use()                           makes it the value in use; the record is still the old one
+//   std::int64_t agree_for_ns()          after a refusal: for how long others must agree
+template <class Candidate>
+[[nodiscard]] std::optional<Reject> take(Candidate&& candidate, const SampleOrigin& origin,
+                                         const SampleLimits& limits, std::int64_t age_limit_ns,
+                                         InputRecord& input) noexcept {
+  if (const std::optional<Reject> cause = candidate.malformed()) return cause;
+  if (input.owner.refuses(origin.source, limits.now_ns, age_limit_ns)) return Reject::kOtherSource;
+  std::optional<Reject> cause;
+  bool reordered = false;
+  if (elapsed(limits.now_ns, origin.stamp_ns) > limits.future_ns) {
+    cause = Reject::kFuture;
+  } else if (input.has_value && origin.stamp_ns < input.stamp_ns) {
+    cause = Reject::kBackwards;
+    // Samples may come in another order than they were made: one is as good as the other.
+    reordered = elapsed(origin.stamp_ns, input.stamp_ns) <= age_limit_ns;
+  } else {
+    cause = candidate.implausible();
+  }
+  if (!cause) {
+    candidate.use();
+    input.contradiction.agree();
+    input.stamp_ns = origin.stamp_ns;
+    input.owner.take(origin.source, limits.now_ns);
+    input.has_value = true;
+  } else if (!reordered) {
+    input.contradiction.meet(limits.now_ns, candidate.agree_for_ns());
+  }
+  return cause;
+}
+
+}  // namespace clearance

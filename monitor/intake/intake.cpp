@@ -1,0 +1,158 @@
+#include "monitor/intake/intake.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "monitor/inputs/source_numbers.hpp"
+#include "monitor/intake/own_batches.hpp"
+
+namespace clearance {
+
+Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
+    : scene_(cell.scene),
+      topics_(cell.topics),
+      options_(std::move(options)),
+      use_(std::move(use)),
+      sources_(named_sources(cell.scene)),
+      slow_(cell.scene) {
+  const RosJointStatesOptions joint_states{
+      .topics = options_.joint_topics,
+      .other_clock = options_.is_log ? OtherClock::kReplaced : OtherClock::kTold,
+      .most_joints = options_.most_joints};
+  const auto from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
+  // A row for every kind of input.
+  add<OwnPoses>(topics_.poses, options_.most_samples, *this);
+  add<OwnJointStates>(scene_, topics_.joint_states, options_.most_joints, *this);
+  joint_states_ = add<RosJointStates>(scene_, joint_states, *this);
+  transforms_ = add<RosTransforms>(cell, from, *this);
+}
+
+template <class Kind, class... Arguments>
+const Kind* Intake::add(Arguments&&... arguments) {
+  auto decoder = std::make_unique<Kind>(std::forward<Arguments>(arguments)...);
+  const Kind* const added = decoder.get();
+  decoders_.push_back(std::move(decoder));
+  return added;
+}
+
+std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
+  const auto known = numbers_.find({name.name, name.type});
+  if (known != numbers_.end()) {
+    return Topic{known->second, routes_[known->second].wanted.delivery};
+  }
+  for (const std::unique_ptr<Decoder>& decoder : decoders_) {
+    const auto wanted = decoder->wants(name);
+    if (!wanted) continue;
+    const auto number = static_cast<std::uint32_t>(routes_.size());
+    numbers_.emplace(std::pair(name.name, name.type), number);
+    routes_.push_back({decoder.get(), *wanted, {}});
+    return Topic{number, wanted->delivery};
+  }
+  return std::nullopt;
+}
+
+std::optional<Intake::Topic> Intake::topic(TopicKind kind) {
+  const clearance::Topic& row = clearance::topic(kind);
+  return topic({topics_.*row.name, row.type->m_typename});
+}
+
+bool Intake::take(const RawMessage& message, const Now& now) {
+  monotonic_ns_ = now.monotonic_ns;
+  Route& route = routes_[message.topic];
+  ++route.counts.messages;
+  const bool decodes = route.decoder->decode(route.wanted.port, message, now, route.counts);
+  if (!decodes) ++route.counts.undecodable;
+  return decodes;
+}
+
+void Intake::settle(const Now& now) {
+  monotonic_ns_ = now.monotonic_ns;
+  for (const std::unique_ptr<Decoder>& decoder : decoders_) decoder->settle(now);
+}
+
+std::int64_t Intake::patience_ns() const {
+  std::int64_t patience = std::numeric_limits<std::int64_t>::max();
+  for (const std::unique_ptr<Decoder>& decoder : decoders_)
+    patience = std::min(patience, decoder->patience_ns());
+  return patience;
+}
+
+void Intake::keep(std::vector<std::uint64_t> writers) {
+  writers.push_back(RosTransforms::kWriter);
+  std::ranges::sort(writers);
+  for (const std::unique_ptr<Decoder>& decoder : decoders_) decoder->keep(writers);
+  sources_.keep(writers);
+}
+
+std::vector<News> Intake::take_news() { return std::exchange(news_, {}); }
+
+void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
+  const bool is_ours = made_for(batch, scene_.revision);
+  if (!options_.admits_sources) {
+    if (is_ours) slow_.note(batch, *this);
+    use_(batch);
+    return;
+  }
+  SourceTally* const tally = admit(batch, writer, batch.size() + cut);
+  if (tally == nullptr) return;
+  if (is_ours) slow_.note(batch, *this);
+  if (!is_ours && !std::exchange(tally->warned_of_revision, true)) {
+    tell({.cause = News::Cause::kOtherRevision,
+          .text = fmt::format("source '{}' sends poses for scene revision {:016x}, this cell's is "
+                              "{:016x}: not used",
+                              tally->source.view(), batch.scene_revision, scene_.revision)});
+  }
+  if (!use_(batch)) {
+    ++tally->lost;
+    return;
+  }
+  tally->cut_poses += cut;
+  ++tally->batches;
+}
+
+// Counts what is missing before the batch.
+SourceTally* Intake::admit(const PoseBatch& batch, std::uint64_t writer, std::size_t size) {
+  const Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
+  tell_of(admission, batch, writer);
+  if (admission.tally == nullptr) return nullptr;
+  admission.tally->note_sequence(batch.sequence_number);
+  admission.tally->last_ns = monotonic_ns_;
+  return admission.tally;
+}
+
+void Intake::tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer) {
+  using Cause = News::Cause;
+  const SourceName& source = batch.source;
+  const char* const inputs = batch.joints.empty() ? "poses" : "joints";
+  switch (admission.news) {
+    case Admission::News::kNothing:
+      return;
+    case Admission::News::kNewSource: {
+      const std::string_view before = admission.place_of.view();
+      const std::string place = before.empty() ? "" : fmt::format(", in the place of '{}'", before);
+      return tell({Cause::kNewSource, false,
+                   fmt::format("{} from source '{}'{}", inputs, source.view(), place)});
+    }
+    case Admission::News::kTakenOver:
+      return tell({Cause::kSourceTakenOver, true,
+                   fmt::format("source '{}' is now writer {}; before, it was writer {}",
+                               source.view(), options_.writer_name(writer),
+                               options_.writer_name(admission.former_writer))});
+    case Admission::News::kFirstRefusal:
+      if (admission.cause == SourceRefusal::kTooMany) {
+        return tell({Cause::kSourceRefused, true,
+                     fmt::format("source '{}' is one too many: {} sources are heard, its {} are "
+                                 "not used",
+                                 source.view(), kMaxSources, inputs)});
+      }
+      return tell({Cause::kSourceRefused, true,
+                   fmt::format("writer {} uses the name of source '{}', which is writer {}: its {} "
+                               "are not used",
+                               options_.writer_name(writer), source.view(),
+                               options_.writer_name(admission.former_writer), inputs)});
+  }
+}
+
+}  // namespace clearance

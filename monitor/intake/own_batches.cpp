@@ -1,0 +1,53 @@
+#include "monitor/intake/own_batches.hpp"
+
+#include <algorithm>
+
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+std::optional<Decoder::Wanted> wanted(const TopicName& name, const std::string& ours,
+                                      TopicKind kind) {
+  const bool is_it = name.name == ours && name.type == topic(kind).type->m_typename;
+  return is_it ? std::optional(Decoder::Wanted{}) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Decoder::Wanted> OwnPoses::wants(const TopicName& topic) {
+  return wanted(topic, topic_, TopicKind::kPoses);
+}
+
+bool OwnPoses::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
+  if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
+  const std::size_t sent = message_->poses._length;
+  message_->poses._length = static_cast<std::uint32_t>(std::min(sent, most_));
+  from_wire(*message_, batch_);
+  out_.give(batch_, message.writer, sent - message_->poses._length);
+  return true;
+}
+
+std::optional<Decoder::Wanted> OwnJointStates::wants(const TopicName& topic) {
+  return wanted(topic, topic_, TopicKind::kJointStates);
+}
+
+bool OwnJointStates::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
+  if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
+  from_wire(*message_, names_, batch_);
+  const std::size_t used = std::min(batch_.joints.size(), most_);
+  const std::size_t cut = batch_.joints.size() - used;
+  batch_.joints.resize(used);
+  out_.give(batch_, message.writer, cut);
+  return true;
+}
+
+PoseBatch* OwnBatches::decode(TopicKind kind, std::span<const std::byte> cdr) {
+  given_ = nullptr;
+  TopicCounts counts;
+  Decoder& decoder = kind == TopicKind::kPoses ? static_cast<Decoder&>(poses_) : joint_states_;
+  static_cast<void>(decoder.decode(0, {.cdr = cdr}, {}, counts));
+  return given_;
+}
+
+}  // namespace clearance

@@ -1,0 +1,76 @@
+// Our own topics of poses and of joint states.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string>
+
+#include "config/scene/scene.hpp"
+#include "monitor/intake/decoder.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/joint_names.hpp"
+#include "monitor/wire/topics.hpp"
+
+namespace clearance {
+
+class OwnPoses final : public Decoder {
+ public:
+  // `topic`: as the cell names it. The first `most` poses of a batch are used.
+  OwnPoses(std::string topic, std::size_t most, Outlet& out)
+      : topic_(std::move(topic)), most_(most), out_(out) {}
+  [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
+                            TopicCounts& counts) override;
+
+ private:
+  std::string topic_;
+  std::size_t most_;
+  Outlet& out_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_PoseBatch> message_;
+  PoseBatch batch_;
+};
+
+class OwnJointStates final : public Decoder {
+ public:
+  // `topic`: as the cell names it. The first `most` joints of a message are used.
+  OwnJointStates(const Scene& scene, std::string topic, std::size_t most, Outlet& out)
+      : topic_(std::move(topic)), names_(scene), most_(most), out_(out) {}
+  [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
+                            TopicCounts& counts) override;
+
+ private:
+  std::string topic_;
+  JointNames names_;
+  std::size_t most_;
+  Outlet& out_;
+  CdrDecoder decoder_;
+  Sample<clearance_msg_JointStates> message_;
+  PoseBatch batch_;
+};
+
+// Both topics, for recordings and viewers: each batch as it was sent, whoever sent it.
+class OwnBatches final : private Outlet {
+ public:
+  explicit OwnBatches(const Scene& scene)
+      : poses_("", kAll, *this), joint_states_(scene, "", kAll, *this) {}
+  OwnBatches(const OwnBatches&) = delete;
+  OwnBatches& operator=(const OwnBatches&) = delete;
+
+  // Of a message of poses or joint states. Valid until the next call, and may be moved from; null:
+  // the bytes do not decode.
+  [[nodiscard]] PoseBatch* decode(TopicKind kind, std::span<const std::byte> cdr);
+
+ private:
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  void give(PoseBatch& batch, std::uint64_t, std::size_t) override { given_ = &batch; }
+  void tell(News) override {}
+
+  OwnPoses poses_;
+  OwnJointStates joint_states_;
+  PoseBatch* given_ = nullptr;
+};
+
+}  // namespace clearance

@@ -1,0 +1,118 @@
+#include "monitor/intake/pose_sources.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+// A million batches are a quarter of an hour at 1 kHz: nobody loses so many in a row.
+constexpr std::uint64_t kCountsAnew = 1'000'000;
+// Of a writer that has left.
+constexpr std::uint64_t kNoIndex = 0;
+
+}  // namespace
+
+const char* name(SourceRefusal cause) noexcept {
+  switch (cause) {
+    case SourceRefusal::kTooMany:
+      return "one source too many";
+    case SourceRefusal::kOtherWriter:
+      return "another writer's name";
+  }
+  return "";
+}
+
+void SourceTally::note_sequence(std::uint64_t number) noexcept {
+  const bool ahead = last_ns != 0 && number > last_sequence;
+  if (ahead && number - last_sequence < kCountsAnew) lost += number - last_sequence - 1;
+  last_sequence = number;
+}
+
+PoseSources::PoseSources(std::vector<SourceName> named) : named_(std::move(named)) {
+  tallies_.reserve(kMaxSources);
+  refused_.reserve(2 * kMaxSources + 2);
+}
+
+Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
+                             std::int64_t monotonic_ns) {
+  const auto known = std::ranges::find(tallies_, source, &SourceTally::source);
+  if (known != tallies_.end()) {
+    SourceTally& tally = *known;
+    if (tally.writer == writer) return {.tally = &tally};
+    const bool held = tally.writer != kNoIndex && monotonic_ns - tally.last_ns < kNameHeldNs;
+    const std::uint64_t former = tally.writer;
+    if (held) {
+      Admission refusal = refuse(source, SourceRefusal::kOtherWriter, poses);
+      refusal.former_writer = former;
+      return refusal;
+    }
+    tally.writer = writer;
+    tally.last_ns = 0;  // numbers of two writers have nothing to do with each other
+    return {.tally = &tally, .news = Admission::News::kTakenOver, .former_writer = former};
+  }
+  const SourceTally fresh{.source = source, .writer = writer};
+  if (is_named(source) || places_for_others() > 0) {
+    return {.tally = &tallies_.emplace_back(fresh), .news = Admission::News::kNewSource};
+  }
+  SourceTally* const place = free_place(monotonic_ns);
+  if (place == nullptr) return refuse(source, SourceRefusal::kTooMany, poses);
+  departed_.batches += place->batches;
+  departed_.lost += place->lost;
+  const SourceName before = place->source;
+  *place = fresh;
+  return {.tally = place, .news = Admission::News::kNewSource, .place_of = before};
+}
+
+bool PoseSources::is_named(const SourceName& source) const noexcept {
+  return std::ranges::find(named_, source) != named_.end();
+}
+
+// That are not taken.
+std::size_t PoseSources::places_for_others() const noexcept {
+  const auto taken = std::ranges::count_if(
+      tallies_, [this](const SourceTally& tally) { return !is_named(tally.source); });
+  return kMaxSources - named_.size() - static_cast<std::size_t>(taken);
+}
+
+// The one that has been silent for the longest time, of those that may go.
+SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
+  SourceTally* longest = nullptr;
+  for (SourceTally& tally : tallies_) {
+    const bool spare = std::ranges::count(tallies_, tally.writer, &SourceTally::writer) > 1;
+    const std::int64_t silent = monotonic_ns - tally.last_ns;
+    if (is_named(tally.source)) continue;
+    const bool may_go =
+        tally.writer == kNoIndex || silent >= (spare ? kSparePlaceHeldNs : kPlaceHeldNs);
+    if (may_go && (longest == nullptr || tally.last_ns < longest->last_ns)) longest = &tally;
+  }
+  return longest;
+}
+
+void PoseSources::keep(std::span<const std::uint64_t> writers) {
+  for (SourceTally& tally : tallies_) {
+    if (std::ranges::find(writers, tally.writer) == writers.end()) tally.writer = kNoIndex;
+  }
+}
+
+// The first ones are named, all others counted together by cause.
+Admission PoseSources::refuse(const SourceName& source, SourceRefusal cause, std::size_t poses) {
+  Admission refusal{.cause = cause};
+  const auto entry_of = [&](const SourceName& name) {
+    return std::ranges::find_if(refused_, [&](const RefusedSource& refused) {
+      return refused.source == name && refused.cause == cause;
+    });
+  };
+  auto entry = entry_of(source);
+  if (entry == refused_.end() && refused_.size() < 2 * kMaxSources) {
+    refusal.news = Admission::News::kFirstRefusal;
+    entry = refused_.insert(refused_.end(), {.source = source, .cause = cause});
+  } else if (entry == refused_.end()) {
+    entry = entry_of(SourceName());
+    if (entry == refused_.end()) entry = refused_.insert(refused_.end(), {.cause = cause});
+  }
+  entry->poses += poses;
+  return refusal;
+}
+
+}  // namespace clearance

@@ -1,0 +1,145 @@
+#include "monitor/intake/ros_joint_states.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "monitor/intake/tf_tree.hpp"
+#include "monitor/wire/convert.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::string_view kJointStatesType = "sensor_msgs/msg/JointState";
+constexpr std::string_view kLast = "/joint_states";
+constexpr std::size_t kMostUnknownNames = 64;
+
+// The end of a long topic tells more than its beginning.
+SourceName source_name(const std::string& topic, std::size_t writer) {
+  const std::string suffix = writer > 1 ? fmt::format("#{}", writer) : "";
+  const std::size_t most = kMaxSourceLength - suffix.size();
+  return SourceName((topic.size() > most ? topic.substr(topic.size() - most) : topic) + suffix);
+}
+
+}  // namespace
+
+RosJointStates::RosJointStates(const Scene& scene, RosJointStatesOptions options, Outlet& out)
+    : scene_(scene), options_(std::move(options)), out_(out) {}
+
+bool RosJointStates::is_wanted(const TopicName& topic) const {
+  if (scene_.robots.empty() || topic.type != kJointStatesType) return false;
+  if (!options_.topics.empty()) {
+    return std::ranges::find(options_.topics, topic.name) != options_.topics.end();
+  }
+  return topic.name.ends_with(kLast) || topic.name == kLast.substr(1) ||
+         std::ranges::find(scene_.robots, topic.name, &Robot::joint_states) != scene_.robots.end();
+}
+
+std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
+  if (!is_wanted(topic)) return std::nullopt;
+  const auto known = std::ranges::find(topics_, topic.name, &Topic::name);
+  const auto port = static_cast<std::uint32_t>(known - topics_.begin());
+  if (known != topics_.end()) return Wanted{port, &kRosJointState};
+  if (topics_.size() == kMostTopics) {
+    if (!std::exchange(too_many_said_, true)) {
+      out_.tell({.cause = News::Cause::kTooManyTopics,
+                 .text = fmt::format("{} is one topic of joint states too many: {} are heard",
+                                     topic.name, kMostTopics)});
+    }
+    return std::nullopt;
+  }
+  topics_.push_back({topic.name, JointNames(scene_, topic.name), {}});
+  out_.tell({.cause = News::Cause::kTopicHeard,
+             .is_warning = false,
+             .text = fmt::format("joint states of ROS 2 on {}", ros_dds_name(topic.name))});
+  return Wanted{port, &kRosJointState};
+}
+
+void RosJointStates::keep(std::span<const std::uint64_t> writers) {
+  for (Topic& topic : topics_) {
+    std::erase_if(topic.writers, [&](const auto& writer) {
+      return !std::ranges::binary_search(writers, writer.first);
+    });
+  }
+}
+
+// The lowest number that no other writer of the topic has: one that is started again gets the name
+// of the one before.
+RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t handle) {
+  const auto known = topic.writers.find(handle);
+  if (known != topic.writers.end()) return known->second;
+  std::size_t number = 1;
+  const auto is_taken = [&](const auto& writer) {
+    return writer.second.source == source_name(topic.name, number);
+  };
+  while (std::ranges::any_of(topic.writers, is_taken)) ++number;
+  return topic.writers.emplace(handle, Writer{.source = source_name(topic.name, number)})
+      .first->second;
+}
+
+// What the robot of the first joint that is known wants holds for all.
+std::int64_t RosJointStates::time_of(const RawMessage& message, const Topic& topic, Writer& writer,
+                                     TopicCounts& counts) {
+  RosStamps wanted = RosStamps::kMessage;
+  for (std::uint32_t i = 0; i < states_->name._length; ++i) {
+    const std::uint32_t variable = topic.names.find(states_->name._buffer[i]);
+    if (variable >= JointNames::kUnused) continue;
+    wanted = scene_.robots[scene_.variables[variable].robot].stamps;
+    break;
+  }
+  return writer.stamps.time_of(stamp_ns(states_->header), message.sent_ns, wanted,
+                               options_.other_clock, counts, out_, [&]() -> StampCheck::Whose {
+                                 return {
+                                     fmt::format("joint states from '{}'", writer.source.view()),
+                                     "'stamps: sent' of the robot"};
+                               });
+}
+
+void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
+  if (states_->position._length == 0 && states_->name._length > 0 &&
+      !std::exchange(writer.no_positions_said, true)) {
+    out_.tell({.cause = News::Cause::kNoPositions,
+               .is_warning = false,
+               .text = fmt::format("joint states from '{}' without positions are not used",
+                                   writer.source.view())});
+  }
+  std::string added;
+  for (std::uint32_t i = 0; i < states_->name._length; ++i) {
+    const char* const name = states_->name._buffer[i];
+    if (unknown_names_.size() >= kMostUnknownNames) break;
+    if (topic.names.find(name) != JointNames::kUnknown) continue;
+    if (unknown_names_.insert(name).second)
+      added += (added.empty() ? "" : ", ") + std::string(name);
+  }
+  if (added.empty()) return;
+  out_.tell(
+      {.cause = News::Cause::kUnknownJoints,
+       .is_warning = false,
+       .text = fmt::format("joints from '{}' that no robot of this cell has there are not used: {}",
+                           writer.source.view(), added)});
+}
+
+bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now&,
+                            TopicCounts& counts) {
+  if (!decoder_.decode(message.cdr, states_, message.bytes)) return false;
+  Topic& topic = topics_[port];
+  Writer& writer = writer_of(topic, message.writer);
+  note_unused(topic, writer);
+  from_wire(*states_, topic.names, time_of(message, topic, writer, counts), batch_);
+  batch_.source = writer.source;
+  batch_.sequence_number = ++writer.messages;
+  const std::size_t used = std::min(batch_.joints.size(), options_.most_joints);
+  const std::size_t cut = batch_.joints.size() - used;
+  batch_.joints.resize(used);
+  out_.give(batch_, message.writer, cut);
+  return true;
+}
+
+std::size_t RosJointStates::writers() const noexcept {
+  std::size_t count = 0;
+  for (const Topic& topic : topics_) count += topic.writers.size();
+  return count;
+}
+
+}  // namespace clearance

@@ -1,0 +1,58 @@
+// Which inputs, poses of objects or positions of joints, come less often than their age limits
+// need: such a one is late again and again, and its zones flicker without anything being wrong.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/intake/decoder.hpp"
+
+namespace clearance {
+
+// Inputs of one kind, by their numbers.
+class SlowIntervals {
+ public:
+  // In a row, all longer than the age limit: a pause or lost batches are no rate.
+  static constexpr std::size_t kIntervals = 8;
+
+  // Age limits in ns; 0: an input that never comes, as the pose of a fixed object.
+  explicit SlowIntervals(const std::vector<std::int64_t>& limits_ns);
+
+  // Returns the median interval once per input, ns, when the input first proves too slow.
+  [[nodiscard]] std::optional<std::int64_t> note(std::uint32_t input, std::int64_t stamp_ns);
+
+ private:
+  struct Rate {
+    std::int64_t limit_ns = 0;  // 0: found already, or it never comes
+    std::int64_t stamp_ns = 0;
+    std::size_t count = 0;
+    std::array<std::int64_t, kIntervals> intervals_ns{};
+  };
+  std::vector<Rate> rates_;  // by input
+};
+
+// All inputs of a scene.
+class SlowInputs {
+ public:
+  // The scene must outlive this.
+  explicit SlowInputs(const Scene& scene);
+  // To be called with every batch; tells each input that proves too slow once.
+  void note(const PoseBatch& batch, Outlet& out);
+
+ private:
+  void note_poses(const PoseBatch& batch, Outlet& out);
+  void note_joints(const PoseBatch& batch, Outlet& out);
+
+  const Scene& scene_;
+  SlowIntervals poses_, joints_;
+};
+
+// An age limit that fits inputs at this interval: two intervals, to the next 10 ms.
+[[nodiscard]] std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,50 @@
+#include "monitor/intake/tf_tree.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+
+std::int64_t stamp_ns(const std_msgs_msg_dds__Header_& header) noexcept {
+  return std::int64_t{header.stamp.sec} * 1'000'000'000 + std::int64_t{header.stamp.nanosec};
+}
+
+Pose pose_of(const geometry_msgs_msg_dds__Transform_& transform) noexcept {
+  const auto& [p, q] = transform;
+  return {Vec3(p.x, p.y, p.z), Eigen::Quaterniond(q.w, q.x, q.y, q.z)};
+}
+
+std::string frame_name(const std::string& name) {
+  return name.starts_with('/') ? name.substr(1) : name;
+}
+
+void TfTree::set(const geometry_msgs_msg_dds__TransformStamped_& transform, bool is_static) {
+  set(frame_name(transform.child_frame_id),
+      {.parent = frame_name(transform.header.frame_id),
+       .parent_from_child = pose_of(transform.transform),
+       .stamp_ns = is_static ? std::nullopt : std::optional(stamp_ns(transform.header))});
+}
+
+const TfTree::Link* TfTree::link(const std::string& child) const {
+  const auto found = links_.find(child);
+  return found == links_.end() ? nullptr : &found->second;
+}
+
+// A way that is longer than there are frames goes round in a circle.
+std::optional<TfTree::Place> TfTree::find(const std::string& frame,
+                                          const std::string& world) const {
+  const Link* step = link(frame);
+  if (step == nullptr) return std::nullopt;
+  Place place;
+  for (std::size_t steps = 0; step != nullptr; ++steps) {
+    if (steps > links_.size()) return std::nullopt;
+    place.root_from_frame = compose(step->parent_from_child, place.root_from_frame);
+    if (step->stamp_ns) {
+      place.stamp_ns = std::min(place.stamp_ns.value_or(*step->stamp_ns), *step->stamp_ns);
+    }
+    place.root = step->parent;
+    step = place.root == world ? nullptr : link(place.root);
+  }
+  return place;
+}
+
+}  // namespace clearance

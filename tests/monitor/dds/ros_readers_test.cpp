@@ -1,0 +1,150 @@
+// Joint states and transforms of ROS 2 as the tick thread gets them, through DDS on loopback. What
+// becomes of their bytes is tested without DDS, in intake/.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "monitor/dds/pose_reader.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/ros_frames.hpp"
+#include "tests/shared/ros_joints.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::HasSubstr;
+
+// The positions that a batch carries, by the names of the cell.
+using Positions = std::map<std::string, double>;
+
+class RosReadersTest : public testing::Test {
+ protected:
+  // The next batch that comes.
+  PoseBatch next() {
+    PoseBatch batch;
+    EXPECT_TRUE(test::eventually([&] {
+      const PoseBatch* came = inputs.next();
+      if (came != nullptr) batch = *came;
+      return came != nullptr;
+    }));
+    return batch;
+  }
+  Positions positions(const PoseBatch& batch) const {
+    Positions found;
+    for (const JointSample& sample : batch.joints) {
+      found[scene.variables.at(sample.variable).name] = sample.position;
+    }
+    return found;
+  }
+
+  static Scene two_arms() {
+    const test::ScratchFolder folder;
+    test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+    return scene_of(
+        "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
+        "  - {name: left, urdf: scara.urdf, prefix: left_, joint_states: /left/joint_states}\n"
+        "  - {name: right, urdf: scara.urdf, prefix: right_, base: {pose: {xyz: [9, 0, 0]}}, "
+        "stamps: sent}\n"
+        "pairs: [{between: [left, right]}]\n",
+        folder / "cell.yaml");
+  }
+
+  Cell cell{two_arms()};
+  Scene& scene = cell.scene;
+  DdsOptions dds = test::own_dds();
+  Participant daemon{dds}, robot{dds};
+  PoseReader inputs{cell, daemon};
+};
+
+TEST_F(RosReadersTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHave) {
+  test::RosJoints joints(robot);
+  ASSERT_TRUE(joints.is_heard());
+  const std::int64_t now = dds_time();
+  joints.send_at(now, {"wheel", "right_push", "right_shoulder"}, {9.0, 0.1, -0.5}, {7.0, 0.2, 0.3});
+  const PoseBatch batch = next();
+  EXPECT_EQ(batch.source.view(), "/joint_states");
+  EXPECT_EQ(batch.sequence_number, 1u);
+  EXPECT_EQ(positions(batch), (Positions{{"right_push", 0.1}, {"right_shoulder", -0.5}}));
+  EXPECT_EQ(batch.joints[0].velocity, 0.2);
+  EXPECT_TRUE(batch.joints[0].has_velocity);
+  EXPECT_THAT(inputs.senders_of_joints(),
+              HasSubstr("of joints that the cell does not have: wheel"));
+}
+
+TEST_F(RosReadersTest, OfOneInstantAreWhatOurOwnTopicSays) {
+  test::RosJoints joints(robot);
+  const dds_entity_t own = robot.writer(TopicKind::kJointStates, cell.topics.joint_states);
+  ASSERT_TRUE(joints.is_heard() &&
+              test::eventually([&] { return test::matched_readers(own) > 0; }));
+  const std::int64_t now = dds_time();
+  joints.send_at(now, {"right_shoulder", "right_elbow"}, {0.1, 0.2}, {0.3, 0.4});
+  PoseBatch from_ros = next();
+  const auto sample = make_joint_states(from_ros, scene);
+  ASSERT_EQ(dds_write(own, &*sample), DDS_RETCODE_OK);
+  EXPECT_TRUE(test::eventually([&] { return !inputs.refused_sources().empty(); }));
+  EXPECT_EQ(inputs.next(), nullptr) << "the name belongs to the writer that sent first";
+  EXPECT_EQ(inputs.refused_sources().size(), 1u);
+}
+
+TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {
+  EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("there is no publisher of"));
+  EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("domain " + std::to_string(dds.domain)));
+  const dds_entity_t tf = robot.ros_writer(kRosTf, "rt/tf");
+  EXPECT_GT(tf, 0);
+  EXPECT_TRUE(test::eventually(
+      [&] { return inputs.senders_of_joints().find("rt/tf") != std::string::npos; }));
+  test::RosJoints joints(robot);
+  ASSERT_TRUE(joints.is_heard());
+  EXPECT_TRUE(test::eventually(
+      [&] { return inputs.senders_of_joints().find("no publisher") == std::string::npos; }));
+}
+
+TEST_F(RosReadersTest, OfAnotherPartitionAreNamed) {
+  DdsOptions elsewhere = dds;
+  elsewhere.partition = "elsewhere";
+  Participant ros(elsewhere);
+  test::RosJoints joints(ros);
+  EXPECT_TRUE(test::eventually([&] {
+    return inputs.senders_of_joints().find("published in partition elsewhere and does not reach") !=
+           std::string::npos;
+  }));
+}
+
+TEST_F(RosReadersTest, EndpointsCarryTheHashOfTheirType) {
+  const dds_entity_t reader = daemon.ros_reader(kRosJointState, "rt/hash/joint_states");
+  test::RosJoints joints(robot, "rt/hash/joint_states");
+  ASSERT_TRUE(joints.is_heard());
+  joints.send({"a"}, {0.0});
+  const std::vector<std::uint64_t> writers = writers_of(reader);
+  ASSERT_EQ(writers.size(), 1u);
+  EXPECT_EQ(writer_facts(reader, writers[0]).user_data,
+            "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;");
+}
+
+// A publisher of tf_static that was there before the daemon is heard as well, and again and again:
+// what never changes must not grow late.
+TEST(RosReaders, TransformsComeFromBothTopicsWhicheverWasThereFirst) {
+  Cell cell{test::cell_of({test::moving("cart", {test::ball(0.1)})})};
+  cell.scene.objects[0].frame = "cart_link";
+  cell.scene.objects[0].age_limit_ns = 60'000'000;
+  const DdsOptions dds = test::own_dds();
+  Participant daemon(dds), robot(dds);
+  test::RosFrames fixed(robot, test::RosFrames::Kind::kStatic);
+  fixed.send({{"cart", "cart_link", {0, 0, 1}}});
+  PoseReader inputs(cell, daemon);
+  test::RosFrames frames(robot);
+  ASSERT_TRUE(frames.is_heard() && fixed.is_heard());
+  const auto comes_to = [&](const Vec3& place) {
+    return test::eventually([&] {
+      const PoseBatch* const came = inputs.next();
+      return came != nullptr && came->samples.at(0).world_from_object.position == place;
+    });
+  };
+  EXPECT_TRUE(comes_to({0, 0, 1}));
+  frames.send({{"map", "cart", {3, 0, 0}}});
+  EXPECT_TRUE(comes_to({3, 0, 1}));
+}
+
+}  // namespace
+}  // namespace clearance

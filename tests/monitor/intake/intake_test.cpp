@@ -1,0 +1,143 @@
+// What comes in by our own topics, who is admitted, and what is told of it.
+#include "monitor/intake/intake.hpp"
+
+#include <gtest/gtest.h>
+
+#include "monitor/wire/convert.hpp"
+#include "tests/monitor/intake/heard.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance::test {
+namespace {
+
+class IntakeTest : public testing::Test {
+ protected:
+  // One message of our own topic with this many poses.
+  bool take(std::uint64_t number, std::uint64_t writer = 1, std::size_t poses = 1,
+            std::string_view source = "arm", std::uint64_t revision = 0) {
+    PoseBatch batch{SourceName(source), number, revision, {}};
+    batch.samples.assign(poses, sample(0, at(0, 0, 1), heard.now.realtime_ns));
+    Sample<clearance_msg_PoseBatch> wire = make_batch(poses);
+    to_wire(batch, *wire);
+    const std::span<const std::byte> cdr = encoder.encode(*wire);
+    return heard.intake.take(
+        {.topic = heard.intake.topic(TopicKind::kPoses)->number, .cdr = cdr, .writer = writer},
+        heard.now);
+  }
+  [[nodiscard]] const SourceTally& tally() const { return heard.intake.sources().tallies().at(0); }
+
+  Cell cell{cell_of({moving("ball", {ball(0.1)}), fixed("box", {ball(0.1)}, at(0, 0, 7))})};
+  Heard heard{cell, {.admits_sources = true, .most_samples = 8}};
+  CdrEncoder encoder;
+};
+
+TEST_F(IntakeTest, GivesEveryBatchAsItWasSent) {
+  EXPECT_TRUE(take(5, 1, 3));
+  const PoseBatch batch = heard.one();
+  EXPECT_EQ(batch.source.view(), "arm");
+  EXPECT_EQ(batch.sequence_number, 5u);
+  ASSERT_EQ(batch.samples.size(), 3u);
+  EXPECT_EQ(batch.samples[2].stamp_ns, heard.now.realtime_ns);
+  EXPECT_EQ(batch.samples[2].world_from_object.position, Vec3(0, 0, 1));
+  EXPECT_EQ(tally().batches, 1u);
+}
+
+TEST_F(IntakeTest, KnowsOurTopicsByTheirNamesAndTypes) {
+  const auto poses = heard.intake.topic(TopicKind::kPoses);
+  const auto joints = heard.intake.topic(TopicKind::kJointStates);
+  ASSERT_TRUE(poses && joints);
+  EXPECT_NE(poses->number, joints->number);
+  EXPECT_EQ(poses->delivery, nullptr);
+  EXPECT_EQ(heard.intake.topic(TopicKind::kPoses)->number, poses->number);
+  EXPECT_FALSE(heard.intake.topic(TopicKind::kDistances));
+  EXPECT_FALSE(heard.intake.topic({cell.topics.poses, "std_msgs/msg/String"}));
+}
+
+TEST_F(IntakeTest, CountsWhatIsLostCutAndNotDecodable) {
+  take(1);
+  take(4);
+  EXPECT_EQ(tally().lost, 2u) << "numbers 2 and 3";
+  take(5, 1, 20);
+  EXPECT_EQ(heard.batches.back().samples.size(), 8u);
+  EXPECT_EQ(tally().cut_poses, 12u);
+  heard.has_room = false;
+  take(6);
+  EXPECT_EQ(tally().lost, 3u);
+  EXPECT_EQ(tally().batches, 3u);
+  const std::uint32_t poses = heard.intake.topic(TopicKind::kPoses)->number;
+  EXPECT_FALSE(heard.intake.take({.topic = poses, .cdr = {}}, heard.now));
+  EXPECT_EQ(heard.intake.counts(poses).undecodable, 1u);
+}
+
+TEST_F(IntakeTest, AdmitsOneWriterOfANameAndTellsOnceOfEach) {
+  take(1, 1);
+  take(1, 2);
+  take(2, 2);
+  EXPECT_EQ(heard.all().size(), 1u);
+  EXPECT_EQ(heard.intake.sources().refused().at(0).poses, 2u);
+  heard.intake.keep({2});
+  take(3, 2);
+  EXPECT_EQ(heard.all().size(), 1u);
+  std::vector<News::Cause> causes;
+  for (const News& news : heard.intake.take_news()) causes.push_back(news.cause);
+  EXPECT_EQ(causes, (std::vector{News::Cause::kNewSource, News::Cause::kSourceRefused,
+                                 News::Cause::kSourceTakenOver}));
+}
+
+TEST_F(IntakeTest, TellsOnceOfASourceWhosePosesAreOfAnotherScene) {
+  take(1, 1, 1, "arm", cell.scene.revision + 1);
+  take(2, 1, 1, "arm", cell.scene.revision + 1);
+  EXPECT_EQ(heard.all().size(), 2u) << "the tick counts them";
+  const std::vector<News> news = heard.intake.take_news();
+  EXPECT_EQ(std::ranges::count(news, News::Cause::kOtherRevision, &News::cause), 1);
+}
+
+TEST_F(IntakeTest, TellsOnceOfAnInputThatComesTooSeldomForItsAgeLimit) {
+  cell.scene.objects[0].age_limit_ns = 20'000'000;
+  Heard slow(cell);
+  for (std::uint64_t i = 1; i <= 100; ++i) {
+    PoseBatch batch{SourceName("camera"), i, 0, {}};
+    batch.samples.push_back(
+        sample(0, at(0, 0, 1), kStart + static_cast<std::int64_t>(i) * 33'000'000));
+    Sample<clearance_msg_PoseBatch> wire = make_batch(1);
+    to_wire(batch, *wire);
+    slow.intake.take(
+        {.topic = slow.intake.topic(TopicKind::kPoses)->number, .cdr = encoder.encode(*wire)},
+        slow.now);
+  }
+  const std::vector<News> news = slow.intake.take_news();
+  ASSERT_EQ(news.size(), 1u);
+  EXPECT_EQ(news[0].cause, News::Cause::kSlowInput);
+}
+
+// Joints of a robot by our own topic.
+TEST(IntakeOfJoints, FindsJointsByTheirNames) {
+  const Cell cell{scara_cell()};
+  Heard heard(cell);
+  PoseBatch sent{SourceName("arm"), 7, 0, {}};
+  for (const JointSample& each : joints(0.1, 0.2, 0.3, 1000)) sent.joints.push_back(each);
+  const auto wire = make_joint_states(sent, cell.scene);
+  CdrEncoder encoder;
+  EXPECT_TRUE(heard.intake.take(
+      {.topic = heard.intake.topic(TopicKind::kJointStates)->number, .cdr = encoder.encode(*wire)},
+      heard.now));
+  const PoseBatch batch = heard.one();
+  EXPECT_EQ(batch.sequence_number, 7u);
+  ASSERT_EQ(batch.joints.size(), 3u);
+  EXPECT_EQ(batch.joints[1].variable, 1u);
+  EXPECT_EQ(batch.joints[1].position, 0.2);
+}
+
+TEST(TopicName, OfDdsIsThatOfRosWhereItIsOne) {
+  const TopicName tf = as_in_ros("rt/r2/tf", "tf2_msgs::msg::dds_::TFMessage_");
+  EXPECT_EQ(tf.name, "/r2/tf");
+  EXPECT_EQ(tf.type, "tf2_msgs/msg/TFMessage");
+  const TopicName ours = as_in_ros("clearance/poses", "clearance_msg::PoseBatch");
+  EXPECT_EQ(ours.name, "clearance/poses");
+  EXPECT_EQ(ours.type, "clearance_msg::PoseBatch");
+  EXPECT_EQ(as_in_ros("rt/x", "no_ros::Type").name, "rt/x");
+}
+
+}  // namespace
+}  // namespace clearance::test

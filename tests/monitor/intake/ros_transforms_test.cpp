@@ -1,0 +1,261 @@
+// Transforms of ROS 2, in bytes, as poses of what follows frames.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/monitor/intake/heard.hpp"
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+constexpr double kHalf = 0.70710678118654757;  // of sqrt(2)
+constexpr std::int64_t kMs = 1'000'000;
+constexpr const char* kStatic = "/tf_static";
+
+class RosTransformsTest : public testing::Test {
+ protected:
+  // A cart and a tool that follow frames, and a robot whose base does.
+  static Cell framed_cell(const std::string& ros) {
+    const ScratchFolder folder;
+    write_text(folder / "scara.urdf", kScaraUrdf);
+    return read_good(
+        "name: test\nunits: {length: m, angle: rad}\n" + ros +
+            "robots:\n  - {name: arm, urdf: scara.urdf, prefix: r_, base: {frame: mir/top, "
+            "pose: {xyz: [0, 0, 0.5]}, age_limit_ms: 300}}\n"
+            "objects:\n  - {name: cart, frame: cart_link, age_limit_ms: 60, sphere: {radius: "
+            "0.1}}\n"
+            "  - {name: tool, frame: tool0, age_limit_ms: 60, sphere: {radius: 0.1}}\n"
+            "pairs: [{between: [arm, cart]}, {between: [cart, tool]}]\n",
+        folder / "cell.yaml");
+  }
+
+  explicit RosTransformsTest(const std::string& ros = "ros2: {world_frame: map}\n")
+      : cell(framed_cell(ros)) {}
+
+  [[nodiscard]] std::int64_t now() const { return heard.now.realtime_ns; }
+  void send_at(std::int64_t stamp_ns, const std::vector<FrameText>& frames,
+               const std::string& topic = "/tf", std::uint64_t writer = 1) {
+    EXPECT_TRUE(heard.take(transforms(now(), stamp_ns, frames, topic), writer));
+  }
+  // Stamped now, a millisecond after what was sent before.
+  void send(const std::vector<FrameText>& frames, const std::string& topic = "/tf",
+            std::uint64_t writer = 1) {
+    heard.pass(kMs);
+    send_at(now(), frames, topic, writer);
+  }
+  // The batches that follow from what was sent.
+  std::vector<PoseBatch> settled() {
+    heard.settle();
+    return heard.all();
+  }
+  // The place of an object in the only batch that follows.
+  Vec3 place_of(std::uint32_t object) {
+    const std::vector<PoseBatch> batches = settled();
+    EXPECT_EQ(batches.size(), 1u);
+    for (const PoseBatch& batch : batches) {
+      for (const PoseSample& sample : batch.samples) {
+        if (sample.object == object) return sample.world_from_object.position;
+      }
+    }
+    ADD_FAILURE() << "no pose of object " << object;
+    return Vec3::Zero();
+  }
+
+  Cell cell;
+  Heard heard{cell};
+};
+
+// Objects: cart 0, tool 1.
+TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
+  send_at(now(), {{"cart", "cart_link", {0, 0, 1}}}, kStatic, 2);
+  send_at(now() - 20 * kMs, {{"map", "odom", {1, 2, 0}, {0, 0, kHalf, kHalf}}});
+  send_at(now() - 5 * kMs, {{"odom", "cart", {3, 0, 0}}, {"/nowhere", "wheel", {9, 9, 9}}});
+  std::vector<PoseBatch> batches = settled();
+  ASSERT_EQ(batches.size(), 1u);
+  EXPECT_EQ(batches[0].source.view(), "/tf");
+  EXPECT_EQ(batches[0].sequence_number, 1u);
+  ASSERT_EQ(batches[0].samples.size(), 1u);
+  const PoseSample& sample = batches[0].samples[0];
+  EXPECT_EQ(sample.object, 0u);
+  EXPECT_EQ(sample.stamp_ns, now() - 20 * kMs);
+  // 3 m along odom's x, which is the map's y.
+  EXPECT_NEAR((sample.world_from_object.position - Vec3(1, 5, 1)).norm(), 0.0, 1e-12);
+  EXPECT_FALSE(sample.has_twist);
+  // What leaves the oldest stamp as it is says nothing new.
+  send_at(now() - 1 * kMs, {{"odom", "cart", {4, 0, 0}}});
+  EXPECT_TRUE(settled().empty());
+  send_at(now(), {{"map", "odom", {1, 2, 0}}});
+  batches = settled();
+  ASSERT_EQ(batches.size(), 1u);
+  EXPECT_EQ(batches[0].sequence_number, 2u);
+  EXPECT_EQ(batches[0].samples[0].stamp_ns, now() - 1 * kMs);
+  EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(5, 2, 1));
+}
+
+// What never changes is true whenever somebody looks, and is said again before it is late.
+TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
+  send({{"map", "cart_link", {0.5, 0, 0}}}, kStatic);
+  EXPECT_EQ(heard.intake.patience_ns(), 20 * kMs);
+  for (int i = 0; i < 5; ++i) {
+    const std::vector<PoseBatch> batches = settled();
+    ASSERT_EQ(batches.size(), 1u) << i;
+    EXPECT_EQ(batches[0].samples.at(0).stamp_ns, now());
+    EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(0.5, 0, 0));
+    heard.pass(10 * kMs);
+    EXPECT_TRUE(settled().empty()) << "not so soon again";
+    heard.pass(10 * kMs);
+  }
+}
+
+TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTheFirstOnes) {
+  heard.intake.keep({1, 2});
+  send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
+  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+  EXPECT_EQ(heard.told(News::Cause::kFrameOfTwo), 1u);
+  // The first one is silent for a second.
+  heard.pass(RosTransforms::kFrameHeldNs);
+  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
+  // The second one has left.
+  heard.intake.keep({1});
+  send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
+  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+}
+
+// Nobody says a static transform twice: no silence gives the frame up.
+TEST_F(RosTransformsTest, OfTfStaticBelongToTheirPublisherUntilThatOneLeaves) {
+  heard.intake.keep({1, 2});
+  send({{"map", "cart_link", {1, 0, 0}}}, kStatic, 1);
+  heard.pass(100 * RosTransforms::kFrameHeldNs);
+  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+  heard.intake.keep({2});
+  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
+}
+
+// A pose that is none leaves the frame where it was; so do frames without names.
+TEST_F(RosTransformsTest, ThatAreNoPosesAreRefused) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  send({{"map", "cart_link", {8, 0, 0}}});
+  send({{"map", "cart_link", {kNaN, 0, 0}},
+        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 0}},
+        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 1.01}},
+        {"cart_link", "cart_link", {7, 0, 0}},
+        {"", "cart_link", {7, 0, 0}},
+        {"map", "", {7, 0, 0}}});
+  EXPECT_EQ(place_of(0), Vec3(8, 0, 0));
+  EXPECT_EQ(heard.told(News::Cause::kFrameRefused), 2u) << "once for each frame";
+}
+
+TEST_F(RosTransformsTest, ThatGoRoundInACircleSayNothingUntilTheyDoNot) {
+  send({{"a", "cart_link"}, {"b", "a"}, {"cart_link", "b"}, {"map", "tool0", {3, 0, 0}}});
+  const std::vector<PoseBatch> batches = settled();
+  ASSERT_EQ(batches.size(), 1u);
+  ASSERT_EQ(batches[0].samples.size(), 1u);
+  EXPECT_EQ(batches[0].samples[0].object, 1u);
+  // It is hung up elsewhere.
+  send({{"map", "b", {1, 0, 0}}});
+  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+}
+
+// A tool that a gripper takes from a rack.
+TEST_F(RosTransformsTest, OfAFrameWithAnotherParentAreUsedAtOnce) {
+  send({{"map", "rack", {1, 0, 0}}, {"map", "hand", {0, 1, 0}}, {"rack", "tool0"}});
+  EXPECT_EQ(place_of(1), Vec3(1, 0, 0));
+  send({{"map", "rack", {1, 0, 0}}, {"map", "hand", {0, 1, 0}}, {"hand", "tool0"}});
+  EXPECT_EQ(place_of(1), Vec3(0, 1, 0));
+  EXPECT_EQ(heard.told(News::Cause::kFrameMoved), 1u);
+}
+
+TEST_F(RosTransformsTest, WithoutAStampHoldWhenTheyWereSent) {
+  send_at(0, {{"map", "cart_link"}});
+  EXPECT_EQ(settled().at(0).samples.at(0).stamp_ns, now());
+}
+
+// Seven positions of the joint that carries the robot; q and -q are one orientation.
+TEST_F(RosTransformsTest, CarryTheBaseOfARobot) {
+  send({{"map", "mir/top", {1, 2, 3}, {0, 0, kHalf, kHalf}}});
+  const PoseBatch batch = settled().at(0);
+  EXPECT_EQ(batch.source.view(), "/tf:bases");
+  const std::vector<double> expected = {1, 2, 3.5, 0, 0, kHalf, kHalf};
+  ASSERT_EQ(batch.joints.size(), 7u);
+  const std::vector<JointVariable>& variables = cell.scene.variables;
+  for (std::size_t i = 0; i < 7; ++i) {
+    EXPECT_NEAR(batch.joints[i].position, expected[i], 1e-15);
+    EXPECT_TRUE(variables.at(batch.joints[i].variable).name.starts_with("r_arm_base/"));
+    EXPECT_EQ(variables[batch.joints[i].variable].age_limit_ns, 300 * kMs);
+  }
+  send({{"map", "mir/top", {1, 2, 3}, {0, 0, -kHalf, -kHalf}}});
+  EXPECT_GT(settled().at(0).joints.at(6).position, 0.0);
+}
+
+TEST_F(RosTransformsTest, ThatAreMissingAreToldAfterFiveSeconds) {
+  heard.settle();
+  heard.pass(RosTransforms::kMissingNs - 1);
+  heard.settle();
+  EXPECT_EQ(heard.news.size(), 0u);
+  heard.pass(1);
+  heard.settle();
+  EXPECT_EQ(heard.told(News::Cause::kNoTransforms), 3u) << "the cart, the tool and the base";
+  send({{"map", "cart_link"}, {"earth", "tool0"}});
+  heard.settle();
+  EXPECT_EQ(heard.told(News::Cause::kFrameFound), 1u);
+  heard.pass(RosTransforms::kMissingNs);
+  heard.settle();
+  EXPECT_EQ(heard.told(News::Cause::kFrameMissing), 1u) << "the tool, which leads elsewhere";
+}
+
+// A log says with every message where all followers are, in any namespace, and of objects without
+// a frame that of their name.
+TEST_F(RosTransformsTest, OutOfALogSayWithEveryMessageWhereAllFollowersAre) {
+  Heard log(cell, {.is_log = true});
+  log.take(transforms(now(), now(), {{"map", "cart_link", {1, 0, 0}}}, "/r2/tf_static"), 0);
+  EXPECT_EQ(log.one().source.view(), "/r2/tf");
+  log.take(transforms(now() + 1, now() + 1, {{"map", "wheel"}}, "/r2/tf"), 0);
+  EXPECT_EQ(log.one().samples.size(), 1u) << "the cart again";
+  log.take(transforms(now() + 2, 5, {{"map", "tool0"}}, "/r2/tf"), 0);
+  const PoseBatch both = log.one();
+  ASSERT_EQ(both.samples.size(), 2u);
+  EXPECT_EQ(both.samples[1].stamp_ns, now() + 2) << "the stamp is of another clock";
+}
+
+// The cell's world is a frame of the tree, not its root.
+class RosTransformsToAWorld : public RosTransformsTest {
+ protected:
+  RosTransformsToAWorld() : RosTransformsTest("ros2: {world_frame: cell, stamps: sent}\n") {}
+};
+
+TEST_F(RosTransformsToAWorld, EndThereAndOthersAreNotUsed) {
+  send_at(1'000, {{"map", "cell", {100, 0, 0}},
+                  {"map", "tool0", {5, 0, 0}},
+                  {"cell", "cart_link", {1, 0, 0}}});
+  const PoseBatch batch = settled().at(0);
+  ASSERT_EQ(batch.samples.size(), 1u) << "the tool hangs on the map";
+  EXPECT_EQ(batch.samples[0].object, 0u);
+  EXPECT_EQ(batch.samples[0].world_from_object.position, Vec3(1, 0, 0));
+  EXPECT_EQ(batch.samples[0].stamp_ns, now()) << "stamps: sent";
+}
+
+// A robot in the world says where its links are: what hangs on one begins there.
+TEST(RosTransformsOfLinks, BeginWhereTheCellHasTheRobot) {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const Cell cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: world}\n"
+      "robots: [{name: arm, urdf: scara.urdf, base: {pose: {xyz: [0, 0, 2]}}}]\n"
+      "objects: [{name: tool, frame: tool0, sphere: {radius: 0.1}}]\n"
+      "pairs: [{between: [arm, tool]}]\n",
+      folder / "cell.yaml");
+  Heard heard(cell);
+  heard.take(transforms(heard.now.realtime_ns, heard.now.realtime_ns,
+                        {{"foot", "upper", {0, 0, 0.5}}, {"upper", "tool0", {1, 0, 0}}}));
+  heard.settle();
+  EXPECT_EQ(heard.one().samples.at(0).world_from_object.position, Vec3(1, 0, 2.5));
+}
+
+}  // namespace
+}  // namespace clearance::test
