@@ -47,8 +47,9 @@ struct CurvedConclusion {
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
 };
 
-// Radii are added in this direction, from A to B. Bodies without their radii that are apart: along
-// the line of the witness points, whose remaining length is then the distance.
+// The direction, from A to B, in which radii are added. If the bodies without their radii do not
+// touch, it is that of the witness points, so that the rest of their gap vector is as long as the
+// distance.
 [[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found) noexcept {
   const Vec3 gap = found.point_on_b - found.point_on_a;
   return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;

@@ -78,9 +78,9 @@ class WideMinkowskiDifference {
   const Precision& p_;
 };
 
-// The sides keep their features and take the points: as near to them as the features allow, a
-// tracked query begins there. Of points that are as close to rounding, those are taken that belong
-// to the direction found last, and that one of those that prove as much.
+// The sides keep their features and take the points, as near to the features as these allow: a
+// tracked query begins there. Among points that are equally close within rounding, those of the
+// latest direction are chosen.
 void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
                    const WideSimplex& simplex, double length, const Precision& p) noexcept {
   if (length > r.distance + p.gap_tolerance) return;

@@ -29,8 +29,8 @@ Vec3 common_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& 
   if (a.is_half_space()) return r.point_on_b;
   if (b.is_half_space()) return r.point_on_a;
   CurvedPair pair(a, b, a_from_b);
-  const bool found = start_direction(pair).meet || pair.bounds.upper <= pair.gap_tolerance();
-  if (found) return pair.bounds.points.a;
+  (void)start_direction(pair);
+  if (pair.bounds.upper <= 4.0 * pair.gap_tolerance()) return pair.bounds.points.a;
   return 0.5 * (r.point_on_a + r.point_on_b);
 }
 

@@ -21,7 +21,8 @@ constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 const char* status_name(std::uint8_t status) {
-  return status < kPairStatuses ? name(static_cast<PairStatus>(status)) : "?";
+  const char* const known = name(static_cast<PairStatus>(status));
+  return *known != 0 ? known : "?";
 }
 
 Style status_style(std::uint8_t status) {

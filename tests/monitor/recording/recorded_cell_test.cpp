@@ -73,9 +73,9 @@ class RecordedCell : public testing::Test {
     without_files = recorder.without_files();
     EXPECT_TRUE(recorder.close()) << recorder.error();
     std::filesystem::remove_all(folder / "made");
-    const auto cell = recorded_cell(run, outline(run));
-    EXPECT_TRUE(cell);
-    return cell.value_or(std::vector<CellError>{});
+    const auto read = recorded_cell(run, outline(run));
+    EXPECT_TRUE(read);
+    return read.value_or(std::vector<CellError>{});
   }
   static std::string errors_in(const CellResult& result) {
     std::string text;
@@ -136,9 +136,9 @@ TEST_F(RecordedCell, IsInEveryFileOfSeveral) {
   }
   std::filesystem::remove_all(folder / "made");
   for (const char* part : {"run.mcap", "run-2.mcap"}) {
-    const auto cell = recorded_cell(folder / part, outline(folder / part));
-    ASSERT_TRUE(cell) << part;
-    EXPECT_EQ("", errors_in(*cell)) << part;
+    const auto read = recorded_cell(folder / part, outline(folder / part));
+    ASSERT_TRUE(read) << part;
+    EXPECT_EQ("", errors_in(*read)) << part;
   }
 }
 
@@ -155,9 +155,9 @@ TEST_F(RecordedCell, IsRefusedWhereAFileWouldStandElsewhere) {
       writer.write(channel, 1, 1, encoder.encode(*make_catalogue(cell)));
       ASSERT_TRUE(writer.close());
     }
-    const auto cell = recorded_cell(run, outline(run));
-    ASSERT_TRUE(cell);
-    EXPECT_THAT(errors_in(*cell), HasSubstr("'" + name + "' cannot be written")) << name;
+    const auto read = recorded_cell(run, outline(run));
+    ASSERT_TRUE(read);
+    EXPECT_THAT(errors_in(*read), HasSubstr("'" + name + "' cannot be written")) << name;
   }
 }
 
@@ -175,9 +175,9 @@ TEST_F(RecordedCell, OfADamagedAttachmentIsRefused) {
   ASSERT_NE(at, std::string::npos);
   bytes[at + 2] = '7';
   std::ofstream(run, std::ios::binary) << bytes;
-  const auto cell = recorded_cell(run, outline(run));
-  ASSERT_TRUE(cell);
-  EXPECT_THAT(errors_in(*cell), HasSubstr("is damaged or too large"));
+  const auto read = recorded_cell(run, outline(run));
+  ASSERT_TRUE(read);
+  EXPECT_THAT(errors_in(*read), HasSubstr("is damaged or too large"));
 }
 
 }  // namespace
