@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "config/yaml/spelling.hpp"
+#include "config/text/spelling.hpp"
 
 namespace clearance {
 namespace {
