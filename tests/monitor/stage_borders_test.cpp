@@ -59,7 +59,7 @@ TEST_F(StageBordersDeathTest, AnObjectWithAnUnusablePoseEndsTheProgram) {
   const std::vector<std::uint32_t> changed{0}, first = first_parts(scene);
   const TickView view{objects, parts, 1, table};
   check_displaced(changed, first, view);  // an object without a pose is none
-  objects[0].seen = true;
+  objects[0].input.has_value = true;
   parts[0].placed = true;
   check_displaced(changed, first, view);
   objects[0].pose.position.x() = kNan;
