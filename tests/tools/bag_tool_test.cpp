@@ -88,7 +88,7 @@ TEST_F(BagTool, JointTableAndGivenJointsDo) {
 
 TEST_F(BagTool, TellsWhatIsMissing) {
   EXPECT_EQ(1, run(kReplay, {"check", path("bag")}));
-  EXPECT_THAT(output, HasSubstr("expected --urdf R.urdf and --srdf R.srdf"));
+  EXPECT_THAT(output, HasSubstr("expected --urdf and --srdf"));
   write_mcap_bag(folder / "none.mcap", {ros_text(kStart, "x", "/chatter")});
   EXPECT_EQ(1, replay("none.mcap", {}));
   EXPECT_THAT(output, HasSubstr("there are /chatter (std_msgs/msg/String, 1 messages)"));
@@ -135,7 +135,7 @@ TEST_F(BagTool, DaemonRecordsWhatItIsToldAndTheFilesCompareAsOne) {
                                   "--record-without", "health"},
                                  dds_arguments(dds))))
       << output;
-  EXPECT_THAT(output, HasSubstr("recording goes on in " + path("run-2.mcap")));
+  EXPECT_THAT(output, HasSubstr("recording continues in " + path("run-2.mcap")));
   std::vector<std::string> files;
   for (auto file = folder / "run.mcap"; is_taken(file); file = next_number(file)) {
     files.push_back(file.string());

@@ -152,7 +152,7 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   })) << daemon.output();
   EXPECT_TRUE(eventually([&] {
     poses.send(0.125);  // 0.57 m
-    return daemon.told("zone-near", {"left - right, 0."});
+    return daemon.told("zone-near", {"left - right, at least 0."});
   })) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();

@@ -142,7 +142,7 @@ TEST(Network, OfCyclonesOwnVariableIsJoined) {
   EXPECT_TRUE(eventually([&] { return friendly.wrote("cycle "); }))
       << daemon.output() << friendly.output();
   EXPECT_FALSE(stranger.wrote("cycle ")) << stranger.output();
-  EXPECT_TRUE(daemon.told("how-to-reach", {", then CYCLONEDDS_URI"})) << daemon.output();
+  EXPECT_TRUE(daemon.told("started", {", then CYCLONEDDS_URI"})) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }
