@@ -83,7 +83,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
       ring_(kBatches) {
   open(participant, TopicKind::kPoses);
   if (!cell.scene.robots.empty()) open(participant, TopicKind::kJointStates);
-  wait_.add(ros_.present().reader());
+  if (intake_.hears_ros()) wait_.add(ros_.present().reader());
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch(cell.scene));
     slot.joints.resize(joints_a_batch(cell.scene));
@@ -189,7 +189,7 @@ void PoseReader::run() {
 
 // What others publish, and who has left.
 void PoseReader::look() {
-  const bool changed = ros_.look();
+  const bool changed = intake_.hears_ros() && ros_.look();
   if (writers_changed_.exchange(false) || changed) note_writers();
   const std::vector<RosReaders::Reader>& readers = ros_.readers();
   for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);

@@ -29,7 +29,9 @@ std::vector<std::uint64_t> RosReaders::writers() const {
 // Without a time of sending, the sample was sent now.
 void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
                std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended) {
-  while (take_cdr(reader, taken, ended) > 0) {
+  std::size_t count = kMostAtOnce;
+  while (count == kMostAtOnce) {
+    count = take_cdr(reader, taken, ended);
     for (const CdrSample& sample : taken) {
       intake.take({.topic = topic,
                    .cdr = sample.bytes(),

@@ -59,6 +59,11 @@ class Intake final : public Outlet {
   // One of our own, as the cell names it.
   [[nodiscard]] std::optional<Topic> topic(TopicKind kind);
 
+  // Whether any topic of ROS 2 could be wanted.
+  [[nodiscard]] bool hears_ros() const noexcept {
+    return !scene_.robots.empty() || transforms_->any();
+  }
+
   // False: the bytes are no message of the topic's type.
   bool take(const RawMessage& message, const Now& now);
   // To be called after all messages that had come, and at the latest after patience_ns().

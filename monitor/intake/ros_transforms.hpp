@@ -46,6 +46,8 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::int64_t patience_ns() const override;
   void keep(std::span<const std::uint64_t> writers) override;
 
+  // Whether anything of the cell follows frames.
+  [[nodiscard]] bool any() const noexcept { return frames_.any(); }
   // Roots of trees that were taken to be the cell's world, which has no name.
   [[nodiscard]] std::vector<std::string> worlds() const;
 

@@ -26,7 +26,10 @@ class Heard {
   // not decode.
   bool take(const RosMessage& message, std::uint64_t writer = 1) {
     const auto topic = intake.topic({message.topic, message.type});
-    if (!topic) return false;
+    if (!topic) {
+      keep_news();
+      return false;
+    }
     const bool decodes = intake.take(
         {.topic = topic->number, .cdr = message.cdr, .sent_ns = message.log_ns, .writer = writer},
         now);
