@@ -360,7 +360,8 @@ TEST(View, DrawsLiveWhatFollowsFrames) {
   })) << client.output();
   EXPECT_EQ(client.wait(), 0) << client.output();
   std::map<std::string, double> drawn;  // x of what is drawn, by name
-  for (const json& each : lines_of(client).front()["last"]["/tf"]["transforms"]) {
+  const json found = lines_of(client).front();
+  for (const json& each : found["last"]["/tf"]["transforms"]) {
     drawn[each["child_frame_id"]] = each["transform"]["translation"]["x"];
   }
   ASSERT_TRUE(drawn.contains("box") && drawn.contains("foot") && drawn.contains("finger"))

@@ -96,6 +96,7 @@ void LiveSource::take(TopicKind kind) {
 
 // As the daemon does (dds/pose_reader.cpp). Its log names what is wrong, not the page.
 void LiveSource::take_from_ros(const Now& now) {
+  if (!intake_.hears_ros()) return;
   if (ros_.look()) intake_.keep(ros_.writers());
   for (const RosReaders::Reader& reader : ros_.readers()) {
     take_into(intake_, reader.topic, reader.handle, now, taken_);
