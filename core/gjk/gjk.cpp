@@ -101,7 +101,8 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
   const WideMinkowskiDifference body(a, b, a_from_b, p);
   WideSimplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.
-  const bool near = a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
+  const bool near =
+      a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
   (void)simplex.add(near ? body.make(a.local_point(), b.local_point())
                          : body.make(a.body().anchors[0], b.body().anchors[0]));
   for (int round = 0; round < kRounds; ++round) {
