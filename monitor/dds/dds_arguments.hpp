@@ -23,7 +23,7 @@ struct DdsArguments {
   std::optional<std::string> interface;  // not given: the cell's
   std::vector<std::string> peers;
 
-  // `has_cell`: the program takes a cell, which decides without an option.
+  // `has_cell` means that the program takes a cell, whose settings are the defaults.
   void add_to(CLI::App& app, bool has_cell = true) {
     app.add_option("--domain", domain,
                    has_cell ? "DDS domain; otherwise the cell's, or 0" : "DDS domain; otherwise 0")
