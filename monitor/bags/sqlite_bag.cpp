@@ -16,8 +16,9 @@ namespace {
 constexpr int kLargestValue = 1 << 30;
 
 // Converts a path to a URI; everything but letters, digits and / is escaped. The URI marks the file
-// as immutable. Otherwise SQLite makes files beside it, which fails in a read-only folder. As
-// immutable, messages that a crashed recorder left in a write-ahead log are not read.
+// as immutable, because otherwise SQLite makes files beside it, which fails in a read-only folder.
+// A file with a write-ahead log is not marked: SQLite reads the messages that a crashed recorder
+// left there only without the mark.
 std::string uri_of(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char character : std::filesystem::absolute(path).string()) {

@@ -35,7 +35,7 @@ struct QosDeleter {
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-// An empty name is the default partition, for which the policy is absent.
+// An empty name means the default partition, for which the policy is absent.
 Qos partition_qos(const std::string& partition) {
   Qos qos(dds_create_qos());
   if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
@@ -97,7 +97,7 @@ std::string discovery_xml(const DdsOptions& options) {
   return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
 }
 
-// Leaves out empty elements: Cyclone accepts them, but a person has to read the text.
+// Omits empty elements: Cyclone accepts them, but a person has to read the text.
 std::string element(const char* name, const std::string& content) {
   return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
 }
@@ -359,7 +359,7 @@ DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_
   for (const dds_entity_t reader : readers) add(reader);
 }
 
-// Both are gone already when the participant is.
+// If the participant has been deleted, both are deleted already.
 DataWait::~DataWait() {
   dds_delete(waitset_);
   dds_delete(guard_);
