@@ -93,8 +93,8 @@ struct ZoneReport {
   // been inside.
   bool certified = false;
   bool changed = false;  // `active` changed in this tick
-  // The pair with the smallest (lower - margins). If all of those are outside, and the zone is
-  // active because of the time between the ticks, the pair with the smallest (swept_lower -
+  // The pair with the smallest (lower - margins). If all pairs are outside now, and the zone is
+  // active because of the time between the ticks, it is the pair with the smallest (swept_lower -
   // margins).
   std::uint32_t pair = 0;
   double clearance = 0.0;         // the smallest (lower - margins), m
@@ -164,8 +164,8 @@ struct Report {
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;
   // The pair with the smallest upper bound, among all that are known and have been evaluated. While
-  // it is stale it is not a minimum: its distance belongs to an old pose, and another stale pair
-  // may have a smaller lower bound. `lower_all` always bounds all pairs.
+  // it is stale it is not a minimum: its distance belongs to an old pose. Another stale pair may
+  // then have a smaller lower bound. `lower_all` always bounds all pairs.
   PairReport minimum;
   bool minimum_known = false;  // false: there is no such pair
   // No other pair can be closer, and no pair is unknown or stale. Another pair that was evaluated

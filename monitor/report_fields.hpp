@@ -5,7 +5,6 @@
 // side. A new field of a report is one line in report.hpp, one in idl/clearance.idl and one here. A
 // member that is missing in a list does not compile (the assertions below). A message field that is
 // missing in all lists fails a test.
-// message that no list names fails a test.
 #pragma once
 
 #include <cstddef>

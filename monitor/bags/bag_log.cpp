@@ -1,4 +1,4 @@
-// Batches wait until the bag has been read two seconds further, because recorders write messages of
+// Batches wait until the bag has been read two seconds further. Recorders write the messages of
 // several topics only nearly in the order of their times.
 #include "monitor/bags/bag_log.hpp"
 

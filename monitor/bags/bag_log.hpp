@@ -15,7 +15,7 @@
 
 namespace clearance {
 
-// Joint states move the joints of the cell's robots in the same way as those from DDS. /tf and
+// Joint states move the joints of the cell's robots exactly like those from DDS. The topics /tf and
 // /tf_static place the objects and robot bases that follow frames. They also place moving objects
 // that are not links and have the name of a frame. Without a `world_frame`, the root of the frames
 // is taken to be the cell's world. Each topic is a source under its own name; tf_static belongs to

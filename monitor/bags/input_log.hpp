@@ -45,8 +45,8 @@ class InputLog {
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 };
 
-// True if the first bytes show such a log: a bag without our own topics, or a CSV table with other
-// columns than a pose log. False for a file that cannot be read.
+// True if the first bytes are those of such a log. It is a bag without our own topics, or a CSV
+// table with other columns than a pose log. False for a file that cannot be read.
 [[nodiscard]] bool is_input_log(const std::filesystem::path& path);
 
 // The cell must outlive the log. Never null.

@@ -2,7 +2,6 @@
 //
 // Times are integers in ns that do not decrease, positions are in rad or m. A column NAME/velocity
 // holds the velocity of that joint. Other columns are left out. The file is plain or gzip.
-// that joint's velocity. Other columns are left out. Plain or gzip.
 #pragma once
 
 #include <cstddef>

@@ -76,7 +76,7 @@ class Stream {
   [[nodiscard]] std::uint32_t daemons() const;
   // True if there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
-  // A sentence for a person that says why an existing daemon cannot be heard: it was built with
+  // A sentence for a person that says why an existing daemon cannot be heard. It was built with
   // another version of the message, or its QoS does not fit. Empty if no such daemon was met.
   [[nodiscard]] std::string refusal() const;
 

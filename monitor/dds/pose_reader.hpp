@@ -48,8 +48,8 @@ class PoseReader final : public PoseSource {
   // them with a line in its log, where they are counted. The count includes other readers of the
   // process.
   [[nodiscard]] std::uint64_t undecodable() const;
-  // A sentence for a person who hears nothing of a robot: the senders of joint states, or, if there
-  // are none, the topics that exist instead.
+  // A sentence for a person who hears nothing of a robot. It names the senders of joint states. If
+  // there are none, it names the topics that exist instead.
   [[nodiscard]] std::string senders_of_joints() const;
 
  private:

@@ -18,7 +18,7 @@ std::string text_of(const dds_guid_t& guid) {
   return text;
 }
 
-// ROS 2 sets no partition. Of several partitions, the first is shown.
+// ROS 2 sets no partition. If there are several partitions, the first is shown.
 std::string first_partition(const dds_qos_t* qos) {
   std::uint32_t count = 0;
   char** names = nullptr;

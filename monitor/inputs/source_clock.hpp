@@ -13,7 +13,6 @@
 // If the new offset makes all poses older, poses that are on time by both offsets do not count
 // against it. Poses that are in the future by the old offset show that it is wrong, and no pose
 // becomes younger.
-// against it: what is in the future by the old one shows that it is wrong, and nobody gets younger.
 #pragma once
 
 #include <cstdint>

@@ -1,9 +1,9 @@
 // Forward kinematics: the poses and twists of all robots' links from the positions of their joints.
 //
-// The exact pose of a link is that of the chain as the URDF writes it, with origins as real numbers
-// and positions as the doubles that were sent. The result contains a bound of the rounding errors
-// against this exact pose. It has the same bits on every machine, because it uses only sums,
-// products, quotients and square roots.
+// The exact pose of a link is that of the chain as the URDF writes it: its origins are real
+// numbers, its positions are the doubles that were sent. The result contains a bound of the
+// rounding errors against this exact pose. It has the same bits on every machine, because it uses
+// only sums, products, quotients and square roots.
 #pragma once
 
 #include <cstdint>

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// How far a sent velocity may exceed the velocity limit of the description, as a factor.
+// The largest factor by which a sent velocity may exceed the velocity limit of the description.
 constexpr double kLimitTooLow = 4.0;
 
 bool usable(double x) noexcept { return std::abs(x) <= kLargestJoint; }

@@ -14,7 +14,7 @@ struct TrackedVariable {
   InputRecord input;
   bool velocity_known = false;
   double position = 0.0;  // rad or m
-  // As sent with the position, else the mean velocity between the last two positions. It is zero
+  // The velocity sent with the position, else the mean between the last two positions. It is zero
   // and not known after the first position, and after a gap longer than twice the age limit.
   double velocity = 0.0;
   // Bound of the motion since its stamp, rad or m. It is 0 unless late, and infinite if neither a

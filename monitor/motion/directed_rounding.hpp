@@ -13,8 +13,8 @@ namespace clearance {
 [[nodiscard]] inline double rounded_up(double x) noexcept { return x + std::abs(x) * 0x1p-50; }
 [[nodiscard]] inline double rounded_down(double x) noexcept { return x - std::abs(x) * 0x1p-50; }
 
-// How far a rotation by `turn`, rad, moves a point at the distance `arm`. Here 0 * infinity is 0:
-// without rotation, points at infinity do not move either.
+// The path length of a point at the distance `arm` under a rotation by `turn`, rad. Here 0 *
+// infinity is 0: without rotation, points at infinity do not move either.
 [[nodiscard]] inline double swept(double turn, double arm) noexcept {
   return turn == 0.0 ? 0.0 : turn * arm;
 }

@@ -13,8 +13,8 @@ namespace {
 // The speed that bounds the timing error of twists, for an object that states no max_speed, m/s.
 constexpr double kUsualSpeed = 1.0;
 
-// How long an anchor stays, in age limits. It reveals an object whose speed always exceeds its
-// max_speed by more than a sixth.
+// The time for which an anchor stays, in age limits. It reveals an object whose speed always
+// exceeds its max_speed by more than a sixth.
 constexpr std::int64_t kAnchorAgeLimits = 6;
 
 // Over a longer gap, in age limits, the mean of two twists says nothing about the motion in

@@ -36,8 +36,8 @@ class Landmarks {
   explicit Landmarks(const Object& object);
 
   // Returns true if no landmark moves farther than `limit`, m, from one pose to the other. The
-  // displacement a of the origin and the angle usually decide without the points themselves: |R2 -
-  // R1| <= 2 |q2 - q1|, and (a + b)^2 <= 2 a^2 + 2 b^2, with the rotational part b.
+  // displacement a of the origin and a bound b of the rotational part usually decide without the
+  // points themselves. For b, |R2 - R1| <= 2 |q2 - q1|. Then (a + b)^2 <= 2 a^2 + 2 b^2.
   [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
     const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
     const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
@@ -84,10 +84,10 @@ class Repetition {
 // Dead reckoning: integrates the twists from an older pose. A pose that is not where they lead
 // contradicts them.
 //
-// A twist may have a timing error of the age limit and a relative error of one sixth. Noise of up
-// to a thirtieth of the object's speed, and an offset of up to a fiftieth, accumulate to little
-// over the whole integration time. Samples without a twist are left out. Nothing is checked if
-// twists come less often than every two age limits.
+// A twist may have a timing error of the age limit and a relative error of one sixth. Over the
+// whole integration time, noise of up to a thirtieth of the object's speed accumulates to little,
+// and so does an offset of up to a fiftieth. Samples without a twist are left out. Nothing is
+// checked if twists come less often than every two age limits.
 class Reckoning {
  public:
   // Adds the sample's twist, if it has one. Returns false if the pose is not where the twists lead.
@@ -100,9 +100,9 @@ class Reckoning {
 
   // The integration time, in age limits. Over a longer time, noise would accumulate too much.
   static constexpr std::int64_t kAgeLimits = 50;
-  // How long later samples must agree after a contradiction, in age limits. In a shorter time a
-  // slow deviation would not be detected again. A pose that stays behind permanently would then be
-  // known in between.
+  // Later samples must agree for this time after a contradiction, in age limits. In a shorter time
+  // a slow deviation would not be detected again. An object whose pose always lags behind would
+  // then be known in between.
   static constexpr std::int64_t kAgreesAfterAgeLimits = kAgeLimits + 1;
 
  private:

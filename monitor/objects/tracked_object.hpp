@@ -40,11 +40,12 @@ struct TrackedObject {
   double reach = kInfinity;       // bounding radius around its origin, m; set by displace()
   InputRecord input;              // of its poses; for a link that follows joints, of the joints
 
-  // As sent, but normalised if the orientation is off unit length by more than 5e-7.
+  // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
+  // 5e-7.
   Pose pose;
-  // As sent with the pose, else the mean velocity between the last two poses. It is zero and not
-  // known after the first pose, and after a gap longer than twice the age limit. Over such a gap a
-  // mean says nothing about the present.
+  // The twist sent with the pose, else the mean velocity between the last two poses. It is zero and
+  // not known after the first pose, and after a gap longer than twice the age limit. Over such a
+  // gap a mean says nothing about the present.
   Twist twist;
   bool twist_known = false;
   Motion motion;  // since the last tick; zero when first seen
@@ -69,8 +70,8 @@ struct TrackedObject {
   // stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !input.late; }
 
-  // The motion since the last tick, if the object was known then. body_motion() serves relative
-  // displacements, interpolated() is the motion that is assumed between the two poses.
+  // The motion since the last tick, if the object was known then. Relative
+  // displacements use body_motion(). The assumed motion between the two poses is interpolated().
   [[nodiscard]] BodyMotion body_motion() const noexcept {
     return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
   }

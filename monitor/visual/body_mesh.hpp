@@ -1,11 +1,9 @@
 // Triangle meshes of convex bodies for viewers: facets are flat, and rounded surfaces are smooth.
 //
-// The parts of a rounded body are tessellated exactly: each facet moved outwards by the radius, a
-// cylinder strip along each edge, and a sphere patch at each vertex. For curved bodies see
-// curved_mesh.hpp. Every vertex lies on the surface within the rounding of a double. Chords deviate
-// from the surface by at most 1 - cos(arc_step / 2) of the radius: 0.4 % with kArcStep. No decision
-// depends on a mesh.
-// cos(arc_step / 2) of the radius: 0.4 % with kArcStep. No decision rests on a mesh.
+// A rounded body is tessellated exactly. Each facet is moved outwards by the radius. Each edge gets
+// a cylinder strip, and each vertex a sphere patch. For curved bodies see curved_mesh.hpp. Every
+// vertex lies on the surface within the rounding of a double. Chords deviate from the surface by at
+// most 1 - cos(arc_step / 2) of the radius: 0.4 % with kArcStep. No decision depends on a mesh.
 #pragma once
 
 #include <array>

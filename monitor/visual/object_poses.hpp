@@ -1,5 +1,5 @@
-// The poses of a cell's objects as a client can know them: those that the latest report used, from
-// the same batches that the daemon takes (intake/).
+// The poses of a cell's objects as a client can know them: those that the latest report used. They
+// come from the same batches that the daemon takes (intake/).
 //
 // For each source, the report names the last batch that its tick used. If the tick used no batch,
 // the report has the stamp of the newest pose in use. Later batches wait for the report that uses

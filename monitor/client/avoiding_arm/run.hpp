@@ -1,4 +1,4 @@
-// One run of the example: the arm and the obstacles of the cell, and a controller that closes the
+// One run of the example: the arm and the obstacles of the cell, and a controller. It closes the
 // loop through the daemon's gradients over DDS.
 #pragma once
 
