@@ -38,7 +38,7 @@ Conclusion conclude(const Published& published, const Displacements& displaced,
     write_pair(pair, bounds, view, reports[i]);
     if (is_carried(pair, view)) {
       add(pair, bounds);
-    } else {  // the tick carries every published pair that the broad phase does not contain
+    } else {  // published pairs that the broad phase leaves out are carried
       CLEARANCE_INVARIANT(!is_known(pair, view) || !culling.broad_phase().left_out(pair));
     }
   }

@@ -18,8 +18,8 @@ inline constexpr bool kMoreInvariantsChecked = true;
 inline constexpr bool kMoreInvariantsChecked = false;
 #endif
 
-// Prints the broken invariant to standard error and ends the program, because none of its numbers
-// can be trusted.
+// Prints the broken invariant to standard error and ends the program, because its results can no
+// longer be trusted.
 [[noreturn]] void invariant_broken(const char* what, const char* file, int line) noexcept;
 
 }  // namespace clearance

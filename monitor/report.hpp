@@ -101,8 +101,7 @@ struct ZoneReport {
   double swept_clearance = 0.0;   // the smallest (swept_lower - margins), m
   std::uint64_t since_cycle = 0;  // the tick in which `active` last changed; 0: never
   ZoneCause cause = ZoneCause::kInactive;
-  std::uint32_t cause_object =
-      0;  // for causes from kLate on: the object of `pair`, an index into Scene::objects
+  std::uint32_t cause_object = 0;  // from kLate on: the object of `pair`, index into Scene::objects
 };
 
 // The kind of data on which a separation depends.

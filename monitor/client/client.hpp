@@ -49,9 +49,8 @@ class Connection {
 };
 
 struct StreamOptions {
-  std::chrono::nanoseconds old_after =
-      std::chrono::milliseconds(100);  // see the limit of ReportCheck
-  std::int32_t depth = 64;             // messages that may wait while the program does other work
+  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // ReportChecker's limit
+  std::int32_t depth = 64;  // messages that may wait while the program does other work
 };
 
 // A topic that the daemon writes in every tick. `Message` is the message of one of the types below.

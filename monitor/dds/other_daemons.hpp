@@ -19,8 +19,8 @@ namespace clearance {
 // hung. One thread calls look() and have_just_left(); any thread may call the rest.
 class OtherDaemons {
  public:
-  // `own` publishes on the distances topic of this name through this participant, whose writers
-  // are ignored.
+  // `own` publishes on the distances topic of this name through this participant, whose writers are
+  // ignored.
   OtherDaemons(Participant& participant, const std::string& topic, DaemonIdentity own);
   ~OtherDaemons();
   OtherDaemons(const OtherDaemons&) = delete;

@@ -24,8 +24,7 @@ class InputOwner {
   // `age_limit_ns` is that of the input.
   [[nodiscard]] bool refuses(std::uint32_t source, std::int64_t now_ns,
                              std::int64_t age_limit_ns) noexcept {
-    constexpr std::int64_t kSilentNs =
-        1'000'000'000;  // after this silence, ns, another may take over
+    constexpr std::int64_t kSilentNs = 1'000'000'000;  // then another may take over
     if (source == source_ || source_ == kNoSource) return false;
     if (!is_stated_ && elapsed(taken_ns_, now_ns) > std::max(age_limit_ns, kSilentNs)) return false;
     other_ = source;

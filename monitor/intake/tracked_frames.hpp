@@ -1,9 +1,9 @@
 // The followers of a cell: objects that name a tf frame, and robots whose base does.
 //
 // A frame's pose in the cell's world becomes a sample of its object. For a robot it becomes samples
-// of the seven variables of the floating joint that carries it. A robot that
-// stands in the world has a root link whose pose the cell knows. If the path of a frame contains
-// such a link, it starts at that pose.
+// of the seven variables of the floating joint that carries it. A robot that stands in the world
+// has a root link whose pose the cell knows. If the path of a frame contains such a link, it starts
+// at that pose.
 #pragma once
 
 #include <cstdint>
@@ -42,9 +42,9 @@ class TrackedFrames {
   [[nodiscard]] const std::vector<Follower>& followers() const noexcept { return followers_; }
   [[nodiscard]] bool any() const noexcept { return !followers_.empty(); }
 
-  // Returns the pose of a frame in the cell's world. Returns nothing if there is no such
-  // frame, if its transforms form a cycle, or if they do not lead to the cell's world. In the last
-  // case `root` gets the frame to which they lead.
+  // Returns the pose of a frame in the cell's world. Returns nothing if there is no such frame, if
+  // its transforms form a cycle, or if they do not lead to the cell's world. In the last case
+  // `root` gets the frame to which they lead.
   [[nodiscard]] std::optional<TfTree::Place> find(const TfTree& tree, const std::string& frame,
                                                   std::string* root = nullptr) const;
 

@@ -191,8 +191,7 @@ void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
         (parent.twist.linear + cross(parent.twist.angular, step)) + times(rotation, placed.linear);
   }
 
-  // The joints before this one rotate the link at its displaced distance, so that includes
-  // unseen_shift.
+  // The joints before this one rotate the link at its displaced distance, `far` plus unseen_shift.
   link.unseen_turn = rounded_up(parent.unseen_turn + placed.unseen_turn);
   link.unseen_shift = rounded_up(parent.unseen_shift + placed.unseen_shift +
                                  swept(parent.unseen_turn, far + placed.unseen_shift));

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// A point p moves by linear + angular x (p - origin), m, for each rad or m of the position. All in
-// the world; NaN if the screw is not known.
+// A point p moves by linear + angular x (p - origin), m, for each rad or m of the position. All
+// vectors are in the world, and NaN if they are not known.
 struct JointScrew {
   Vec3 angular = Vec3::Zero(), linear = Vec3::Zero();
   Vec3 origin = Vec3::Zero();

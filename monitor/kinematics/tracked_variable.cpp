@@ -21,9 +21,9 @@ double speed_of(const JointSample& sample) noexcept {
 }
 
 // The age limit is the largest timing error that the cell accepts for a position. A sent velocity
-// may exceed the velocity limit, which is wrong in many descriptions. A cap on the excess prevents
-// that an arbitrary leap excuses itself by its own velocity. A velocity from positions does not
-// count here, because the positions are in question.
+// may exceed the velocity limit, which is wrong in many descriptions. The excess is capped, so that
+// a leap cannot excuse itself by an arbitrary velocity. A velocity from positions does not count
+// here, because the positions are in question.
 bool can_reach(const JointVariable& variable, const JointSample& sample, std::int64_t stamp_ns,
                const TrackedVariable& state) noexcept {
   const double time =

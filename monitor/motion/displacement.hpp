@@ -1,11 +1,17 @@
 // Bounds of the displacement of any point of a rigid body between two poses.
 //
-// A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x. Its displacement
-// is at most |p2 - p1| + |R2 - R1| |x|. Here |R2 - R1| = 2 sin(theta / 2), with the angle theta
-// between the orientations. The bound here also covers paths by a third pose on the straight line
-// and on the shorter rotation between the two. Such a path is no longer than |p2 - p1| + 4
-// sin(theta / 4) |x|. The two bounds differ by less than 1 % for rotations below 0.5 rad. Other
-// paths between the poses are not covered.
+// A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x. With the angle theta between the
+// orientations, |R2 - R1| = 2 sin(theta / 2), so the displacement is at most
+//
+//   |p2 - p1| + 2 sin(theta / 2) |x|.
+//
+// The bound here also covers paths by a third pose on the straight line and on the shorter rotation
+// between the two. Such a path is no longer than
+//
+//   |p2 - p1| + 4 sin(theta / 4) |x|.
+//
+// The two bounds differ by less than 1 % for rotations below 0.5 rad. Other paths between the poses
+// are not covered.
 #pragma once
 
 #include "core/pose.hpp"

@@ -14,8 +14,8 @@ struct BodyMotion {
   double reach;          // bounding radius around its origin, m
 };
 
-// Bounds the displacement since the last tick of any point of one object in the frame of the other,
-// m. It covers paths by any pose in between, too. Infinity means no better bound than the
+// Bounds the displacement since the last tick of any point of either object in the frame of the
+// other, m. It covers paths by any pose in between, too. Infinity means no better bound than the
 // displacement of both. Both must have been known at the last tick, without a discontinuity since.
 // monitor/swept/README.md has the proof.
 [[nodiscard]] double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept;

@@ -10,7 +10,8 @@
 namespace clearance {
 namespace {
 
-// The speed that bounds the timing error of twists, for an object that states no max_speed, m/s.
+// The speed that is assumed for timing errors when twists are compared with poses, if the object
+// states no max_speed, m/s.
 constexpr double kUsualSpeed = 1.0;
 
 // The time for which an anchor stays, in age limits. It reveals an object whose speed always

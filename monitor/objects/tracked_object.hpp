@@ -70,8 +70,8 @@ struct TrackedObject {
   // stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !input.late; }
 
-  // The motion since the last tick, if the object was known then. Relative
-  // displacements use body_motion(). The assumed motion between the two poses is interpolated().
+  // The motion since the last tick, if the object was known then. Relative displacements use
+  // body_motion(). The assumed motion between the two poses is interpolated().
   [[nodiscard]] BodyMotion body_motion() const noexcept {
     return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
   }

@@ -56,7 +56,7 @@ struct OutlinePoint {
 };
 
 // Adds points around the edge of a disc, between two directions of the normal. With radius 0 this
-// is one point, that of the edge itself.
+// is one point, on the edge itself.
 void add_arc(const Disc& disc, double from, double to, double radius, const MeshBuilder& builder,
              std::vector<OutlinePoint>& outline) {
   const int steps = radius > 0.0 ? builder.arc_steps(to - from) : 1;

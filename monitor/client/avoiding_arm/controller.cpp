@@ -15,9 +15,8 @@ constexpr double kDamping = 1e-3;  // weight of joint velocities, relative to (m
 constexpr double kNear = 0.4;      // m: pairs at a larger distance add no constraint
 constexpr double kOwnKeep = 0.01;  // m: the minimum distance between links of the arm
 constexpr double kFleeing = 0.5;   // m/s: the largest separating speed of a constraint
-constexpr double kStopping =
-    0.1;  // s: the shortest time in which a joint may come to its position limit
-constexpr double kPrice = 1e3;  // price of violating an inequality by 1 m/s or rad/s
+constexpr double kStopping = 0.1;  // s: the least time to a position limit
+constexpr double kPrice = 1e3;     // price of violating an inequality by 1 m/s or rad/s
 
 // Rows a . dq >= b, collected one by one.
 class Rows {
