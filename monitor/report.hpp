@@ -93,9 +93,9 @@ struct ZoneReport {
   // been inside.
   bool certified = false;
   bool changed = false;  // `active` changed in this tick
-  // The pair with the smallest (lower - margins). If all pairs are outside now, and the zone is
-  // active because of the time between the ticks, it is the pair with the smallest (swept_lower -
-  // margins).
+  // The pair with the smallest (lower - margins). A zone may be active only because of the time
+  // between the ticks, while all pairs are outside now. Then it is the pair with the smallest
+  // (swept_lower - margins).
   std::uint32_t pair = 0;
   double clearance = 0.0;         // the smallest (lower - margins), m
   double swept_clearance = 0.0;   // the smallest (swept_lower - margins), m
@@ -134,7 +134,7 @@ struct PairSeparation {
   // The largest factor of the robot's present speed, 0 to 1, that does so. It is 0 if nothing is
   // known.
   double scaling = 0.0;
-  std::int64_t age_human_ns = 0, age_robot_ns = 0;  // as PairReport::age_a_ns
+  std::int64_t age_human_ns = 0, age_robot_ns = 0;  // like PairReport::age_a_ns
 };
 
 // The minimum of each value over the zone's pairs that are not absent.

@@ -180,7 +180,7 @@ class JointWriter {
 
   // Sends positions (rad or m) in the order of the names, with velocities (per second) or none,
   // that held at `stamp_ns`. Returns false when DDS did not take them. Throws std::invalid_argument
-  // when there are more or fewer than names.
+  // when their number differs from that of the names.
   bool write(std::span<const double> positions, std::span<const double> velocities = {},
              std::int64_t stamp_ns = now_ns());
   // True when there is a reader.

@@ -1,4 +1,5 @@
-// The command line of programs that use DDS: their place on DDS, and their exit code when it fails.
+// The command line of programs that use DDS: domain, partition and network. Also their exit code
+// when DDS fails.
 #pragma once
 
 #include <fmt/format.h>

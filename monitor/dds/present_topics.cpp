@@ -1,4 +1,4 @@
-// Cyclone tells of endpoints by samples of a topic of its own, one instance each.
+// Cyclone reports endpoints as samples of a built-in topic, one instance for each endpoint.
 #include "monitor/dds/present_topics.hpp"
 
 #include <fmt/format.h>

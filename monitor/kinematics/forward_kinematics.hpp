@@ -1,7 +1,7 @@
 // Forward kinematics: the poses and twists of all robots' links from the positions of their joints.
 //
-// The exact pose of a link is that of the chain as the URDF writes it: its origins are real
-// numbers, its positions are the doubles that were sent. The result contains a bound of the
+// The exact pose of a link is that of the chain as the URDF writes it. The origins are real
+// numbers, and the positions are the doubles that were sent. The result contains a bound of the
 // rounding errors against this exact pose. It has the same bits on every machine, because it uses
 // only sums, products, quotients and square roots.
 #pragma once

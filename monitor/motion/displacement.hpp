@@ -1,7 +1,7 @@
 // Bounds of the displacement of any point of a rigid body between two poses.
 //
-// A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x. With the angle theta between the
-// orientations, |R2 - R1| = 2 sin(theta / 2), so the displacement is at most
+// A point x of the body's frame moves by (p2 - p1) + (R2 - R1) x. For the angle theta between the
+// orientations, |R2 - R1| = 2 sin(theta / 2). The displacement is therefore at most
 //
 //   |p2 - p1| + 2 sin(theta / 2) |x|.
 //

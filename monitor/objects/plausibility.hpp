@@ -85,9 +85,9 @@ class Repetition {
 // contradicts them.
 //
 // A twist may have a timing error of the age limit and a relative error of one sixth. Over the
-// whole integration time, noise of up to a thirtieth of the object's speed accumulates to little,
-// and so does an offset of up to a fiftieth. Samples without a twist are left out. Nothing is
-// checked if twists come less often than every two age limits.
+// whole integration time, noise of up to a thirtieth of the object's speed accumulates to little.
+// The same holds for an offset of up to a fiftieth. Samples without a twist are left out. Nothing
+// is checked if twists come less often than every two age limits.
 class Reckoning {
  public:
   // Adds the sample's twist, if it has one. Returns false if the pose is not where the twists lead.

@@ -48,7 +48,7 @@ struct TrackedObject {
   // gap a mean says nothing about the present.
   Twist twist;
   bool twist_known = false;
-  Motion motion;  // since the last tick; zero when first seen
+  Motion motion;  // since the last tick; zero if nothing was known then
   // For a link that follows joints, the joints determine its lateness and its unobserved motion, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;

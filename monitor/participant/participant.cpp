@@ -29,7 +29,7 @@ constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
 
 constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
 
-// Qos objects are freed by Cyclone.
+// Frees a QoS object, which only Cyclone can do.
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
 };
@@ -102,7 +102,7 @@ std::string element(const char* name, const std::string& content) {
   return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
 }
 
-// The text for clients leaves the sizes of their datagrams to them.
+// The text for clients does not set the sizes of their datagrams.
 std::string reach(const DdsOptions& options) {
   const std::string on = fmt::format(
       "in domain {} (ROS_DOMAIN_ID){}", options.domain,

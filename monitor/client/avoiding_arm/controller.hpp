@@ -18,9 +18,8 @@
 namespace clearance::avoid {
 
 struct ControllerOptions {
-  bool avoids = true;  // false: the task alone
-  double keep_m =
-      0.08;  // the lower bound that pairs keep; the arm's own links from each other 0.01
+  bool avoids = true;    // false: the task alone
+  double keep_m = 0.08;  // the lower bound that pairs keep; 0.01 between links of the arm
   double rate_hz = 4.0;  // how fast the excess over keep_m may shrink
 };
 
