@@ -18,8 +18,8 @@ PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
   return bounds;
 }
 
-// Puts the bounds of every updated pair together once, and hands them at once to all that need
-// them: a second pass over the published pairs costs a small tick a twentieth of its time.
+// Computes the bounds of every updated pair once, and passes them at once to all that need them. A
+// second pass over the published pairs costs a small tick a twentieth of its time.
 Conclusion conclude(const Published& published, const Displacements& displaced,
                     const Culling& culling, const ZoneCrossings& crossings, const TickView& view,
                     Zones& zones, std::span<PairReport> reports) noexcept {
@@ -38,19 +38,20 @@ Conclusion conclude(const Published& published, const Displacements& displaced,
     write_pair(pair, bounds, view, reports[i]);
     if (is_carried(pair, view)) {
       add(pair, bounds);
-    } else {  // a published pair that the broad phase does not know of is carried in every tick
+    } else {  // published pairs that the broad phase leaves out are carried
       CLEARANCE_INVARIANT(!is_known(pair, view) || !culling.broad_phase().left_out(pair));
     }
   }
   for (const std::uint32_t pair : culling.updated()) {
     CLEARANCE_INVARIANT(is_carried(pair, view));
     if (published.is_published[pair]) continue;
-    // The swept bound of a pair in no zone matters only to the least of all: a coarse one will do.
+    // The swept bound of a pair in no zone is used only for the minimum of all, so a coarse one
+    // suffices.
     const auto precision = zones.watch(pair) ? SweptPrecision::kByRelativeDisplacement
                                              : SweptPrecision::kByDisplacement;
     add(pair, bounds_in_tick(pair, precision, crossings, view));
   }
-  // Every pair whose bounds are of this tick is in the culling's list, and no other.
+  // The culling's list contains exactly the pairs whose bounds are of this tick.
   CLEARANCE_INVARIANT(updated == culling.updated().size());
 
   const UntouchedPairs untouched = culling.untouched(displaced);

@@ -1,5 +1,5 @@
-// Stage 'conclude' of a tick: zones, minimum and the reports of published pairs, from the pairs
-// that the tick has updated and what holds of all others.
+// Stage 'conclude' of a tick: zones, minimum and the reports of published pairs. It uses the pairs
+// that the tick has updated, and the bounds that hold for all others.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace clearance {
 
 struct Conclusion {
   GlobalMinimum minimum;        // over all pairs that are known
-  std::uint32_t evaluated = 0;  // pairs
+  std::uint32_t evaluated = 0;  // number of pairs
 };
 
 // The pairs that every report names.
@@ -24,13 +24,13 @@ struct Published {
   std::vector<std::uint8_t> is_published;  // by pair
 };
 
-// One pair as of this tick, updated or not, with what the sweep has found. `precision`: how closely
-// the time since the last tick is examined.
+// The bounds of one pair in this tick, updated or not, with the results of the sweep. `precision`
+// says how closely the time since the last tick is examined.
 [[nodiscard]] PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
                                         const ZoneCrossings& crossings,
                                         const TickView& view) noexcept;
 
-// Also takes the zones to this tick. `reports`: of the published pairs, in their order.
+// Also advances the zones to this tick. `reports` are those of the published pairs, in their order.
 [[nodiscard]] Conclusion conclude(const Published& published, const Displacements& displaced,
                                   const Culling& culling, const ZoneCrossings& crossings,
                                   const TickView& view, Zones& zones,

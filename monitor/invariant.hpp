@@ -1,6 +1,6 @@
-// What must hold at the borders of the tick's stages, whatever the inputs are: checked in tests and
-// wherever the build is configured with CLEARANCE_INVARIANTS=ON, which is the default. README.md
-// here has the table of what is checked, and what it costs.
+// Invariants at the borders of the tick's stages, which hold for all inputs. They are checked in
+// tests, and in builds configured with CLEARANCE_INVARIANTS=ON, which is the default. The README.md
+// of this folder lists the checks and their cost.
 #pragma once
 
 namespace clearance {
@@ -18,7 +18,8 @@ inline constexpr bool kMoreInvariantsChecked = true;
 inline constexpr bool kMoreInvariantsChecked = false;
 #endif
 
-// Names what does not hold on standard error and ends the program: no figure of it can be trusted.
+// Prints the broken invariant to standard error and ends the program, because its results can no
+// longer be trusted.
 [[noreturn]] void invariant_broken(const char* what, const char* file, int line) noexcept;
 
 }  // namespace clearance

@@ -1,12 +1,12 @@
-// A tick is a sequence of stages. Each reads what those before it have written:
+// A tick is a sequence of stages. Each stage reads the results of those before it:
 //
-//   ingest         samples of poses and joints -> Inputs: what is in use of each object and joint
-//   displace       Inputs                      -> Displacements: how far each object has come
+//   ingest         samples of poses and joints -> Inputs: the values in use of objects and joints
+//   displace       Inputs                      -> Displacements: how far each object moved
 //   pose           moved objects               -> parts placed in the world
-//   cull           Displacements               -> Culling: updated pairs, what holds of the others
-//   schedule       updated pairs, budget       -> Schedule: what is evaluated at once, what is kept
-//   evaluate       Schedule                    -> PairTable: tight bounds of the urgent pairs
-//   cross          updated pairs               -> ZoneCrossings: what the sweep has to decide
+//   cull           Displacements               -> Culling: updated pairs, bounds of all others
+//   schedule       updated pairs, budget       -> Schedule: pairs to evaluate now, budget to keep
+//   evaluate       Schedule                    -> PairTable: evaluated bounds of the urgent pairs
+//   cross          updated pairs               -> ZoneCrossings: pairs that the sweep must decide
 //   refresh        Schedule, kept budget       -> PairTable, Evaluated: round-robin
 //   sweep          ZoneCrossings, kept budget  -> ZoneCrossings: bounds since the last tick
 //   cull again     PairTable                   -> Culling: active pairs that are far now
@@ -51,7 +51,7 @@ Published published_pairs(const Scene& scene) {
 
 }  // namespace
 
-// Everything that one tick leaves to the next, with the stages that change it.
+// The state that one tick leaves to the next. Comments name the stages that change it.
 struct Monitor::State {
   const Scene& scene;
   const ZoneLevels zone_levels;
@@ -171,7 +171,7 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
           .other_source = state.input.owner.other_source()};
 }
 
-// Joints of a robot that was never heard are not advanced, so that they are stale here.
+// The joints of a robot without any joint position are not advanced, so they are stale here.
 InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
   const TrackedVariable& state = state_->inputs.robots.variables()[variable];
   return {.age_ns = state.input.age_ns,
@@ -243,8 +243,8 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   write_minimum();
 }
 
-// An object that has become absent, or present without a pose yet, has not moved: `changed` does
-// not have it, except in the first tick.
+// An object that has become absent, or present without a pose, has not moved. It is therefore not
+// in `changed`, except in the first tick.
 void Monitor::State::add_presence_changes() noexcept {
   for (const std::uint32_t object : presence_changed) {
     if (!inputs.objects[object].input.has_value && inputs.cycle > 1)
@@ -261,7 +261,7 @@ void Monitor::State::count_pairs() noexcept {
   report.carried = fresh - conclusion.evaluated;
   report.stale = known - fresh;
   report.unknown = present - known;
-  // Every pair is counted once, and none twice: the differences above are not negative.
+  // Every pair is counted exactly once, so the differences above are not negative.
   CLEARANCE_INVARIANT(conclusion.evaluated <= fresh && fresh <= known && known <= present);
   CLEARANCE_INVARIANT(absent_pairs(report) == report.pairs_total - present);
 }

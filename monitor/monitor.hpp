@@ -1,5 +1,5 @@
-// The tick: poses in, report out. It knows neither DDS nor a clock; the daemon, the offline replay
-// and the tests all drive this one function.
+// The tick: poses come in, a report goes out. It knows neither DDS nor a clock. The daemon, the
+// offline replay and the tests all call this one function.
 #pragma once
 
 #include <cstdint>
@@ -16,28 +16,29 @@
 namespace clearance {
 
 struct InputAge {
-  // now - stamp, never negative; 0 for a fixed object; -1: nothing is in use.
+  // now - stamp, never negative; 0 for a fixed object; -1: no value is in use.
   std::int64_t age_ns = -1;
   bool stale = false;           // older than the object's limit, or contradicted
-  bool contradicted = false;    // by later samples, which the object or joint cannot have reached
-  bool follows_joints = false;  // a link whose pose follows from joints: its age is theirs
-  bool absent = false;          // Monitor::set_absent
-  // PoseSample::source of the owner, and of the last other source that was refused for that.
+  bool contradicted = false;    // by later samples that the object or joint cannot have reached
+  bool follows_joints = false;  // a link whose pose follows from joints: the age is theirs
+  bool absent = false;          // see Monitor::set_absent
+  // PoseSample::source of the owner, and of the last source that was refused because it is not the
+  // owner.
   std::uint32_t source = kNoSource, other_source = kNoSource;
 };
 
 class Monitor {
  public:
-  // Allocates all it will ever need. The scene must outlive the monitor.
+  // Allocates all memory that it ever needs. The scene must outlive the monitor.
   explicit Monitor(const Scene& scene);
   ~Monitor();
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
 
-  // One cycle: takes in the samples in the given order, those of joints first (refused ones are
-  // counted, never used), moves the objects, carries bounds forward, evaluates pairs within the
-  // budget, updates zones. The report stays valid until the next tick. Allocates, throws and locks
-  // nothing; the same inputs give the same bits.
+  // Runs one cycle: takes in the samples in the given order, those of joints first. Refused samples
+  // are counted and never used. Then it moves the objects, carries bounds forward, evaluates pairs
+  // within the budget, and updates the zones. The report is valid until the next tick. Does not
+  // allocate, throw or lock. The same inputs give the same bits.
   const Report& tick(std::span<const PoseSample> samples, std::span<const JointSample> joints,
                      const TickTime& time) noexcept;
   // For a cell without robots.
@@ -45,29 +46,30 @@ class Monitor {
     return tick(samples, {}, time);
   }
 
-  // Counts a sample that was refused before it came here (a batch made for another scene), in the
-  // report from the next tick on. An object that the scene does not have counts in the totals only.
+  // Counts a sample that was refused before the tick (in a batch made for another scene). Reports
+  // include it from the next tick on. If the scene has no such object, only the totals count it.
   void refuse(std::uint32_t object, Reject cause) noexcept;
 
-  // Between ticks: from the next tick on, a moving object is known not to be there, or is there
-  // again. An absent object has no pose, and samples of it are refused as of an unknown object. Its
-  // pairs are kAbsent: they rest on no input, make no zone active, and are left out of the minimum.
-  // When it is present again nothing from before its absence is trusted: its pairs are unknown
-  // until its next pose. False: the scene has no such object, or it is fixed. Time grows with its
-  // pairs.
+  // To be called between ticks: from the next tick on, a moving object is known not to be there, or
+  // is there again. An absent object has no pose, and its samples are refused like those of an
+  // unknown object. Its pairs are kAbsent: they depend on no input, make no zone active, and are
+  // left out of the minimum. When the object is present again, nothing from before its absence is
+  // trusted: its pairs are unknown until its next pose. Returns false if the scene has no such
+  // object, or if it is fixed. The time grows with the number of its pairs.
   bool set_absent(std::uint32_t object, bool absent) noexcept;
 
-  // Any pair as of the last tick, whether it is published or not; all unknown before the first.
+  // Any pair at the last tick, whether it is published or not. All are unknown before the first
+  // tick.
   [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
 
-  // Bounds of a pair's distance between the last two ticks: PairReport::swept_lower, and where that
-  // is below `level`, m, a closer search until it is decided, without a budget. Changes nothing.
+  // Bounds of a pair's distance between the last two ticks: PairReport::swept_lower. If that is
+  // below `level`, m, a closer search runs until it has decided, without a budget. Changes nothing.
   [[nodiscard]] SweptBounds sweep(std::uint32_t pair, double level) const noexcept;
 
-  // How old an object's pose was at the last tick.
+  // The age of an object's pose at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;
 
-  // The same of a joint's variable.
+  // The age of a joint variable's position at the last tick.
   [[nodiscard]] InputAge joint_age(std::uint32_t variable) const noexcept;
 
   // Refused samples of one variable, by cause.
@@ -78,10 +80,10 @@ class Monitor {
   [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(
       std::uint32_t object) const noexcept;
 
-  // World from object: the pose in use; meaningless where none is (input_age() is -1).
+  // World from object: the pose in use. It is meaningless if no pose is in use (input_age() is -1).
   [[nodiscard]] const Pose& pose(std::uint32_t object) const noexcept;
 
-  // Stamp of the pose in use; 0: the object is fixed, or no pose is in use.
+  // Stamp of the pose in use; 0 if the object is fixed or no pose is in use.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;
 
  private:

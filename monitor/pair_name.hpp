@@ -1,5 +1,5 @@
-// How every program names a pair: "hand - box", with the part where an object has several:
-// "hand.finger - box".
+// The name of a pair in all programs: "hand - box". If an object has several parts, the name
+// contains the part: "hand.finger - box".
 #pragma once
 
 #include <cstdint>
@@ -14,10 +14,10 @@ namespace clearance {
   return a + " - " + b;
 }
 
-// `pair`: index into Scene::pairs; one that is not there is named by its number.
+// `pair` is an index into Scene::pairs. A pair that does not exist is named by its number.
 [[nodiscard]] std::string pair_name(const Scene& scene, std::uint32_t pair);
 
-// With the closest parts.
+// The name with the closest parts.
 [[nodiscard]] std::string pair_name(const Scene& scene, const PairReport& pair);
 
 }  // namespace clearance

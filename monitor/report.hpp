@@ -1,8 +1,8 @@
-// What comes out of a tick.
+// The results of a tick.
 //
-// One rule holds for all that is not known: a figure is NaN, a lower bound -infinity, an upper
-// bound +infinity, and the status says why. An age, which is an integer, is negative then. A signed
-// distance of -infinity is known: no translation separates the two.
+// One rule holds for everything that is not known: a value is NaN, a lower bound is -infinity, and
+// an upper bound is +infinity. The status says why. An unknown age, which is an integer, is
+// negative. A signed distance of -infinity is known: no translation separates the two objects.
 #pragma once
 
 #include <array>
@@ -16,162 +16,169 @@
 namespace clearance {
 
 enum class PairStatus : std::uint8_t {
-  kConverged = 0,       // evaluated this tick: bounds are rounding only
-  kTouching = 1,        // evaluated: contact to within rounding
-  kOverlapping = 2,     // evaluated: they share a point
+  kConverged = 0,       // evaluated this tick: the bounds include only rounding
+  kTouching = 1,        // evaluated: in contact, to within rounding
+  kOverlapping = 2,     // evaluated: the objects share a point
   kIterationLimit = 3,  // evaluated: the bounds hold but are wider than rounding
-  // Not evaluated this tick: bounds carried over by the motion bound. A pair that has not been
-  // evaluated yet (evaluated_cycle 0) has its bounds from bounding spheres and NaN for the rest.
+  // Not evaluated this tick: the motion bound carries the bounds over. A pair that has never been
+  // evaluated (evaluated_cycle 0) has bounds from bounding spheres, and NaN for the rest.
   kCarried = 4,
-  kStale = 5,  // a pose is older than its limit: bounds decayed by the stated maximum speed
-  // An object has never been heard of, is late without a stated maximum speed, or is contradicted:
-  // all NaN, lower = -infinity, upper = +infinity.
+  kStale = 5,  // a pose is older than its limit: the stated maximum speed widens the bounds
+  // An object was never heard of, is late without a stated maximum speed, or is contradicted. All
+  // values are NaN, lower = -infinity, upper = +infinity.
   kUnknown = 6,
-  // An object is known not to be there (Monitor::set_absent): figures and bounds as of kUnknown.
-  // The pair rests on no input: it makes no zone active, and the minimum and lower_all leave it
-  // out.
+  // An object is known not to be there (Monitor::set_absent). Values and bounds are those of
+  // kUnknown. The pair depends on no input: it makes no zone active, and the minimum and lower_all
+  // leave it out.
   kAbsent = 7,
 };
-// A word for each enumerator; "" for any other value.
+// A word for each enumerator, and "" for any other value.
 [[nodiscard]] const char* name(PairStatus status) noexcept;
 
-// One object pair. All in world coordinates, m, m/s, s, ns.
+// One object pair, in world coordinates, m, m/s, s, ns.
 struct PairReport {
   std::uint32_t pair = 0;                // index into Scene::pairs
-  std::uint32_t part_a = 0, part_b = 0;  // which parts are closest, indices into Object::parts
+  std::uint32_t part_a = 0, part_b = 0;  // the closest parts, indices into Object::parts
   PairStatus status = PairStatus::kUnknown;
-  // Signed, margins not subtracted. Distance, witnesses and normal are those of `evaluated_cycle`.
-  // -infinity, and so is `lower`, where no translation separates two unbounded objects.
+  // Signed distance without subtracting margins. Distance, witness points and normal belong to
+  // `evaluated_cycle`. It is -infinity, and so is `lower`, if no translation separates two
+  // unbounded objects.
   double distance = 0.0;
-  double lower = 0.0, upper = 0.0;  // hold for the poses of this tick
-  // A lower bound at every instant since the last tick, for objects that moved from the pose in use
-  // then to this tick's as monitor/swept/README.md says. If the two deviate from that motion by e
-  // together, the bound is lower by e; a late object may also deviate by its unobserved motion.
-  // Equal to `lower` for a pair that was not known at the last tick. -infinity when unknown, or
-  // after a discontinuity of 10 km.
+  double lower = 0.0, upper = 0.0;  // bounds for the poses of this tick
+  // A lower bound of the distance at every instant since the last tick. It assumes that each object
+  // moved from its former pose in use to its present one as monitor/swept/README.md says. If the
+  // two objects together deviate from that motion by e, the bound is lower by e. A late object may
+  // also deviate by its unobserved motion. The bound equals `lower` for a pair that was not known
+  // at the last tick. It is -infinity for an unknown pair, and after a discontinuity of 10 km.
   double swept_lower = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
-  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN where no translation separates them
-  // Positive when approaching, rotation at the witness points counted. NaN without a normal, and
-  // when either velocity is not known: after a first pose without twist, or one that follows a gap
-  // longer than twice the age limit, and while a pose is late. Fixed objects are at rest.
+  Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN if no translation separates them
+  // Positive when approaching; includes the rotation at the witness points. It is NaN without a
+  // normal, and if either velocity is not known. A velocity is not known while a pose is late.
+  // Without a twist, it is also not known after a first pose, or after a gap longer than twice the
+  // age limit. Fixed objects are at rest.
   double closing_speed = 0.0;
-  // max(0, distance) / closing speed; infinity when not approaching, NaN when the closing speed is
-  // not known. In contact: 0, unless the two are known to separate.
+  // max(0, distance) / closing speed. It is infinity when not approaching, and NaN if the closing
+  // speed is not known. In contact it is 0, unless the two are known to separate.
   double time_to_contact = 0.0;
   // now - stamp of the pose in use; 0 for a fixed object; -1: no pose is in use.
   std::int64_t age_a_ns = 0, age_b_ns = 0;
   std::uint64_t evaluated_cycle = 0;  // the tick in which distance and witnesses were computed
-  // Ticks since its bounds were last found afresh from the poses of a tick: by an evaluation, or by
-  // spheres or hulls around its objects that prove it far. 0: in this tick. Counted from the start
-  // if that never happened; it goes on counting while the pair is unknown.
+  // Ticks since the bounds were last computed from the poses of a tick. Either an evaluation
+  // computed them, or spheres or hulls around the objects proved the pair far. It is 0 if this
+  // happened in this tick. If it never happened, the count begins with the first tick. It continues
+  // while the pair is unknown.
   std::uint64_t refresh_age_cycles = 0;
 };
 
-// Why a zone is active.
+// The reason why a zone is active.
 enum class ZoneCause : std::uint8_t {
   kInactive = 0,
-  kNear = 1,  // by distance, or not yet proved to be farther
-  // By the unobserved motion of a late object: with poses on time the pair would be outside.
+  kNear = 1,  // by distance, or not yet proved to be farther away
+  // By the unobserved motion of a late object. With poses on time the pair would be outside.
   kLate = 2,
   kUnknown = 3,        // an object has no pose
   kDiscontinuous = 4,  // the motion between the last two poses of an object is not known
-  kContradicted = 5,   // as kLate, but the poses of an object contradict each other or the cell
+  kContradicted = 5,   // like kLate, but an object's poses contradict each other or the cell
 };
 [[nodiscard]] const char* name(ZoneCause cause) noexcept;
 
 struct ZoneReport {
-  // Some pair's swept_lower less both margins is below the threshold, which depends on the state
-  // (hysteresis). So a pair that came too near and was gone again between two ticks has entered,
-  // for this tick. An unknown pair's lower bound is -infinity: it cannot be proved to be outside.
+  // True if swept_lower less both margins is below the threshold for some pair. The threshold
+  // depends on the state (hysteresis). A pair that came too near and went away again between two
+  // ticks has therefore entered, for this tick. An unknown pair has the lower bound -infinity, so
+  // it cannot be proved to be outside.
   bool active = false;
-  // Every pair was proved to be outside since the last tick, or evaluated, or proved to have been
-  // inside.
+  // Every pair was proved to be outside since the last tick, was evaluated, or was proved to have
+  // been inside.
   bool certified = false;
-  bool changed = false;  // this tick
-  // The pair with the smallest (lower - margins); where all of those are outside and the zone is
-  // active for what was between the ticks, the one with the smallest (swept_lower - margins).
+  bool changed = false;  // `active` changed in this tick
+  // The pair with the smallest (lower - margins). A zone may be active only because of the time
+  // between the ticks, while all pairs are outside now. Then it is the pair with the smallest
+  // (swept_lower - margins).
   std::uint32_t pair = 0;
   double clearance = 0.0;         // the smallest (lower - margins), m
   double swept_clearance = 0.0;   // the smallest (swept_lower - margins), m
-  std::uint64_t since_cycle = 0;  // when `active` last changed; 0: never
+  std::uint64_t since_cycle = 0;  // the tick in which `active` last changed; 0: never
   ZoneCause cause = ZoneCause::kInactive;
-  std::uint32_t cause_object = 0;  // of `pair`, for all causes from kLate on: index into objects
+  std::uint32_t cause_object = 0;  // from kLate on: the object of `pair`, index into Scene::objects
 };
 
-// What the figures of a separation rest on.
+// The kind of data on which a separation depends.
 enum class SeparationValidity : std::uint8_t {
-  kUnknown = 0,   // on nothing: an object or its largest speed is not known. Scaling 0
-  kAssumed = 1,   // on stated largest speeds: a pose is late or a speed is not known
-  kMeasured = 2,  // on poses that are on time, and a robot's speed that is known
-  // An object is known not to be there: the pair has no figures and limits nothing. Scaling 1. Of a
-  // zone: all its pairs are so.
+  kUnknown = 0,   // none: an object or its largest speed is not known. Scaling 0
+  kAssumed = 1,   // stated largest speeds: a pose is late or a speed is not known
+  kMeasured = 2,  // poses that are on time, and a known speed of the robot
+  // An object is known not to be there: the pair has no values and limits nothing. Scaling 1. For a
+  // zone, this holds for all its pairs.
   kAbsent = 3,
 };
 [[nodiscard]] const char* name(SeparationValidity validity) noexcept;
 
-// A pair of a zone with `separation`, as ISO/TS 15066 has it (monitor/separation/README.md). m,
-// m/s, ns. Unknown or absent: clearance and remaining -infinity, speeds and distances NaN.
+// A pair of a zone with `separation`, after ISO/TS 15066 (monitor/separation/README.md), in m, m/s,
+// ns. If unknown or absent, clearance and remaining are -infinity, speeds and distances NaN.
 struct PairSeparation {
   std::uint32_t zone = 0, pair = 0;  // indices into Scene::zones and Scene::pairs
   SeparationValidity validity = SeparationValidity::kUnknown;
   double clearance = 0.0;  // lower bound of the distance less both margins
-  // Towards each other, at most; not below 0.
+  // The largest speeds towards each other, not below 0.
   double human_speed = 0.0, robot_speed = 0.0;
-  // S_h, S_r and S_s, and with C, Z_d and Z_r the protective separation distance S_p.
+  // The terms S_h, S_r and S_s. With C, Z_d and Z_r they give the protective separation distance
+  // S_p.
   double human_term = 0.0, robot_term = 0.0, stopping_term = 0.0;
   double protective_distance = 0.0;
-  double remaining = 0.0;  // clearance less S_p: below 0 the robot has to be stopped or slower
-  // The largest speed of the robot towards the person that keeps it at 0 or above; 0: none does,
-  // infinity: the speed does not matter.
+  double remaining = 0.0;  // clearance less S_p: below 0 the robot must stop or slow down
+  // The largest speed of the robot towards the person that keeps `remaining` at 0 or above. It is 0
+  // if no speed does, and infinity if the speed does not matter.
   double speed_limit = 0.0;
-  // The largest factor of its present speed, 0 to 1, that does so. 0 where nothing is known.
+  // The largest factor of the robot's present speed, 0 to 1, that does so. It is 0 if nothing is
+  // known.
   double scaling = 0.0;
-  std::int64_t age_human_ns = 0, age_robot_ns = 0;  // as PairReport::age_a_ns
+  std::int64_t age_human_ns = 0, age_robot_ns = 0;  // like PairReport::age_a_ns
 };
 
-// The least of a zone's pairs that are not absent, each figure by itself.
+// The minimum of each value over the zone's pairs that are not absent.
 struct ZoneSeparation {
   std::uint32_t zone = 0;
   SeparationValidity validity = SeparationValidity::kUnknown;
-  std::uint32_t pair = 0;  // that of the least scaling, of these of the least `remaining`
+  std::uint32_t pair = 0;  // the pair with the least scaling, then the least `remaining`
   double remaining = 0.0, speed_limit = 0.0, scaling = 0.0;
 };
 
-// How published pairs' distances change with joint positions, as
-// monitor/gradients/gradient_rows.hpp lays them out: NaN where the pair was not evaluated in this
-// tick, or a joint that moves it is not known. Both are empty unless Scene::gradients.
+// Derivatives of published pairs' distances with respect to joint positions, in the layout of
+// monitor/gradients/gradient_rows.hpp. An entry is NaN if the pair was not evaluated in this tick,
+// or if a joint that moves it is not known. Both vectors are empty unless Scene::gradients.
 struct Gradients {
-  std::vector<double> rates;  // m/rad or m/m, one an entry of the rows; sized once
-  // One a row, m/s: the distance's rate of change if all joints stood still, by what else moves.
-  // NaN where PairReport::closing_speed is.
+  std::vector<double> rates;  // m/rad or m/m, one for each entry of the rows; sized once
+  // The rate of change of the distance due to all motion other than that of joints, m/s; one for
+  // each row. NaN if PairReport::closing_speed is.
   std::vector<double> drifts;
 };
 
 struct Report {
   std::uint64_t cycle = 0;           // counts ticks from 1
   std::int64_t now_ns = 0;           // the time of the tick (TickTime)
-  std::int64_t clock_offset_ns = 0;  // what CLOCK_REALTIME was ahead of it: TickTime
-  // Stamps of the moving objects' poses in use; 0: none.
+  std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME less now_ns (TickTime)
+  // Newest and oldest stamp of the moving objects' poses in use; 0: none is in use.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;
-  // The pair with the smallest upper bound, of all that are known and have ever been evaluated.
-  // While it is stale it is no minimum of anything: its distance is that of an old pose,
-  // and another stale pair may have the least lower bound. `lower_all` bounds all pairs always.
+  // The pair with the smallest upper bound, among all that are known and have been evaluated. While
+  // it is stale it is not a minimum: its distance belongs to an old pose. Another stale pair may
+  // then have a smaller lower bound. `lower_all` always bounds all pairs.
   PairReport minimum;
   bool minimum_known = false;  // false: there is no such pair
-  // No other pair can be closer (two pairs evaluated this tick: by more than their rounding), and
-  // no pair is unknown or stale. Absent pairs do not count.
+  // No other pair can be closer, and no pair is unknown or stale. Another pair that was evaluated
+  // in this tick may still be closer within rounding. Absent pairs do not count.
   bool minimum_certified = false;
-  double lower_all = 0.0;        // the true distance of every pair that is not absent, at least
+  double lower_all = 0.0;  // lower bound of the true distance of every pair that is not absent
   double swept_lower_all = 0.0;  // the same at every instant since the last tick: see swept_lower
-  // Object pairs; each is in one of the last four counts, or absent.
+  // Numbers of object pairs. Each pair is in one of the last four counts, or absent.
   std::uint32_t pairs_total = 0, evaluated = 0, carried = 0, stale = 0, unknown = 0;
-  std::uint32_t queries = 0;  // distance queries (part pairs) this tick
+  std::uint32_t queries = 0;  // distance queries (part pairs) in this tick
   // The largest PairReport::refresh_age_cycles of all known pairs, published or not.
   std::uint64_t oldest_evaluation_cycles = 0;
   std::vector<PairReport> pairs;  // those with ObjectPair::publish, in scene order; sized once
-  std::vector<ZoneReport> zones;  // one a zone, in scene order; sized once
+  std::vector<ZoneReport> zones;  // all zones, in scene order; sized once
   // The zones with `separation`, in scene order, and their pairs, zone by zone; sized once.
   std::vector<ZoneSeparation> separated_zones;
   std::vector<PairSeparation> separated_pairs;
@@ -179,8 +186,8 @@ struct Report {
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
 };
 
-// How many pairs have the status kAbsent, in a report or a message of it: those that the four
-// counts leave.
+// The number of pairs with the status kAbsent in a report or its message: those outside the four
+// counts.
 template <class Counts>
 [[nodiscard]] std::uint32_t absent_pairs(const Counts& counts) noexcept {
   return counts.pairs_total - counts.evaluated - counts.carried - counts.stale - counts.unknown;

@@ -1,10 +1,10 @@
-// The fields of a report. Each list stands here once; conversion to the wire, comparison, tables
-// and tests walk it.
+// The field lists of a report. Each list stands here only once. The conversion to the wire,
+// comparison, tables and tests iterate over it.
 //
-// A list names members, not a type: it visits our struct, the message of it on the wire, or both
-// side by side. A new field of a report is one line in report.hpp, one in idl/clearance.idl and one
-// here. A member that a list forgets does not compile (the assertions below), and a field of a
-// message that no list names fails a test.
+// A list names members, not a type. It visits our struct, its message on the wire, or both side by
+// side. A new field of a report is one line in report.hpp, one in idl/clearance.idl and one here. A
+// member that is missing in a list does not compile (the assertions below). A message field that is
+// missing in all lists fails a test.
 #pragma once
 
 #include <cstddef>
@@ -18,18 +18,18 @@ namespace clearance {
 
 // The meaning of the number in a field.
 enum class Meaning : std::uint8_t {
-  kFigure,      // itself: a count, a length, a time, a flag
-  kCycle,       // a tick, which a replay may count from another start; 0: never
+  kFigure,      // a plain value: a count, a length, a time, a flag
+  kCycle,       // a tick number, which a replay may count from another start; 0: never
   kPair,        // index into Scene::pairs
   kObject,      // index into Scene::objects
   kZone,        // index into Scene::zones
-  kPairStatus,  // the values of an enumeration
+  kPairStatus,  // this and the next two: the values of an enumeration
   kZoneCause,
   kValidity,
-  kDelivery,  // who published the message, when, and from which inputs: no result of the tick
+  kDelivery,  // sender, time and inputs of the message: not a result of the tick
 };
 
-// The visitor gets this beside the values.
+// Passed to the visitor beside the values.
 struct Field {
   std::string_view name;
   Meaning meaning = Meaning::kFigure;
@@ -59,7 +59,7 @@ struct PairFields {
   }
 };
 
-// ZoneReport and ZoneState on the wire share these.
+// The fields that ZoneReport shares with ZoneState on the wire.
 struct PublishedZoneFields {
   template <class Visit, class... Zone>
   static constexpr void for_each(Visit&& visit, Zone&... zone) {
@@ -126,7 +126,7 @@ struct GradientFields {
   }
 };
 
-// Every message of a tick repeats these of its report.
+// The fields of a report that every message of its tick repeats.
 struct TickFields {
   template <class Visit, class... Report>
   static constexpr void for_each(Visit&& visit, Report&... report) {
@@ -136,8 +136,8 @@ struct TickFields {
   }
 };
 
-// Report and Distances on the wire share these, in the order in which a person looks for a cause:
-// time and scene, then counts, then distances.
+// The fields that Report shares with Distances on the wire. Their order is that in which a person
+// looks for a cause: time and scene, then counts, then distances.
 struct DistanceFields {
   template <class Visit, class... Report>
   static constexpr void for_each(Visit&& visit, Report&... report) {
@@ -172,7 +172,7 @@ struct ReportFields {
   }
 };
 
-// The list of a type's fields. Types without one have no such member.
+// The field list of a type. A type without a list has no `for_each`.
 template <class T>
 struct FieldsOf {};
 template <>
@@ -194,7 +194,7 @@ constexpr void for_each_field(Visit&& visit, First& first, Others&... others) {
   FieldsOf<std::remove_const_t<First>>::for_each(visit, first, others...);
 }
 
-// Whether T has a list.
+// True if T has a field list.
 template <class T>
 concept HasFields = requires {
   FieldsOf<T>::for_each([](Field) {});

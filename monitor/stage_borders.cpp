@@ -7,7 +7,7 @@ namespace {
 
 bool costly = kMoreInvariantsChecked;
 
-// Queries take such a pose (core/pose.hpp).
+// True if distance queries accept the pose (core/pose.hpp).
 bool is_usable(const Pose& pose) noexcept {
   return pose.position.allFinite() && is_unit(pose.orientation);
 }
@@ -61,7 +61,7 @@ void check_updated(const Culling& culling, const TickView& view) noexcept {
   }
 }
 
-// The four counts were found as differences: one that is negative would be larger than the total.
+// The four counts were computed as differences: a negative one would exceed the total.
 void check_report(const Report& report) noexcept {
   if constexpr (!kInvariantsChecked) return;
   const std::uint64_t counted = std::uint64_t{report.evaluated} + report.carried + report.stale +

@@ -1,5 +1,5 @@
-// What must hold where one stage of the tick ends and the next begins: the checks that read what
-// several rooms have written. Those of a single room stand in its own code.
+// Checks of the tick's invariants where one stage ends and the next begins. They read the results
+// of several rooms. Checks of a single room are in its own code.
 #pragma once
 
 #include <span>
@@ -10,24 +10,25 @@
 
 namespace clearance {
 
-// Whether this build checks them at all (CLEARANCE_INVARIANTS).
+// True if this build checks stage borders at all (CLEARANCE_INVARIANTS).
 [[nodiscard]] bool stage_borders_are_checked() noexcept;
 
-// Checks below marked 'costly' are off, because a small tick feels them (3 % of 3.2 us). They are
-// on in Debug and sanitizer builds, and in the tests, which call this before the first tick.
+// Turns on the checks marked 'costly' below. They are off by default, because they cost a small
+// tick 3 % of its 3.2 us. They are on in Debug and sanitizer builds, and in tests, which call this
+// before the first tick.
 void check_costly_borders() noexcept;
 
-// Costly. After 'displace' and 'pose': objects that changed have usable poses, sums that never
-// decrease, and placed parts. `first_part`: by object, index into the parts.
+// Costly. After 'displace' and 'pose': changed objects have usable poses, sums that never decrease,
+// and placed parts. `first_part`, by object, is an index into the parts.
 void check_displaced(std::span<const std::uint32_t> changed,
                      std::span<const std::uint32_t> first_part, const TickView& view) noexcept;
 
-// Costly. After 'cull': the updated pairs are known, and their bounds are of this tick and in
-// order.
+// Costly. After 'cull': the updated pairs are known, and their bounds are ordered and belong to
+// this tick.
 void check_updated(const Culling& culling, const TickView& view) noexcept;
 
-// After 'report': its totals and its minimum agree with each other. Costly: so do its zones and
-// separations.
+// After 'report': its totals and its minimum agree with each other. Costly part: its zones and
+// separations agree, too.
 void check_report(const Report& report) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// How every program says why a zone is active.
+// The reason why a zone is active, as text for all programs.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace clearance {
 
-// "by distance", "poses of hand are late". `object`: the name of ZoneReport::cause_object. Empty
-// while the zone is not active.
+// Returns, for example, "by distance" or "poses of hand are late", or an empty text if the zone is
+// not active. `object` is the name of ZoneReport::cause_object.
 [[nodiscard]] inline std::string cause_text(ZoneCause cause, const std::string& object) {
   switch (cause) {
     case ZoneCause::kInactive:

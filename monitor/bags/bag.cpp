@@ -20,7 +20,7 @@ using namespace std::string_view_literals;
 constexpr std::string_view kSqliteMagic = "SQLite format 3\0"sv;
 constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd"sv;
 
-// The first bytes of a file; fewer where it is shorter or cannot be read.
+// The first bytes of a file: fewer if it is shorter, none if it cannot be read.
 std::string beginning_of(const std::filesystem::path& path) {
   std::error_code none;
   if (!std::filesystem::is_regular_file(path, none)) return {};
@@ -45,7 +45,8 @@ class NoBag final : public Bag {
   std::string error_;
 };
 
-// Messages that rosbag2 compressed one by one. CDR never begins as a zstd frame does.
+// Decompresses messages that rosbag2 compressed one by one. A CDR message never begins like a zstd
+// frame.
 class Decompressing final : public Bag {
  public:
   explicit Decompressing(std::unique_ptr<Bag> bag) : bag_(std::move(bag)) {}
@@ -57,7 +58,8 @@ class Decompressing final : public Bag {
         !std::ranges::equal(message.payload.first(magic.size()), magic)) {
       return true;
     }
-    // A robot's description is some MB; what does not fit is cut off, and does not decode.
+    // A robot's description has some MB. A message above the limit is cut off, and then does not
+    // decode.
     constexpr std::size_t kLargestMessage = std::size_t{1} << 28;
     decompress(McapCompression::kZstd, message.payload, kLargestMessage, decompressed_);
     message.payload = decompressed_;
@@ -101,7 +103,7 @@ std::unique_ptr<Bag> open_bag(const std::filesystem::path& path) {
         fmt::format("{} is compressed as a whole file; decompress it beside itself: zstd -d {}",
                     path.string(), path.string()));
   }
-  // The reader of MCAP says what is wrong with a file that is none, or that cannot be read.
+  // The reader of MCAP reports files that are not MCAP or cannot be read.
   return std::make_unique<McapBag>(path);
 }
 

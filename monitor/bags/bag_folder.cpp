@@ -21,7 +21,7 @@ const YamlNode* value_of(const YamlNode& map, std::string_view key) {
   return entry == map.entries.end() ? nullptr : &entry->value;
 }
 
-// NAME_2.db3 before NAME_10.db3.
+// Orders NAME_2.db3 before NAME_10.db3.
 bool before(const std::filesystem::path& a, const std::filesystem::path& b) {
   const auto number_of = [](const std::filesystem::path& file) {
     const std::string stem = file.stem().string();
@@ -33,7 +33,7 @@ bool before(const std::filesystem::path& a, const std::filesystem::path& b) {
   return number_of(a) < number_of(b);
 }
 
-// What `metadata` names, or why it cannot be used.
+// The file names in `metadata`, or the reason why it cannot be used.
 std::variant<std::vector<std::string>, std::string> named_files(
     const std::filesystem::path& metadata) {
   std::ifstream stream(metadata, std::ios::binary);
@@ -65,7 +65,7 @@ BagFolder::BagFolder(const std::filesystem::path& folder) {
   readable_ = error_.empty();
 }
 
-// A file that metadata.yaml names as compressed counts when it was decompressed since.
+// If metadata.yaml names a compressed file, the file may have been decompressed since.
 void BagFolder::find_files(const std::filesystem::path& folder) {
   const std::filesystem::path metadata = folder / "metadata.yaml";
   std::error_code none;
@@ -76,7 +76,7 @@ void BagFolder::find_files(const std::filesystem::path& folder) {
       return;
     }
     for (const std::string& name : std::get<std::vector<std::string>>(named)) {
-      // Some versions wrote the folder's name in front.
+      // Some versions of rosbag2 put the folder's name in front.
       std::filesystem::path file = folder / name;
       if (!std::filesystem::exists(file, none)) {
         file = folder / std::filesystem::path(name).filename();
@@ -102,7 +102,7 @@ void BagFolder::find_files(const std::filesystem::path& folder) {
   }
 }
 
-// Each file is opened when the one before has ended.
+// Opens each file when the one before it has ended.
 bool BagFolder::next(BagMessage& message) {
   while (error_.empty()) {
     if (!open_.empty()) {

@@ -1,4 +1,4 @@
-// A bag as rosbag2 makes it: a folder with metadata.yaml, which names its files in their order.
+// A bag in a folder: metadata.yaml names its files in their order, as rosbag2 writes them.
 #pragma once
 
 #include <memory>
@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-// Without metadata.yaml, as after a crash of the recorder, the files are those of the folder, in
-// the order of the numbers in their names.
+// Without metadata.yaml, for example after a crash of the recorder, the files are those in the
+// folder. Their order is that of the numbers in their names.
 class BagFolder final : public Bag {
  public:
   explicit BagFolder(const std::filesystem::path& folder);
@@ -23,7 +23,7 @@ class BagFolder final : public Bag {
   void find_files(const std::filesystem::path& folder);
 
   std::vector<std::filesystem::path> files_;
-  std::vector<std::unique_ptr<Bag>> open_;  // one after the other; topics of all stay valid
+  std::vector<std::unique_ptr<Bag>> open_;  // in their order; the topics of all stay valid
   bool readable_ = true;
   std::string error_;
 };

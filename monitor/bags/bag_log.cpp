@@ -1,5 +1,5 @@
-// Batches wait until the bag has been read two seconds further: recorders write messages of several
-// topics only nearly in the order of their times.
+// Batches wait until the bag has been read two seconds further. Recorders write the messages of
+// several topics only nearly in the order of their times.
 #include "monitor/bags/bag_log.hpp"
 
 #include <fmt/format.h>
@@ -14,9 +14,9 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kDisorderNs = 2'000'000'000;
-// Batches that wait at most, however near their times are.
+// The largest number of batches that wait, however close their times are.
 constexpr std::size_t kMostWaiting = 1 << 16;
-// In the year 2116.
+// 2^62 ns, a time in the year 2116.
 constexpr std::int64_t kLastTimeNs = std::int64_t{1} << 62;
 constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 
@@ -42,7 +42,7 @@ const std::string& BagLog::error() const noexcept {
   return bag_->error().empty() ? error_ : bag_->error();
 }
 
-// Without a batch in all of the bag, that is the error.
+// It is an error if the whole bag has no batch.
 bool BagLog::next(LoggedBatch& batch) {
   read_ahead();
   if (waiting_.empty()) {
@@ -50,7 +50,7 @@ bool BagLog::next(LoggedBatch& batch) {
     return false;
   }
   const auto first = waiting_.begin();
-  // What comes later than that is not put back in order.
+  // A batch with an earlier time that comes after this one is not put back in order.
   last_ns_ = std::max(last_ns_, first->first);
   given_out_ = true;
   batch = {std::move(first->second), last_ns_};
@@ -64,7 +64,7 @@ void BagLog::read_ahead() {
                                           waiting_.size() < kMostWaiting))) {
     ended_ = !bag_->next(message);
     if (ended_) break;
-    // Of a hostile bag, too, times can be added and taken from each other.
+    // With this clamp, sums and differences of times cannot overflow, not even for a hostile bag.
     message.log_ns = std::clamp(message.log_ns, std::int64_t{0}, kLastTimeNs);
     take(message);
   }
@@ -92,8 +92,7 @@ void BagLog::take(const BagMessage& message) {
   }
 }
 
-// Joints whose positions are given are not moved by messages. Batches are numbered as they are
-// used.
+// Messages do not move joints whose positions are given. Batches are numbered in the order of use.
 void BagLog::use(PoseBatch batch) {
   std::erase_if(batch.joints, [this](const JointSample& sample) {
     heard_[sample.variable] = true;
@@ -108,7 +107,7 @@ void BagLog::use(PoseBatch batch) {
   if (!given_.empty()) waiting_.emplace(log_ns_, given_.at(log_ns_));
 }
 
-// What there is instead, so that it can be asked for.
+// Lists the topics that the bag has instead, so that a user can choose one.
 std::string BagLog::nothing_of_use() const {
   std::string there;
   for (const auto& [name, topic] : topics_) {
@@ -132,7 +131,7 @@ std::string BagLog::nothing_of_use() const {
 
 std::vector<std::string> BagLog::notes() const {
   std::vector<std::string> notes;
-  if (!given_out_) return notes;  // error() says it
+  if (!given_out_) return notes;  // error() tells why
   for (const auto& [name, topic] : topics_) {
     if (!topic.number) continue;
     const auto note = [&, &topic_name = name](std::uint64_t count, const std::string& what) {

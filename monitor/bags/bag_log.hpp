@@ -1,4 +1,4 @@
-// The joint states and transforms of a bag as batches of the tick's inputs.
+// Converts the joint states and transforms of a bag to batches of the tick's inputs.
 #pragma once
 
 #include <cstdint>
@@ -15,14 +15,14 @@
 
 namespace clearance {
 
-// Joint states move the joints of the cell's robots as those that are heard on DDS do. Objects and
-// bases of robots that follow frames are where /tf and /tf_static say, and so is a moving object
-// that is no link of a robot and whose name is that of a frame. Without a `world_frame`, the root
-// of the frames is taken to be the cell's world. Each topic is a source of its name, tf_static one
-// with tf.
+// Joint states move the joints of the cell's robots exactly like those from DDS. The topics /tf and
+// /tf_static place the objects and robot bases that follow frames. They also place moving objects
+// that are not links and have the name of a frame. Without a `world_frame`, the root of the frames
+// is taken to be the cell's world. Each topic is a source under its own name; tf_static belongs to
+// the source of tf.
 //
-// Stamps of 0, and those of another clock than the recorder's (more than 10 s away), say nothing of
-// when a position held: then the time is used at which it was recorded.
+// A stamp of 0, or one more than 10 s off the recorder's clock, does not tell when a position held.
+// The time of recording is used instead.
 class BagLog final : public InputLog {
  public:
   BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options);
@@ -38,7 +38,7 @@ class BagLog final : public InputLog {
  private:
   struct Topic {
     std::string type;
-    std::optional<std::uint32_t> number;  // as the intake numbers it; nothing: it is not used
+    std::optional<std::uint32_t> number;  // the intake's number; nothing: not used
     std::uint64_t messages = 0;
     std::uint64_t empty = 0;  // joint states without a position of a joint of the cell
   };
@@ -56,10 +56,10 @@ class BagLog final : public InputLog {
 
   std::map<std::string, Topic> topics_;  // by name
   std::vector<bool> heard_;              // by variable
-  std::vector<std::string> slow_;        // inputs that come too seldom, a sentence each
+  std::vector<std::string> slow_;        // a sentence for each input that comes too seldom
   std::map<std::string, std::uint64_t, std::less<>> sequence_;  // by source
   std::multimap<std::int64_t, PoseBatch> waiting_;              // by log time; ties in file order
-  Topic* topic_ = nullptr;   // of the message that is being taken
+  Topic* topic_ = nullptr;   // topic of the message that is being taken
   std::int64_t log_ns_ = 0;  // of that message
   std::int64_t read_to_ns_ = 0, last_ns_ = 0;
   GivenJoints given_;

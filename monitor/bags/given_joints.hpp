@@ -1,4 +1,4 @@
-// Joints that a log does not have, and where they stay.
+// Constant positions of joints that a log does not contain.
 #pragma once
 
 #include <cstdint>
@@ -13,13 +13,13 @@ namespace clearance {
 
 class GivenJoints {
  public:
-  // Positions by the joints' names; a name that the scene does not have is told in error().
+  // `positions` are by joint name. error() tells a name that the scene does not have.
   GivenJoints(const Scene& scene, const std::map<std::string, double>& positions);
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] bool empty() const noexcept { return batch_.joints.empty(); }
 
-  // The next batch of their source, 'given'.
+  // Returns the next batch of the source 'given' with this stamp.
   [[nodiscard]] PoseBatch at(std::int64_t stamp_ns);
 
  private:
@@ -27,14 +27,15 @@ class GivenJoints {
   std::string error_;
 };
 
-// NAME=POSITION each, rad or m, no name twice. Returns what is wrong with one; empty: nothing.
+// Parses NAME=POSITION texts, rad or m, no name twice. Returns what is wrong, or an empty string.
 [[nodiscard]] std::string read_joint_positions(const std::vector<std::string>& texts,
                                                std::map<std::string, double>& positions);
 
-// Of all variables, as joint states name them.
+// The names of all variables, as joint states name them.
 [[nodiscard]] std::vector<std::string> joint_names(const Scene& scene);
 
-// A sentence about the joints that were neither heard (by variable) nor given, if there are some.
+// Adds a sentence about the joints that were neither heard (by variable) nor given, if there are
+// any.
 void note_unheard(const Scene& scene, const std::vector<bool>& heard,
                   const std::map<std::string, double>& given, std::vector<std::string>& notes);
 

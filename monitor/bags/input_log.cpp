@@ -12,11 +12,11 @@ namespace {
 
 bool is_ours(const McapChannel& channel) { return channel.schema.name.starts_with("clearance::"); }
 
-// A closed file says in its summary what is in it; of another one, its first messages do.
+// The summary of a closed file lists its topics. Without a summary, the first messages show them.
 bool holds_topics_of_ours(const std::filesystem::path& path) {
   constexpr int kEnough = 1000;
   McapReader reader(path);
-  if (!reader.readable()) return true;  // whoever reads it then says why it cannot be
+  if (!reader.readable()) return true;  // the recording's reader then reports the fault
   if (reader.summary() && !reader.summary()->channels.empty()) {
     return std::ranges::any_of(reader.summary()->channels,
                                [](const auto& channel) { return is_ours(channel.second); });
@@ -29,7 +29,7 @@ bool holds_topics_of_ours(const std::filesystem::path& path) {
   return met == 0;
 }
 
-// Pose logs name an object in every row.
+// Unlike these tables, pose logs name an object in every row.
 bool is_joint_table(const std::filesystem::path& path) {
   const std::vector<std::string> columns = csv_column_names(path);
   return columns.size() > 1 && std::ranges::find(columns, "t_ns") != columns.end() &&

@@ -1,4 +1,4 @@
-// What the tick takes in, as somebody else logged it: a ROS 2 bag, or joint positions as CSV.
+// Inputs of the tick that another program recorded: a ROS 2 bag, or joint positions as CSV.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,10 @@ struct LoggedBatch {
 };
 
 struct InputLogOptions {
-  // Topics whose joint states are used; empty: all that are named joint_states, in any namespace.
+  // The topics whose joint states are used. If empty, these are all topics named joint_states, in
+  // any namespace.
   std::vector<std::string> joint_topics = {};
-  // Positions of joints that nobody sends, by name: they hold at every message.
+  // Constant positions of joints that are not in the log, by name.
   std::map<std::string, double> joints = {};
 };
 
@@ -30,22 +31,22 @@ struct InputLogOptions {
 class InputLog {
  public:
   virtual ~InputLog() = default;
-  // The next batch, of log times that never go back. False at the end, or where the log stops
-  // making sense: then error() is not empty.
+  // Reads the next batch; log times never decrease. Returns false at the end, or where the log is
+  // damaged: error() is then not empty.
   [[nodiscard]] virtual bool next(LoggedBatch& batch) = 0;
   // A sentence with file, place and reason; empty for a sound log.
   [[nodiscard]] virtual const std::string& error() const noexcept = 0;
-  // What was read before the error is sound; false: the log cannot be read at all.
+  // True: the batches before the error are sound. False: the log cannot be read at all.
   [[nodiscard]] virtual bool readable() const noexcept = 0;
-  // Share that has been read, 0 to 1.
+  // The share of the log that has been read, 0 to 1.
   [[nodiscard]] virtual double progress() const noexcept = 0;
-  // What a person should know of what was read so far: what was used, what was left out and why, a
-  // sentence each.
+  // Notes for a person about what was read so far: what was used, and what was left out and why.
+  // Each note is one sentence.
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
 };
 
-// Whether this is such a log, by its first bytes: a bag without topics of ours, or a CSV table with
-// other columns than a pose log. Files that cannot be read are none.
+// True if the first bytes are those of such a log. It is a bag without our own topics, or a CSV
+// table with other columns than a pose log. False for a file that cannot be read.
 [[nodiscard]] bool is_input_log(const std::filesystem::path& path);
 
 // The cell must outlive the log. Never null.

@@ -64,14 +64,14 @@ void JointCsvLog::choose_columns() {
     joint.velocity = columns_.size();
     columns_.push_back(*column);
   }
-  // Joint states have all velocities or none.
+  // A joint state has velocities for all joints or for none.
   if (!std::ranges::all_of(joints_,
                            [](const Joint& joint) { return joint.velocity.has_value(); })) {
     for (Joint& joint : joints_) joint.velocity.reset();
   }
 }
 
-// Joints that are given come behind each row, at its time.
+// The batch of given joints follows each row, with the same time.
 bool JointCsvLog::next(LoggedBatch& batch) {
   if (given_batch_) {
     batch = std::move(*given_batch_);

@@ -1,7 +1,7 @@
-// Joint positions kept as CSV: t_ns, and a column for every joint, named as the joint is.
+// Joint positions as CSV: the column t_ns, and a column for every joint under the joint's name.
 //
-// Times in whole nanoseconds, not going back; rad or m. A column NAME/velocity, if there is one, is
-// that joint's velocity. Other columns are left out. Plain or gzip.
+// Times are integers in ns that do not decrease, positions are in rad or m. A column NAME/velocity
+// holds the velocity of that joint. Other columns are left out. The file is plain or gzip.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +18,7 @@
 
 namespace clearance {
 
-// All rows are of one source, 'csv'.
+// All rows belong to one source, 'csv'.
 class JointCsvLog final : public InputLog {
  public:
   JointCsvLog(const std::filesystem::path& file, const Scene& scene,
@@ -37,7 +37,7 @@ class JointCsvLog final : public InputLog {
     std::optional<std::size_t> velocity;
   };
 
-  // What SlowInputs tells becomes notes.
+  // Turns the news of SlowInputs into notes.
   struct SlowNotes final : public Outlet {
     void give(PoseBatch&, std::uint64_t, std::size_t) override {}
     void tell(News news) override { texts.push_back(std::move(news.text)); }

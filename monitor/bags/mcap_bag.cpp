@@ -2,7 +2,7 @@
 
 namespace clearance {
 
-// Two channels may have one topic: of several publishers.
+// Two channels may have the same topic if it has several publishers.
 bool McapBag::next(BagMessage& message) {
   McapMessage raw;
   if (!reader_.next(raw)) return false;

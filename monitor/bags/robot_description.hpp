@@ -1,4 +1,4 @@
-// The URDF that a bag holds: the topic robot_description, which robot_state_publisher latches.
+// The URDF in a bag, from the topic robot_description that robot_state_publisher latches.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-// The first one, of any namespace. Reads until there is one: through all of a bag that has none.
+// Returns the first description in any namespace. A bag without one is read to its end.
 [[nodiscard]] std::optional<std::string> robot_description(const std::filesystem::path& bag);
 
 }  // namespace clearance

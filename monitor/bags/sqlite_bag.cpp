@@ -1,4 +1,4 @@
-// One statement gives all messages, a row at a time.
+// One SQL statement reads all messages, a row at a time.
 #include "monitor/bags/sqlite_bag.hpp"
 
 #include <fmt/format.h>
@@ -11,14 +11,14 @@
 namespace clearance {
 namespace {
 
-// What a hostile file may make the library do: a message or a statement of at most 1 GiB, and no
-// more memory than twice that.
+// Limits what a hostile file can make the library do: a message or a statement has at most 1 GiB.
+// The library's memory is at most twice that.
 constexpr int kLargestValue = 1 << 30;
 
-// A path as a URI has it; everything but letters, digits and / is escaped. As one that nobody
-// changes: otherwise SQLite makes files beside it, which a folder that is read only does not let. A
-// recorder that crashed may have left messages in a write-ahead log, which is only read without
-// that.
+// Converts a path to a URI; everything but letters, digits and / is escaped. The URI marks the file
+// as immutable, because otherwise SQLite makes files beside it, which fails in a read-only folder.
+// A file with a write-ahead log is not marked: SQLite reads the messages that a crashed recorder
+// left there only without the mark.
 std::string uri_of(const std::filesystem::path& path) {
   std::string uri = "file:";
   for (const char character : std::filesystem::absolute(path).string()) {
@@ -64,7 +64,7 @@ SqliteBag::SqliteBag(const std::filesystem::path& file) : path_(file) {
   if (has_tables()) read_topics();
 }
 
-// Real tables: a view may compute for ever.
+// Requires real tables, because a view may compute forever.
 bool SqliteBag::has_tables() {
   const Statement tables = prepare(
       "SELECT count(*) FROM sqlite_master WHERE type = 'table' AND name IN ('topics', 'messages') "
@@ -112,7 +112,7 @@ void SqliteBag::read_topics() {
   readable_ = error_.empty();
 }
 
-// Of the largest id: counting them all would read the whole file.
+// Uses the largest id, because counting all messages would read the whole file.
 void SqliteBag::count_messages() {
   const Statement last = prepare("SELECT max(id) FROM messages");
   if (error_.empty() && sqlite3_step(last.get()) == SQLITE_ROW) {
@@ -126,7 +126,7 @@ double SqliteBag::progress() const noexcept {
              : static_cast<double>(read_) / static_cast<double>(count_);
 }
 
-// A message of no topic is damage that rosbag2 never writes.
+// A message without a topic is damage, since rosbag2 never writes one.
 bool SqliteBag::next(BagMessage& message) {
   if (messages_ == nullptr) return false;
   const int status = sqlite3_step(messages_.get());

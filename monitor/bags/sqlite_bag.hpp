@@ -1,7 +1,7 @@
-// A bag that is one SQLite 3 file, as rosbag2's sqlite3 storage writes them.
+// A bag that is one SQLite 3 file, as rosbag2's sqlite3 storage writes it.
 //
-// Tables: topics (id, name, type, serialization_format, ...), messages (id, topic_id, timestamp in
-// ns, data). Columns that newer versions have beside these do not matter.
+// It reads the tables topics (id, name, type, serialization_format, ...) and messages (id,
+// topic_id, timestamp in ns, data). Additional columns of newer versions are ignored.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +15,8 @@ struct sqlite3_stmt;
 
 namespace clearance {
 
-// Reads the file as it is: nothing is written beside it, and it is not waited for where somebody
-// else has it open. Messages come in the order of their times.
+// Reads the file without writing anything beside it, and without waiting for programs that have it
+// open. Messages come in the order of their times.
 class SqliteBag final : public Bag {
  public:
   explicit SqliteBag(const std::filesystem::path& file);

@@ -49,7 +49,7 @@ class Connection {
 };
 
 struct StreamOptions {
-  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // the limit of ReportCheck
+  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // ReportChecker's limit
   std::int32_t depth = 64;  // messages that may wait while the program does other work
 };
 
@@ -68,15 +68,15 @@ class Stream {
   // The last message that came; all zero before the first one.
   [[nodiscard]] const Message& operator*() const noexcept { return *message_; }
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
-  // Says whether it is fresh, whether the daemon is the same, and how many reports are missing.
+  // Tells whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
 
   // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake.
   [[nodiscard]] std::uint32_t daemons() const;
-  // True when there is no daemon any longer, not even one that hangs.
+  // True if there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
-  // A sentence for a person: why a daemon that is there cannot be heard. It was built with another
-  // version of the message, or its QoS does not fit. Empty: no such daemon was met.
+  // A sentence for a person that says why an existing daemon cannot be heard. It was built with
+  // another version of the message, or its QoS does not fit. Empty if no such daemon was met.
   [[nodiscard]] std::string refusal() const;
 
  private:
@@ -98,7 +98,7 @@ using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`
 [[nodiscard]] const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
                                                      std::optional<std::uint32_t> pair);
 
-// The names behind the ids, as of the last update().
+// The names behind the ids, at the last update().
 class Catalogue {
  public:
   explicit Catalogue(Connection& connection);
@@ -131,7 +131,7 @@ class Catalogue {
   bool known_ = false;
 };
 
-// The daemon's health, as of the last update(); it comes once a second.
+// The daemon's health at the last update(); it comes once a second.
 class Health {
  public:
   explicit Health(Connection& connection);
@@ -147,7 +147,7 @@ class Health {
   bool known_ = false;
 };
 
-// The state of every zone by its id, as of the last update().
+// The state of every zone by its id, at the last update().
 class Zones {
  public:
   explicit Zones(Connection& connection);
@@ -166,8 +166,8 @@ class Zones {
 // CLOCK_REALTIME, the clock of stamps.
 [[nodiscard]] std::int64_t now_ns() noexcept;
 
-// Sends joint states of robots that the cell names. `source` has 1 to 32 bytes and belongs to no
-// other writer.
+// Sends joint states of robots that the cell names. `source` has 1 to 32 bytes and must not belong
+// to another writer.
 class JointWriter {
  public:
   // `names` are those of the URDF, with the prefix that the cell gives. Throws
@@ -180,7 +180,7 @@ class JointWriter {
 
   // Sends positions (rad or m) in the order of the names, with velocities (per second) or none,
   // that held at `stamp_ns`. Returns false when DDS did not take them. Throws std::invalid_argument
-  // when there are more or fewer than names.
+  // when their number differs from that of the names.
   bool write(std::span<const double> positions, std::span<const double> velocities = {},
              std::int64_t stamp_ns = now_ns());
   // True when there is a reader.

@@ -85,7 +85,7 @@ bool Stream<Message>::take() {
   return true;
 }
 
-// A writer that comes or goes wakes as well, with nothing to take.
+// A writer that comes or leaves also ends the wait, with nothing to take.
 template <class Message>
 bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
   const std::int64_t end_ns = dds_time() + timeout.count();

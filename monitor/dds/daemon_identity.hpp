@@ -1,5 +1,5 @@
-// The identity of a daemon's run: clients and other daemons distinguish two daemons, and two runs,
-// by it.
+// The identity of a daemon's run, by which clients and other daemons distinguish two daemons or two
+// runs.
 #pragma once
 
 #include <cstdint>
@@ -20,16 +20,16 @@ struct DaemonIdentity {
   [[nodiscard]] std::string described() const;
 };
 
-// Makes a new identity of this process.
+// Makes a new identity for this process.
 [[nodiscard]] DaemonIdentity make_identity();
 
-// Writes "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc", and reads
-// it; nothing when the text is another program's.
+// Writes and reads "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc".
+// Returns nothing if the text belongs to another program.
 [[nodiscard]] std::string to_user_data(const DaemonIdentity& identity);
 [[nodiscard]] std::optional<DaemonIdentity> from_user_data(std::string_view text);
 
-// True when `one` has to give way to the other daemon of the cell, since it started later. The ids
-// decide between equal times, so both daemons come to the same answer.
+// True if `one` must stop publishing in favour of the other daemon of the cell, because it started
+// later. The ids decide between equal times, so both daemons come to the same answer.
 [[nodiscard]] bool gives_way(const DaemonIdentity& one, const DaemonIdentity& other) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,5 @@
-// The command line of programs that use DDS: their place on DDS, and their exit code when it fails.
+// The command line of programs that use DDS: domain, partition and network. Also their exit code
+// when DDS fails.
 #pragma once
 
 #include <fmt/format.h>
@@ -23,7 +24,7 @@ struct DdsArguments {
   std::optional<std::string> interface;  // not given: the cell's
   std::vector<std::string> peers;
 
-  // `has_cell`: the program takes a cell, which decides without an option.
+  // `has_cell` means that the program takes a cell, whose settings are the defaults.
   void add_to(CLI::App& app, bool has_cell = true) {
     app.add_option("--domain", domain,
                    has_cell ? "DDS domain; otherwise the cell's, or 0" : "DDS domain; otherwise 0")

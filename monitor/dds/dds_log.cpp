@@ -19,8 +19,8 @@ constexpr std::string_view kUndecodable = ": deserialization ";
 
 std::atomic<std::uint64_t> undecodable{0};
 
-// Called by any of Cyclone's threads. When a link is down, Cyclone complains at every write; lines
-// beyond the rate are counted and left out.
+// Called by any of Cyclone's threads. When a link is down, Cyclone complains at every write. Lines
+// above the rate are counted and left out.
 void log_dds(void*, const dds_log_data_t* message) {
   std::string_view text(message->message, message->size);
   if (text.find(kUndecodable) != std::string_view::npos) ++undecodable;

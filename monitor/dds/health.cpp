@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// The health topic uses us.
+// The health topic has times in us.
 constexpr double kUsPerNs = 1e-3;
 
 // Times of the loop, as microseconds.

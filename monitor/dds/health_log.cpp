@@ -65,7 +65,7 @@ void HealthLog::update(const clearance_msg_Health& health,
   }
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
-    // An object that was never known is no news. Links are told by their joints.
+    // An object that was never known is no news. For links, the log of joints reports lateness.
     const bool stale = input.stale && input.age_ns >= 0 && !input.follows_joints;
     if (stale != stale_[input.object] && logged++ < kLinesAtOnce) {
       if (stale) {

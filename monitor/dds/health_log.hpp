@@ -1,4 +1,4 @@
-// Logs each health sample's news for a person: the changes since the previous sample.
+// Logs the news in each health sample for a person: the changes since the previous sample.
 #pragma once
 
 #include <cstdint>

@@ -45,7 +45,7 @@ void JointLog::update_robot(std::uint32_t robot,
                       : joint.stale        ? State::kLate
                                            : State::kFine;
     State& before = states_[joint.variable];
-    // The intake tells which frame of a base is missing.
+    // The intake reports which frame of a base is missing.
     if (now == State::kUnseen && !scene_.robots[robot].is_of_base(joint.variable))
       unseen.emplace_back(joint.name);
     if (now != before) {

@@ -1,6 +1,8 @@
-// How many source names one DDS writer may use. Cyclone keeps an instance for every name that a
-// reader has stored, for as long as the name's writer lives: a writer with a new name in every
-// sample would cost 600 bytes each, for good. What is refused here is never stored.
+// Limits the number of source names that one DDS writer may use.
+//
+// Cyclone keeps an instance for every name that a reader has stored, for as long as the name's
+// writer lives. A writer with a new name in every sample would cost 600 bytes for each,
+// permanently. Samples that are refused here are never stored.
 #pragma once
 
 #include <cstddef>
@@ -12,21 +14,22 @@
 
 namespace clearance {
 
-// Cyclone's receiving threads ask; the taking thread says who has left. Writers and names are known
-// by their instance handles.
+// Cyclone's receiving threads call admits(). The taking thread reports which writers have left.
+// Writers and names are known by their instance handles.
 class NameLimit {
  public:
-  // Names of a writer at a time: one that was not used for kForgottenNs makes room for another.
+  // The number of names of a writer at a time. Another name may replace one that was not used for
+  // kForgottenNs.
   static constexpr std::size_t kNames = 16;
   static constexpr std::int64_t kForgottenNs = 10'000'000'000;
-  // Names of a writer in all, which bounds the memory: about 600 kB.
+  // The total number of names of a writer. It bounds the memory to about 600 kB.
   static constexpr std::size_t kNamesInAll = 1000;
 
-  // Whether a sample may be stored; one that may not is counted.
+  // True if a sample may be stored; otherwise it is counted.
   [[nodiscard]] bool admits(std::uint64_t writer, std::uint64_t name, std::int64_t monotonic_ns);
-  // The name's last writer has unregistered it: Cyclone has freed it.
+  // Call this when the name's last writer has unregistered it, because Cyclone has then freed it.
   void forget_name(std::uint64_t name);
-  // Of the writers, only these are still there.
+  // `writers` are those that still exist.
   void keep(std::span<const std::uint64_t> writers);
   [[nodiscard]] std::uint64_t refused() const;
 

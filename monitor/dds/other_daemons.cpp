@@ -30,7 +30,7 @@ dds_entity_t make_reader(Participant& participant, const std::string& topic,
 OtherDaemons::OtherDaemons(Participant& participant, const std::string& topic, DaemonIdentity own)
     : own_(std::move(own)), topic_(topic), reader_(make_reader(participant, topic, changed_)) {}
 
-// The listener points into this.
+// The reader's listener points into this object.
 OtherDaemons::~OtherDaemons() { dds_delete(reader_); }
 
 void OtherDaemons::look() {
@@ -62,7 +62,7 @@ bool OtherDaemons::has_met(dds_instance_handle_t writer) const {
   return std::ranges::find(met_, writer) != met_.end();
 }
 
-// A writer that has left in the meantime is not met. An older daemon is met only when it is heard.
+// Ignores a writer that has left in the meantime. An older daemon counts only when it is heard.
 void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   const WriterFacts facts = writer_facts(reader_, writer);
   if (!facts.present) return;

@@ -1,5 +1,5 @@
-// Finds out whether another daemon publishes the same cell: listens on this daemon's topic for
-// reports that it did not write.
+// Detects whether another daemon publishes the same cell: it listens on this daemon's topic for
+// reports of other writers.
 #pragma once
 
 #include <atomic>
@@ -14,29 +14,29 @@
 
 namespace clearance {
 
-// When two daemons publish, the one that started later gives way at the first report that it hears
-// from the other. A silent writer does not displace this daemon: its process may be dead, stopped
-// or hung. One thread calls look() and have_just_left(); any thread may call the rest.
+// When two daemons publish, the one that started later stops at the first report that it hears from
+// the other. A silent writer does not displace this daemon: its process may be dead, stopped or
+// hung. One thread calls look() and have_just_left(); any thread may call the rest.
 class OtherDaemons {
  public:
-  // `own` publishes on the distances topic of this name through this participant, whose writers
-  // are ignored.
+  // `own` publishes on the distances topic of this name through this participant, whose writers are
+  // ignored.
   OtherDaemons(Participant& participant, const std::string& topic, DaemonIdentity own);
   ~OtherDaemons();
   OtherDaemons(const OtherDaemons&) = delete;
   OtherDaemons& operator=(const OtherDaemons&) = delete;
 
-  // Takes the reports that came since the last call. It costs 0.2 us when nothing has; no system
+  // Takes the reports that came since the last call. Without any, it costs 0.2 us and no system
   // call.
   void look();
   // True once after other writers have left: latched topics then hold their last samples.
   [[nodiscard]] bool have_just_left() noexcept { return std::exchange(left_, false); }
 
-  // Another daemon started first: nothing more may be published.
+  // Another daemon started first, so nothing more may be published.
   [[nodiscard]] bool give_way() const noexcept { return give_way_.load(); }
   // Reports of other daemons since the start.
   [[nodiscard]] std::uint64_t reports() const noexcept { return reports_.load(); }
-  // Other writers that were met since the start, silent ones included.
+  // The number of other writers since the start, silent ones included.
   [[nodiscard]] std::uint64_t writers() const noexcept { return writers_.load(); }
 
  private:
@@ -49,7 +49,7 @@ class OtherDaemons {
   std::atomic<bool> changed_{false};  // writers have come or left
   dds_entity_t reader_;
   std::vector<CdrSample> taken_;
-  std::vector<dds_instance_handle_t> met_;  // those that are present
+  std::vector<dds_instance_handle_t> met_;  // those that are still present
   bool left_ = false;
   std::atomic<std::uint64_t> reports_{0}, writers_{0};
   std::atomic<bool> give_way_{false};

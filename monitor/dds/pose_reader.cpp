@@ -1,6 +1,6 @@
-// A thread waits for data, takes samples and puts them into the ring as batches. Whatever can be
-// slow or allocate (new sources, logging) happens in that thread, behind a mutex that the tick
-// thread never takes.
+// A thread waits for data, takes samples and puts them into the ring as batches. Everything that
+// may be slow or allocate (new sources, logging) happens in that thread. Its mutex is never taken
+// by the tick thread.
 #include "monitor/dds/pose_reader.hpp"
 
 #include <fmt/format.h>
@@ -18,9 +18,9 @@
 namespace clearance {
 namespace {
 
-// A writer with other QoS is silent for us, which nobody would notice without this line.
+// This reader hears nothing of a writer with other QoS. Only this line tells.
 void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void*) {
-  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // somebody else's cell
+  if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // another cell's writer
   spdlog::warn(
       "a writer of the poses topic offers QoS that does not fit (policy {}): it is not heard. "
       "Policy 11: it "
@@ -28,7 +28,8 @@ void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_
       status.last_policy_id);
 }
 
-// Cyclone calls this in a thread of its own. The flag makes the taking thread look who has left.
+// Cyclone calls this in a thread of its own. The flag makes the taking thread check which writers
+// have left.
 void log_matched(dds_entity_t, const dds_subscription_matched_status_t status, void* changed) {
   static_cast<std::atomic<bool>*>(changed)->store(true);
   spdlog::info("a writer of poses {}: {} now",
@@ -48,7 +49,7 @@ void log_matched_joints(dds_entity_t, const dds_subscription_matched_status_t st
                status.current_count_change > 0 ? "appeared" : "left", status.current_count);
 }
 
-// What a ROS 2 node started from the same shell would join.
+// The domain that a ROS 2 node started from the same shell would join.
 std::string ros_domain() {
   const char* const id = std::getenv("ROS_DOMAIN_ID");
   return id == nullptr ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
@@ -57,7 +58,7 @@ std::string ros_domain() {
 }  // namespace
 
 std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
-  // Several poses of one object in a batch are fine: a sensor may be faster than its sender.
+  // A batch may have several poses of one object: a sensor may be faster than its sender.
   return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
 }
 
@@ -66,8 +67,8 @@ std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
   return std::min<std::size_t>(2 * scene.variables.size() + 64, clearance_msg_kMaxJoints);
 }
 
-// All memory is reserved before the thread starts; only what is heard for the first time allocates
-// later.
+// Reserves all memory before the thread starts. Later, only what is heard for the first time
+// allocates.
 PoseReader::PoseReader(const Cell& cell, Participant& participant)
     : topics_(cell.topics),
       undecodable_before_(undecodable_samples()),
@@ -91,7 +92,8 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
   thread_ = std::thread([this] { run(); });
 }
 
-// The listener and the filter are copied by Cyclone; what they point to is here.
+// Cyclone copies the listener and the filter. The objects to which they point are members of this
+// one.
 void PoseReader::open(Participant& participant, TopicKind kind) {
   const bool of_joints = kind == TopicKind::kJointStates;
   dds_listener_t* listener = dds_create_listener(nullptr);
@@ -107,8 +109,8 @@ void PoseReader::open(Participant& participant, TopicKind kind) {
   wait_.add(reader);
 }
 
-// Ends the thread before the ring is destroyed, and the readers before what their listeners and
-// filters point to.
+// Ends the thread before the ring is destroyed. Deletes the readers before the objects to which
+// their listeners and filters point.
 PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
@@ -116,8 +118,8 @@ PoseReader::~PoseReader() {
   for (const OwnReader& reader : own_) dds_delete(reader.handle);
 }
 
-// The slot lent by the last call is given back by this one. No lock: the ring has one filler and
-// one emptier.
+// Gives back the slot that the last call lent. It needs no lock, because the ring has one producer
+// and one consumer.
 const PoseBatch* PoseReader::next() noexcept {
   if (lent_) ring_.pop();
   const PoseBatch* batch = ring_.front();
@@ -125,7 +127,7 @@ const PoseBatch* PoseReader::next() noexcept {
   return batch;
 }
 
-// A copy, since the taking thread goes on changing them.
+// Returns a copy, because the taking thread continues to change the tallies.
 std::vector<SourceTally> PoseReader::tallies() const {
   const std::lock_guard lock(mutex_);
   return intake_.sources().tallies();
@@ -187,7 +189,7 @@ void PoseReader::run() {
   }
 }
 
-// What others publish, and who has left.
+// Updates the topics that other programs publish, and the writers that still exist.
 void PoseReader::look() {
   const bool changed = intake_.hears_ros() && ros_.look();
   if (writers_changed_.exchange(false) || changed) note_writers();
@@ -195,7 +197,7 @@ void PoseReader::look() {
   for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);
 }
 
-// Names and places of writers that have left are free.
+// Frees the names and places of writers that have left.
 void PoseReader::note_writers() {
   std::vector<std::uint64_t> writers = ros_.writers();
   for (const OwnReader& reader : own_) {
@@ -217,7 +219,7 @@ void PoseReader::take_all(const Now& now) {
   intake_.settle(now);
 }
 
-// Into a free slot, whose memory the intake gets in exchange.
+// Puts the batch into a free slot. The intake gets the slot's memory in exchange.
 bool PoseReader::hand_over(PoseBatch& batch) noexcept {
   PoseBatch* const slot = ring_.back();
   if (slot == nullptr) return false;

@@ -1,6 +1,6 @@
-// The topics of poses and joint states, ours and ROS 2's, and its tf, as a PoseSource: a thread of
-// its own takes samples, has them decoded and admitted (intake/), and hands batches to the tick
-// thread.
+// The PoseSource of DDS: it reads poses, joint states and tf, from our own topics and those of ROS
+// 2. Its thread takes samples, has them decoded and admitted (intake/), and hands batches to the
+// tick thread.
 #pragma once
 
 #include <atomic>
@@ -20,15 +20,15 @@
 
 namespace clearance {
 
-// next() is called by the tick thread and takes no lock; everything else by other threads.
+// The tick thread calls next(), which takes no lock. Other threads call everything else.
 class PoseReader final : public PoseSource {
  public:
-  // Poses that one batch may hold; what a source sends beyond it is counted and not used.
+  // The largest numbers of poses and of joints in a batch. More are counted and not used.
   [[nodiscard]] static std::size_t samples_a_batch(const Scene& scene) noexcept;
   [[nodiscard]] static std::size_t joints_a_batch(const Scene& scene) noexcept;
-  // Batches that may wait for one tick.
+  // The number of batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
-  // Samples of a source that may arrive while the taking thread is held up.
+  // The number of samples of a source that may arrive while the taking thread is delayed.
   static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
   // Starts the thread. Cell and participant must outlive this.
@@ -37,18 +37,19 @@ class PoseReader final : public PoseSource {
 
   const PoseBatch* next() noexcept override;
 
-  // Any thread but the tick's.
+  // For any thread but that of the tick.
   [[nodiscard]] std::vector<SourceTally> tallies() const;
   [[nodiscard]] std::vector<RefusedSource> refused_sources() const;
-  // What sources that have given up their places had counted.
+  // The sum of the counts of sources that have given up their places.
   [[nodiscard]] SourceTally departed() const;
-  // Samples of writers that use more names than NameLimit allows.
+  // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
-  // Samples that Cyclone could not decode since this was made: it drops them with a line in its
-  // log, which is where they are counted. Those of other readers of the process count as well.
+  // The number of samples that Cyclone could not decode since this object was made. Cyclone drops
+  // them with a line in its log, where they are counted. The count includes other readers of the
+  // process.
   [[nodiscard]] std::uint64_t undecodable() const;
-  // Who sends joint states; where nobody does, what is there instead. A sentence for a person who
-  // hears nothing of a robot.
+  // A sentence for a person who hears nothing of a robot. It names the senders of joint states. If
+  // there are none, it names the topics that exist instead.
   [[nodiscard]] std::string senders_of_joints() const;
 
  private:
@@ -72,18 +73,18 @@ class PoseReader final : public PoseSource {
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};
   std::string where_;
-  // Between the taking and the publishing thread, never the tick's: guards the intake, and what
-  // `ros_` knows of others.
+  // Guards the intake, and what `ros_` knows of other programs. The taking and the publishing
+  // thread use it, never the tick thread.
   mutable std::mutex mutex_;
   Intake intake_;
   std::vector<OwnReader> own_;
   RosReaders ros_;
   DataWait wait_;
-  std::size_t waited_for_ = 0;  // of the readers of ROS 2's topics
+  std::size_t waited_for_ = 0;  // number of readers of ROS 2's topics in `wait_`
   std::vector<CdrSample> taken_;
   std::vector<std::uint64_t> ended_;
   SpscRing<PoseBatch> ring_;
-  bool lent_ = false;  // the front slot is with the tick
+  bool lent_ = false;  // the tick is using the front slot
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -1,4 +1,4 @@
-// Cyclone tells of endpoints by samples of a topic of its own, one instance each.
+// Cyclone reports endpoints as samples of a built-in topic, one instance for each endpoint.
 #include "monitor/dds/present_topics.hpp"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ std::string text_of(const dds_guid_t& guid) {
   return text;
 }
 
-// ROS 2 sets none; a wildcard of several names is shown by its first.
+// ROS 2 sets no partition. If there are several partitions, the first is shown.
 std::string first_partition(const dds_qos_t* qos) {
   std::uint32_t count = 0;
   char** names = nullptr;

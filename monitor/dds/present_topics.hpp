@@ -1,4 +1,5 @@
-// What others publish in our domain, as discovery knows it: whatever its type and partition.
+// The topics that other programs publish in our domain, of any type and partition, as DDS discovery
+// reports them.
 #pragma once
 
 #include <cstddef>
@@ -25,15 +26,15 @@ class PresentTopics {
   PresentTopics(const PresentTopics&) = delete;
   PresentTopics& operator=(const PresentTopics&) = delete;
 
-  // Has samples when there is news.
+  // The reader has samples when writers have changed.
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
-  // Takes the news. True: writers have come or gone.
+  // Takes the samples. Returns true if writers have come or gone.
   bool look();
-  // By instance handle, which is the publication handle of the writer's samples.
+  // The writers by instance handle, which is the publication handle of a writer's samples.
   [[nodiscard]] const std::map<std::uint64_t, PresentWriter>& writers() const noexcept {
     return writers_;
   }
-  // "rt/tf (2), rt/scan", at most ten topics; "no other program" when nobody publishes anything.
+  // "rt/tf (2), rt/scan", at most ten topics; "no other program" if no other program publishes.
   [[nodiscard]] std::string listed() const;
 
  private:

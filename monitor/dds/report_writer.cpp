@@ -32,7 +32,7 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
   }
 }
 
-// Says that a zone was entered, and why, or that it was left. Only near and late ones have bounds.
+// Logs that a zone was entered, and why, or that it was left. Only near and late zones have bounds.
 void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
               std::uint64_t cycle) {
   const std::string& name = scene.zones[index].name;
@@ -72,7 +72,7 @@ std::int64_t lease_ns(double rate_hz) noexcept {
   return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
 }
 
-// The catalogue is latched: later clients get it as well.
+// The catalogue is latched, so later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording)
     : cell_(cell),
@@ -106,7 +106,7 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
 
 ReportWriter::~ReportWriter() { finish(); }
 
-// Safe to call twice: the destructor calls it as well.
+// May be called twice: the destructor calls it as well.
 void ReportWriter::finish() {
   if (!thread_.joinable()) return;
   queue_.close();
@@ -128,7 +128,7 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 }
 
 // A client keeps one value of a latched topic, that of the last writer. After another daemon has
-// left, ours are written again.
+// left, our values are written again.
 void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
@@ -206,7 +206,7 @@ void ReportWriter::write(dds_entity_t writer, const void* sample, const char* wh
   if (others_.give_way()) return;
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return;
-  // At a tick rate, failures would flood the log: they are logged at powers of two.
+  // Failures at the tick rate would flood the log, so only powers of two are logged.
   const std::uint64_t failed = failed_writes_.fetch_add(1) + 1;
   if ((failed & (failed - 1)) == 0) {
     log_line(lines::kWriteFailed, what, dds_strretcode(result), failed);

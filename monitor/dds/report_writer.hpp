@@ -20,8 +20,8 @@
 
 namespace clearance {
 
-// After this time without a report, clients learn that the daemon is not alive: 10 periods and at
-// least 100 ms, so that neither a lost datagram nor a busy machine looks like the daemon's end.
+// After this time without a report, clients treat the daemon as dead. It is 10 periods and at least
+// 100 ms, so that neither a lost datagram nor a busy machine has this effect.
 [[nodiscard]] std::int64_t lease_ns(double rate_hz) noexcept;
 
 // The only thread that writes to DDS. A report that cannot be written is counted and left out; the
@@ -39,7 +39,7 @@ class ReportWriter {
   // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
-  // True when an older daemon publishes this cell. Then nothing more is written.
+  // True if an older daemon publishes this cell. This one then writes nothing more.
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
  private:

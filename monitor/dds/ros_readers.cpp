@@ -26,7 +26,7 @@ std::vector<std::uint64_t> RosReaders::writers() const {
   return writers;
 }
 
-// Without a time of sending, the sample was sent now.
+// A sample without a time of sending counts as sent now.
 void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
                std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended) {
   std::size_t count = kMostAtOnce;

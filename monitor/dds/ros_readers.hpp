@@ -1,5 +1,5 @@
-// The readers of ROS 2's topics that an intake wants: each is made when somebody begins to publish
-// the topic.
+// The readers of the ROS 2 topics that an intake wants. A reader is made when another program
+// begins to publish its topic.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class RosReaders {
  public:
   struct Reader {
     dds_entity_t handle = 0;
-    std::uint32_t topic = 0;  // as the intake numbers it
+    std::uint32_t topic = 0;  // the intake's number
   };
 
   // Participant and intake must outlive this.
@@ -26,10 +26,10 @@ class RosReaders {
   RosReaders(const RosReaders&) = delete;
   RosReaders& operator=(const RosReaders&) = delete;
 
-  // Makes readers of topics that have appeared. True: writers have come or gone.
+  // Makes readers for topics that have appeared. Returns true if writers have come or gone.
   bool look();
   [[nodiscard]] const std::vector<Reader>& readers() const noexcept { return readers_; }
-  // What others publish, and the publication handles of all of them.
+  // The topics that other programs publish, and the publication handles of all their writers.
   [[nodiscard]] const PresentTopics& present() const noexcept { return present_; }
   [[nodiscard]] std::vector<std::uint64_t> writers() const;
 
@@ -40,8 +40,8 @@ class RosReaders {
   std::vector<Reader> readers_;
 };
 
-// Takes all that waits in a reader into the intake. `taken` is empty before and after, and keeps
-// its memory.
+// Takes all waiting samples of a reader into the intake. `taken` is empty before and after, and
+// keeps its memory.
 void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
                std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended = nullptr);
 

@@ -1,5 +1,7 @@
-// Whether what came last of an object or a joint contradicts what is in use, or the cell: then
-// nothing is known of it, until something is taken again and an age limit has passed since.
+// The contradiction state of one input: an object's pose or a joint's position.
+//
+// A contradictory sample is one that excludes the value in use, or that the cell excludes. After it
+// nothing is known of the input until a sample is taken again and the hold time has passed.
 #pragma once
 
 #include <algorithm>
@@ -8,18 +10,18 @@
 
 namespace clearance {
 
-// Times are the tick's.
+// All times are in the tick's time.
 class Contradiction {
  public:
-  // A sample was refused for what it says: what follows has to agree for `hold_ns`, and as long as
-  // others before it asked for.
+  // Call this when a sample was refused because of its contents. Later samples must agree for
+  // `hold_ns`, and at least until the end of any earlier hold.
   void meet(std::int64_t now_ns, std::int64_t hold_ns) noexcept {
     until_ns_ = std::max(until_ns_, now_ns + hold_ns);
     agrees_again_ = false;
   }
-  // One was taken.
+  // Call this when a sample was taken into use.
   void agree() noexcept { agrees_again_ = true; }
-  // Nobody can say how long ago the last one was.
+  // Drops the hold time, because the time of the last contradiction is no longer known.
   void forget_age() noexcept { until_ns_ = std::numeric_limits<std::int64_t>::min(); }
 
   [[nodiscard]] bool holds(std::int64_t now_ns) const noexcept {

@@ -1,4 +1,4 @@
-// Differences of any two times, ns: what does not fit becomes the largest number that does.
+// Differences of any two times, ns. They saturate at the ends of the range instead of overflowing.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace clearance {
   return static_cast<double>(ns) * 1e-9;
 }
 
-// later - earlier, not negative.
+// Returns later - earlier, or 0 when `later` is not later.
 [[nodiscard]] inline std::int64_t elapsed(std::int64_t earlier, std::int64_t later) noexcept {
   constexpr auto kMost = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   if (later <= earlier) return 0;
@@ -19,7 +19,7 @@ namespace clearance {
   return static_cast<std::int64_t>(apart < kMost ? apart : kMost);
 }
 
-// a - b, or the end of the range that lies in its direction.
+// Returns a - b, saturated at the end of the range.
 [[nodiscard]] inline std::int64_t less(std::int64_t a, std::int64_t b) noexcept {
   std::int64_t difference = 0;
   if (!__builtin_sub_overflow(a, b, &difference)) return difference;

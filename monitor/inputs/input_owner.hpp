@@ -1,5 +1,6 @@
-// Who sends the poses of an object, or the positions of a joint: the source that the cell names,
-// else the first one, until that one has been silent for long enough.
+// The source whose samples are used for one input: an object's poses or a joint's positions. It is
+// the source that the cell names, else the first one that was heard. Another source may replace the
+// latter after it has been silent for long enough.
 #pragma once
 
 #include <algorithm>
@@ -10,37 +11,39 @@
 
 namespace clearance {
 
-// A stamp that nobody can tell the age of is as old as any: a hundred years.
+// The age, ns, given to a value whose real age is not known: a hundred years.
 inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 
 class InputOwner {
  public:
   InputOwner() = default;
-  // Stated by the cell: no other takes over.
+  // The cell states the source, and no other source may replace it.
   explicit InputOwner(std::uint32_t source) noexcept : source_(source), is_stated_(true) {}
 
-  // Whether what this source sends is to be refused; notes who it is. `age_limit_ns`: of the input.
+  // Returns true if samples of this source must be refused, and then stores the source.
+  // `age_limit_ns` is that of the input.
   [[nodiscard]] bool refuses(std::uint32_t source, std::int64_t now_ns,
                              std::int64_t age_limit_ns) noexcept {
-    constexpr std::int64_t kSilentNs = 1'000'000'000;  // then it no longer owns the input
+    constexpr std::int64_t kSilentNs = 1'000'000'000;  // then another may take over
     if (source == source_ || source_ == kNoSource) return false;
     if (!is_stated_ && elapsed(taken_ns_, now_ns) > std::max(age_limit_ns, kSilentNs)) return false;
     other_ = source;
     return true;
   }
 
-  // What this source sends was taken into use.
+  // Call this when a sample of this source was taken into use.
   void take(std::uint32_t source, std::int64_t now_ns) noexcept {
     if (source != source_) other_ = kNoSource;
     source_ = source;
     taken_ns_ = now_ns;
   }
 
-  // Nobody can say how long ago that was: it counts from now.
+  // The age of the last sample is not known any more: it counts from now.
   void forget_age(std::int64_t now_ns) noexcept { taken_ns_ = now_ns; }
 
   [[nodiscard]] std::uint32_t source() const noexcept { return source_; }
-  // The last one that was refused since it is not the owner; none since that took over.
+  // The last source that was refused because it is not the owner. kNoSource after the owner
+  // changed.
   [[nodiscard]] std::uint32_t other_source() const noexcept { return other_; }
 
  private:

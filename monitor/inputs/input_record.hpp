@@ -1,5 +1,5 @@
-// What the tick knows of one input, whatever its value is: the pose of an object, or the position
-// of a joint's variable. And the one rule by which a sample is taken into use or refused.
+// The state of one input, whatever its value is: the pose of an object, or the position of a joint
+// variable. This file also has the only rule by which a sample is taken into use or refused.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// The time of a tick and what it allows.
+// The time of a tick, and how far stamps may be ahead of it.
 struct SampleLimits {
   std::int64_t now_ns = 0;
   std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
@@ -22,21 +22,21 @@ struct SampleLimits {
 struct InputRecord {
   bool has_value = false;     // a value is in use; always so for a fixed object
   bool late = false;          // the value is older than its limit, or contradicted
-  bool contradicted = false;  // as of the last advance()
-  std::int64_t stamp_ns = 0;  // of the value in use, in the tick's time
+  bool contradicted = false;  // at the last advance()
+  std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
   std::int64_t age_ns = -1;   // now - stamp, never negative; 0 for a fixed object, -1: no value
-  InputOwner owner;           // who sends it
+  InputOwner owner;           // the source whose samples are used
   Contradiction contradiction;
-  std::array<std::uint64_t, kRejects> rejected{};  // samples, by cause
+  std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
 
-  // Nobody can say how old the value is: it is late until the next one comes.
+  // The age of the value is not known any more: it is late until the next one comes.
   void forget_age(std::int64_t now_ns) noexcept {
     stamp_ns = less(now_ns, kForgottenNs);
     owner.forget_age(now_ns);
     contradiction.forget_age();
   }
 
-  // Ends the tick's input.
+  // Updates age and lateness when all samples of the tick have been taken.
   void advance(std::int64_t now_ns, std::int64_t age_limit_ns) noexcept {
     age_ns = elapsed(stamp_ns, now_ns);
     contradicted = contradiction.holds(now_ns);
@@ -50,12 +50,12 @@ struct SampleOrigin {
   std::int64_t stamp_ns = 0;
 };
 
-// Takes a sample into use; else says why it must not be used, and notes what that says of the
-// input. A `Candidate` is one sample of one input:
-//   std::optional<Reject> malformed()    no value at all, whoever sends it
-//   std::optional<Reject> implausible()  what is against it, given the values before it
+// Takes a sample into use, or returns why it must not be used and updates the input's contradiction
+// state. A `Candidate` is one sample of one input, with these members:
+//   std::optional<Reject> malformed()    it is not a value at all, whichever source sent it
+//   std::optional<Reject> implausible()  it contradicts the values before it or the cell
 //   void use()                           makes it the value in use; the record is still the old one
-//   std::int64_t agree_for_ns()          after a refusal: for how long others must agree
+//   std::int64_t agree_for_ns()          after a refusal: how long later samples must agree
 template <class Candidate>
 [[nodiscard]] std::optional<Reject> take(Candidate&& candidate, const SampleOrigin& origin,
                                          const SampleLimits& limits, std::int64_t age_limit_ns,
@@ -68,7 +68,7 @@ template <class Candidate>
     cause = Reject::kFuture;
   } else if (input.has_value && origin.stamp_ns < input.stamp_ns) {
     cause = Reject::kBackwards;
-    // Samples may come in another order than they were made: one is as good as the other.
+    // Samples may arrive in another order than they were made: that is no contradiction.
     reordered = elapsed(origin.stamp_ns, input.stamp_ns) <= age_limit_ns;
   } else {
     cause = candidate.implausible();

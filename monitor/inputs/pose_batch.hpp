@@ -1,5 +1,5 @@
-// What comes in: poses as one source sent them, in the order in which they were taken, with what it
-// takes to find a batch again in a recording.
+// Pose samples as one source sent them, in the order in which they were taken. Source and sequence
+// number identify a batch in a recording.
 #pragma once
 
 #include <array>
@@ -19,36 +19,37 @@ inline constexpr std::uint32_t kNoSource = kMaxSources;
 
 struct PoseSample {
   std::uint32_t object = 0;   // index into Scene::objects
-  std::uint32_t source = 0;   // who sent it: below kMaxSources, the same for all that one sends
-  std::int64_t stamp_ns = 0;  // when the pose held, CLOCK_REALTIME of who sent it
-  Pose world_from_object;     // as on the wire: neither finite nor of unit length until checked
+  std::uint32_t source = 0;   // number of the sender, below kMaxSources
+  std::int64_t stamp_ns = 0;  // when the pose held, CLOCK_REALTIME of the sender
+  Pose world_from_object;     // as on the wire: may be non-finite or not unit until checked
   Twist twist;
   bool has_twist = false;
 };
 
-// What a sample may be off unit length, and the largest number in it, m, m/s or rad/s: squares and
-// sums of these stay finite. What converts poses from elsewhere refuses the same.
+// The largest error of the length of a sample's quaternion, and the largest number in a sample, m,
+// m/s or rad/s. Squares and sums of such numbers stay finite. Decoders of other formats use the
+// same limits.
 inline constexpr double kSampleUnitTolerance = 1e-3;
 inline constexpr double kLargestInSample = 1e9;
 
-// Why a sample was not used. Counted per object, named in the health topic.
+// Why a sample was not used. Refusals are counted per object and named in the health topic.
 enum class Reject : std::uint8_t {
   kUnknownObject,  // no such id, or a fixed object
-  kNonFinite,      // NaN, infinity or beyond 1e9 (m, m/s, rad/s) in position, orientation or twist
+  kNonFinite,      // position, orientation or twist has NaN, infinity or a number above 1e9
   kNotUnit,        // | |q| - 1 | > 1e-3
-  kBackwards,      // stamp before the one in use
-  kFuture,         // stamp farther ahead of now than Scene::future_limit_ns
+  kBackwards,      // its stamp is before that of the pose in use
+  kFuture,         // its stamp is more than Scene::future_limit_ns ahead of now
   kWrongRevision,  // made for another scene
   kOtherSource,    // another source sends this object's poses
-  kTooFast,        // farther from the pose in use, or with a faster twist, than the object moves
-  kFrozen,         // the same pose again and again, with a twist that says that it moves
-  kOtherWay,       // elsewhere than the twists lead
+  kTooFast,        // its distance from the pose in use, or its twist, exceeds the speed limit
+  kFrozen,         // the same pose repeatedly, although its twist says that it moves
+  kOtherWay,       // not where the twists lead
   kCount
 };
 inline constexpr auto kRejects = static_cast<std::size_t>(Reject::kCount);
 [[nodiscard]] const char* name(Reject cause) noexcept;
 
-// Who sent a batch. Fixed size: copied in the tick thread.
+// The sender of a batch. Its size is fixed, so the tick thread can copy it without allocating.
 class SourceName {
  public:
   SourceName() = default;
@@ -64,15 +65,15 @@ class SourceName {
   std::array<char, kMaxSourceLength + 1> text_{};  // the rest is zeros
 };
 
-// One sample of the topic `poses`, or of `joint_states`: then it has joints instead of poses.
+// One sample of the topic `poses`, or of `joint_states`: the latter has joints instead of poses.
 struct PoseBatch {
   SourceName source;
   std::uint64_t sequence_number = 0;
-  std::uint64_t scene_revision = 0;  // of the catalogue its ids are from; 0: not said
+  std::uint64_t scene_revision = 0;  // of the catalogue that its ids are from; 0: not stated
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints = {};
 
-  // Keeps the memory.
+  // Keeps the allocated memory.
   void clear() noexcept {
     scene_revision = 0;
     samples.clear();
@@ -82,12 +83,12 @@ struct PoseBatch {
   [[nodiscard]] std::size_t size() const noexcept { return samples.size() + joints.size(); }
 };
 
-// Whether the ids of a batch are those of this scene; revision 0 says nothing and is taken.
+// Returns true if the ids of the batch belong to this scene. Revision 0 states nothing and passes.
 [[nodiscard]] inline bool made_for(const PoseBatch& batch, std::uint64_t scene_revision) noexcept {
   return batch.scene_revision == 0 || batch.scene_revision == scene_revision;
 }
 
-// The last batch of a source that a tick took in.
+// The last batch of a source that a tick took into use.
 struct SourceUse {
   SourceName source;
   std::uint64_t sequence_number = 0;

@@ -22,7 +22,7 @@ SourceNumbers::SourceNumbers(const Scene& scene) {
   }
 }
 
-// A place that was never used comes before all that were.
+// A number that was never used has last_use 0 and is therefore chosen first.
 std::uint32_t SourceNumbers::of(const SourceName& source) noexcept {
   auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
     return candidate.last_use > 0 && candidate.source == source;

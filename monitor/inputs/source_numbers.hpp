@@ -1,4 +1,4 @@
-// Numbers for the names of sources, as PoseSample::source has them.
+// Numbers for the names of sources, as stored in PoseSample::source.
 #pragma once
 
 #include <array>
@@ -11,18 +11,19 @@
 
 namespace clearance {
 
-// Whose poses or joints the cell asks for, each once, in its order. The reader of cells refuses
-// more than there are places.
+// The sources that the cell names for its poses and joints, each once, in the order of the cell.
+// The reader of cells refuses more than kMaxSources.
 [[nodiscard]] std::vector<SourceName> named_sources(const Scene& scene);
 
-// The sources that the cell names come first, in its order; the others follow as they are first
-// heard. One beyond kMaxSources takes the number of the one, not named by the cell, that was heard
-// longest ago. Whoever asks for the same sources in the same order gets the same numbers.
+// The sources that the cell names come first, in its order. The others follow in the order in which
+// they are first heard. When all kMaxSources numbers are taken, a new source replaces the source
+// that was heard longest ago and that the cell does not name. The same requests in the same order
+// give the same numbers.
 class SourceNumbers {
  public:
   explicit SourceNumbers(const Scene& scene);
   [[nodiscard]] std::uint32_t of(const SourceName& source) noexcept;
-  // Empty: no source has that number.
+  // Returns an empty name when no source has that number.
   [[nodiscard]] SourceName name(std::uint32_t number) const noexcept;
 
  private:

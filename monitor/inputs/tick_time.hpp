@@ -1,5 +1,5 @@
-// The time that a tick is told. It only ever goes forwards, at the rate of this machine's steady
-// clock, which cannot be stepped.
+// The time that is passed to a tick. It follows this machine's steady clock, which cannot be
+// stepped, and never goes backwards.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 namespace clearance {
 
 struct TickTime {
-  // CLOCK_REALTIME as it was when the daemon started, plus the time that has passed since. A tick
-  // that is told less than the one before is told that an unknown time has passed: every pose is
-  // late until the next one comes.
+  // CLOCK_REALTIME at the start of the daemon, plus the time that has passed since. A value below
+  // that of the tick before means that an unknown time has passed. Every pose is then late until
+  // the next one comes.
   std::int64_t now_ns = 0;
-  // CLOCK_REALTIME less `now_ns`: 0 until this machine's clock is stepped.
+  // CLOCK_REALTIME less `now_ns`. It is 0 until this machine's clock is stepped.
   std::int64_t clock_offset_ns = 0;
 
   TickTime() = default;

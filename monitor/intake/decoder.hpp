@@ -1,6 +1,6 @@
-// What makes batches of the tick's inputs out of the messages of one kind of topic.
+// A decoder turns the messages of one kind of topic into batches of the tick's inputs.
 //
-// A new kind of input is a decoder, a row in intake.cpp, and a test: README.md says how.
+// A new kind of input needs a decoder, a row in intake.cpp, and a test: see README.md.
 #pragma once
 
 #include <cstdint>
@@ -19,43 +19,44 @@ namespace clearance {
 struct TopicCounts {
   std::uint64_t messages = 0;
   std::uint64_t undecodable = 0;
-  std::uint64_t unstamped = 0;           // their stamp is 0
-  std::uint64_t of_another_clock = 0;    // their stamp is far from when they were sent
-  std::int64_t clock_difference_ns = 0;  // of the first such stamp
+  std::uint64_t unstamped = 0;           // messages whose stamp is 0
+  std::uint64_t of_another_clock = 0;    // their stamp is far from their time of sending
+  std::int64_t clock_difference_ns = 0;  // of the first such message
 };
 
-// Where a decoder leaves what it has made.
+// The receiver of a decoder's batches and news.
 class Outlet {
  public:
   virtual ~Outlet() = default;
-  // A batch, which may be exchanged for another one's memory; `writer`: whose it is; `cut`: samples
-  // that were left out since the batch may not be longer.
+  // Receives a batch and may exchange its memory. `writer` is the writer of the batch. `cut` counts
+  // the samples that were left out because the length of a batch is limited.
   virtual void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) = 0;
   virtual void tell(News news) = 0;
 };
 
-// For one thread.
+// To be used by one thread.
 class Decoder {
  public:
-  // A topic that is wanted: the decoder's own number for it, and how ROS 2 delivers it; null: a
-  // topic of ours, delivered as the table of topics says.
+  // The answer for a topic that the decoder takes: its own number for the topic, and the delivery
+  // of the ROS 2 type. A null delivery means a topic of ours, delivered as the table of topics
+  // says.
   struct Wanted {
     std::uint32_t port = 0;
     const RosType* delivery = nullptr;
   };
 
   virtual ~Decoder() = default;
-  // Nothing: not a topic for this decoder. The same topic gets the same answer.
+  // Returns nothing if the decoder does not take the topic. The same topic gets the same answer.
   [[nodiscard]] virtual std::optional<Wanted> wants(const TopicName& topic) = 0;
-  // False: the bytes are no message of the topic's type.
+  // Returns false if the bytes are not a message of the topic's type.
   [[nodiscard]] virtual bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                                     TopicCounts& counts) = 0;
-  // After all messages that had come, and at the latest after patience_ns().
+  // Called after all available messages, and at the latest after patience_ns().
   virtual void settle(const Now&) {}
   [[nodiscard]] virtual std::int64_t patience_ns() const {
     return std::numeric_limits<std::int64_t>::max();
   }
-  // Only these writers are still there; sorted.
+  // Tells the decoder which writers still exist; sorted.
   virtual void keep(std::span<const std::uint64_t>) {}
 };
 

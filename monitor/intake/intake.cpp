@@ -112,7 +112,7 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   ++tally->batches;
 }
 
-// Counts what is missing before the batch.
+// Also counts the batches that are missing before this one.
 SourceTally* Intake::admit(const PoseBatch& batch, std::uint64_t writer, std::size_t size) {
   const Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
   tell_of(admission, batch, writer);

@@ -1,6 +1,6 @@
-// The one way in: raw messages of any topic become batches that the tick takes, and news for a
-// person. Knows neither DDS nor a clock nor a file, so that everything that reads inputs can use
-// it: the daemon, bags, recordings, and whatever draws them.
+// Turns raw messages of any topic into batches for the tick, and into news for a person. All
+// readers of inputs use it: the daemon, bags, recordings and viewers. It therefore does not use
+// DDS, a clock or files.
 #pragma once
 
 #include <cstdint>
@@ -24,27 +24,26 @@
 namespace clearance {
 
 struct IntakeOptions {
-  // The messages come out of a log: in its order, with times of recording, from writers that nobody
-  // knows any more.
+  // The messages come from a log: in its order, with times of recording and without writers.
   bool is_log = false;
-  // Whether sources are admitted as the daemon does it: at most kMaxSources, each of one writer.
+  // True: sources are admitted as in the daemon, at most kMaxSources, each with one writer.
   bool admits_sources = false;
-  // What a batch may hold; more is counted and left out.
+  // The largest numbers of samples and joints in a batch. More are counted and left out.
   std::size_t most_samples = std::numeric_limits<std::size_t>::max();
   std::size_t most_joints = std::numeric_limits<std::size_t>::max();
-  // Of ROS 2's joint states: see RosJointStatesOptions.
+  // See RosJointStatesOptions::topics.
   std::vector<std::string> joint_topics = {};
-  // How a person knows a writer, for news.
+  // The name of a writer in news.
   std::function<std::string(std::uint64_t)> writer_name = [](std::uint64_t writer) {
     return std::to_string(writer);
   };
 };
 
-// For one thread at a time.
+// To be used by one thread at a time.
 class Intake final : public Outlet {
  public:
-  // Gets each batch that was admitted; may exchange its content for other memory. False: there is
-  // no room for it, it is lost.
+  // Receives each admitted batch and may exchange its content for other memory. Returns false if
+  // there is no free slot; the batch is then lost.
   using Use = std::function<bool(PoseBatch& batch)>;
 
   // The cell must outlive this.
@@ -52,27 +51,27 @@ class Intake final : public Outlet {
 
   struct Topic {
     std::uint32_t number = 0;           // for RawMessage::topic
-    const RosType* delivery = nullptr;  // null: one of ours
+    const RosType* delivery = nullptr;  // null: a topic of ours
   };
-  // Nothing: the topic says nothing that the cell could use.
+  // Returns nothing if the cell cannot use the topic.
   [[nodiscard]] std::optional<Topic> topic(const TopicName& name);
-  // One of our own, as the cell names it.
+  // The same for a topic of ours, under the name that the cell gives it.
   [[nodiscard]] std::optional<Topic> topic(TopicKind kind);
 
-  // Whether any topic of ROS 2 could be wanted.
+  // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
     return !scene_.robots.empty() || transforms_->any();
   }
 
-  // False: the bytes are no message of the topic's type.
+  // Returns false if the bytes are not a message of the topic's type.
   bool take(const RawMessage& message, const Now& now);
-  // To be called after all messages that had come, and at the latest after patience_ns().
+  // Call this after all available messages, and at the latest after patience_ns().
   void settle(const Now& now);
   [[nodiscard]] std::int64_t patience_ns() const;
-  // Only these writers are still there: names and places of others are free.
+  // `writers` are those that still exist. The names and places of all others become free.
   void keep(std::vector<std::uint64_t> writers);
 
-  // What was told since the last call.
+  // Returns the news since the last call.
   [[nodiscard]] std::vector<News> take_news();
 
   [[nodiscard]] const TopicCounts& counts(std::uint32_t topic) const {
@@ -93,7 +92,7 @@ class Intake final : public Outlet {
   const Kind* add(Arguments&&... arguments);
   void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) override;
   void tell(News news) override { news_.push_back(std::move(news)); }
-  // Null: refused.
+  // Returns null if the batch is refused.
   [[nodiscard]] SourceTally* admit(const PoseBatch& batch, std::uint64_t writer, std::size_t size);
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
@@ -102,14 +101,14 @@ class Intake final : public Outlet {
   IntakeOptions options_;
   Use use_;
   std::vector<std::unique_ptr<Decoder>> decoders_;
-  const RosJointStates* joint_states_ = nullptr;                          // of decoders_
-  const RosTransforms* transforms_ = nullptr;                             // of decoders_
-  std::vector<Route> routes_;                                             // by number of the topic
+  const RosJointStates* joint_states_ = nullptr;                          // an entry of decoders_
+  const RosTransforms* transforms_ = nullptr;                             // an entry of decoders_
+  std::vector<Route> routes_;                                             // by topic number
   std::map<std::pair<std::string, std::string>, std::uint32_t> numbers_;  // by name and type
   PoseSources sources_;
   SlowInputs slow_;
   std::vector<News> news_;
-  std::int64_t monotonic_ns_ = 0;  // of what is being taken
+  std::int64_t monotonic_ns_ = 0;  // time of the message that is being taken
 };
 
 }  // namespace clearance

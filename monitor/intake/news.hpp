@@ -1,4 +1,4 @@
-// What a person should know of what comes in, each once: a sentence, and its cause for programs.
+// News about the inputs for a person, each told once: a sentence, and its cause for programs.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +23,11 @@ struct News {
     kFrameOfTwo,
     kFrameMoved,
     kFrameMissing,
-    kNoTransforms,  // none has come at all; the sentence leaves room for what there is instead
+    kNoTransforms,  // none at all; the caller adds to the sentence what there is instead
     kFrameFound,
   };
   Cause cause;
-  bool is_warning = true;  // false: merely of interest
+  bool is_warning = true;  // false: information only
   std::string text;
 };
 

@@ -1,4 +1,4 @@
-// Our own topics of poses and of joint states.
+// Decoders of our own topics of poses and of joint states.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +16,7 @@ namespace clearance {
 
 class OwnPoses final : public Decoder {
  public:
-  // `topic`: as the cell names it. The first `most` poses of a batch are used.
+  // `topic` is the name that the cell gives it. Only the first `most` poses of a batch are used.
   OwnPoses(std::string topic, std::size_t most, Outlet& out)
       : topic_(std::move(topic)), most_(most), out_(out) {}
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
@@ -34,7 +34,7 @@ class OwnPoses final : public Decoder {
 
 class OwnJointStates final : public Decoder {
  public:
-  // `topic`: as the cell names it. The first `most` joints of a message are used.
+  // `topic` is the name that the cell gives it. Only the first `most` joints of a message are used.
   OwnJointStates(const Scene& scene, std::string topic, std::size_t most, Outlet& out)
       : topic_(std::move(topic)), names_(scene), most_(most), out_(out) {}
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
@@ -51,7 +51,7 @@ class OwnJointStates final : public Decoder {
   PoseBatch batch_;
 };
 
-// Both topics, for recordings and viewers: each batch as it was sent, whoever sent it.
+// Decodes both topics for recordings and viewers: each batch as it was sent, from any sender.
 class OwnBatches final : private Outlet {
  public:
   explicit OwnBatches(const Scene& scene)
@@ -59,8 +59,8 @@ class OwnBatches final : private Outlet {
   OwnBatches(const OwnBatches&) = delete;
   OwnBatches& operator=(const OwnBatches&) = delete;
 
-  // Of a message of poses or joint states. Valid until the next call, and may be moved from; null:
-  // the bytes do not decode.
+  // Decodes a message of poses or joint states. The batch is valid until the next call and may be
+  // moved from. Returns null if the bytes do not decode.
   [[nodiscard]] PoseBatch* decode(TopicKind kind, std::span<const std::byte> cdr);
 
  private:

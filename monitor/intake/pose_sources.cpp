@@ -6,9 +6,9 @@
 namespace clearance {
 namespace {
 
-// A million batches are a quarter of an hour at 1 kHz: nobody loses so many in a row.
+// A million batches last a quarter of an hour at 1 kHz: no source loses so many in a row.
 constexpr std::uint64_t kCountsAnew = 1'000'000;
-// Of a writer that has left.
+// The writer number of a name whose writer has left.
 constexpr std::uint64_t kNoIndex = 0;
 
 }  // namespace
@@ -48,7 +48,7 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
       return refusal;
     }
     tally.writer = writer;
-    tally.last_ns = 0;  // numbers of two writers have nothing to do with each other
+    tally.last_ns = 0;  // numbers of two writers are unrelated
     return {.tally = &tally, .news = Admission::News::kTakenOver, .former_writer = former};
   }
   const SourceTally fresh{.source = source, .writer = writer};
@@ -68,14 +68,14 @@ bool PoseSources::is_named(const SourceName& source) const noexcept {
   return std::ranges::find(named_, source) != named_.end();
 }
 
-// That are not taken.
+// The number of free places that are not reserved for named sources.
 std::size_t PoseSources::places_for_others() const noexcept {
   const auto taken = std::ranges::count_if(
       tallies_, [this](const SourceTally& tally) { return !is_named(tally.source); });
   return kMaxSources - named_.size() - static_cast<std::size_t>(taken);
 }
 
-// The one that has been silent for the longest time, of those that may go.
+// The source that has been silent for the longest time among those that may be replaced.
 SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
   SourceTally* longest = nullptr;
   for (SourceTally& tally : tallies_) {
@@ -95,7 +95,7 @@ void PoseSources::keep(std::span<const std::uint64_t> writers) {
   }
 }
 
-// The first ones are named, all others counted together by cause.
+// The first refused sources are listed by name. All others are counted together, by cause.
 Admission PoseSources::refuse(const SourceName& source, SourceRefusal cause, std::size_t poses) {
   Admission refusal{.cause = cause};
   const auto entry_of = [&](const SourceName& name) {

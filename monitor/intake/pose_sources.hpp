@@ -1,5 +1,5 @@
-// Who may be heard: which DDS writer a source name belongs to, and which names have one of the 16
-// places. Knows writers by their publication handles and no DDS, so that tests need none.
+// Admission of sources: the DDS writer that each source name belongs to, and the sources that have
+// one of the 16 places. Writers are known by their publication handles, so tests need no DDS.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace clearance {
 
-// What came from one source, since it has its place.
+// Counts of one source since it got its place.
 struct SourceTally {
   SourceName source;
-  std::uint64_t writer = 0;     // whose name it is
+  std::uint64_t writer = 0;     // the writer to which the name belongs
   std::uint64_t batches = 0;    // handed to the tick
   std::uint64_t lost = 0;       // gaps in the sequence numbers, and batches with no slot free
-  std::uint64_t cut_poses = 0;  // beyond what a batch of this cell can hold: not used
+  std::uint64_t cut_poses = 0;  // poses above the largest size of a batch: not used
   std::uint64_t last_sequence = 0;
   std::int64_t last_ns = 0;  // when its last sample was taken, CLOCK_MONOTONIC
   bool warned_of_revision = false;
 
-  // Counts what is missing before this number. A smaller one, or one that is farther ahead than
-  // anything is lost, is a source that counts anew.
+  // Counts the batches that are missing before this number. A source has restarted its numbers if
+  // this one is smaller, or farther ahead than any plausible loss.
   void note_sequence(std::uint64_t number) noexcept;
 };
 
@@ -35,43 +35,43 @@ enum class SourceRefusal : std::uint8_t {
 [[nodiscard]] const char* name(SourceRefusal cause) noexcept;
 
 struct RefusedSource {
-  SourceName source = {};  // empty: all others together
+  SourceName source = {};  // empty: the sum of all others
   SourceRefusal cause = SourceRefusal::kTooMany;
   std::uint64_t poses = 0;
 };
 
-// What a batch counts for, and what a person should know of it.
+// The result of an admission: the tally that a batch counts for, and the news for a person.
 struct Admission {
   enum class News : std::uint8_t { kNothing, kNewSource, kTakenOver, kFirstRefusal };
   SourceTally* tally = nullptr;  // null: refused, for `cause`
   SourceRefusal cause = SourceRefusal::kTooMany;
   News news = News::kNothing;
-  std::uint64_t former_writer = 0;  // of the name, when taken over or refused for it
-  SourceName place_of = {};         // new source: who gave its place up for it; empty: nobody
+  std::uint64_t former_writer = 0;  // of the name, when it is taken over or refused
+  SourceName place_of = {};         // the source that gave up its place to a new one; empty: none
 };
 
 class PoseSources {
  public:
-  // A name whose writer has been silent for this long may be taken over by another.
+  // Another writer may take over a name after its writer has been silent for this long.
   static constexpr std::int64_t kNameHeldNs = 1'000'000'000;
-  // A place goes to another source after this silence; after the shorter one where its writer has
-  // more places.
+  // Another source may get a place after this silence. The shorter time applies if the writer of
+  // the silent source has more places.
   static constexpr std::int64_t kPlaceHeldNs = 10'000'000'000;
   static constexpr std::int64_t kSparePlaceHeldNs = 1'000'000'000;
 
-  // `named`: the sources that the cell names, whose places nobody else gets.
+  // `named` are the sources that the cell names. Their places are reserved.
   explicit PoseSources(std::vector<SourceName> named = {});
 
-  // Who a batch of this name, taken from this writer, counts for. The tally is valid until the next
-  // call.
+  // Admits or refuses a batch with this source name from this writer. The tally is valid until the
+  // next call.
   Admission admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
                   std::int64_t monotonic_ns);
-  // Of the writers, only these are still there: names and places of others are free.
+  // `writers` are those that still exist. The names and places of all others become free.
   void keep(std::span<const std::uint64_t> writers);
 
   [[nodiscard]] const std::vector<SourceTally>& tallies() const noexcept { return tallies_; }
   [[nodiscard]] const std::vector<RefusedSource>& refused() const noexcept { return refused_; }
-  // What those that have given up their places had counted.
+  // The sum of the counts of sources that have given up their places.
   [[nodiscard]] const SourceTally& departed() const noexcept { return departed_; }
 
  private:

@@ -15,7 +15,7 @@ constexpr std::string_view kJointStatesType = "sensor_msgs/msg/JointState";
 constexpr std::string_view kLast = "/joint_states";
 constexpr std::size_t kMostUnknownNames = 64;
 
-// The end of a long topic tells more than its beginning.
+// The end of a long topic name is more distinctive than its beginning.
 SourceName source_name(const std::string& topic, std::size_t writer) {
   const std::string suffix = writer > 1 ? fmt::format("#{}", writer) : "";
   const std::size_t most = kMaxSourceLength - suffix.size();
@@ -64,8 +64,8 @@ void RosJointStates::keep(std::span<const std::uint64_t> writers) {
   }
 }
 
-// The lowest number that no other writer of the topic has: one that is started again gets the name
-// of the one before.
+// Uses the lowest number that no other writer of the topic has. A restarted writer thus gets its
+// former name again.
 RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t handle) {
   const auto known = topic.writers.find(handle);
   if (known != topic.writers.end()) return known->second;
@@ -78,7 +78,7 @@ RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t ha
       .first->second;
 }
 
-// What the robot of the first joint that is known wants holds for all.
+// The robot of the first known joint decides for the whole message.
 std::int64_t RosJointStates::time_of(const RawMessage& message, const Topic& topic, Writer& writer,
                                      TopicCounts& counts) {
   RosStamps wanted = RosStamps::kMessage;

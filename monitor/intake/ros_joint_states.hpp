@@ -1,6 +1,6 @@
-// Joint states of ROS 2: the topics /joint_states of any namespace, and those that the cell's
-// robots name. They are handed on as if a driver of ours had sent them: under a source name, with
-// numbers of their own.
+// Decodes joint states of ROS 2 from the topics /joint_states of any namespace, and from those that
+// the cell's robots name. They are handed on like those of our own topics, with a source name and a
+// sequence of their own.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@
 namespace clearance {
 
 struct RosJointStatesOptions {
-  // ROS 2's names of the topics that are used; empty: all that are named joint_states, in any
-  // namespace, and those that robots name.
+  // The ROS 2 names of the topics that are used. If empty, these are all topics named joint_states,
+  // in any namespace, and those that robots name.
   std::vector<std::string> topics = {};
   OtherClock other_clock = OtherClock::kTold;
-  std::size_t most_joints = std::numeric_limits<std::size_t>::max();  // of a message
+  std::size_t most_joints = std::numeric_limits<std::size_t>::max();  // in one message
 };
 
 class RosJointStates final : public Decoder {
@@ -37,8 +37,7 @@ class RosJointStates final : public Decoder {
                             TopicCounts& counts) override;
   void keep(std::span<const std::uint64_t> writers) override;
 
-  // Writers that are heard, and what was not used of what they said: names that no robot of the
-  // cell has, the first of them.
+  // The number of writers, and the first names in their messages that no robot of the cell has.
   [[nodiscard]] std::size_t writers() const noexcept;
   [[nodiscard]] const std::set<std::string>& unknown_names() const noexcept {
     return unknown_names_;
@@ -46,8 +45,8 @@ class RosJointStates final : public Decoder {
 
  private:
   struct Writer {
-    // The topic, "/left/joint_states", for the first of its writers; for the others with "#2" and
-    // so on. The end of it, when it is longer.
+    // The first writer of a topic gets the name of the topic, "/left/joint_states"; later writers
+    // add "#2" and so on. A name that is too long is cut at its beginning.
     SourceName source;
     std::uint64_t messages = 0;
     StampCheck stamps = {};
@@ -61,7 +60,7 @@ class RosJointStates final : public Decoder {
 
   [[nodiscard]] bool is_wanted(const TopicName& topic) const;
   [[nodiscard]] Writer& writer_of(Topic& topic, std::uint64_t handle);
-  // When the positions held.
+  // The time at which the positions of a message held.
   [[nodiscard]] std::int64_t time_of(const RawMessage& message, const Topic& topic, Writer& writer,
                                      TopicCounts& counts);
   void note_unused(const Topic& topic, Writer& writer);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 constexpr std::string_view kTf = "/tf", kStatic = "_static";
-// Of one frame: after that it is known to change its parent.
+// The number of reports for one frame. After that, the frame is known to change its parent.
 constexpr std::size_t kMostParentsSaid = 3;
 constexpr std::size_t kMostListed = 10;
 
@@ -21,7 +21,7 @@ bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
-// The frames that there are, as far as a person reads them.
+// The existing frames, in a list that a person can read.
 std::string listed(const TfTree& tree) {
   std::string text;
   std::size_t count = 0;
@@ -33,7 +33,7 @@ std::string listed(const TfTree& tree) {
   return text;
 }
 
-// The way from a frame until it comes round.
+// The path from a frame until it closes a cycle.
 std::string circle_of(const TfTree& tree, const std::string& frame) {
   std::string text = frame;
   std::set<std::string> met = {frame};
@@ -55,7 +55,7 @@ RosTransforms::RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out)
                                                  : TrackedFrames::ByName::kNo),
       following_(frames_.followers().size(), Following{.state = State::kMissing}) {}
 
-// A topic of transforms is /tf or /tf_static; of a log, in any namespace. Both are one source.
+// A topic of transforms is /tf or /tf_static; in a log, in any namespace. Both are one source.
 std::optional<Decoder::Wanted> RosTransforms::wants(const TopicName& topic) {
   if (!frames_.any() || topic.type != kTransformsType) return std::nullopt;
   const bool is_static = topic.name.ends_with(kStatic);
@@ -69,7 +69,7 @@ std::optional<Decoder::Wanted> RosTransforms::wants(const TopicName& topic) {
   return Wanted{port, is_static ? &kRosTfStatic : &kRosTf};
 }
 
-// A third of the age limit: what never changes is handed over twice before it is late.
+// A third of the age limit: a static pose is handed over twice before it is late.
 std::int64_t RosTransforms::patience_ns() const {
   if (!frames_.any()) return Decoder::patience_ns();
   std::int64_t patience = kMissingNs / 10;
@@ -118,7 +118,7 @@ void RosTransforms::take(const Transform& transform, const Topic& topic, const R
   tree_.set(child, std::move(link));
 }
 
-// What is refused leaves the frame as it is, and so late.
+// A refused transform does not change its frame, which therefore becomes late.
 bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link) {
   const Eigen::Quaterniond& turn = link.parent_from_child.orientation;
   const bool is_pose = link.parent_from_child.position.allFinite() &&
@@ -147,7 +147,7 @@ bool RosTransforms::admits(const std::string& child, const TfTree::Link& link, s
                            bool is_static, const Now& now) {
   const auto [found, is_new] = owners_.try_emplace(child);
   Owner& owner = found->second;
-  // Samples of a publisher that has left may come after the news of it.
+  // Samples of a publisher may arrive after the notice that it has left.
   const bool is_held = !is_new && owner.writer != writer &&
                        std::ranges::binary_search(writers_, owner.writer) &&
                        (owner.is_static || now.monotonic_ns - owner.last_ns < kFrameHeldNs);
@@ -185,7 +185,7 @@ void RosTransforms::settle(const Now& now) {
   if (from_ == TransformsFrom::kPublishers) hand_over(std::string(kTf), now);
 }
 
-// Each base is a batch of its own: positions of a batch have one stamp.
+// Each base has its own batch, because all positions of a batch have one stamp.
 void RosTransforms::hand_over(const std::string& source, const Now& now) {
   poses_.clear();
   for (std::size_t i = 0; i < following_.size(); ++i) {

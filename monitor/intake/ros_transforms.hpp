@@ -1,9 +1,10 @@
-// The transforms of ROS 2, /tf and /tf_static, as poses of what of a cell follows frames.
+// Converts the transforms of ROS 2, /tf and /tf_static, to poses of the cell's followers: the
+// objects and robot bases that follow frames.
 //
-// A frame belongs to the publisher that sent it first, as long as that publisher is there and, on
-// /tf, has been silent for less than a second. A pose is handed over when the stamp of its chain
-// changes, which is that of the oldest transform of the chain. A chain of which no transform may
-// change holds always, and its pose is handed over again before it is late.
+// A frame belongs to the publisher that sent it first. It stays with that publisher as long as the
+// publisher exists and, on /tf, is not silent for a second or more. The stamp of a chain of
+// transforms is that of its oldest one. A follower's pose is handed over when that stamp changes. A
+// chain of static transforms is always valid: its pose is handed over again before it is late.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +21,19 @@
 
 namespace clearance {
 
-// A log is replayed message by message: every message of any namespace's tf says of all followers
-// where they are. Objects that name no frame follow the frame of their name.
+// A log is replayed message by message: each message on the tf of any namespace gives the poses of
+// all followers. In a log, objects that name no frame follow the frame of their own name.
 enum class TransformsFrom : std::uint8_t { kPublishers, kLog };
 
 class RosTransforms final : public Decoder {
  public:
-  // Whose batches these are, as of a writer: there are many, and what is composed of several is no
-  // one's.
+  // The writer number of all these batches. A pose composed of several publishers' transforms has
+  // no single writer.
   static constexpr std::uint64_t kWriter = ~std::uint64_t{0};
   static constexpr std::size_t kMostFrames = 4096;
-  // A publisher that has been silent for this long gives its frames up.
+  // A publisher loses its frames after it has been silent for this long.
   static constexpr std::int64_t kFrameHeldNs = 1'000'000'000;
-  // What is missing for this long is told.
+  // A transform that is missing for this long is reported.
   static constexpr std::int64_t kMissingNs = 5'000'000'000;
 
   // The cell and the outlet must outlive this.
@@ -41,14 +42,15 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
-  // Hands over what has changed, and tells what is missing.
+  // Hands over the changed poses, and reports missing transforms.
   void settle(const Now& now) override;
   [[nodiscard]] std::int64_t patience_ns() const override;
   void keep(std::span<const std::uint64_t> writers) override;
 
-  // Whether anything of the cell follows frames.
+  // True if anything of the cell follows frames.
   [[nodiscard]] bool any() const noexcept { return frames_.any(); }
-  // Roots of trees that were taken to be the cell's world, which has no name.
+  // The roots of trees that were taken to be the cell's world, if the cell gives its world no frame
+  // name.
   [[nodiscard]] std::vector<std::string> worlds() const;
 
  private:
@@ -59,12 +61,12 @@ class RosTransforms final : public Decoder {
     bool is_static = false, rival_said = false;
   };
   struct Following {
-    std::int64_t stamp_ns = 0;        // handed over last
+    std::int64_t stamp_ns = 0;        // of the pose handed over last
     std::int64_t handed_over_ns = 0;  // monotonic
     State state = State::kFine;
-    std::int64_t since_ns = -1;  // monotonic; negative: nobody has looked yet
-    bool said = false;           // of this state
-    bool is_lost = false;        // something was said since it was fine
+    std::int64_t since_ns = -1;  // monotonic; negative: not checked yet
+    bool said = false;           // this state was reported
+    bool is_lost = false;        // a fault was reported since it was fine
   };
   using Transform = geometry_msgs_msg_dds__TransformStamped_;
   struct Topic {
@@ -95,15 +97,15 @@ class RosTransforms final : public Decoder {
   CdrDecoder decoder_;
   Sample<tf2_msgs_msg_dds__TFMessage_> message_;
   TfTree tree_;
-  std::vector<std::uint64_t> writers_;               // that are there, sorted
-  std::map<std::string, Owner> owners_;              // by child
+  std::vector<std::uint64_t> writers_;               // those that exist, sorted
+  std::map<std::string, Owner> owners_;              // by child frame
   std::map<std::uint64_t, StampCheck> stamps_;       // by publisher
-  std::map<std::string, std::size_t> parents_said_;  // changes of a child's parent
-  std::set<std::string> refused_said_;               // children
-  std::set<std::string> roots_;                      // where chains of followers end
+  std::map<std::string, std::size_t> parents_said_;  // number of reported parents, by child frame
+  std::set<std::string> refused_said_;               // child frames
+  std::set<std::string> roots_;                      // ends of the followers' chains
   bool too_many_said_ = false;
   std::vector<Following> following_;              // by follower
-  std::map<std::string, std::uint64_t> numbers_;  // of batches, by source
+  std::map<std::string, std::uint64_t> numbers_;  // sequence numbers of batches, by source
   PoseBatch poses_, base_;
 };
 

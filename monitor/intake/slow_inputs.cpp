@@ -71,7 +71,7 @@ void SlowInputs::note_poses(const PoseBatch& batch, Outlet& out) {
   }
 }
 
-// One sentence for all joints of a batch that are found at once.
+// Tells one sentence for all slow joints that a batch reveals at once.
 void SlowInputs::note_joints(const PoseBatch& batch, Outlet& out) {
   std::size_t found = 0;
   std::int64_t interval_ns = 0;

@@ -1,5 +1,6 @@
-// Which inputs, poses of objects or positions of joints, come less often than their age limits
-// need: such a one is late again and again, and its zones flicker without anything being wrong.
+// Detects inputs (poses of objects or positions of joints) that come less often than their age
+// limits need. Such an input is late again and again, and its zones flicker although nothing is
+// wrong.
 #pragma once
 
 #include <array>
@@ -14,13 +15,14 @@
 
 namespace clearance {
 
-// Inputs of one kind, by their numbers.
+// The intervals of all inputs of one kind, by input number.
 class SlowIntervals {
  public:
-  // In a row, all longer than the age limit: a pause or lost batches are no rate.
+  // The number of consecutive intervals that must all exceed the age limit. A single pause or loss
+  // does not count.
   static constexpr std::size_t kIntervals = 8;
 
-  // Age limits in ns; 0: an input that never comes, as the pose of a fixed object.
+  // Age limits in ns; 0 for an input that never comes, such as the pose of a fixed object.
   explicit SlowIntervals(const std::vector<std::int64_t>& limits_ns);
 
   // Returns the median interval once per input, ns, when the input first proves too slow.
@@ -28,7 +30,7 @@ class SlowIntervals {
 
  private:
   struct Rate {
-    std::int64_t limit_ns = 0;  // 0: found already, or it never comes
+    std::int64_t limit_ns = 0;  // 0: already reported, or never comes
     std::int64_t stamp_ns = 0;
     std::size_t count = 0;
     std::array<std::int64_t, kIntervals> intervals_ns{};
@@ -41,7 +43,7 @@ class SlowInputs {
  public:
   // The scene must outlive this.
   explicit SlowInputs(const Scene& scene);
-  // To be called with every batch; tells each input that proves too slow once.
+  // Call this with every batch. Tells `out` of each slow input once.
   void note(const PoseBatch& batch, Outlet& out);
 
  private:
@@ -52,7 +54,7 @@ class SlowInputs {
   SlowIntervals poses_, joints_;
 };
 
-// An age limit that fits inputs at this interval: two intervals, to the next 10 ms.
+// The age limit that suits an interval: two intervals, rounded to the next 10 ms.
 [[nodiscard]] std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// When the messages of a publisher of ROS 2 held: as they say, or when they were sent.
+// The time at which a ROS 2 publisher's message held: its stamp, or its time of sending.
 #pragma once
 
 #include <cstdint>
@@ -10,33 +10,34 @@
 
 namespace clearance {
 
-// What becomes of a stamp of another clock than that of the time of sending.
+// The treatment of a stamp that is not from the clock of the time of sending.
 enum class OtherClock : std::uint8_t {
-  kTold,      // it is used, and told once: the person who runs the cell can change that
-  kReplaced,  // out of a log: the time of recording is used, and it is counted
+  kTold,      // it is used and reported once: a person can change the cell
+  kReplaced,  // in a log: counted, and replaced by the time of recording
 };
 
-// One a publisher.
+// One object for each publisher.
 class StampCheck {
  public:
-  // A machine whose clock is off by more than this has another clock; messages in a row that show
-  // it. Recorders may be late: out of a log, it is off by more than the second figure.
+  // The difference that shows another clock, ns: that of a live message, then that of a message in
+  // a log, since recorders may be late. The last figure is the number of consecutive messages that
+  // must show it.
   static constexpr std::int64_t kOtherClockNs = 1'000'000'000;
   static constexpr std::int64_t kOtherClockOfLogNs = 10'000'000'000;
   static constexpr int kOtherClockMessages = 8;
 
-  // What to tell: whose messages, and the key of the cell that would help.
+  // For the news: the messages, and the key of the cell that would help.
   struct Whose {
     std::string messages, key;
   };
 
-  // The time to use, ns; a stamp of 0 is none.
+  // Returns the time to use, ns. A stamp of 0 counts as absent.
   [[nodiscard]] std::int64_t time_of(std::int64_t stamp_ns, std::int64_t sent_ns, RosStamps wanted,
                                      OtherClock other, TopicCounts& counts, Outlet& out,
                                      const std::function<Whose()>& whose);
 
  private:
-  int other_clock_ = 0;  // messages in a row by another clock; negative: it is told
+  int other_clock_ = 0;  // consecutive messages with another clock; negative: reported
 };
 
 }  // namespace clearance

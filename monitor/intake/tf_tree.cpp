@@ -29,7 +29,7 @@ const TfTree::Link* TfTree::link(const std::string& child) const {
   return found == links_.end() ? nullptr : &found->second;
 }
 
-// A way that is longer than there are frames goes round in a circle.
+// A path that is longer than the number of frames contains a cycle.
 std::optional<TfTree::Place> TfTree::find(const std::string& frame,
                                           const std::string& world) const {
   const Link* step = link(frame);

@@ -46,8 +46,8 @@ std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::
   return is_world ? place : std::nullopt;
 }
 
-// Of q and -q, which are one orientation, the one nearer to that before: velocities are taken from
-// differences of the variables.
+// Both q and -q represent the orientation. The one nearer to the last is used, because velocities
+// come from differences of the variables.
 void TrackedFrames::add(std::size_t follower, const Pose& world_from_frame, std::int64_t stamp_ns,
                         PoseBatch& batch) {
   const Follower& of = followers_[follower];

@@ -1,5 +1,5 @@
-// Products of vectors, matrices and quaternions, written out: Eigen's sums have another order on
-// other processors, and ticks are the same bits everywhere.
+// Products of vectors, matrices and quaternions in a fixed order of operations. Eigen's order
+// differs between processors, but ticks must give the same bits on every machine.
 #pragma once
 
 #include "core/pose.hpp"

@@ -1,5 +1,5 @@
-// From the root outwards: each joint says where its link is in the frame of the link before, and
-// how it moves there.
+// Works from the root outwards: each joint gives the pose and velocity of its link in the frame of
+// the parent link.
 #include "monitor/kinematics/forward_kinematics.hpp"
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::max();
 
-// No rotation moves a point farther than across the circle that it is on.
+// A rotation moves a point at most by the diameter of its circle.
 constexpr double kAcross = 2.0;
 
 Eigen::Quaterniond sum(double a, const Eigen::Quaterniond& p, double b,
@@ -38,18 +38,19 @@ double LinkState::error(double reach) const noexcept {
   return rounded_up(shift_error + turn_error * reach);
 }
 
-// Where its link is in the frame of the link before, and how it moves there.
+// The pose and velocity of a joint's child link in the frame of its parent link.
 struct ForwardKinematics::Placement {
   bool known = true, velocity_known = true, late = false, contradicted = false;
   std::int64_t stamp_ns = kNoStamp;
   Eigen::Quaterniond turn;
   Vec3 step = Vec3::Zero();                            // m
   Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // m/s, rad/s
-  double unseen_shift = 0.0, unseen_turn = 0.0;        // as of LinkState
-  double largest_angle = 0.0, largest_slide = 0.0;     // that rounding has met, rad, m
+  double unseen_shift = 0.0, unseen_turn = 0.0;        // as in LinkState
+  double largest_angle = 0.0, largest_slide = 0.0;     // for rounding errors, rad, m
 };
 
-// The position of a joint with its mimicry, and what is known of it.
+// One position of a joint after mimicry: value, velocity, unobserved motion, and the largest
+// magnitude that rounding errors depend on.
 struct ForwardKinematics::Position {
   double value = 0.0, speed = 0.0, unseen = 0.0, largest = 0.0;
 };
@@ -75,7 +76,7 @@ void ForwardKinematics::turn(const Position& angle, const JointFrame& frame,
                              Placement& placed) noexcept {
   const SineCosine half = sine_cosine(0.5 * angle.value);
   placed.turn = sum(half.cosine, frame.turn, half.sine, frame.turn_axis);
-  placed.known = placed.known && angle.largest <= kLargestJoint;  // mimicry can multiply it
+  placed.known = placed.known && angle.largest <= kLargestJoint;  // mimicry can multiply the angle
   placed.angular = angle.speed * frame.axis;
   placed.unseen_turn = std::min(angle.unseen, kAcross);
   placed.largest_angle = angle.largest;
@@ -88,7 +89,8 @@ void ForwardKinematics::slide(const Position& way, const Vec3& along, Placement&
   placed.largest_slide += way.largest;
 }
 
-// A quaternion that is none leaves the joint unknown, as an entry that was never seen does.
+// A quaternion that is not of unit length leaves the joint unknown, like an entry that was never
+// sent.
 void ForwardKinematics::turn_freely(const RobotJoint& joint, const JointFrame& frame,
                                     std::span<const TrackedVariable> variables,
                                     Placement& placed) noexcept {
@@ -104,13 +106,14 @@ void ForwardKinematics::turn_freely(const RobotJoint& joint, const JointFrame& f
   const double norm = std::sqrt(squared);
   placed.turn =
       product(frame.turn, {sent.w() / norm, sent.x() / norm, sent.y() / norm, sent.z() / norm});
-  // omega = 2 dq/dt q*, of which a change of length is the real part.
+  // omega = 2 dq/dt q*. The real part of the product is a change of length.
   const Eigen::Quaterniond rate =
       product({w.speed, x.speed, y.speed, z.speed}, {sent.w(), -sent.x(), -sent.y(), -sent.z()});
   const double twice = 2.0 / squared;
   placed.angular = (twice * rate.x()) * frame.plane_x + (twice * rate.y()) * frame.plane_y +
                    (twice * rate.z()) * frame.axis;
-  // Of unit length to a thousandth: a change of the entries turns by twice as much on either side.
+  // The sent quaternion is of unit length to 1e-3. Normalisation at most doubles a change of the
+  // entries, and |R2 - R1| is at most twice the change of the unit quaternion.
   const double unseen = 4.01 * (x.unseen + y.unseen + z.unseen + w.unseen);
   placed.unseen_turn = std::min(unseen, kAcross);
 }
@@ -166,7 +169,8 @@ ForwardKinematics::ForwardKinematics(std::span<const Robot> robots) : robots_(ro
   }
 }
 
-// A link that hangs on nothing unknown is known; what moves its parent moves it too.
+// A link is known if its parent and its joint are. All motion of its parent is added to that of the
+// joint.
 void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
                               LinkState& link) noexcept {
   const Mat3 rotation = rotation_matrix(parent.pose.orientation);
@@ -187,7 +191,7 @@ void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
         (parent.twist.linear + cross(parent.twist.angular, step)) + times(rotation, placed.linear);
   }
 
-  // Seen from the end: what is behind the joint has its new length when the joints before it turn.
+  // The joints before this one rotate the link at its displaced distance, `far` plus unseen_shift.
   link.unseen_turn = rounded_up(parent.unseen_turn + placed.unseen_turn);
   link.unseen_shift = rounded_up(parent.unseen_shift + placed.unseen_shift +
                                  swept(parent.unseen_turn, far + placed.unseen_shift));

@@ -1,8 +1,9 @@
-// Where the links of all robots are, from the positions of their joints.
+// Forward kinematics: the poses and twists of all robots' links from the positions of their joints.
 //
-// What a pose is true of: the chain as the URDF writes it, origins as real numbers and each
-// position as the double that was sent. How far the doubles computed here can be from that is part
-// of the result. The same bits on every machine: sums, products, quotients and square roots only.
+// The exact pose of a link is that of the chain as the URDF writes it. The origins are real
+// numbers, and the positions are the doubles that were sent. The result contains a bound of the
+// rounding errors against this exact pose. It has the same bits on every machine, because it uses
+// only sums, products, quotients and square roots.
 #pragma once
 
 #include <cstdint>
@@ -15,21 +16,22 @@
 namespace clearance {
 
 struct LinkState {
-  bool known = false;           // all joints from the world to here have been seen
-  bool velocity_known = false;  // and how all of them move
-  bool late = false;            // one of them is
-  bool contradicted = false;    // late since one of them is
-  // The oldest of the positions that it hangs on, in the tick's time; the largest number when it
-  // hangs on none.
+  bool known = false;           // all joints from the world to this link have a position
+  bool velocity_known = false;  // and all these joints have a velocity
+  bool late = false;            // one of these joints is late
+  bool contradicted = false;    // one of these joints is contradicted, and therefore late
+  // The oldest stamp of the positions that place the link, in the tick's time. It is the largest
+  // number if no position does.
   std::int64_t stamp_ns = 0;
   Pose pose;    // world_from_link; of unit length to 2^-50 for each joint
   Twist twist;  // zero unless velocity_known
 
-  // Since the stamps no point within r of its origin has moved farther than unseen_shift +
-  // unseen_turn r, m: 0 unless late, infinite when a late joint has neither a speed nor limits.
+  // Since the stamps, no point within r of the link's origin has moved farther than unseen_shift +
+  // unseen_turn r, m. The bound is 0 unless the link is late. It is infinite if a late joint has
+  // neither a speed nor limits.
   double unseen_shift = 0.0, unseen_turn = 0.0;
-  // No point within r of its origin is farther than shift_error + turn_error r from where the chain
-  // has it, m.
+  // Rounding displaces no point within r of the link's origin farther than shift_error + turn_error
+  // r from its exact place, m.
   double shift_error = 0.0, turn_error = 0.0;
 
   [[nodiscard]] double may_have_moved(double reach) const noexcept;
@@ -38,27 +40,27 @@ struct LinkState {
 
 class ForwardKinematics {
  public:
-  // Allocates all it will ever need. The robots must outlive it.
+  // Allocates all memory that it ever needs. The robots must outlive it.
   explicit ForwardKinematics(std::span<const Robot> robots);
 
-  // Places all links. `variables` as Scene::variables. `bases`: by robot, what those that stand on
-  // an object stand on; of the others nothing is read. Nobody knows how far what stands on a late
-  // object may have moved: the object's speed is that of its own points. Allocates, throws and
-  // locks nothing.
+  // Places all links. `variables` has the order of Scene::variables. `bases`, by robot, has the
+  // states of the objects on which robots stand. Entries of robots that stand on no object are not
+  // read. The unobserved motion of a robot on a late object has no bound, because the object's
+  // speed limit holds only for the object's own points. Does not allocate, throw or lock.
   void place(std::span<const TrackedVariable> variables, std::span<const LinkState> bases) noexcept;
 
-  // As of the last place(): as Robot::links.
+  // The states of the links at the last place(), in the order of Robot::links.
   [[nodiscard]] std::span<const LinkState> links(std::uint32_t robot) const noexcept {
     return std::span(links_).subspan(first_link_[robot], robots_[robot].links.size());
   }
 
  private:
-  // What of a joint does not change, in the frame of the link before it.
+  // The constant part of a joint, in the frame of its parent link.
   struct JointFrame {
     Eigen::Quaterniond turn;       // parent_from_joint
-    Eigen::Quaterniond turn_axis;  // that times the axis, as a quaternion without a real part
+    Eigen::Quaterniond turn_axis;  // turn times the axis, as a quaternion with real part 0
     Vec3 step;                     // parent_from_joint
-    Vec3 axis, plane_x, plane_y;   // as of RobotJoint
+    Vec3 axis, plane_x, plane_y;   // those of RobotJoint, rotated into the parent's frame
   };
   struct Placement;
   struct Position;
@@ -77,8 +79,8 @@ class ForwardKinematics {
 
   std::span<const Robot> robots_;
   std::vector<std::uint32_t> first_link_;  // by robot
-  std::vector<JointFrame> frames_;         // of the joint that carries a link; roots have none
-  std::vector<LinkState> links_;           // of all robots
+  std::vector<JointFrame> frames_;  // by link, of the joint that carries it; unused for roots
+  std::vector<LinkState> links_;    // of all robots
 };
 
 }  // namespace clearance

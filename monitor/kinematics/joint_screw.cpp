@@ -1,5 +1,5 @@
-// The columns of the Jacobian, in the joint's frame as ForwardKinematics places it, then turned
-// into the world.
+// Computes the columns of the Jacobian in the joint's frame, as ForwardKinematics places it, and
+// rotates them into the world.
 #include "monitor/kinematics/joint_screw.hpp"
 
 #include <limits>
@@ -14,8 +14,8 @@ struct WorldAxes {
   Vec3 x, y, axis;
 };
 
-// Of the entries of a quaternion, as they were sent: omega = 2 dq q* / |q|^2, of which a change of
-// length is the real part.
+// The screws of the entries of a quaternion as they were sent: omega = 2 dq q* / |q|^2. The real
+// part of the product is a change of length.
 void turn_freely(const RobotJoint& joint, const WorldAxes& axes,
                  std::span<const TrackedVariable> variables,
                  std::span<JointScrew> screws) noexcept {

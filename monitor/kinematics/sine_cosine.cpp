@@ -7,16 +7,16 @@
 namespace clearance {
 namespace {
 
-// pi / 2 in three parts, the first two of 33 bits: their products with a whole number below 2^20
-// are exact.
+// pi / 2 as the sum of three numbers. The first two have 33 bits, so their products with an integer
+// below 2^20 are exact.
 constexpr double kHalfPi1 = 1.57079632673412561417e+00;
 constexpr double kHalfPi2 = 6.07710050630396597660e-11;
 constexpr double kHalfPi3 = 2.02226624879595063154e-21;
 constexpr double kPerHalfPi = 6.36619772367581382433e-01;
-// Added and taken off again it rounds to a whole number, by the processor's rounding to nearest.
+// Adding and subtracting this rounds to an integer, in the rounding mode to nearest.
 constexpr double kRounder = 0x1.8p52;
 
-// For |x| <= pi/4, up to rounding.
+// Both are accurate up to rounding for |x| <= pi/4.
 double sine_of(double x) noexcept {
   constexpr double kS1 = -1.66666666666666324348e-01, kS2 = 8.33333333332248946124e-03,
                    kS3 = -1.98412698298579493134e-04, kS4 = 2.75573137070700676789e-06,
@@ -36,8 +36,8 @@ double cosine_of(double x) noexcept {
 
 }  // namespace
 
-// The first difference is exact; the second rounds once, and the third once: 2^-53 in all, since
-// the result is below 1.
+// The first difference is exact. The second and the third round once each, 2^-53 in all, since the
+// result is below 1.
 SineCosine sine_cosine(double angle) noexcept {
   const double quarters = (angle * kPerHalfPi + kRounder) - kRounder;
   const double x = ((angle - quarters * kHalfPi1) - quarters * kHalfPi2) - quarters * kHalfPi3;

@@ -1,8 +1,7 @@
-// Sine and cosine that are the same bits on every machine.
+// Sine and cosine that have the same bits on every machine.
 //
-// The C library's are not: it chooses among several by the processor, and versions differ in the
-// last bit. A replay has to find every distance again, so these are made of nothing but sums and
-// products.
+// The C library selects among several implementations by the processor, and versions differ in the
+// last bit. A replay must reproduce every distance, so these functions use only sums and products.
 #pragma once
 
 namespace clearance {
@@ -11,7 +10,7 @@ struct SineCosine {
   double sine = 0.0, cosine = 1.0;
 };
 
-// Each is off by at most this, for |angle| <= kLargestJoint.
+// The largest error of either value, for |angle| <= kLargestJoint.
 inline constexpr double kSineError = 0x1p-51;
 
 [[nodiscard]] SineCosine sine_cosine(double angle) noexcept;  // rad

@@ -10,19 +10,20 @@
 namespace clearance {
 namespace {
 
-// By no more than this factor are velocity limits of descriptions taken to be too low.
+// The largest factor by which a sent velocity may exceed the velocity limit of the description.
 constexpr double kLimitTooLow = 4.0;
 
 bool usable(double x) noexcept { return std::abs(x) <= kLargestJoint; }
 
-// Without one, or one that is a number: 0.
+// The magnitude of the sent velocity; 0 if there is none, or if it is not a usable number.
 double speed_of(const JointSample& sample) noexcept {
   return sample.has_velocity && usable(sample.velocity) ? std::abs(sample.velocity) : 0.0;
 }
 
-// The age limit is how far off in time the cell lets a position be. What is sent as its velocity
-// may exceed the limit, which many descriptions have wrong, but not so far that any leap would
-// excuse itself; what positions say may not: that is in question.
+// The age limit is the largest timing error that the cell accepts for a position. A sent velocity
+// may exceed the velocity limit, which is wrong in many descriptions. The excess is capped, so that
+// a leap cannot excuse itself by an arbitrary velocity. A velocity from positions does not count
+// here, because the positions are in question.
 bool can_reach(const JointVariable& variable, const JointSample& sample, std::int64_t stamp_ns,
                const TrackedVariable& state) noexcept {
   const double time =
@@ -33,7 +34,7 @@ bool can_reach(const JointVariable& variable, const JointSample& sample, std::in
   return std::abs(sample.position - state.position) <= rounded_up(fastest * time);
 }
 
-// One sample of a variable, as clearance::take asks for it.
+// One sample of a variable, as a candidate for clearance::take.
 struct PositionCandidate {
   const JointVariable& variable;
   const JointSample& sample;
@@ -49,8 +50,8 @@ struct PositionCandidate {
     return possible ? std::nullopt : std::optional(Reject::kTooFast);
   }
 
-  // A velocity that is no number is none: drivers fill in NaN for what they do not measure. The
-  // same stamp again says nothing about speed; a mean over some time is the velocity of half that
+  // A velocity that is not a number counts as absent: drivers write NaN for what they do not
+  // measure. Two equal stamps give no velocity. A mean over a time is the velocity of half that
   // time ago.
   void use() const noexcept {
     const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
@@ -69,7 +70,7 @@ struct PositionCandidate {
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept { return variable.age_limit_ns; }
 };
 
-// The farther of its two limits; none that it was seen to exceed.
+// The larger distance to the two position limits; infinity if the position is outside them.
 double room(const JointVariable& variable, double position) noexcept {
   if (position < variable.lower || position > variable.upper) return kInfinity;
   return rounded_up(std::max(variable.upper - position, position - variable.lower));
@@ -90,7 +91,7 @@ void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable
   input.advance(now_ns, variable.age_limit_ns);
   state.may_have_moved = 0.0;
   if (!input.late) return;
-  // A joint that was seen to go faster than its description says is not bound by that.
+  // The velocity limit does not bound a joint whose measured velocity exceeds it.
   const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
   const double way = input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns));
   state.may_have_moved = std::min(way, room(variable, state.position));

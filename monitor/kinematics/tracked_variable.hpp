@@ -1,5 +1,4 @@
-// One variable of a joint as the tick knows it: the position in use, how old it is, and how far the
-// joint may be from it by now.
+// One variable of a joint: the position in use, its age, and a bound of the motion since its stamp.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +14,22 @@ struct TrackedVariable {
   InputRecord input;
   bool velocity_known = false;
   double position = 0.0;  // rad or m
-  // As sent with the position, else from the last two. Not known, and zero, after the first, and
-  // after a gap longer than twice the age limit.
+  // The velocity sent with the position, else the mean between the last two positions. It is zero
+  // and not known after the first position, and after a gap longer than twice the age limit.
   double velocity = 0.0;
-  // Since its stamp, rad or m, at most: 0 unless late; infinite: neither a speed nor limits bound
-  // it.
+  // Bound of the motion since its stamp, rad or m. It is 0 unless late, and infinite if neither a
+  // speed nor limits bound the motion.
   double may_have_moved = 0.0;
-  double sent_speed = 0.0;  // with the position; 0: none was
+  double sent_speed = 0.0;  // that was sent with the position; 0: none was sent
 };
 
-// Takes a sample into use; else says why it must not be used, and notes what that says of the
-// joint. `stamp_ns` is the sample's, in the tick's time.
+// Takes a sample into use, or returns why it must not be used and updates the contradiction state.
+// `stamp_ns` is the sample's stamp in the tick's time.
 [[nodiscard]] std::optional<Reject> take(const JointVariable& variable, const JointSample& sample,
                                          std::int64_t stamp_ns, const SampleLimits& limits,
                                          TrackedVariable& state) noexcept;
 
-// Ends the tick's input: age, lateness, and how far it may have moved.
+// Ends the tick's input: sets age, lateness, and the bound of the unobserved motion.
 void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// How fast do two bodies close, and when would they touch if they went on like that?
+// The closing speed of two bodies, and the time until they touch if it stays constant.
 #pragma once
 
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace clearance {
 
-// Velocity of the body's point that is at `point_in_world` now, m/s. Here and below, coordinates
-// are computed one by one: vector code would wait 7 ns until all three of a cross product are
-// stored.
+// Velocity of the body's point that is at `point_in_world` now, m/s. The functions of this file
+// compute the coordinates one by one. Vector code would wait 7 ns until all three of a cross
+// product are stored.
 [[nodiscard]] inline Vec3 velocity_at(const Vec3& point_in_world, const Pose& world_from_body,
                                       const Twist& twist) noexcept {
   const Vec3& w = twist.angular;
@@ -21,7 +21,7 @@ namespace clearance {
           twist.linear.z() + (w.x() * y - w.y() * x)};
 }
 
-// m/s, positive when approaching; `normal` is a unit vector from A towards B.
+// Closing speed, m/s, positive when approaching. `normal` is a unit vector from A towards B.
 [[nodiscard]] inline double closing_speed(const Vec3& velocity_a, const Vec3& velocity_b,
                                           const Vec3& normal) noexcept {
   return normal.x() * (velocity_a.x() - velocity_b.x()) +
@@ -29,8 +29,9 @@ namespace clearance {
          normal.z() * (velocity_a.z() - velocity_b.z());
 }
 
-// In s; infinity when not approaching. In contact (distance <= 0): 0, unless the two are known to
-// separate. NaN if the distance is not known, or if it is positive and the closing speed is not.
+// Time to contact, s; infinity when not approaching. In contact (distance <= 0) it is 0, unless the
+// two are known to separate. NaN if the distance is not known, or if it is positive and the closing
+// speed is not known.
 [[nodiscard]] inline double time_to_contact(double distance, double closing_speed) noexcept {
   if (std::isnan(distance)) return distance;
   if (closing_speed <= 0.0) return std::numeric_limits<double>::infinity();

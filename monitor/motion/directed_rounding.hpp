@@ -1,8 +1,9 @@
-// Directed rounding without the processor's rounding mode: a step outward by more than the error.
+// Directed rounding without the processor's rounding mode: a step outwards that exceeds the
+// rounding error.
 //
-// One correctly rounded operation is off by at most |x| * 2^-53. So 2^-50 covers the step itself
-// and the last six operations that led to x, if none of them cancelled. An infinity stays what it
-// is.
+// One correctly rounded operation has an error of at most |x| * 2^-53. The step of 2^-50 covers
+// itself and the last six operations that led to x, if none of them cancelled. Infinities stay
+// unchanged.
 #pragma once
 
 #include <cmath>
@@ -12,8 +13,8 @@ namespace clearance {
 [[nodiscard]] inline double rounded_up(double x) noexcept { return x + std::abs(x) * 0x1p-50; }
 [[nodiscard]] inline double rounded_down(double x) noexcept { return x - std::abs(x) * 0x1p-50; }
 
-// How far a turn, rad, moves a point at the distance `arm`. 0 * infinity means 0 here: a body that
-// does not turn does not move its far points either.
+// The path length of a point at the distance `arm` under a rotation by `turn`, rad. Here 0 *
+// infinity is 0: without rotation, points at infinity do not move either.
 [[nodiscard]] inline double swept(double turn, double arm) noexcept {
   return turn == 0.0 ? 0.0 : turn * arm;
 }

@@ -10,7 +10,7 @@ namespace {
 
 using Vec4 = Eigen::Vector4d;
 
-// A quaternion that is of unit length to half of all digits needs neither root nor quotient: the
+// A quaternion that is of unit length to half of all digits needs neither root nor quotient. The
 // next term of the series, 3/8 of the square of its error, is below 2^-53.
 Vec4 unit(const Vec4& q) noexcept {
   constexpr double kNearly = 0x1p-26;
@@ -22,7 +22,7 @@ double turn_at_most(const Vec4& before, const Vec4& after) noexcept {
   if (before == after) return 0.0;
   const Vec4 from = unit(before);
   const Vec4 to = unit(after);
-  // |q2 - q1| = 2 sin(theta / 4): free of cancellation. q and -q are the same orientation.
+  // |q2 - q1| = 2 sin(theta / 4) has no cancellation. q and -q are the same orientation.
   const double step = std::sqrt(std::min((to - from).squaredNorm(), (to + from).squaredNorm()));
   return rounded_up(2.0 * step) + kTurnRounding;
 }

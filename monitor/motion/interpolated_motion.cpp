@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// The shorter turn from one orientation to the other; where both are equally short, either of them.
+// The shorter rotation from one orientation to the other; either one if both are equally short.
 Vec3 turn_between(const Eigen::Quaterniond& before, const Eigen::Quaterniond& after) noexcept {
   const Eigen::Quaterniond q = after.normalized() * before.normalized().conjugate();
   const double sine = q.vec().norm();
@@ -55,8 +55,8 @@ RelativeMotion seen_from(const InterpolatedMotion& resting, const InterpolatedMo
   const Vec3 from_resting = centre - resting.from.position;
   const double length = arm.norm();
   const double turn = angle_of(moving), turn_of_frame = angle_of(resting);
-  // The velocity of the sphere's centre less that of the other's frame at the same point: at the
-  // beginning, and how much it changes as both turn and the centre moves on.
+  // `start` is the initial velocity of the sphere's centre, less that of the other frame at the
+  // same point. `change` bounds how much it varies while both rotate and the centre moves.
   const Vec3 start =
       moving.shift + moving.turn.cross(arm) - resting.shift - resting.turn.cross(from_resting);
   const double between_origins = (moving.shift - resting.shift).norm();

@@ -9,10 +9,10 @@
 namespace clearance {
 namespace {
 
-// From this angle on, rad, the vector part of a quaternion bounds the angle too loosely.
+// Above this angle, rad, the vector part of a quaternion is too loose a bound of the angle.
 constexpr double kMostTurn = 1.0;
 
-// The turn from the last pose to the one in use: 2 sin(angle / 2) along the axis of the smaller
+// The rotation from the last pose to the one in use: 2 sin(angle / 2) along the axis of the smaller
 // angle, in the world.
 Vec3 turning_of(const BodyMotion& body) noexcept {
   if (body.motion.turn == 0.0) return Vec3::Zero();
@@ -21,8 +21,9 @@ Vec3 turning_of(const BodyMotion& body) noexcept {
   return std::copysign(2.0, q.w()) * q.vec();
 }
 
-// How far turning_of() may be from the turn, rad. With v its half, |v| = sin(angle / 2) <= 1/2, the
-// difference is 2 (asin |v| - |v|) <= 0.38 |v|^3. The angle exceeds 4 sin(angle / 4) by no more.
+// The largest difference between turning_of() and the rotation vector, rad. With v its half, |v| =
+// sin(angle / 2) <= 1/2, the difference is 2 (asin |v| - |v|) <= 0.38 |v|^3. The excess of the
+// angle over 4 sin(angle / 4) is no larger.
 double turn_error(const Motion& motion) noexcept {
   return motion.turn == 0.0 ? 0.0
                             : 0.0625 * motion.turn * motion.turn * motion.turn + kTurnRounding;

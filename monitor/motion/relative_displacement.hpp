@@ -1,5 +1,5 @@
-// How far can two objects have come as seen from each other? Two objects on the same link hardly
-// come nearer, however fast the link is.
+// A bound of the relative displacement of two objects. Two objects on the same link hardly move
+// relative to each other, however fast the link is.
 #pragma once
 
 #include "monitor/motion/displacement.hpp"
@@ -11,12 +11,13 @@ struct BodyMotion {
   const Pose& before;
   const Pose& now;
   const Motion& motion;  // between the two
-  double reach;          // no point of it is farther from its origin, m
+  double reach;          // bounding radius around its origin, m
 };
 
-// As seen from the other object, no point of either has come farther since the last tick, m, nor by
-// any pose in between. Infinity: no better than the displacement of both. Both were known at the
-// last tick, and neither has made a discontinuity. monitor/swept/README.md has the proof.
+// Bounds the displacement since the last tick of any point of either object in the frame of the
+// other, m. It covers paths by any pose in between, too. Infinity means no better bound than the
+// displacement of both. Both must have been known at the last tick, without a discontinuity since.
+// monitor/swept/README.md has the proof.
 [[nodiscard]] double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept;
 
 }  // namespace clearance

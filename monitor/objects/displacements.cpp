@@ -20,7 +20,7 @@ class LargestTwo {
   double most_ = 0.0, second_ = 0.0;
 };
 
-// What is known of all objects together.
+// Sets the bounds over all objects.
 void summarise(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> moving,
                Displacements& displaced) noexcept {
   displaced.any_lost = false;
@@ -38,7 +38,8 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
     any = true;
     if (!object.known()) continue;
     unseen.add(object.may_have_moved);
-    // No pair is culled of an object whose displacement has no bound, short of a discontinuity.
+    // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A
+    // discontinuity counts as infinite.
     const double displacement = object.known_displacement();
     const double bounded = displacement < kInfinity ? displacement : 0.0;
     farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));
@@ -64,10 +65,10 @@ void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs&
   if (inputs.cycle == 1) {
     for (std::uint32_t i = 0; i < objects.size(); ++i) displaced.changed.push_back(i);
   }
-  // One loop for each step: no object has to wait for the roots and quotients of the one before.
+  // A loop for each step, so that no object waits for the roots and quotients of the one before it.
   bool placed = false;
   for (const std::uint32_t i : moving) {
-    // Links come last: what robots stand on has been advanced.
+    // Links come last, when the objects on which robots stand have been advanced.
     if (!placed && i >= inputs.robots.first_link()) {
       inputs.robots.place(inputs.time.now_ns, objects);
       placed = true;

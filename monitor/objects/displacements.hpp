@@ -1,5 +1,5 @@
-// Stage 2 of a tick: how far each object has come since the last one, and what is known of all of
-// them together.
+// Stage 2 of a tick: how far each object has moved since the last tick, and bounds over all
+// objects.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,23 @@
 namespace clearance {
 
 struct Displacements {
-  // Objects of which this tick knows something else than the last one did: pose, lateness, or how
-  // far it may have moved unseen. In the first tick all.
+  // Objects whose pose, lateness or bound of unobserved motion differs from the last tick. In the
+  // first tick these are all objects.
   std::vector<std::uint32_t> changed;
   bool any_lost = false;  // an object is not known, or has made a discontinuity
-  // Of any two known objects together, m: how far they may have moved unseen (U), and how far they
-  // may have been from where they are now at any instant since the last tick.
+  // Bounds for any two known objects together, m. `most_unseen` (U) bounds their unobserved motion.
+  // `most_displaced` bounds how far they were, at any instant since the last tick, from where they
+  // are now.
   double most_unseen = 0.0, most_displaced = 0.0;
-  // Stamps of the moving objects' poses in use; 0: none.
+  // Newest and oldest stamp of the moving objects' poses in use; 0: none is in use.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
 };
 
 // The objects that are not fixed.
 [[nodiscard]] std::vector<std::uint32_t> moving_objects(const Scene& scene);
 
-// Advances the `moving` objects, whose reach is set, to this tick. Allocates nothing where
-// `changed` has room for all objects.
+// Advances the `moving` objects to this tick; their `reach` must be set. Does not allocate if the
+// capacity of `changed` covers all objects.
 void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs& inputs,
               Displacements& displaced) noexcept;
 

@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// When the sample's value held, in the tick's time.
+// The stamp of the sample in the tick's time.
 template <class Sample>
 std::int64_t tick_stamp(const Sample& sample, std::int64_t age_limit_ns, const Scene& scene,
                         Inputs& inputs) noexcept {
@@ -17,7 +17,7 @@ std::int64_t tick_stamp(const Sample& sample, std::int64_t age_limit_ns, const S
       sample.stamp_ns, inputs.time, {.future_ns = scene.future_limit_ns, .age_ns = age_limit_ns});
 }
 
-// Of the input that the sample names; null: the scene has no such input.
+// The record of the input that the sample names; null if the scene has no such input.
 InputRecord* record_of(const PoseSample& sample, Inputs& inputs) noexcept {
   return sample.object < inputs.objects.size() ? &inputs.objects[sample.object].input : nullptr;
 }
@@ -64,7 +64,7 @@ void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& input
   }
 }
 
-// For a tick that cannot know how much time has passed.
+// For a tick that does not know how much time has passed.
 void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
   for (SourceClock& source : inputs.sources) source.forget();
   for (TrackedObject& object : inputs.objects) {

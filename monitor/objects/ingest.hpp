@@ -1,4 +1,4 @@
-// Stage 1 of a tick: the samples that came in become the pose in use of each object.
+// Stage 1 of a tick: turns the samples that came in into the pose in use of each object.
 #pragma once
 
 #include <array>
@@ -13,25 +13,25 @@
 
 namespace clearance {
 
-// What all ticks so far have been told.
+// The state of all inputs, from the samples of all ticks so far.
 struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
-  std::vector<TrackedObject> objects;  // as in Scene::objects
+  std::vector<TrackedObject> objects;  // same order as Scene::objects
   RobotInputs robots;
-  std::array<SourceClock, kMaxSources> sources;    // by PoseSample::source
-  std::array<std::uint64_t, kRejects> rejected{};  // samples, by cause
+  std::array<SourceClock, kMaxSources> sources;    // indexed by PoseSample::source
+  std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
 };
 
-// Before the first tick.
+// The state before the first tick.
 [[nodiscard]] Inputs initial_inputs(const Scene& scene);
 
-// Begins a tick and takes the samples in the given order, those of joints first: one that must not
-// be used is counted and leaves its object's pose, or its joint's position, as it is.
+// Begins a tick and takes the samples in the given order, those of joints first. A sample that must
+// not be used is counted. It does not change the pose of its object or the position of its joint.
 void ingest(std::span<const PoseSample> samples, std::span<const JointSample> joints,
             const TickTime& time, const Scene& scene, Inputs& inputs) noexcept;
 
-// Counts a sample that was refused; of an object that the scene does not have, in the totals only.
+// Counts a refused sample. If the scene has no such object, only the totals count it.
 void refuse(std::uint32_t object, Reject cause, Inputs& inputs) noexcept;
 
 }  // namespace clearance

@@ -10,19 +10,21 @@
 namespace clearance {
 namespace {
 
-// By which the twists of an object that states no max_speed are held against its poses, m/s.
+// The speed that is assumed for timing errors when twists are compared with poses, if the object
+// states no max_speed, m/s.
 constexpr double kUsualSpeed = 1.0;
 
-// How long an anchor holds, in age limits: an object that is never slower than its speed and a
-// sixth is found out.
+// The time for which an anchor stays, in age limits. It reveals an object whose speed always
+// exceeds its max_speed by more than a sixth.
 constexpr std::int64_t kAnchorAgeLimits = 6;
 
-// The mean of two twists says nothing of what lies between them if that is longer, in age limits.
+// Over a longer gap, in age limits, the mean of two twists says nothing about the motion in
+// between.
 constexpr std::int64_t kGapAgeLimits = 2;
-// By which share of itself a twist may be off.
+// The relative error of a twist.
 constexpr double kTwistError = 1.0 / 6.0;
 
-// So many points of a curved part's circles stand for its corners.
+// The number of points that represent each circle of a curved part.
 constexpr int kRound = 8;
 
 double fastest_of(const Object& object) noexcept {
@@ -33,7 +35,7 @@ double usual_speed_of(const Object& object) noexcept {
   return object.max_speed < kInfinity ? object.max_speed : kUsualSpeed;
 }
 
-// To first order, where that leaves nothing to see.
+// Normalises to first order if the error of that is negligible.
 void normalize_almost_unit(Eigen::Quaterniond& q) noexcept {
   const double off = q.squaredNorm() - 1.0;
   if (std::abs(off) < 1e-3) {
@@ -58,7 +60,8 @@ std::vector<Vec3> corners_of(const Object& object) {
 
 }  // namespace
 
-// Each is the corner farthest from those before it.
+// Farthest-point sampling: each landmark is the vertex with the largest distance from those before
+// it.
 Landmarks::Landmarks(const Object& object) {
   std::vector<Vec3> corners = corners_of(object);
   if (corners.empty()) corners.push_back(Vec3::Zero());  // a half-space has none
@@ -126,8 +129,8 @@ bool Reckoning::follows(const PoseSample& sample, const Pose& pose, std::int64_t
     return true;
   }
   add(sample.twist, stamp_ns, landmarks);
-  // Twists that come an age limit late miss the last of the way, which no twist has told of yet,
-  // and sum up instead what was before the first of it.
+  // Twists that are an age limit late do not contain the last part of the motion yet. Instead they
+  // contain what preceded the first of them.
   const double missed = std::max(usual_speed_of(object), fastest_) + fastest_;
   const double limit = missed * seconds(object.age_limit_ns) + kTwistError * path_;
   leads_elsewhere_ = !landmarks.stay_within(limit, pose_, pose);
@@ -146,7 +149,7 @@ void Reckoning::start(const PoseSample& sample, const Pose& pose, std::int64_t s
   since_ns_ = last_ns_ = stamp_ns;
 }
 
-// By the mean of the last twist and this one.
+// Trapezoidal rule: integrates the mean of the last twist and this one.
 void Reckoning::add(const Twist& twist, std::int64_t stamp_ns,
                     const Landmarks& landmarks) noexcept {
   const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));

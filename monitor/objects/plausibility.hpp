@@ -1,13 +1,15 @@
-// Whether a pose can be true of an object that was where its last poses say, as far as the cell
-// states how fast the object moves.
+// Checks whether an object can be at a pose, given its earlier poses and the speed that the cell
+// states for it.
 //
-// No point of an object with max_speed v goes farther than v (t + age limit) while t passes between
-// two stamps: the age limit is how far off in time the cell lets a pose be. That is held against
-// the pose in use, and against an older one, so that no row of steps comes to more. Which of two
-// poses that exclude each other is wrong, they do not tell: the later one is not used, and the
-// object is unknown until one agrees again and an age limit has passed since the last
-// contradiction. Where the poses stay at the other place, they are taken when the object can have
-// got there, or after ten seconds.
+// No point of an object with max_speed v moves farther than v (t + age limit) in the time t between
+// two stamps. The age limit is the largest timing error that the cell accepts for a pose. The bound
+// is checked against the pose in use and against an older pose, so that a series of steps cannot
+// exceed it either.
+//
+// If two poses exclude each other, they do not tell which one is wrong. The later pose is not used.
+// The object is unknown until a pose agrees again and an age limit has passed since the last
+// contradiction. Poses that stay at the other place are taken as soon as the object can have got
+// there, or after ten seconds.
 #pragma once
 
 #include <algorithm>
@@ -21,20 +23,21 @@
 
 namespace clearance {
 
-// An object that states no max_speed is taken to be slower than that, m/s.
+// The speed limit of an object that states no max_speed, m/s.
 inline constexpr double kFastestUnstated = 1000.0;
 // Measured speeds are noisy: a twist may exceed the stated speed by this factor.
 inline constexpr double kTwistTolerance = 1.5;
 
-// Up to four points of an object's bodies, far from each other: where they have come, so has the
-// object.
+// Up to four points of an object's bodies, far from each other. Their displacement stands for that
+// of the object.
 class Landmarks {
  public:
   Landmarks() = default;
   explicit Landmarks(const Object& object);
 
-  // Whether none of them goes farther than `limit`, m, from one pose to the other. The origin's
-  // way and the turn, |R2 - R1| <= 2 |q2 - q1|, mostly tell at once: (a + b)^2 <= 2 a^2 + 2 b^2.
+  // Returns true if no landmark moves farther than `limit`, m, from one pose to the other. The
+  // displacement a of the origin and a bound b of the rotational part usually decide without the
+  // points themselves. For b, |R2 - R1| <= 2 |q2 - q1|. Then (a + b)^2 <= 2 a^2 + 2 b^2.
   [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
     const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
     const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
@@ -42,9 +45,10 @@ class Landmarks {
     return 2.0 * (shift + turn * (reach_ * reach_)) <= limit * limit ||
            each_stays_within(limit, from, to);
   }
-  // Whether none of them is faster than `limit`, m/s.
+  // Returns true if no landmark is faster than `limit`, m/s.
   [[nodiscard]] bool are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept;
-  // How far they go, about, m, on a way of so many m and rad.
+  // Approximate path length of the landmarks, m, for a translation in m and a rotation in rad. With
+  // a twist in m/s and rad/s it is their speed, m/s.
   [[nodiscard]] double length(const Twist& way) const noexcept {
     return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (reach_ * reach_));
   }
@@ -55,47 +59,50 @@ class Landmarks {
 
   std::array<Vec3, 4> points_;  // in the object's frame, m
   std::size_t count_ = 0;
-  double reach_ = 0.0;  // none is farther from the frame's origin, m
+  double reach_ = 0.0;  // bounding radius of the landmarks around the frame's origin, m
 };
 
-// `from` is the pose in use, `elapsed_ns` what has passed between its stamp and that of `to`.
+// `from` is the pose in use, and `elapsed_ns` the time between its stamp and that of `to`.
 [[nodiscard]] bool can_reach(const Object& object, const Landmarks& landmarks, const Pose& from,
                              const Pose& to, std::int64_t elapsed_ns) noexcept;
-// A sample without a twist claims nothing.
+// Always true for a sample without a twist.
 [[nodiscard]] bool can_have_twist(const Object& object, const Landmarks& landmarks,
                                   const PoseSample& sample) noexcept;
 
-// A pose that comes again and again, bit for bit.
+// Detects a pose that is sent repeatedly, bit for bit.
 class Repetition {
  public:
-  // `same`: the sample has the pose that is in use. `stamp_ns`: in the tick's time.
+  // `same` means that the sample has the pose in use. `stamp_ns` is in the tick's time.
   void add(bool same, std::int64_t stamp_ns) noexcept;
-  // It has come for longer than the cell says that one of this object may.
+  // True when the pose has repeated for longer than the cell permits for this object.
   [[nodiscard]] bool frozen(const Object& object) const noexcept;
 
  private:
   std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 
-// Where the twists lead from an older pose: poses that are elsewhere contradict them. A twist may
-// be off in time by the age limit, and by a sixth of itself; over the whole time that is summed up,
-// noise of up to a thirtieth of the object's speed comes to little, and an offset to no more than a
-// fiftieth of that. Samples without a twist are left out; where twists come less often than every
-// two age limits, nothing is told.
+// Dead reckoning: integrates the twists from an older pose. A pose that is not where they lead
+// contradicts them.
+//
+// A twist may have a timing error of the age limit and a relative error of one sixth. Over the
+// whole integration time, noise of up to a thirtieth of the object's speed accumulates to little.
+// The same holds for an offset of up to a fiftieth. Samples without a twist are left out. Nothing
+// is checked if twists come less often than every two age limits.
 class Reckoning {
  public:
-  // Adds the sample's twist, if it has one. False: it leads elsewhere. `stamp_ns` is in the tick's
-  // time, `same` as of a repetition.
+  // Adds the sample's twist, if it has one. Returns false if the pose is not where the twists lead.
+  // `stamp_ns` is in the tick's time. `same` is that of Repetition::add().
   [[nodiscard]] bool follows(const PoseSample& sample, const Pose& pose, std::int64_t stamp_ns,
                              bool same, const Object& object, const Landmarks& landmarks) noexcept;
 
-  // Whether the last sample was elsewhere.
+  // True if the last sample was not where the twists lead.
   [[nodiscard]] bool leads_elsewhere() const noexcept { return leads_elsewhere_; }
 
-  // Over how long twists are summed up, in age limits: over more, noise comes to something.
+  // The integration time, in age limits. Over a longer time, noise would accumulate too much.
   static constexpr std::int64_t kAgeLimits = 50;
-  // How long what follows must agree: over less, what is slow would not be found out again, and a
-  // pose that stays behind for good be known in between.
+  // Later samples must agree for this time after a contradiction, in age limits. In a shorter time
+  // a slow deviation would not be detected again. An object whose pose always lags behind would
+  // then be known in between.
   static constexpr std::int64_t kAgreesAfterAgeLimits = kAgeLimits + 1;
 
  private:
@@ -104,22 +111,22 @@ class Reckoning {
   void add(const Twist& twist, std::int64_t stamp_ns, const Landmarks& landmarks) noexcept;
 
   bool any_ = false, leads_elsewhere_ = false;
-  Pose pose_;             // where they lead
-  double path_ = 0.0;     // how far it is to there, m
-  double fastest_ = 0.0;  // of the twists since then, m/s
+  Pose pose_;             // the integrated pose
+  double path_ = 0.0;     // length of the integrated path, m
+  double fastest_ = 0.0;  // the fastest speed since since_ns_, m/s
   Twist last_;
-  double last_speed_ = 0.0;  // of the fastest point by that, at most, m/s
+  double last_speed_ = 0.0;  // landmark speed by `last_`, at most, m/s
   std::int64_t since_ns_ = 0, last_ns_ = 0;
 };
 
-// An older pose of the stream in use, from which the object cannot have gone too far either.
+// An older pose of the stream in use. The object must be able to get from it to each new pose.
 class Anchor {
  public:
-  // To the first pose of a stream.
+  // Starts from the first pose of a stream.
   void set(const Pose& pose, std::int64_t stamp_ns) noexcept;
   [[nodiscard]] bool allows(const Pose& pose, std::int64_t stamp_ns, const Object& object,
                             const Landmarks& landmarks) const noexcept;
-  // Of every other one that is taken.
+  // Call this with every later pose that is taken.
   void follow(const Pose& pose, std::int64_t stamp_ns, const Object& object) noexcept;
 
  private:
@@ -127,15 +134,16 @@ class Anchor {
   std::int64_t stamp_ns_ = 0;
 };
 
-// Poses that stay at a place where the object cannot be.
+// Detects poses that stay at a place where the object cannot be.
 class OtherPlace {
  public:
-  // Until when they have to stay there to be taken.
+  // Poses that stay there for this time are taken.
   static constexpr std::int64_t kTakenAfterNs = 10'000'000'000;
-  // Two that are farther apart than this, and than two age limits, are not said to stay.
+  // The largest time between two consecutive poses that still counts as staying; two age limits if
+  // that is longer.
   static constexpr std::int64_t kGapNs = 1'000'000'000;
 
-  // True: they have stayed long enough. Stamps are in the tick's time.
+  // Returns true if the poses have stayed long enough. Stamps are in the tick's time.
   [[nodiscard]] bool add(const Pose& pose, std::int64_t stamp_ns, const Object& object,
                          const Landmarks& landmarks) noexcept;
   void clear() noexcept { any_ = false; }

@@ -2,7 +2,7 @@
 
 namespace clearance {
 
-// Sums of displacement go on where they are, because pairs and wheels hold readings of them.
+// The accumulated displacement continues, because pairs and motion wheels have stored values of it.
 void make_absent(TrackedObject& state) noexcept {
   TrackedObject fresh;
   fresh.absent = true;

@@ -1,18 +1,18 @@
-// An object that is known not to be there: absent, as distinct from one that was never heard of.
+// Absence of an object: it is known not to be there. This differs from an object that was never
+// heard of.
 //
-// An absent object has no pose, and samples of it are refused. When it is present again it is like
-// an object that was never heard of: nothing from before its absence counts, except who sends its
-// poses and how many of them were refused.
+// An absent object has no pose, and its samples are refused. When it is present again it starts
+// like an object that was never heard of. Only its owner and its refusal counts remain.
 #pragma once
 
 #include "monitor/objects/tracked_object.hpp"
 
 namespace clearance {
 
-// The object is a moving one, which is not absent already. Allocates nothing.
+// Makes a moving object absent, which is not absent yet. Does not allocate.
 void make_absent(TrackedObject& state) noexcept;
 
-// No pose is in use until the next sample comes.
+// Makes the object present. No pose is in use until the next sample comes.
 inline void make_present(TrackedObject& state) noexcept { state.absent = false; }
 
 }  // namespace clearance

@@ -1,4 +1,5 @@
-// What all ticks so far have been told of the joints of robots, and where their links are.
+// The joint positions of all robots, from the samples of all ticks so far, and the states of their
+// links.
 #pragma once
 
 #include <cstdint>
@@ -12,42 +13,43 @@
 
 namespace clearance {
 
-// Poses and joint states may both be sent of a robot's links. As soon as the first position of one
-// of its joints is taken, its links are where its joints say, and poses of theirs are refused.
+// A source may send both poses and joint states of a robot's links. Once the first position of one
+// of its joints is taken, joints alone place the links, and poses sent for them are refused.
 class RobotInputs {
  public:
   explicit RobotInputs(const Scene& scene);
 
-  // As Scene::variables.
+  // Same order as Scene::variables.
   [[nodiscard]] std::span<TrackedVariable> variables() noexcept { return variables_; }
   [[nodiscard]] std::span<const TrackedVariable> variables() const noexcept { return variables_; }
 
-  // As of the last place(): as Robot::links. Of a robot that was not heard nothing is known.
+  // The states of the links at the last place(), in the order of Robot::links. Nothing is known of
+  // a robot without a joint position.
   [[nodiscard]] std::span<const LinkState> links(std::uint32_t robot) const noexcept {
     return kinematics_.links(robot);
   }
 
-  // The first object that is a link; the number of objects when none is.
+  // The index of the first object that is a link, or the number of objects if there are no links.
   [[nodiscard]] std::uint32_t first_link() const noexcept { return first_link_; }
 
-  // A position of this variable was taken.
+  // Call this when a position of this variable was taken.
   void hear(std::uint32_t variable) noexcept { heard_[scene_.variables[variable].robot] = true; }
 
-  // Whether the object is a link that follows joints.
+  // True if the object is a link that joints place.
   [[nodiscard]] bool follows_joints(std::uint32_t object) const noexcept {
     return object >= first_link_ && heard_[robot_of_[object - first_link_]];
   }
 
   void forget_ages(std::int64_t now_ns) noexcept;
 
-  // Ends the tick's input: places the links of robots that were heard. The objects that robots
-  // stand on have been advanced.
+  // Ends the tick's input and places the links of all robots with joint positions. The objects on
+  // which robots stand must already be advanced.
   void place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept;
 
  private:
   const Scene& scene_;
   std::uint32_t first_link_;
-  std::vector<std::uint32_t> robot_of_;  // of each object from first_link_ on
+  std::vector<std::uint32_t> robot_of_;  // by object, from first_link_ on
   std::vector<bool> heard_;              // by robot
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;  // by robot

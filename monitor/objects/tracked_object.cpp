@@ -9,11 +9,12 @@
 namespace clearance {
 namespace {
 
-// Of squared norms.
+// Limits of the squared norm.
 constexpr double kLeastUnit = (1.0 - kSampleUnitTolerance) * (1.0 - kSampleUnitTolerance);
 constexpr double kMostUnit = (1.0 + kSampleUnitTolerance) * (1.0 + kSampleUnitTolerance);
-// A jump beyond any cell. Adding it to the accumulated displacement would cost digits for good:
-// after 1e4 km of displacement, 1 m/s for four months, they still tell 1e-8 m apart.
+// The displacement that counts as a discontinuity, larger than any cell. Accumulating it would lose
+// digits permanently. After 1e4 km, which is 1 m/s for four months, the accumulated displacement
+// still resolves 1e-8 m.
 constexpr double kJump = 1e4;  // m
 
 bool usable(const Vec3& v) noexcept {
@@ -21,13 +22,13 @@ bool usable(const Vec3& v) noexcept {
          std::abs(v.z()) <= kLargestInSample;
 }
 
-// All but the orientation.
+// Checks all but the orientation.
 bool usable(const PoseSample& sample) noexcept {
   return usable(sample.world_from_object.position) &&
          (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
 }
 
-// Mean velocity that leads from one pose to the next. The shorter way round is taken.
+// The mean velocity from one pose to the next, with the smaller of the two possible rotations.
 Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
   const Eigen::Quaterniond turn =
       to.orientation.normalized() * from.orientation.normalized().conjugate();
@@ -37,8 +38,8 @@ Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
   return {.linear = (to.position - from.position) / seconds, .angular = turn.vec() * per_sine};
 }
 
-// Samples may be off unit length by a thousandth, queries take a millionth: half of it for what is
-// composed of two.
+// Samples may be off unit length by 1e-3, distance queries accept 1e-6. The tolerance is half of
+// that, because queries compose two poses.
 Pose as_queries_take_it(const Pose& pose) noexcept {
   Pose out = pose;
   if (!(std::abs(pose.orientation.squaredNorm() - 1.0) <= kUnitTolerance)) {
@@ -51,7 +52,7 @@ bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
-// No pose, whoever sends it.
+// The sample is not a pose at all, whichever source sent it.
 std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
   const Eigen::Quaterniond& orientation = sample.world_from_object.orientation;
@@ -60,7 +61,7 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
 }
 
-// Whether the object can have come to this pose; if not, whether it has to be taken all the same.
+// True if the object can have come to this pose, or if it has to be taken all the same.
 bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
                TrackedObject& state) noexcept {
   const std::int64_t passed_ns = elapsed(state.input.stamp_ns, stamp_ns);
@@ -73,13 +74,13 @@ bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
   return true;
 }
 
-// One sample of an object, as clearance::take asks for it.
+// One sample of an object, as a candidate for clearance::take.
 struct PoseCandidate {
   const Object& object;
   const PoseSample& sample;
   std::int64_t stamp_ns;
   TrackedObject& state;
-  Pose pose = {};  // the sample's, as queries take it; set by malformed()
+  Pose pose = {};  // the sample's pose, normalised; set by malformed()
 
   [[nodiscard]] std::optional<Reject> malformed() noexcept {
     const auto cause = clearance::malformed(sample);
@@ -88,7 +89,7 @@ struct PoseCandidate {
   }
   [[nodiscard]] std::optional<Reject> implausible() noexcept;
   void use() noexcept;
-  // A twist that led elsewhere takes longer to be believed again.
+  // A stream whose twists led elsewhere must agree for longer.
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {
     const std::int64_t age_limits =
         state.reckoning.leads_elsewhere() ? Reckoning::kAgreesAfterAgeLimits : 1;
@@ -116,9 +117,9 @@ void PoseCandidate::use() noexcept {
   if (sample.has_twist) {
     state.twist = sample.twist;
     state.twist_known = true;
-  } else if (state.input.has_value && apart_ns > 0) {  // the same stamp again tells no speed
-    // A mean over some time is the velocity of half that time ago, which counts as long as a pose
-    // of that age does.
+  } else if (state.input.has_value && apart_ns > 0) {  // equal stamps give no velocity
+    // A mean over a time is the velocity of half that time ago. It is accepted for as long as a
+    // pose of that age is.
     state.twist_known = apart_ns / 2 <= object.age_limit_ns;
     const double seconds = static_cast<double>(apart_ns) * 1e-9;
     state.twist =

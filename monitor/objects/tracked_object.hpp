@@ -1,5 +1,4 @@
-// One object of the scene as the tick knows it: the pose in use, where it came from and how it
-// moves.
+// One object of the scene: the pose in use, its source and its motion.
 #pragma once
 
 #include <cstdint>
@@ -17,38 +16,40 @@
 namespace clearance {
 
 struct TrackedObject {
-  // What every pair asks of both its objects each tick comes first: one cache line, to
-  // `accumulated_turn`.
-  bool moved = false;          // it is not that of the last tick
+  // The members up to `accumulated_turn` fill one cache line. Every pair reads them from both its
+  // objects in each tick.
+  bool moved = false;          // the pose differs from that of the last tick
   bool first_seen = false;     // nothing was known of it at the last tick
-  bool discontinuous = false;  // something was, but that is farther off than anything moves
-  // None of the exceptions: known and on time, now and at the last tick, and no discontinuity
+  bool discontinuous = false;  // it was known, but its pose jumped farther than anything moves
+  // No special case applies: known and on time now and at the last tick, and no discontinuity in
   // between.
   bool plain = false;
   bool absent = false;  // known not to be there (presence.hpp); then no pose is in use
-  // Since its stamp, m, at most: 0 unless late; infinity: no speed is stated.
+  // Bound of the motion since its stamp, m. It is 0 unless late, and infinity if no speed is
+  // stated.
   double may_have_moved = 0.0;
-  double unseen_since = 0.0;  // the larger of that at the last tick, if known then, and now, m
-  // No point of it has moved farther than these: since the last tick (infinity: not known),
-  // and in all, up to the last tick and up to now, leaving out the ticks of which that is not
-  // known. All m, set by displace().
+  double unseen_since = 0.0;  // the larger of it now and at the last tick, if known then, m
+  // Bounds of the displacement of any point, m, set by displace(). `displacement` is that since the
+  // last tick; infinity: not known. The accumulated ones are the totals up to the last tick and up
+  // to now. They leave out the ticks whose displacement is not known.
   double displacement = 0.0, accumulated_last_tick = 0.0, accumulated = 0.0;
-  // At any instant since the last tick no point of it was farther than this from where it would
-  // have been had it gone straight and evenly from its place then to its place now, m.
+  // Compares the motion with a straight one at constant velocity from the last tick's pose to this
+  // one. At no instant since the last tick was any point farther than this from that motion, m.
   double bend = 0.0;
-  double accumulated_turn = 0.0;  // Motion::turn, in all
-  double reach = kInfinity;       // no point of it is farther from its origin, m; set by displace()
-  InputRecord input;  // of its poses; of a link that follows joints, what they say of them
+  double accumulated_turn = 0.0;  // accumulated Motion::turn
+  double reach = kInfinity;       // bounding radius around its origin, m; set by displace()
+  InputRecord input;              // of its poses; for a link that follows joints, of the joints
 
-  // As sent, but for an orientation that is off unit length by more than 5e-7.
+  // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
+  // 5e-7.
   Pose pose;
-  // As sent with the pose, else from the last two poses. Not known, and zero, after the first, and
-  // after a gap longer than twice the age limit: over that a difference says nothing about now.
+  // The twist sent with the pose, else the mean velocity between the last two poses. It is zero and
+  // not known after the first pose, and after a gap longer than twice the age limit. Over such a
+  // gap a mean says nothing about the present.
   Twist twist;
   bool twist_known = false;
-  Motion motion;  // since the last tick; none when first seen
-  // Of a link whose pose follows from joints: they say how late it is, and how far it may have
-  // moved since, m.
+  Motion motion;  // since the last tick; zero if nothing was known then
+  // For a link that follows joints, the joints determine its lateness and its unobserved motion, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;
   Landmarks landmarks;
@@ -58,18 +59,19 @@ struct TrackedObject {
   OtherPlace other_place;
 
   Pose pose_last_tick;
-  Pose pose_before;  // while it has moved: the one in use at the last tick; after `first_seen`, now
+  Pose pose_before;  // if moved: the pose of the last tick; after `first_seen`: `pose`
   bool seen_last_tick = false;
 
-  // Whether anything can be said about where it is now.
+  // True if there is a bound on where it is now.
   [[nodiscard]] bool known() const noexcept {
     return input.has_value && may_have_moved < kInfinity;
   }
-  // Whether `twist` is how it moves now: a late object may do anything since its stamp.
+  // True if `twist` is its present velocity. A late object may have moved arbitrarily since its
+  // stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !input.late; }
 
-  // Since the last tick, where it was known then: as seen from another, and the way it is taken to
-  // have gone.
+  // The motion since the last tick, if the object was known then. Relative displacements use
+  // body_motion(). The assumed motion between the two poses is interpolated().
   [[nodiscard]] BodyMotion body_motion() const noexcept {
     return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
   }
@@ -77,33 +79,34 @@ struct TrackedObject {
     return interpolated_motion(moved ? pose_before : pose, pose);
   }
 
-  // As `displacement`, since the last tick or since something has been known of it, m.
+  // Like `displacement`, but 0 if the object was not known at the last tick, m.
   [[nodiscard]] double known_displacement() const noexcept {
     return first_seen ? 0.0 : displacement;
   }
 };
 
-// Before any input: a fixed object stands where the scene says.
+// The state before any input: a fixed object is at its pose in the scene.
 [[nodiscard]] TrackedObject initial_state(const Object& object);
 
-// Takes a sample into use; else says why it must not be used, and notes what that says of the
-// object. `object` is a moving one and the one that the sample names; `stamp_ns` is the sample's,
-// in the tick's time.
+// Takes a sample into use, or returns why it must not be used and updates the contradiction state.
+// `object` must be moving and the one that the sample names. `stamp_ns` is the sample's stamp in
+// the tick's time.
 [[nodiscard]] std::optional<Reject> take(const Object& object, const PoseSample& sample,
                                          std::int64_t stamp_ns, const SampleLimits& limits,
                                          TrackedObject& state) noexcept;
 
-// A link of a robot is where its joints say. One that is not known now, but was, may be anywhere;
-// so may one whose pose rounding puts farther off than Object::pose_error says.
+// Takes the state of a robot's link from its joints. A link that was known and no longer is may be
+// anywhere. The same applies if the rounding error of its pose exceeds Object::pose_error.
 void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Ends the tick's input: motion since the last tick, age and lateness.
+// Ends the tick's input: sets the motion since the last tick, the age and the lateness.
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Counts this tick's motion in; no point of the object is farther than `reach` from its origin.
+// Accumulates this tick's motion. `reach` is the bounding radius of the object around its origin,
+// m.
 void displace(double reach, TrackedObject& state) noexcept;
 
 }  // namespace clearance

@@ -7,8 +7,8 @@
 
 namespace clearance {
 
-// Cyclone keeps the bytes of a sample in one piece and gives them out with one more reference; ours
-// is enough.
+// Cyclone keeps the bytes of a sample contiguous. It returns them with an additional reference,
+// which is not needed, because this object has one.
 std::span<const std::byte> CdrSample::bytes() const {
   ddsrt_iovec_t part{};
   ddsi_serdata* const same =

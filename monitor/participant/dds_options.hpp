@@ -1,4 +1,4 @@
-// A program's place on DDS, and the exception when it cannot be there.
+// A program's domain, partition and network on DDS, and the exception if it cannot join them.
 #pragma once
 
 #include <dds/dds.h>

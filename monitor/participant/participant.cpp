@@ -29,13 +29,13 @@ constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
 
 constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
 
-// Qos objects are freed by Cyclone.
+// Frees a QoS object, which only Cyclone can do.
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
 };
 using Qos = std::unique_ptr<dds_qos_t, QosDeleter>;
 
-// An empty name is the default partition, for which the policy is absent.
+// An empty name means the default partition, for which the policy is absent.
 Qos partition_qos(const std::string& partition) {
   Qos qos(dds_create_qos());
   if (!partition.empty()) dds_qset_partition1(qos.get(), partition.c_str());
@@ -97,12 +97,12 @@ std::string discovery_xml(const DdsOptions& options) {
   return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
 }
 
-// Leaves out empty elements: Cyclone accepts them, but a person has to read the text.
+// Omits empty elements: Cyclone accepts them, but a person has to read the text.
 std::string element(const char* name, const std::string& content) {
   return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
 }
 
-// The text for clients leaves the sizes of their datagrams to them.
+// The text for clients does not set the sizes of their datagrams.
 std::string reach(const DdsOptions& options) {
   const std::string on = fmt::format(
       "in domain {} (ROS_DOMAIN_ID){}", options.domain,
@@ -359,7 +359,7 @@ DataWait::DataWait(const Participant& participant, const std::vector<dds_entity_
   for (const dds_entity_t reader : readers) add(reader);
 }
 
-// Both are gone already when the participant is.
+// If the participant has been deleted, both are deleted already.
 DataWait::~DataWait() {
   dds_delete(waitset_);
   dds_delete(guard_);

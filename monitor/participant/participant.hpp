@@ -22,16 +22,17 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 [[nodiscard]] bool can_be_looked_up(const std::string& peer);
 
 // Cyclone's configuration for these options, as XML. Loopback carries a whole batch in one datagram
-// of up to 65,000 B. All other networks get datagrams that fit an Ethernet frame. IP would cut
-// greater ones, and every lost fragment costs the datagram and holds the kernel's reassembly memory
-// for 30 s. Measured with 10 % loss and reports above 14,720 B: of 16,000 reports, 2,984 arrived
-// with Cyclone's own sizes and 14,902 with these.
+// of up to 65,000 B. All other networks get datagrams that fit an Ethernet frame. IP would fragment
+// larger ones: every lost fragment costs the whole datagram, and holds the kernel's reassembly
+// memory for 30 s. Measured with 10 % loss and reports above 14,720 B: of 16,000 reports, 2,984
+// arrived with Cyclone's own sizes and 14,902 with these.
 [[nodiscard]] std::string domain_configuration(const DdsOptions& options);
 
-// The writer's promises and announcements beyond the table of topics.
+// Options of a writer that the table of topics does not contain.
 struct WriterOptions {
-  // Every write says that the writer is alive. After this time without a write, readers learn that
-  // it is not. 0: it counts as alive while its participant does, which Cyclone gives up after 10 s.
+  // Every write also asserts that the writer is alive. After this time without a write, readers
+  // learn that it is not. With 0, it counts as alive while its participant does. Cyclone gives a
+  // silent participant up after 10 s.
   std::int64_t lease_ns = 0;
   std::string user_data = {};                // USER_DATA, which every discovering program can read
   const dds_listener_t* listener = nullptr;  // may be null; it is copied
@@ -47,12 +48,13 @@ struct WriterFacts {
 [[nodiscard]] WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer);
 // The publication handles of all writers that match.
 [[nodiscard]] std::vector<std::uint64_t> writers_of(dds_entity_t reader);
-// The number of matching writers, and of those that are alive: they wrote within their leases.
+// The number of matching writers, and the number of those that wrote within their leases.
 [[nodiscard]] std::uint32_t writers_there(dds_entity_t reader);
 [[nodiscard]] std::uint32_t writers_alive(dds_entity_t reader);
 
-// Why the last writer that did not match this reader is not heard, in a sentence that names topic
-// and cause; empty: there was none. Partitions that differ are no cause: they are meant to.
+// A sentence that says why the last writer that did not match this reader is not heard, with topic
+// and cause. It is empty if there was none. Different partitions are no cause, because they are
+// intended.
 [[nodiscard]] std::string why_unheard(dds_entity_t reader);
 
 // Owns the domain's configuration, the participant and all endpoints made through it.
@@ -106,7 +108,7 @@ class DataWait {
   DataWait& operator=(const DataWait&) = delete;
   // Any reader may be added, by the thread that waits.
   void add(dds_entity_t reader);
-  // Returns true when samples may be waiting, false when it was woken or the time is up.
+  // Returns true if samples may be waiting, false after wake() or the timeout.
   bool wait(std::int64_t timeout_ns);
   void wake() noexcept;
 

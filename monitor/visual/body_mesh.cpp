@@ -13,15 +13,15 @@
 namespace clearance {
 namespace {
 
-// Edges whose facets meet at a smaller angle than this, rad, are not drawn as lines: hulls of
-// meshes have many.
+// Edges whose facets meet at a smaller angle than this, rad, are not drawn as lines, because hulls
+// of meshes have many of them.
 constexpr double kSharpEdge = 0.35;
 
 double angle_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-// Unit vectors, in equal steps along the arc from a to b; t 0 to 1.
+// The unit vector at the share t, 0 to 1, of the arc from a to b.
 Vec3 along_arc(const Vec3& a, const Vec3& b, double t) {
   const double angle = angle_between(a, b);
   if (angle < 1e-9) return a;
@@ -29,7 +29,7 @@ Vec3 along_arc(const Vec3& a, const Vec3& b, double t) {
       .normalized();
 }
 
-// A capsule, or with start == end a sphere: rings of latitude about the axis.
+// A capsule, or a sphere if start == end: rings of latitude around the axis.
 BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius, double arc_step) {
   const Vec3 axis = start == end ? Vec3(Vec3::UnitZ()) : Vec3((end - start).normalized());
   const Vec3 across = axis.unitOrthogonal(), third = axis.cross(across);
@@ -61,12 +61,13 @@ BodyMesh capsule_mesh(const Vec3& start, const Vec3& end, double radius, double 
   return std::move(builder.mesh);
 }
 
-// The vertices of a bounded facet, counter-clockwise seen from outside.
+// The vertices of a bounded facet, counter-clockwise from outside.
 std::vector<std::int32_t> corners(const ConvexBody& body, const Facet& facet) {
   std::vector<std::int32_t> found;
   for (std::int32_t i = 0; i < facet.sides; ++i) {
     const EdgeUse& use = body.facet_edges[static_cast<std::size_t>(facet.first_side + i)];
-    // The facet lies to the left of the edge for side 0: it is passed from its start to its end.
+    // The facet is to the left of its edge on side 0: its boundary passes the edge from start to
+    // end.
     found.push_back(body.edges[static_cast<std::size_t>(use.edge)].vertex[use.side]);
   }
   return found;
@@ -90,7 +91,7 @@ void add_facets(const ConvexBody& body, double radius, MeshBuilder& builder) {
   }
 }
 
-// The strip of a cylinder along an edge, from its left facet's normal to its right one's.
+// The cylinder strip along an edge, from the normal of its left facet to that of its right one.
 void add_edge_strip(const ConvexBody& body, const Edge& edge, double radius, MeshBuilder& builder) {
   const Vec3& left = normal_of(body, edge.facet[0]);
   const Vec3& right = normal_of(body, edge.facet[1]);
@@ -104,7 +105,7 @@ void add_edge_strip(const ConvexBody& body, const Edge& edge, double radius, Mes
   builder.strip(at_start, at_end);
 }
 
-// One sector of the spherical patch at a vertex: from its middle to the arc from a to b.
+// One sector of the sphere patch at a vertex: from its middle to the arc from a to b.
 void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec3& a, const Vec3& b,
                 MeshBuilder& builder) {
   const int steps = builder.arc_steps(angle_between(a, b));
@@ -124,7 +125,7 @@ void add_sector(const Vec3& centre, double radius, const Vec3& middle, const Vec
 
 void add_vertex_patch(const ConvexBody& body, const Vertex& vertex, double radius,
                       MeshBuilder& builder) {
-  std::vector<Vec3> normals;  // of the facets around it, counter-clockwise
+  std::vector<Vec3> normals;  // normals of the facets around it, counter-clockwise
   Vec3 middle = Vec3::Zero();
   for (std::int32_t i = 0; i < vertex.edges; ++i) {
     const EdgeUse& use = body.vertex_edges[static_cast<std::size_t>(vertex.first_edge + i)];

@@ -18,7 +18,7 @@ struct SurfacePoint {
   Vec3 position, normal;
 };
 
-// Rows of points from the lowest to the highest, each a turn around the z-axis.
+// Rows of points from the lowest to the highest, each a full circle around the z-axis.
 void add_rows(int rows, const std::function<SurfacePoint(int row, double turn)>& point_of,
               MeshBuilder& builder) {
   const int around = builder.arc_steps(2.0 * kHalfTurn);
@@ -34,7 +34,7 @@ void add_rows(int rows, const std::function<SurfacePoint(int row, double turn)>&
   }
 }
 
-// Moves each point of the ellipsoid out along its normal.
+// Moves each point of the ellipsoid outwards along its normal.
 void add_ellipsoid(const Vec3& semi_axes, double radius, MeshBuilder& builder) {
   const int steps = builder.arc_steps(kHalfTurn);
   add_rows(
@@ -49,14 +49,14 @@ void add_ellipsoid(const Vec3& semi_axes, double radius, MeshBuilder& builder) {
       builder);
 }
 
-// A point of the outline in the half-plane through the axis. `direction` is the angle of the
+// A point of the profile in the half-plane through the axis. `direction` is the angle of the
 // normal, from -pi / 2 (down) to pi / 2 (up).
 struct OutlinePoint {
   double from_axis, height, direction;
 };
 
-// Points around a circle of the rim, between two directions; without a radius, the circle's own
-// point.
+// Adds points around the edge of a disc, between two directions of the normal. With radius 0 this
+// is one point, on the edge itself.
 void add_arc(const Disc& disc, double from, double to, double radius, const MeshBuilder& builder,
              std::vector<OutlinePoint>& outline) {
   const int steps = radius > 0.0 ? builder.arc_steps(to - from) : 1;

@@ -1,4 +1,4 @@
-// Ellipsoids, cylinders and cones, each with a radius around it, as triangles.
+// Triangle meshes of ellipsoids, cylinders and cones, each with a radius around it.
 #pragma once
 
 #include "core/curved_shape.hpp"
@@ -6,7 +6,7 @@
 
 namespace clearance {
 
-// In the shape's frame; `radius` (m, >= 0) is the radius around it.
+// Meshes the shape in its own frame; `radius` (m, >= 0) is the radius around it.
 [[nodiscard]] BodyMesh curved_mesh(const CurvedShape& shape, double radius, double arc_step);
 
 }  // namespace clearance

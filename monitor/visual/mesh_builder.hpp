@@ -28,7 +28,7 @@ class MeshBuilder {
   void triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) {
     mesh.triangles.push_back({a, b, c});
   }
-  // Joins two rows of equally many points, the first to the right of the second.
+  // Connects two rows with equally many points, the first to the right of the second.
   void strip(std::span<const std::uint32_t> from, std::span<const std::uint32_t> to) {
     for (std::size_t i = 0; i + 1 < from.size(); ++i) {
       triangle(from[i], from[i + 1], to[i + 1]);

@@ -11,10 +11,10 @@
 namespace clearance {
 namespace {
 
-// Of a source, poses and joints: two seconds of thirty objects at 1 kHz. The oldest give way, so
-// that a daemon that has ended costs no more memory.
+// The largest number of waiting poses and joints of a source: two seconds of thirty objects at 1
+// kHz. The oldest are dropped, so a daemon that has ended does not cost more memory.
 constexpr std::size_t kMostWaiting = 1 << 16;
-// No batch has this number or a later one.
+// No report ever names this sequence number.
 constexpr std::uint64_t kNeverNamed = std::numeric_limits<std::uint64_t>::max();
 
 std::int64_t newest_stamp(const PoseBatch& batch) {
@@ -24,7 +24,7 @@ std::int64_t newest_stamp(const PoseBatch& batch) {
   return newest;
 }
 
-// As a monitor begins.
+// The initial inputs, the same as those of a monitor.
 Inputs inputs_of(const Scene& scene) {
   Inputs inputs = initial_inputs(scene);
   const std::vector<BoundingSphere> spheres =
@@ -61,7 +61,7 @@ void ObjectPoses::wait(PoseBatch batch, std::uint64_t sequence_number) {
   }
 }
 
-// What follows joints is placed once, by the last of them.
+// Links are placed once, after all used batches.
 void ObjectPoses::use(const clearance_msg_Distances& report) {
   const std::int64_t newest_ns = report.newest_pose_ns + report.clock_offset_ns;
   for (auto& [source, waiting] : waiting_) take_up_to(0, newest_ns, waiting);

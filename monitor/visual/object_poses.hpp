@@ -1,11 +1,11 @@
-// Where the objects of a cell are, as a client can know it: the poses that the latest report used,
-// from the batches that come in (intake/).
+// The poses of a cell's objects as a client can know them: those that the latest report used. They
+// come from the same batches that the daemon takes (intake/).
 //
-// The report names the last batch of each source that its tick took in, and where it took in none,
-// the stamp of the newest pose in use. Later batches wait for the report that uses them, so that
-// bodies, witness points and distances belong together. What is used goes through the stage of the
-// tick that takes poses and joints in (objects/ingest.hpp) and through its kinematics: what the
-// daemon refuses is not shown either.
+// For each source, the report names the last batch that its tick used. If the tick used no batch,
+// the report has the stamp of the newest pose in use. Later batches wait for the report that uses
+// them, so that bodies, witness points and distances belong together. Batches go through the
+// daemon's own ingest stage (objects/ingest.hpp) and kinematics. Samples that the daemon refuses
+// are therefore not shown either.
 #pragma once
 
 #include <cstddef>
@@ -26,47 +26,48 @@ namespace clearance {
 
 class ObjectPoses {
  public:
-  // Fixed objects have their poses from the start; `scene` must outlive this.
+  // Fixed objects have their poses from the start. `scene` must outlive this.
   explicit ObjectPoses(const Scene& scene);
 
-  // Who has numbered a batch: its sender, as reports name it; or nobody, as of ROS 2's topics: then
-  // only its stamps say which report has used it.
+  // The origin of a batch's sequence number. A sender's number is the one that reports name. ROS 2
+  // topics have no numbers: only the stamps show which report used a batch.
   enum class Numbers : std::uint8_t { kOfSender, kUnnumbered };
-  // A batch of another scene is passed over.
+  // Takes a batch. A batch of another scene is ignored.
   void take(PoseBatch batch, Numbers numbers);
 
-  // Moves the objects to where they were for this report.
+  // Moves the objects to their poses in this report.
   void use(const clearance_msg_Distances& report);
 
-  // World from object; null until the first pose.
+  // World from object; null before the first pose.
   [[nodiscard]] const Pose* pose(std::size_t object) const {
     const TrackedObject& state = inputs_->objects[object];
     return state.input.has_value ? &state.pose : nullptr;
   }
-  void forget();  // all but the fixed ones
+  void forget();  // forgets all but the fixed objects
 
  private:
   struct Batch {
     std::uint64_t sequence_number;
-    std::int64_t stamp_ns;  // the newest in it
+    std::int64_t stamp_ns;  // the newest stamp in it
     PoseBatch content;
   };
-  // Of one source, in order.
+  // The waiting batches of one source, in order.
   struct Waiting {
     std::deque<Batch> batches;
     std::size_t samples = 0;
   };
 
   void wait(PoseBatch batch, std::uint64_t sequence_number);
-  // Moves batches into `due_` as long as one of the two says that they have been used.
+  // Moves batches into `due_` if their sequence number or their stamp shows that they have been
+  // used.
   void take_up_to(std::uint64_t sequence_number, std::int64_t stamp_ns, Waiting& waiting);
 
   const Scene& scene_;
   SourceNumbers numbers_;
   const Inputs nothing_known_;
-  std::optional<Inputs> inputs_;                         // made anew to forget
+  std::optional<Inputs> inputs_;                         // replaced when forgetting
   std::map<std::string, Waiting, std::less<>> waiting_;  // by source
-  PoseBatch due_;                                        // of any sources, until they are taken in
+  PoseBatch due_;  // used batches of all sources, until they are ingested
 };
 
 }  // namespace clearance

@@ -1,7 +1,7 @@
-// The ROS 2 messages that viewers draw: transforms and markers, in the types of idl/ros2.idl.
+// The ROS 2 messages for viewers, transforms and markers, in the types of idl/ros2.idl.
 //
 // The schemas are the definitions of tf2_msgs and visualization_msgs, from Humble on, as `ros2msg`
-// text: MCAP files and Foxglove's protocol carry them.
+// text. MCAP files and Foxglove's protocol contain them.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ inline constexpr std::string_view kSchemaEncoding = "ros2msg";
 [[nodiscard]] const McapSchema& transforms_schema();  // tf2_msgs/msg/TFMessage
 [[nodiscard]] const McapSchema& markers_schema();     // visualization_msgs/msg/MarkerArray
 
-// Frame `child` in frame `world`.
+// The pose of the frame `child` in the frame `world`.
 struct Transform {
   std::string_view child;
   Pose pose;
@@ -51,7 +51,7 @@ struct Marker {
 using TransformMessage = tf2_msgs_msg_dds__TFMessage_;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
 
-// `stamp_ns` stands in every header; 0 means any time.
+// Every header gets `stamp_ns`; 0 means any time.
 [[nodiscard]] Sample<TransformMessage> transform_message(std::int64_t stamp_ns,
                                                          std::span<const Transform> transforms);
 [[nodiscard]] Sample<MarkerArray> marker_array(std::int64_t stamp_ns,

@@ -11,12 +11,12 @@ namespace {
 
 constexpr double kFollow = 4.0;    // 1/s: rate at which an error of the end point is corrected
 constexpr double kHoming = 0.5;    // 1/s: rate at which an error of the posture is corrected
-constexpr double kDamping = 1e-3;  // of joint velocities, beside (m/s)^2 of the task
+constexpr double kDamping = 1e-3;  // weight of joint velocities, relative to (m/s)^2 of the task
 constexpr double kNear = 0.4;      // m: pairs at a larger distance add no constraint
-constexpr double kOwnKeep = 0.01;  // m: between links of the arm
+constexpr double kOwnKeep = 0.01;  // m: the minimum distance between links of the arm
 constexpr double kFleeing = 0.5;   // m/s: the largest separating speed of a constraint
-constexpr double kStopping = 0.1;  // s: within which a joint may reach the end of its range
-constexpr double kPrice = 1e3;     // of violating an inequality by 1 m/s or rad/s
+constexpr double kStopping = 0.1;  // s: the least time to a position limit
+constexpr double kPrice = 1e3;     // price of violating an inequality by 1 m/s or rad/s
 
 // Rows a . dq >= b, collected one by one.
 class Rows {
@@ -38,7 +38,7 @@ class Rows {
   std::vector<std::pair<Eigen::VectorXd, double>> rows_;
 };
 
-// The gradient by the controller's own unknowns.
+// The gradient with respect to the controller's own unknowns.
 Eigen::VectorXd gradient_of(const clearance_msg_PairGradient& pair,
                             const std::vector<std::uint32_t>& variables) {
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(variables.size()));

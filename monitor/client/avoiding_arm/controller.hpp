@@ -1,11 +1,11 @@
-// A controller with a barrier. Its joint velocities move the end point along its path, and
-// distances shrink no faster than their value above a minimum allows.
+// A controller with a barrier. Its joint velocities move the end point along its path. Each
+// distance may shrink no faster than in proportion to its excess over a minimum.
 //
 //   minimise   |J dq - v|^2 + damping |dq - home|^2
 //   subject to gradient . dq + drift >= -rate (lower - keep)    for each pair that is near
 //              limits of joint velocities and positions
 //
-// The null space of the task gives way first, and the task only where that is not enough.
+// The null space of the task yields first, and the task only if that is not enough.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,9 @@
 namespace clearance::avoid {
 
 struct ControllerOptions {
-  bool avoids = true;  // false: the task alone
-  double keep_m =
-      0.08;  // the lower bound that pairs keep; the arm's own links from each other 0.01
-  double rate_hz = 4.0;  // how fast the distance above that may shrink
+  bool avoids = true;    // false: the task alone
+  double keep_m = 0.08;  // the lower bound that pairs keep; 0.01 between links of the arm
+  double rate_hz = 4.0;  // how fast the excess over keep_m may shrink
 };
 
 // The wanted position and velocity of the end point.
@@ -31,13 +30,13 @@ struct Target {
 
 class Controller {
  public:
-  // `home`: positions that the arm prefers, in the order of Scene::variables. Scene
-  // and model must outlive this.
+  // `home` has the preferred positions of the arm, in the order of Scene::variables. Scene and
+  // model must outlive this.
   Controller(const Scene& scene, const ArmModel& arm, std::vector<double> home,
              const ControllerOptions& options);
 
-  // Velocities as Scene::variables, rad/s or m/s, for the positions that the arm was placed at.
-  // `gradients`: those of the same positions, all known.
+  // Returns velocities in the order of Scene::variables, rad/s or m/s, for the positions at which
+  // the arm was placed. `gradients` must belong to the same positions, and all must be known.
   [[nodiscard]] std::vector<double> velocities(const std::vector<double>& positions,
                                                const Target& target,
                                                const clearance_msg_Gradients& gradients) const;

@@ -12,8 +12,8 @@ struct Inequalities {
 };
 
 // Minimises x' H x / 2 - f' x, H positive definite, under the inequalities. Each may be violated at
-// `price` per unit of b; with a high price only contradictory inequalities are. Hildreth's method
-// solves the dual, one multiplier at a time.
+// `price` per unit of b. With a high price, only contradictory inequalities are violated.
+// Hildreth's method solves the dual, one multiplier at a time.
 [[nodiscard]] Eigen::VectorXd minimise(const Eigen::MatrixXd& h, const Eigen::VectorXd& f,
                                        const Inequalities& inequalities, double price);
 

@@ -108,7 +108,7 @@ class Nearest {
   RunResult& result_;
 };
 
-// An arm that is late, or was moved between two runs, is unknown.
+// An arm that is late, or that was moved between two runs, is not known.
 bool all_known(const clearance_msg_Gradients& gradients) {
   const auto known = [](const clearance_msg_PairGradient& pair) {
     return std::isfinite(pair.drift) &&
@@ -140,7 +140,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
   std::int64_t now_ns = client::now_ns(), answered_ns = now_ns;
   while (t_s < options.seconds && go_on()) {
     const std::int64_t stamp_ns = world.send(t_s, positions, velocities);
-    // Waits for a tick that began after that.
+    // Waits for a tick that began after the stamp.
     while (gradients.next(std::chrono::milliseconds(20)) && gradients->now_ns < stamp_ns) {
     }
     const std::int64_t before_ns = now_ns;
