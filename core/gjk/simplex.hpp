@@ -53,8 +53,8 @@ struct ClosestPoint {
 };
 
 // Barycentric coordinates of the origin's projection on the affine hull of one to four points, by
-// Cramer's rule; those of other points stay 0. False: the points are affinely dependent, and a
-// smaller subset has the closest point.
+// Cramer's rule; those of other points stay 0. Returns false if the points are affinely dependent,
+// and a smaller subset has the closest point.
 template <class T>
 [[nodiscard]] bool projection_weights(const std::array<Vector<T>, 4>& p,
                                       const std::array<std::size_t, 4>& at, std::size_t count,
@@ -122,11 +122,12 @@ template <class T>
   return best;
 }
 
-// Point has a member `difference`, a Vector<T>, and says by operator== whether it is another one.
+// Point has a member `difference`, a Vector<T>, and operator==, which recognises a point that is
+// present already.
 template <class Point, class T>
 class Simplex {
  public:
-  // False: the point is there already, and no progress is possible.
+  // False: the simplex has this point already, and no progress is possible.
   [[nodiscard]] bool add(const Point& point) noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
       if (points_[i] == point) return false;
