@@ -53,8 +53,8 @@ struct ClosestPoint {
 };
 
 // Barycentric coordinates of the origin's projection on the affine hull of one to four points, by
-// Cramer's rule; those of other points stay 0. Returns false if the points are affinely dependent,
-// and a smaller subset has the closest point.
+// Cramer's rule; those of other points stay 0. Returns false if the points are affinely dependent;
+// a smaller subset then has the closest point.
 template <class T>
 [[nodiscard]] bool projection_weights(const std::array<Vector<T>, 4>& p,
                                       const std::array<std::size_t, 4>& at, std::size_t count,
