@@ -67,8 +67,7 @@ void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const Pair
 void PublishedPairs::evaluate_all(const OpenTick& tick, Budget& budget) noexcept {
   for (std::size_t i = 0; i < body_parts_.size(); ++i) {
     const PosedPart& part = tick.parts[body_parts_[i]];
-    world_from_body_[i] =
-        tick.objects[part.object].input.has_value ? part.world_from_part : kNowhere;
+    world_from_body_[i] = tick.objects[part.object].input.has_value ? part.world_from_part : kNowhere;
   }
   for (Group& group : groups_) {
     evaluate_group(group, tick);

@@ -106,8 +106,7 @@ struct ExactCheck::Question {
   ExactNumber distance;
   std::optional<ExactNumber> penetration;
   double scale, size;
-  bool promises_near_bounds;  // one of the bodies is bounded; two unbounded ones only have true
-                              // bounds
+  bool promises_near_bounds;  // one of the bodies is bounded; two unbounded ones only have true bounds
 };
 
 // The answer to it, and the faults of the answer.
