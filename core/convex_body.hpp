@@ -109,16 +109,16 @@ struct ConvexBody {
   // Every anchor, offset and edge end is within this of the exact one, m; every unit vector is
   // within 2^-52.
   double position_error = 0.0;
-  // The part of a query's error bound that does not depend on the pose, m, for the body as A of a
-  // pair and as B. For an unbounded body it excludes the part that grows with the place of the
-  // closest points. Made by add_query_tables().
+  // The part of a query's error bound that does not depend on the pose, m: for the body as A, and
+  // as B. For an unbounded body it excludes the part that grows with the place of the closest
+  // points. Made by add_query_tables().
   double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
   // The body is the polyhedron or curved shape plus a sphere of this radius, m (exact); 0 to
   // kLargestCoordinate.
   double radius = 0.0;
 
-  // Set for a curved body. Of the members above, such a body has only its interior point, its radii
-  // and its bounds.
+  // Set for a curved body. Such a body has only the interior point, the radii and the bounds among
+  // the members above.
   CurvedShape curved;
 
   [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }

@@ -45,7 +45,7 @@ class VectorRows {
 
 // A limit of a facet's polygon in its plane: inward.x >= offset. An edge gives one limit, its inner
 // side. An edge that ends at a sharp vertex gives a second one, the part before its end. Without
-// it, a point that is off both edges by rounding may be past the vertex by that rounding over the
+// it, a point that rounding puts off both edges may be past the vertex by that rounding over the
 // sine of half the angle.
 struct FacetLimit {
   Vec3 inward;

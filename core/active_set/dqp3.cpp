@@ -46,7 +46,7 @@ void release(ActiveFeature& side, const Lambda& l) noexcept {
 }
 
 // Facets on the far side of a body may be parallel within rounding. There no edge and no facet
-// comes closer, although a move through the inside does. That gain must exceed kThin of the body's
+// comes closer, although a move through the inside does. This gain must exceed kThin of the body's
 // size; otherwise rounding decides.
 constexpr double kThin = 0x1p-44;
 

@@ -1,7 +1,7 @@
-// From half-spaces to facets, edges and vertices by polarity. About an interior point c, the rows
-// n.x <= d become points n / (d - n.c). The facets of the hull of these points are the vertices of
-// the intersection. A further point at the origin of the dual stands for the plane at infinity:
-// hull faces that pass through it are rays.
+// Converts half-spaces to facets, edges and vertices by polarity. About an interior point c, the
+// rows n.x <= d become points n / (d - n.c). The facets of the hull of these points are the
+// vertices of the intersection. A further point at the origin of the dual stands for the plane at
+// infinity: hull faces that pass through it are rays.
 #include <algorithm>
 #include <string>
 

@@ -10,7 +10,7 @@ namespace {
 // Limits on the support points of one pass and of all passes. Nearly symmetric pairs would need far
 // more.
 constexpr int kSupportsOfPass = 2500, kSupports = 6000;
-// As parts of the pair's size: the tolerance, and coarser ones for pairs for which it takes too
+// The tolerance as a part of the pair's size, and coarser ones for pairs for which it takes too
 // long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};

@@ -3,8 +3,8 @@
 // once a vector width: see core/numerics/vec4-inl.hpp.
 //
 // The step of one active pair solves (K + d I) s' = w. Here w is the gap vector, d is the distance,
-// and K is the sum of the support Hessians, so that K n = 0 and w.n = d. Then s' = n + s is already
-// the next direction, with s the step on the tangent plane.
+// and K is the sum of the support Hessians. So K n = 0 and w.n = d. Then s' = n + s is already the
+// next direction, with s the step on the tangent plane.
 //
 // Directions may have any length. For x = l n, the distance is 1/l times that along n, and the
 // radii of curvature are 1/l^2 times theirs. The step stays the same. Only the certificate needs a

@@ -33,9 +33,9 @@ inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
   if (!usable || faces > 1 || (faces == 1 && active.count > 1)) active.count = 0;
 }
 
-// A pair of parts is one number: at most one body is a polyhedron, and the other one has at most
-// two parts and two planar faces. The two features hold three such numbers of 21 bits. With one
-// pair only, a tracked query on an edge or a generator would take one more step.
+// A pair of parts is one number, because at most one body is a polyhedron, and the other one has at
+// most two parts and two planar faces. The two features hold three such numbers of 21 bits. With
+// one pair only, a tracked query on an edge or a generator would take one more step.
 inline constexpr unsigned kPartBits = 21;
 inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
 

@@ -217,7 +217,7 @@ inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
   return to_vertex(owner.side(), support);
 }
 
-// For facets that are tilted against each other: the vertex of one that is lowest above the other
+// For facets that are tilted against each other. The vertex of one that is lowest above the other
 // takes over, preferably that of the smaller body.
 inline HWY_NOINLINE Transition leave_facets(TrackedPair& pair, Vec4 n, Vec4 m) {
   if (!pair.a.bounded() || (pair.b.bounded() && pair.b.bounding_radius > pair.a.bounding_radius)) {

@@ -1,6 +1,7 @@
 // The simplex of the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4,
-// 1988): up to four points of the Minkowski difference B - A, and their hull's point that is
-// closest to the origin. T is the number type: double, or DoubleDouble where simplices are slender.
+// 1988). It has up to four points of the Minkowski difference B - A, and the point of their hull
+// that is closest to the origin. T is the number type: double, or DoubleDouble where simplices are
+// slender.
 #pragma once
 
 #include <array>
@@ -94,9 +95,9 @@ template <class T>
 }
 
 // Tries all 15 subsets and takes the closest projection that lies within its subset's hull.
-// Johnson's recursion decides by the signs of determinants which subset it is. Where rounding
-// changes a sign, it ends at the wrong subset or at none, while the least length is off by rounding
-// at most. points[0, size): any, degenerate simplices included.
+// Johnson's recursion decides by the signs of determinants which subset it is. If rounding changes
+// a sign, the recursion ends at the wrong subset or at none. The least length, however, is off by
+// rounding at most. points[0, size) may be any, degenerate simplices included.
 template <class T>
 [[nodiscard]] ClosestPoint<T> closest_to_origin(const std::array<Vector<T>, 4>& points,
                                                 std::size_t size) noexcept {

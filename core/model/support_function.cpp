@@ -92,9 +92,9 @@ double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcep
 }
 
 // The same bound for cones whose rays nearly cancel, for example those of a gable of a small slope.
-// If all rays have derivatives along a direction near `across` that are negative by more than
-// rounding, the tilt of `across` against that direction is a bound. The direction tried is just
-// past the steepest ray.
+// Suppose that all rays have derivatives along a direction near `across` that are negative by more
+// than rounding. Then the tilt of `across` against that direction is a bound. The direction tried
+// is just past the steepest ray.
 double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
   const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);

@@ -47,8 +47,8 @@ class TruncatedCone : public BodyDefaults {
                                             const Tangents& tangents) const noexcept {
     return clearance::support_hessian(SemiAxes(kUnitDisc), disc(part), scaled(m), tangents);
   }
-  // The support set along m is a disc if m is the axis, a generator if both rims have the same
-  // support value, and one point of a rim otherwise.
+  // The support set along m is a disc if m is the axis. It is a generator if both rims have the
+  // same support value, and one point of a rim otherwise.
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3& towards,
                                               double tolerance) const noexcept {
     constexpr double kParallel = 0x1p-50;

@@ -56,14 +56,16 @@ inline constexpr double kStretched = kMatrixError / kRotationError;
 // The errors of n.(R b + t - a) / |n| and |R b + t - a| in ulps of |a|, |b| and |t|. The points a
 // and b are on their features, in frame A, and B is as the doubles of R make it. Every direction is
 // brought to unit length. The counts:
-//   rotating a vector (the products 3^(1/2), two of them summed 2^(1/2), together 3; all three 1):
-//   4; placing it, and the difference of a and b: 1 each of what is placed, which is no longer than
-//   all three together; a cross product with an edge 2.16, a norm 2.5, a product with a normal 3, a
-//   norm's quotient 2.5 + 1;
-//   an edge is at right angles to n but for 3.2, over twice a body's size.
-// For an edge and a vertex that comes to 12, 11 and 7, for a facet and a vertex to 9, 9 and 9. For
-// two edges it is 10, 22 and 9, most of it from the direction of B's edge. Not all of that can
-// occur together with the rotation's own error: in the worst pose 15 % of the whole is left (the
+// - rotating a vector: 4 (the products 3^(1/2), two of them summed 2^(1/2), together 3; the sum of
+//   all three 1);
+// - placing it, and the difference of a and b: 1 each of the vector that is placed, which is no
+//   longer than all three together;
+// - a cross product with an edge: 2.16; a norm: 2.5; a product with a normal: 3; a quotient by a
+//   norm: 2.5 + 1;
+// - an edge is orthogonal to n except for 3.2, over twice a body's size.
+// For an edge and a vertex the sums are 12, 11 and 7, for a facet and a vertex 9, 9 and 9. For two
+// edges they are 10, 22 and 9, most of it from the direction of B's edge. Not all of these can
+// occur together with the rotation's own error. In the worst pose 15 % of the whole is left (the
 // test's kind "edge, edge").
 inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
 

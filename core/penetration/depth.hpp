@@ -1,16 +1,16 @@
 // The penetration depth of two bodies: the length of the shortest translation that separates them,
 // certified.
 //
-// Let h(n) be the displacement of B along the unit direction n after which it only touches A: the
-// sum of the support values of A along n and of B along -n. The depth is the smallest h(n), and
+// Let h(n) be the displacement of B along the unit direction n after which it only touches A. It is
+// the sum of the support values of A along n and of B along -n. The depth is the smallest h(n), and
 // every n bounds it from above. h is not convex on the sphere and has many local minima. Each of
-// them lies at the normal of a facet of A, at that of a facet of B, or at a crossing of two edge
-// arcs on the Gauss map. The arc of an edge joins the normals of its two facets. So it is enough to
-// know h at all facet normals and along the edge arcs of one of the bodies. Within a region between
-// such arcs one vertex of that body is the support point. There h is the support value of the other
-// body moved by that vertex. It is smallest at a facet of the other body or on the region's
-// boundary. The same argument, with h <= 0, says that a positive bound there certifies that the
-// bodies penetrate each other.
+// them lies at a facet normal of A or B, or at a crossing of two edge arcs on the Gauss map. The
+// arc of an edge joins the normals of its two facets. So it is enough to know h at all facet
+// normals and along the edge arcs of one of the bodies. Within a region between such arcs one
+// vertex of that body is the support point. There h is the support value of the other body moved by
+// that vertex. It is smallest at a facet of the other body or on the region's boundary. The same
+// argument, with h <= 0, says that a positive bound there certifies that the bodies penetrate each
+// other.
 //
 // The bound from below needs no combinatorics that rounding could upset. A point c of the Minkowski
 // difference gives h(n) >= c.n everywhere. On the arc between l and r, h is at least the smaller
