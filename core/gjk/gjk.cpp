@@ -101,8 +101,7 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
   // 1988).
   const WideMinkowskiDifference body(a, b, a_from_b, p);
   WideSimplex simplex;
-  // A point that lies far out on an unbounded body is off the body by more than the bounds allow
-  // for.
+  // Far out on an unbounded body, a point is off it by more than the bounds allow for.
   const bool near =
       a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
   (void)simplex.add(near ? body.make(a.local_point(), b.local_point())
