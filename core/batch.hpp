@@ -1,8 +1,8 @@
 // The distances of many pairs at once: the same answers as distance(), bit for bit, in less time.
 //
 // Vector code judges the pairs whose last features are still the closest, 1, 2, 4 or 8 at a time.
-// Highway chooses the width at run time, and the results do not depend on it. The other pairs go
-// through distance(), one by one. Made for pairs that are tracked: bodies that move a little
+// Highway chooses the width at run time, and the results do not depend on it. The other pairs are
+// queried by distance(), one by one. A batch is for tracked pairs, whose bodies move a little
 // between two rounds.
 #pragma once
 
@@ -31,12 +31,12 @@ class DistanceBatch {
   DistanceBatch& operator=(DistanceBatch&&) noexcept;
 
   // Takes one pose a body, as relative_pose() does. Returns one result a pair, in the order of the
-  // pairs: that of distance() with a tracking state of the pair's own. The results stay until the
-  // next call. No heap, deterministic.
+  // pairs: that of distance() with one tracking state per pair. The results stay until the next
+  // call. No heap, deterministic.
   std::span<const DistanceResult> evaluate(std::span<const Pose> world_from_body) noexcept;
 
-  // The pair's witness point on B in the last round, in B's own frame and before the radius, as in
-  // TrackingState.
+  // The pair's witness point on B in the last round, in frame B and before the radius is added, as
+  // in TrackingState.
   [[nodiscard]] Vec3 point_on_b(std::size_t pair) const noexcept;
 
   // All tracking states become cold.

@@ -1,11 +1,12 @@
-// A convex body as the queries see it. It is a polyhedron with facets, edges, vertices and their
-// adjacency, or a curved shape, which has none of these. Either has an optional radius around it.
+// A convex body in the form that queries read. It is a polyhedron with facets, edges, vertices and
+// their adjacency, or a curved shape, which has none of these. Either has an optional radius around
+// it.
 //
 // The polyhedron is an intersection of half-spaces n.x <= d (outward unit normals). It may be
-// unbounded: a floor is one half-space. It may be lower-dimensional in two ways only: a point or a
-// segment, which with a radius are a sphere and a capsule. The checked factories of core/shapes.hpp
-// make it by exact arithmetic. Every number here is the exact one rounded once, so the queries run
-// in doubles.
+// unbounded: a floor is one half-space. Only two lower-dimensional shapes are allowed: a point and
+// a segment, which with a radius are a sphere and a capsule. The checked factories of
+// core/shapes.hpp make it by exact arithmetic. Every number here is the exact one rounded once, so
+// that queries can run in doubles.
 //
 // Invariants: Every edge has relative-interior points. The edges of every vertex generate its cone.
 // The edges of every facet bound it in counter-clockwise order as seen from outside; they are an
@@ -31,8 +32,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Facet {
   Vec3 normal;    // outward, unit
   double offset;  // d, m
-  // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none.
-  // Behind them, up to first_side + limits: the sides that end at a sharp corner once more.
+  // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none. After
+  // them, up to first_side + limits, the sides that end at a sharp vertex are repeated.
   std::int32_t first_side;
   std::int32_t sides;
   std::int32_t limits;
@@ -43,8 +44,8 @@ struct Facet {
 struct Edge {
   Vec3 point;  // where the edge starts (s = 0): its first vertex; on a full line, any point of it
   Vec3 direction;  // unit
-  // Row k: unit, in the plane of facet[k], across the edge into that facet; zero for a segment. By
-  // columns: as vector registers read both at once.
+  // Row k: unit, in the plane of facet[k], across the edge into that facet; zero for a segment.
+  // Stored by columns, because vector registers read both rows at once.
   alignas(16) Eigen::Matrix<double, 2, 3> inward;
   double begin;            // 0, or -infinity for a full line (the only edge without a first vertex)
   double end;              // length, m; infinity for a ray or a full line
@@ -54,7 +55,7 @@ struct Edge {
   std::int32_t facet[2];
 };
 
-// An edge as one of its facets or vertices sees it.
+// An edge as listed by one of its facets or vertices.
 struct EdgeUse {
   std::int32_t edge;
   std::int32_t side;  // facets: the k of Edge::facet[k]; vertices: the k of Edge::vertex[k]
@@ -88,8 +89,7 @@ struct ConvexBody {
   std::vector<Ray> rays;
   RecessionCone recession_cone;  // of an unbounded body; made by add_query_tables()
 
-  // The same once more in the order in which the queries read it; made by
-  // add_query_tables().
+  // The same numbers again, in the order in which queries read them; made by add_query_tables().
   VectorRows outgoing{3};      // a row a vertex: unit, along vertex_edges[i], away from the vertex
   VectorRows facet_limits{4};  // a row a facet: of facet_edges[i]
   VectorRows planes{4};        // one row: normals and offsets of all facets
@@ -99,25 +99,26 @@ struct ConvexBody {
   std::array<std::uint32_t, 3> features{};  // how many vertices, edges, facets
   StartTable start;
 
-  // A point well inside (in the relative interior of a point or segment).
+  // A point far inside the body (for a point or segment, in its relative interior).
   Vec3 interior = Vec3::Zero();
   // The sphere of this radius around `interior` lies inside, rounding included, m; 0: not known.
   // Made by add_query_tables().
   double inner_radius = 0.0;
   double bounding_radius =
       0.0;  // largest |point| without the radius from the frame's origin, rounded up, m
-  // No anchor, offset or edge end is farther than this from the exact one, m; unit vectors: 2^-52.
+  // Every anchor, offset and edge end is within this of the exact one, m; every unit vector is
+  // within 2^-52.
   double position_error = 0.0;
-  // The part of a query's error bound that does not depend on the pose, as A of a pair and as B, m.
-  // For an unbounded body the part that grows with the place of the closest points is left out.
-  // Made by add_query_tables().
+  // The part of a query's error bound that does not depend on the pose, m: for the body as A, and
+  // as B. For an unbounded body it excludes the part that grows with the place of the closest
+  // points. Made by add_query_tables().
   double error_bound_as_a = 0.0, error_bound_as_b = 0.0;
   // The body is the polyhedron or curved shape plus a sphere of this radius, m (exact); 0 to
   // kLargestCoordinate.
   double radius = 0.0;
 
-  // A body that is no polyhedron has this; above, it has only its interior point, its radii and its
-  // bounds.
+  // Set for a curved body. Such a body has only the interior point, the radii and the bounds among
+  // the members above.
   CurvedShape curved;
 
   [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }

@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-// x^2 + y^2 <= radius^2 in the plane z = height; of radius 0, a point.
+// x^2 + y^2 <= radius^2 in the plane z = height; with radius 0 it is a point.
 struct Disc {
   double height = 0.0, radius = 0.0;  // m
   [[nodiscard]] bool operator==(const Disc&) const noexcept = default;

@@ -1,10 +1,10 @@
 // The distance of two convex bodies. Tracked: each call starts where the last one ended.
 //
-// Minimises |b - a| over a in A, b in B (§3.2). Feature tracking goes from the last closest
-// features to the present ones (V-Clip, Lin-Canny; core/feature_tracking). What it leaves open is
-// decided by the active-set QP of core/active_set/dqp3.hpp (§3.3, §3.4). Every answer is certified:
-// a separating direction bounds it from below (weak duality, §3.2), witness points on the bodies
-// from above. Everything is in frame A, in metres.
+// Minimises |b - a| over a in A, b in B (§3.2). Feature tracking moves from the last closest
+// features to the present ones (V-Clip, Lin-Canny; core/feature_tracking). The active-set QP of
+// core/active_set/dqp3.hpp decides the queries that tracking leaves open (§3.3, §3.4). Every answer
+// is certified: a separating direction bounds it from below (weak duality, §3.2), and witness
+// points on the bodies bound it from above. Everything is in frame A, in metres.
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -14,9 +14,9 @@
 namespace clearance {
 
 struct DistanceOptions {
-  // False: the query does not look for the penetration depth, which takes most of the time where
-  // bodies overlap. Bodies that are not certified disjoint then get the status kDepthNotAsked,
-  // and their lower bound may be -infinity.
+  // False: the query does not compute the penetration depth, which takes most of the time if bodies
+  // overlap. Bodies that are not certified disjoint then get the status kDepthNotAsked, and their
+  // lower bound may be -infinity.
   bool depth = true;
 };
 static_assert(sizeof(DistanceOptions) == 1 && alignof(DistanceOptions) == 1);
@@ -26,7 +26,7 @@ static_assert(sizeof(DistanceOptions) == 1 && alignof(DistanceOptions) == 1);
                                       const RelativePose& a_from_b, TrackingState& state,
                                       const DistanceOptions& options = {}) noexcept;
 
-// The same for relative_pose(world_from_a, world_from_b), to the bit, and faster.
+// The same result, bit for bit, as for relative_pose(world_from_a, world_from_b), but faster.
 [[nodiscard]] DistanceResult distance(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) noexcept;

@@ -13,7 +13,7 @@ enum class DistanceStatus : std::uint8_t {
   kOverlapping,     // certified: upper < 0
   kIterationLimit,  // the bounds hold, but are wider than rounding
   kDepthNotAsked,   // not certified disjoint, and DistanceOptions::depth is false
-  kBadPose,         // no pose, see below: nothing is known
+  kBadPose,         // the pose is bad, see below: nothing is known
 };
 
 [[nodiscard]] const char* name(DistanceStatus status) noexcept;
@@ -35,16 +35,17 @@ enum class DistancePath : std::uint8_t {
 //
 // Disjoint bodies: point_on_a and point_on_b are closest points, and point_on_b - point_on_a =
 // distance * normal to within sqrt(upper^2 - lower^2). The points prove the upper bound and the
-// normal the lower one, so the two bounds say how far one can be off the other.
+// normal proves the lower one. So the bounds say by how much the points and the normal can
+// disagree.
 //
 // Overlapping bodies: B moved by depth * normal only touches A, and the two points are those that
-// meet there. point_on_a is A's support point along the normal, and point_on_b is B's support point
-// against it, where B is now. Again point_on_b - point_on_a = distance * normal. For curved bodies
-// this holds along the normal only, to upper - lower; across it both points are anywhere in the
-// contact.
+// meet there. They are support points: point_on_a of A along the normal, and point_on_b of B
+// against it, at B's present place. Again point_on_b - point_on_a = distance * normal. For curved
+// bodies this holds along the normal only, to upper - lower; across it both points are anywhere in
+// the contact.
 //
-// Touching bodies: the two points coincide up to rounding. Unbounded bodies may touch far away;
-// then the rounding is that of coordinates there.
+// Touching bodies: the two points coincide up to rounding. Unbounded bodies may touch far away; the
+// rounding is then that of the coordinates at that place.
 //
 // Two unbounded bodies are answered in doubles, with true bounds. If doubles cannot tell along
 // which directions neither body is unbounded, lower is -infinity and the status kIterationLimit.
@@ -83,9 +84,9 @@ enum class FeatureKind : std::uint8_t {
 // For a pair with a curved body, `kind` is kDirection, a.point is the last separating direction
 // (frame A), and `feature` names smooth parts (core/curved/tracking.hpp).
 //
-// After a query the two points are the witness points before radii, each in its body's frame; with
-// a curved body only b.point is. transform(world_from_b, state.b.point) lies on B to the rounding
-// of B's own pose, however far away A is.
+// After a query the two points are the witness points before radii, each in its body's frame. With
+// a curved body this holds for b.point only. The point transform(world_from_b, state.b.point) lies
+// on B to the rounding of B's own pose, however far away A is.
 struct alignas(64) TrackingState {
   struct Side {
     FeatureKind kind = FeatureKind::kUnknown;

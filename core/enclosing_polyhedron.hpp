@@ -1,9 +1,9 @@
 // A coarser model of a body or of several: one convex polyhedron of few facets that holds them all.
 //
-// It keeps few of the planes that bound the hull of the bodies, each pushed out to the largest
-// support value of the bodies, rounding included. So the half-spaces hold every point of the
-// bodies, whichever planes were chosen. The choice is greedy: in every round, the planes that cut
-// off the vertices which stick out most. This is an outer sandwich algorithm: G. Rote, "The
+// It keeps a few of the planes that bound the hull of the bodies. Each plane is moved out to the
+// largest support value of the bodies, rounding included. So the half-spaces contain every point of
+// the bodies, whichever planes are chosen. The choice is greedy: every round takes the planes that
+// cut off the vertices which stick out most. This is an outer sandwich algorithm: G. Rote, "The
 // convergence rate of the sandwich algorithm", 1992. Load time only: allocates, may take
 // milliseconds.
 #pragma once

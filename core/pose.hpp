@@ -1,4 +1,4 @@
-// The pose of a body, its velocity, and the pose of one body as seen from another.
+// The pose of a body, its velocity, and the pose of one body relative to another.
 #pragma once
 
 #include <cmath>
@@ -20,9 +20,9 @@ inline constexpr double kUnitTolerance = 1e-6;
 
 // A point x of the object's own frame is at position + R(orientation / |orientation|) x in the
 // world. The quaternion is of unit length to kUnitTolerance, and every use means its exact
-// normalisation. Quaternions are stored x, y, z, w (as Eigen does, and as on the wire). A pose is a
-// cache line: queries over many pairs read poses at random, and on two lines each they take a
-// thirtieth longer.
+// normalisation. Quaternions are stored x, y, z, w, as in Eigen and on the wire. A pose is one
+// cache line. Queries over many pairs read poses at random, and with two lines a pose they would
+// take a thirtieth longer.
 struct alignas(64) Pose {
   Vec3 position = Vec3::Zero();  // m
   // Eigen aligns it to 8, 16 or 32 bytes, by the switches of each compilation. 32 covers them all,
@@ -62,8 +62,8 @@ static_assert(sizeof(Twist) == 48 && alignof(Twist) == 8);
 // orientation as well.
 inline constexpr double kPlacingError = 0x1p-47;
 
-// B as seen from A: x_a = rotation * x_b + translation. Made once a query. The errors of both
-// quantities are part of the value, so that bounds can account for them.
+// The pose of B in A's frame: x_a = rotation * x_b + translation. It is made once a query. The
+// errors of both quantities are part of the value, so that bounds can account for them.
 struct RelativePose {
   Mat3 rotation = Mat3::Identity();
   Vec3 translation = Vec3::Zero();  // m, in frame A
@@ -72,11 +72,11 @@ struct RelativePose {
 };
 static_assert(sizeof(RelativePose) == 112 && alignof(RelativePose) == 8);
 
-// Error behaviour: none. NaNs come of a quaternion that is not of unit length, of frames more than
-// kLargestCoordinate from each other, and of numbers that are not finite. distance() says kBadPose
-// then. Equal orientations (up to the quaternions' sign) give exactly the identity. Orientations
-// that permute axes give exactly that permutation. Both have rotation_error 0: parallel stays
-// parallel.
+// Errors: the result has NaNs if a quaternion is not of unit length, the frames are more than
+// kLargestCoordinate from each other, or a number is not finite. distance() then returns kBadPose.
+// Equal orientations (up to the quaternions' sign) give exactly the identity. Orientations that
+// permute axes give exactly that permutation. Both have rotation_error 0, so that parallel features
+// stay parallel.
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

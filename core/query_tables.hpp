@@ -43,23 +43,23 @@ class VectorRows {
   std::int32_t numbers_;
 };
 
-// A limit of a facet's polygon in its plane: inward.x >= offset. An edge gives one: its inner side.
-// An edge that ends at a sharp corner gives a second one: the part before its end. A point that is
-// off both edges there by rounding may be past the vertex by as much over the sine of half the
-// angle.
+// A limit of a facet's polygon in its plane: inward.x >= offset. An edge gives one limit, its inner
+// side. An edge that ends at a sharp vertex gives a second one, the part before its end. Without
+// it, a point that rounding puts off both edges may be past the vertex by that rounding over the
+// sine of half the angle.
 struct FacetLimit {
   Vec3 inward;
   double offset;
 };
 
-// The cosine of the angle of a facet's vertex beyond which it is sharp: the sine of half of it is
-// 1/3.
+// A facet's vertex is sharp if the cosine of its angle exceeds this. The sine of half the angle is
+// then 1/3 or less.
 inline constexpr double kSharpCorner = 7.0 / 9.0;
 
 // The directions in which a body is unbounded. They are sums of multiples of its lines (the
 // lineality space) and non-negative multiples of its other extreme rays.
 struct RecessionCone {
-  // Unit, at right angles; two of them are a whole plane.
+  // Unit and orthogonal; two of them span a whole plane.
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
   std::size_t line_count = 0;
   std::vector<Vec3> rays;  // unit
@@ -76,9 +76,9 @@ struct RecessionCone {
   }
 };
 
-// A cube around the origin, each face a grid; the cell of a direction names the support point along
-// the middle of the cell. With 6 x 8 x 8 cells the climb on a facet-ball of 2,042 facets takes 3
-// edges on average. The table is no larger than the vertices of a body of 26 facets.
+// A cube around the origin whose faces are grids. The cell of a direction names the support point
+// along the middle of the cell. With 6 x 8 x 8 cells the climb on a facet-ball of 2,042 facets
+// takes 3 edges on average. The table is no larger than the vertices of a body of 26 facets.
 class StartTable {
  public:
   static constexpr int kGrid = 8;
@@ -117,8 +117,8 @@ class StartTable {
   std::array<std::int32_t, kCells> cells_{};
 };
 
-// Fills all that ConvexBody says is made by it from the rest, and keeps no memory to spare.
-// The factories' last step.
+// The last step of the factories: makes all members of ConvexBody that it documents as made here,
+// and frees spare memory.
 void add_query_tables(ConvexBody& body);
 
 // Bytes that a body takes, all of its tables included, without the allocator's overhead.

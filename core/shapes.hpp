@@ -1,8 +1,8 @@
-// Checked factories: the only way to make a convex body.
+// Checked factories: only they make convex bodies.
 //
 // Combinatorics are decided in exact rational arithmetic on the doubles given; coordinates are
-// rounded once at the end. Anything but a solid closed convex body is refused with a reason a
-// person can act on. So are the bodies that no scene holds. Limits: coordinates, offsets and radii
+// rounded once at the end. Anything but a solid closed convex body is refused with a reason that a
+// person can act on. So are bodies that no scene contains. Limits: coordinates, offsets and radii
 // of 1e12 m, extents of 1e-12 m, normals from 1e-100 to 1e100 long. An unbounded body must open by
 // at least 1e-6 rad, and by at least that much less than half a turn. Redundant half-spaces
 // disappear. Load time only: allocates, may take milliseconds, never throws.
@@ -17,7 +17,7 @@
 
 namespace clearance {
 
-// A solid is at least so thick along every facet's normal, and a segment so long, m.
+// A solid is at least this thick along every facet's normal, and a segment at least this long, m.
 inline constexpr double kLeastExtent = 1e-12;
 inline constexpr double kShortestNormal = 1e-100, kLongestNormal = 1e100;
 
@@ -56,9 +56,9 @@ using ShapeResult = std::variant<ConvexBody, ShapeError>;
 // A segment: with a radius, a capsule. Refused when both ends are equal.
 [[nodiscard]] ShapeResult segment(const Vec3& start, const Vec3& end, double radius);
 
-// Curved bodies are exactly what these doubles say. Refused: what is not finite, longer than
-// kLargestCoordinate or thinner than kLeastExtent. Each is all points within `rounding` (m, >= 0)
-// of what is described.
+// These doubles define curved bodies exactly. Refused: a length that is not finite, longer than
+// kLargestCoordinate or shorter than kLeastExtent. Each body is the set of all points within
+// `rounding` (m, >= 0) of the shape described.
 //
 // Around the origin, along the axes.
 [[nodiscard]] ShapeResult ellipsoid(const Vec3& semi_axes, double rounding = 0.0);
@@ -70,7 +70,7 @@ using ShapeResult = std::variant<ConvexBody, ShapeError>;
 [[nodiscard]] ShapeResult truncated_cone(double lower_radius, double upper_radius,
                                          double half_length, double rounding = 0.0);
 
-// The same body with this radius around it, whatever it had before: a rounded box, hull or
+// The same body with this radius around it in place of its former radius: a rounded box, hull or
 // cylinder. Refused: a radius that is not from 0 to kLargestCoordinate.
 [[nodiscard]] ShapeResult rounded_by(double radius, ConvexBody body);
 

@@ -9,12 +9,12 @@ namespace clearance {
 
 using Vec3 = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3d;
-// Aligned as a double is: Eigen's own has an alignment that depends on how it is compiled.
+// Aligned like a double; the alignment of Eigen's own type depends on the compiler's switches.
 using Vec2 = Eigen::Matrix<double, 2, 1, Eigen::DontAlign>;
 
-// The types of the library's interface lie in memory as the library was compiled. Every public
-// header checks its own types. A switch that would move them is an error when a user is compiled,
-// and not a wrong distance.
+// The memory layout of the interface's types is fixed when the library is compiled. Every public
+// header checks its own types. So a switch that would change the layout is an error when a user's
+// code is compiled, and not a wrong distance.
 static_assert(sizeof(Vec3) == 24 && alignof(Vec3) == 8 && sizeof(Vec2) == 16 && alignof(Vec2) == 8);
 static_assert(sizeof(Mat3) == 72 && alignof(Mat3) == 8);
 static_assert(!Mat3::IsRowMajor,

@@ -7,7 +7,7 @@ namespace {
 // body: 16 roundings, 2^-49.
 constexpr double kOnFacet = 0x1p-49;
 
-// A state may hold anything: its length has to be a number as well.
+// A state may contain any numbers: the length of the point has to be finite as well.
 bool is_a_point(const Vec3& v) noexcept { return v.squaredNorm() < kInfinity; }
 
 bool within(std::int32_t index, std::size_t size) noexcept {

@@ -1,11 +1,11 @@
 // One body during a query: its active feature, and its point x on it (§3.3: the active set of one
 // object).
 //
-// The active set is kept as the face of the polyhedron that it defines. No active facet means the
-// inside, one a facet, two an edge, three or more a vertex. All facets that meet in a vertex are
-// active there at once, so degenerate vertices need no special treatment (core/README.md). x lies
-// in the feature, in the body's own frame, where the body does not move (§3.4.4). The image of x in
-// frame A, the frame A, is kept as well.
+// The active set is kept as the feature of the polyhedron that it defines. No active facet means
+// the inside, one a facet, two an edge, three or more a vertex. All facets that meet in a vertex
+// are active there at once. So degenerate vertices need no special treatment (core/README.md). The
+// point x lies in the feature. It is kept in the body's local frame, where the body does not move
+// (§3.4.4), and in frame A as well.
 #pragma once
 
 #include <algorithm>
@@ -18,14 +18,14 @@
 
 namespace clearance {
 
-// The index of that limit of the facet (Facet::limits) beyond which p lies farthest, by more than
-// `tolerance` (m). kNone: p lies within all of them.
+// The limit of the facet (Facet::limits) that p violates most, by more than `tolerance` (m), by its
+// index. kNone: p violates none of them.
 [[nodiscard]] std::int32_t crossed_limit(const ConvexBody& body, const Facet& facet, const Vec3& p,
                                          double tolerance = 0.0) noexcept;
 
-// Facets may be parallel within rounding, and then rounding decides on which of their planes a
-// point lies. Goes from facet `index` over the edges that p is beyond to the facet whose polygon
-// holds p.
+// If facets are parallel within rounding, rounding decides on which of their planes a point lies.
+// Starts at facet `index`, crosses the edges that p has passed, and returns the facet whose polygon
+// contains p.
 [[nodiscard]] std::int32_t facet_under(const ConvexBody& body, std::int32_t index,
                                        const Vec3& p) noexcept;
 
@@ -39,7 +39,7 @@ namespace clearance {
 
 class ActiveFeature {
  public:
-  // pose: null for the body whose frame is the common one.
+  // pose: null for body A, whose frame is frame A.
   ActiveFeature(const ConvexBody& body, const RelativePose* pose) noexcept
       : body_(body), pose_(pose) {}
 
@@ -74,7 +74,7 @@ class ActiveFeature {
   void place_at_vertex(std::int32_t index) noexcept {
     place(FeatureKind::kVertex, index, body_.vertices[index].position);
   }
-  // On an edge, as near to `own` as its ends allow.
+  // On an edge, as near to `local` as its ends allow.
   void place_on_edge(std::int32_t index, const Vec3& local) noexcept {
     const Edge& e = body_.edges[index];
     const double s = std::clamp((local - e.point).dot(e.direction), e.begin, e.end);

@@ -1,8 +1,8 @@
-// The 'alpha' step: how far a body's point may go before a new facet becomes active (§3.3.1.3,
+// The 'alpha' step: how far a body's point may move before a new facet becomes active (§3.3.1.3,
 // §3.6.1).
 //
-// Over the feature's own boundary only: a facet's edges, an edge's ends, and all facets from the
-// inside. x lies in the feature, so nothing else can block.
+// Since x lies in the feature, only the boundary of the feature can block. It consists of a facet's
+// edges, an edge's ends, or all facets for the inside.
 #pragma once
 
 #include <cassert>
@@ -12,15 +12,15 @@
 namespace clearance {
 
 struct Alpha {
-  double fraction = 1.0;  // of the wanted move, in [0, 1]; 1 means that nothing blocks
+  double fraction = 1.0;  // of the intended move, in [0, 1]; 1 means that nothing blocks
   // The index of the facet, edge or vertex that blocks and becomes the active feature.
   std::int32_t blocking = kNone;
 };
 
 namespace alpha_case {
 
-// Distance to a boundary over the speed towards it; a boundary that rounding has let us cross
-// blocks at once.
+// The distance to a boundary over the speed towards it. A boundary that x has already crossed by
+// rounding blocks at once.
 inline double fraction(double gap, double speed) noexcept { return gap > 0.0 ? gap / speed : 0.0; }
 
 inline Alpha from_inside(const ActiveFeature& side, const Vec3& move) noexcept {

@@ -33,9 +33,9 @@ void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFe
   add_direction(list, n.dot(between) < 0.0 ? Vec3(-n) : n);
 }
 
-// m: the support value of the body along `normal` (frame A), from the body's own origin. On an
-// unbounded body only points within `within` of the origin count. Along a facet's own normal it is
-// the facet's offset, which needs no search.
+// m: the support value of the body along `normal` (frame A), from the origin of the body's frame.
+// For an unbounded body only points within `within` of the origin count. Along the normal of a
+// facet it is the facet's offset, which needs no search.
 double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                      double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
@@ -43,8 +43,8 @@ double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t fa
   return support(s.body(), m).value + support_along_rays(s.body(), m, within);
 }
 
-// Has every ray of the body a negative directional derivative along `normal`, beyond rounding? No
-// ray has a positive one along the normal of one of the body's own facets.
+// Has every ray of the body a directional derivative along `normal` that is negative by more than
+// rounding? No ray has a positive one along the normal of a facet of the body.
 bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                 double direction_error) noexcept {
   if (facet != kNone) return true;
@@ -68,7 +68,8 @@ Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
   if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   add_direction(list, direct);
-  // Says more only where the points are so near to each other that rounding has a part in `direct`.
+  // This direction is better only if the points are so near to each other that rounding affects
+  // `direct`.
   if (a.feature() == FeatureKind::kEdge && b.feature() == FeatureKind::kEdge) {
     add_crossing_edges(list, a, b, between);
   }
@@ -86,7 +87,7 @@ double separation(const Separator& s, const ActiveFeature& a, const ActiveFeatur
   assert(is_unit_or_unknown(s.normal));
   const double of_a = support_value(a, s.normal, s.facet_of_a, p.extent_a);
   const double of_b = support_value(b, -s.normal, s.facet_of_b, p.extent_b);
-  // The least n.x over B minus the greatest over A, each from its own frame's origin.
+  // The least n.x over B minus the greatest over A, each from the origin of its body's frame.
   const Vec3 origin_of_b = b.point_to_a(Vec3::Zero());
   return (s.normal.dot(origin_of_b) - of_b) - of_a;
 }

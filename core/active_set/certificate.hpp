@@ -35,8 +35,8 @@ class Separators {
 [[nodiscard]] Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept;
 
 // min over B of n.x minus max over A of n.x, for |n| = 1 (m, frame A). The distance is at least
-// this less p.error_bound. -infinity: an unbounded body leaves no bound, or both are unbounded and
-// rounding cannot tell whether they do.
+// this less p.error_bound. -infinity: an unbounded body leaves no bound. It is also -infinity if
+// both bodies are unbounded and rounding cannot tell whether they leave one.
 [[nodiscard]] double separation(const Separator& s, const ActiveFeature& a, const ActiveFeature& b,
                                 const Precision& p) noexcept;
 

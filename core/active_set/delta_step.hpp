@@ -2,7 +2,7 @@
 // (§3.4.2).
 //
 // If many pairs of points are closest, because the features are parallel, each point moves half of
-// the way: the smallest move (§3.4.2.1).
+// the distance, which is the smallest move (§3.4.2.1).
 #pragma once
 
 #include <array>
@@ -71,8 +71,8 @@ inline void edge_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p
     to_q = onto_line(to_p, q.point_in_a(), f);
     return;
   }
-  // Across e as well: rounding leaves a part of e in `across`, which would count for a long
-  // `between`.
+  // `between` is projected across e as well: rounding leaves a part of e in `across`, which would
+  // count for a long `between`.
   const double s = -(between - between.dot(e) * e).dot(across) / sine2;
   to_q = q.point_in_a() + s * f;
   to_p = onto_line(to_q, p.point_in_a(), e);
@@ -127,7 +127,7 @@ inline void inside_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& 
 using DeltaCase = void(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                        Vec3& to_q) noexcept;
 
-// [p][q], in the order of FeatureKind: the half of Table 3.1 that is not its mirror image.
+// Indexed [p][q], in the order of FeatureKind: one half of Table 3.1, which is symmetric.
 inline constexpr std::array<std::array<DeltaCase*, 4>, 4> kDeltaTable = {
     {{delta_case::vertex_vertex, delta_case::vertex_edge, delta_case::vertex_facet,
       delta_case::vertex_inside},

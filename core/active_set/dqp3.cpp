@@ -12,14 +12,14 @@ namespace {
 // Far above the longest iteration of any hard case.
 constexpr std::uint16_t kMostIterations = 1000;
 
-// Some steps bring a gain in exact arithmetic and none in doubles. They go along edges shorter than
-// the rounding of their ends, as where four planes all but meet. More of them mean that rounding
-// goes in circles.
+// Some steps gain in exact arithmetic and not in doubles. They follow edges shorter than the
+// rounding of their ends, for example where four planes nearly meet in a point. More such steps
+// mean that rounding makes the iteration cycle.
 constexpr int kStepsWithoutGain = 12;
 
-// One step of both points towards `to`. Each goes as far as its own facets allow (§3.4.1). If that
-// would increase the distance, both go the smaller of the two fractions, which cannot. True if
-// nothing blocked.
+// One step of both points towards `to`. Each moves as far as its own facets allow (§3.4.1). If that
+// would increase the distance, both move by the smaller of the two fractions, which cannot increase
+// it. True: nothing blocked.
 bool step(ActiveFeature& a, ActiveFeature& b, const Delta& to) noexcept {
   const Vec3 move_a = to.a - a.point_in_a(), move_b = to.b - b.point_in_a();
   Alpha alpha_a = alpha(a, move_a), alpha_b = alpha(b, move_b);
@@ -46,8 +46,8 @@ void release(ActiveFeature& side, const Lambda& l) noexcept {
 }
 
 // Facets on the far side of a body may be parallel within rounding. There no edge and no facet
-// leads closer, although the inside does. The inside leads closer by more than kThin of the body's
-// size, or else rounding decides.
+// comes closer, although a move through the inside does. This gain must exceed kThin of the body's
+// size; otherwise rounding decides.
 constexpr double kThin = 0x1p-44;
 
 bool leave_for_inside(ActiveFeature& side, const Vec3& direction_in_a) noexcept {
@@ -91,7 +91,7 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
       return ended(Dqp3End::kOptimal);
     }
     if (best < 0.0) return ended(found.exact ? Dqp3End::kCertified : Dqp3End::kOptimal);
-    // Release in the body that comes closer faster.
+    // Releases in the body that comes closer faster.
     if (of_a.derivative >= of_b.derivative) {
       release(a, of_a);
     } else {
@@ -101,12 +101,12 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
   return outcome;
 }
 
-// At a sharp edge or corner a point may be past the edge by far more than it is outside either
+// At a sharp edge or vertex, a point may be past the edge by far more than it is outside either
 // plane. A point is certainly inside if its gap to every plane exceeds this part of a length: the
 // bounding radius plus the point's distance from the origin.
 constexpr double kInsideBeyondRounding = 16 * kUlp;
 
-// Moves a point that is not inside beyond rounding to the nearest facet.
+// Moves a point to the nearest facet unless it is inside by more than rounding.
 void leave_inside(ActiveFeature& side) noexcept {
   const ConvexBody& body = side.body();
   double least = kInsideBeyondRounding * (body.bounding_radius + side.local_point().norm());

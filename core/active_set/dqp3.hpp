@@ -8,7 +8,7 @@
 namespace clearance {
 
 enum class Dqp3End : std::uint8_t {
-  kCertified,  // every release would increase the distance, beyond rounding: KKT satisfied
+  kCertified,  // KKT satisfied: every release would increase the distance by more than rounding
   kOptimal,    // no release brings the bodies closer, as far as rounding can tell
   kContact,    // the two points coincide to within `contact`
   kStalled,    // a release did not bring them closer: rounding decides from here on
@@ -22,9 +22,9 @@ struct Dqp3Outcome {
   Vec3 separating_direction = Vec3::Zero();
 };
 
-// Moves both sides from where they are to the closest points. Ends: between two releases the
-// distance falls strictly, so no active set comes twice. `contact`: points within this of each
-// other (m) coincide.
+// Moves both points from their present places to the closest points. It ends because the distance
+// falls strictly between two releases, so no active set comes twice. `contact`: points within this
+// of each other (m) coincide.
 [[nodiscard]] Dqp3Outcome dqp3(ActiveFeature& a, ActiveFeature& b, double contact) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// The 'lambda' step: does letting go of an active facet bring the bodies closer? (§3.4.3)
+// The 'lambda' step: does the release of an active facet bring the bodies closer? (§3.4.3)
 #pragma once
 
 #include "core/active_set/active_feature.hpp"
@@ -8,7 +8,7 @@ namespace clearance {
 
 struct Lambda {
   // The best directional derivative of the approach to the other point: > 0 means release. If it is
-  // negative beyond rounding, the feature is the support of its body along `direction`.
+  // negative by more than rounding, the feature is the support set of its body along `direction`.
   double derivative = -kInfinity;
   FeatureKind to = FeatureKind::kInside;  // the feature that remains
   std::int32_t index = kNone;
@@ -38,9 +38,9 @@ inline Lambda of_vertex(const ActiveFeature& side, const Vec3& direction) noexce
 
 // The release that gains most. `direction` points from this body's x to the other's, in frame A.
 // The derivative is minus the multiplier of the thesis, equations (3.4.23) to (3.4.25). The last of
-// these looks at three edges of one choice of facets; this looks at all edges that leave the
-// vertex. All derivatives are in the unit of `direction`, so that those of the two bodies can be
-// compared. The scaling of (3.4.25) serves the same end.
+// these considers three edges of one choice of facets; this function considers all edges that leave
+// the vertex. All derivatives are in the unit of `direction`, so that those of the two bodies can
+// be compared. The scaling of (3.4.25) serves the same end.
 [[nodiscard]] inline Lambda lambda(const ActiveFeature& side, const Vec3& direction_in_a) noexcept {
   if (side.feature() == FeatureKind::kInside) return {};
   const Vec3 direction = side.direction_to_local(direction_in_a);

@@ -8,7 +8,8 @@ namespace clearance {
 
 struct SeparatingDirection {
   Vec3 vector;  // frame A, from A towards B; its length is the features' distance, m
-  // The unit vector is good to rounding: at right angles to every active edge, along the facet.
+  // The unit vector is correct to rounding: orthogonal to every active edge, or along the facet's
+  // normal.
   bool exact = false;
 };
 

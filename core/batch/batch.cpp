@@ -68,7 +68,7 @@ class DistanceBatch::Rounds {
   [[nodiscard]] std::size_t single_queries() const noexcept { return single_queries_; }
 
  private:
-  // A pair that has left its lane, the features that it has been moved to, and the transitions to
+  // A pair that has left its lane, the features to which it has been moved, and the transitions to
   // them.
   struct Changed {
     std::uint32_t pair;
@@ -107,7 +107,7 @@ class DistanceBatch::Rounds {
     }
   }
 
-  // All leave their lanes before any comes to a new one.
+  // All pairs leave their lanes before any of them enters a new one.
   void leave_lane(const FailedLanes& of, const BatchBlock& block, std::size_t lane) noexcept {
     const std::uint32_t pair = block.pair[lane];
     slots_.leave(pair);
@@ -129,7 +129,8 @@ class DistanceBatch::Rounds {
         query_after_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
   }
 
-  // Sorted by their features: the processor predicts branches that it has just taken.
+  // The pairs are sorted by their features, because the processor predicts branches that it has
+  // just taken.
   void query_changed() noexcept {
     std::array<std::uint32_t, kFeaturePairs + 1> ends{};
     for (const Changed& c : changed_) ++ends[static_cast<std::size_t>(c.features) + 1U];
@@ -151,16 +152,16 @@ class DistanceBatch::Rounds {
     slots_.enter(pair);
   }
 
-  // A body without a pose would cost more than a tracked one, round after round. The last result
-  // still holds.
+  // A body without a pose would cost more than a tracked one in every round. The last result still
+  // holds.
   [[nodiscard]] bool is_still_nowhere(std::uint32_t pair) const noexcept {
     if (results_[pair].status != DistanceStatus::kBadPose) return false;
     const auto [a, b] = of_.pairs[pair];
     return std::isnan(poses_[a].position.x()) || std::isnan(poses_[b].position.x());
   }
 
-  // In the order of the pairs. A query with more than one transition has other features now, or is
-  // none for vector code.
+  // Queries in the order of the pairs. After more than one transition a pair has other features, or
+  // vector code cannot answer it.
   void query_unassigned() noexcept {
     for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
       for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {

@@ -18,12 +18,13 @@ namespace clearance {
 
 inline constexpr std::size_t kBlockLanes = 8;
 
-// There the witness point stays at the vertex: fill_lane() writes it, the vector code does not.
+// For these kinds the witness point stays at the vertex: fill_lane() writes it, the vector code
+// does not.
 constexpr bool at_vertex_of_a(FeaturePair pair) { return kind_on_a(pair) == FeatureKind::kVertex; }
 constexpr bool at_vertex_of_b(FeaturePair pair) { return kind_on_b(pair) == FeatureKind::kVertex; }
 
-// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. Those from the
-// first of them up to the points are not read of a plain block, nor kept.
+// Rows that every kind has. Lengths in metres; `unbounded` and `bare` are 1 or 0. The rows from
+// kFirstSpecialRow up to the points are neither read nor kept in a plain block.
 enum SharedRow : std::size_t {
   kBoundingRadiusA,
   kBoundingRadiusB,
@@ -41,8 +42,8 @@ enum SharedRow : std::size_t {
   kFeatureRows = kPointB + 3
 };
 
-// Rows of the features, from kFeatureRows on. The feature of more dimensions comes first; of two of
-// the same kind, A's. After them come the entries that repeat:
+// Rows of the features, from kFeatureRows on. The feature of more dimensions comes first; if both
+// have the same kind, A's does. After the features come the entries that repeat:
 //   edge    point 3, direction 3, begin, end, inward[0] 3, inward[1] 3
 //   facet   normal 3, offset
 //   vertex  position 3
@@ -70,8 +71,9 @@ static_assert(kSidesAtEdge + kMostRepeats * kSideRows <= kRows - kFeatureRows);
 struct alignas(64) BatchBlock {
   std::array<std::uint32_t, kBlockLanes> body_a{}, body_b{};
   std::array<std::uint32_t, kBlockLanes> pair{};  // of a lane not in use: one past the last pair
-  // The most entries (edges of a vertex or limits of a facet) of any lane since the block was
-  // empty, for A's feature and for B's. Lanes with fewer repeat their last one.
+  // The largest number of entries of any lane since the block was empty, for A's feature and for
+  // B's. An entry is an edge of a vertex or a limit of a facet. Lanes with fewer repeat their last
+  // one.
   std::uint8_t most_a = 0, most_b = 0;
   std::uint8_t lanes = 0;  // in use: [0, lanes), but for those that a pair has left
   std::uint8_t taken = 0;  // bit i: a pair is in lane i
@@ -80,11 +82,11 @@ struct alignas(64) BatchBlock {
   alignas(64) std::array<std::array<double, kBlockLanes>, kRows> rows{};
 };
 
-// Which neighbour takes over where the features are the closest no longer.
+// The neighbour that takes over when the features are no longer the closest.
 enum NextFeature : std::int32_t {
-  kNextUnknown = -1,  // rounding cannot tell, or it is not lanes' to say
-  // 0 and more: the edge of a vertex at an edge, the side of a facet, or the edge of A's vertex of
-  // two.
+  kNextUnknown = -1,  // rounding cannot tell, or lanes do not decide it
+  // 0 and more: an index. For a vertex and an edge it is that of an edge of the vertex, for a facet
+  // and a vertex that of a side of the facet. For two vertices it is that of an edge of A's vertex.
   kNextOfOther = kMostRepeats,     // + i: the edge of a vertex at a facet, of B's of two
   kNextBeside = 2 * kMostRepeats,  // + k: of an edge at a vertex, its facet
   kNextEnd = kNextBeside + 2,      // + k: of an edge (A's of two) its vertex
@@ -93,7 +95,7 @@ enum NextFeature : std::int32_t {
   kNextBesideB = 3,
 };
 
-// The lanes of a block whose pairs are for distance(): bit i, lane i.
+// The lanes of a block whose pairs distance() has to answer: bit i, lane i.
 struct alignas(64) FailedLanes {
   std::uint32_t block, lanes;
   alignas(64) std::array<double, kBlockLanes> next;  // NextFeature

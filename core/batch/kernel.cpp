@@ -53,7 +53,7 @@ HWY_INLINE Precisions precisions(const double* rows, bool plain, const RelativeP
 struct Answers {
   Lanes distance, lower, upper;
   Points normal, point_a, point_b;
-  LaneMask good;  // certified: distance() would have said the same
+  LaneMask good;  // certified: distance() would have the same result
 };
 
 // `kept` where `where`, else `v`.
@@ -138,8 +138,8 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
     add_radii(rows, r);
     write(r, block, first, round.results);
   }
-  // Certified or not: only what FailedLanes::lanes names is read. Closest features that are not
-  // certified have no neighbour that takes over, and go to distance() as they are.
+  // Certified or not: only what FailedLanes::lanes names is read. If the closest features are not
+  // certified, no neighbour takes over, and distance() gets them unchanged.
   hn::Store(hn::IfThenElse(c.closest, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
   if constexpr (kPair == FeaturePair::kVertexVertex) {
     hn::Store(c.derivative, Tag(), &failed.derivative[first]);
@@ -162,8 +162,8 @@ std::size_t judge_list(const BatchRound& round, std::size_t count) {
   const BatchRound::List& list = round.lists[static_cast<std::size_t>(kPair)];
   for (std::size_t k = 0; k < list.count; ++k) {
     BatchBlock& block = round.blocks[list.blocks[k]];
-    // Kept only where a lane has failed; else the next block writes over it. So BatchRound::failed
-    // has one entry more than there are blocks.
+    // This entry is kept only if a lane has failed; otherwise the next block overwrites it. So
+    // BatchRound::failed has one entry more than there are blocks.
     FailedLanes& failed = round.failed[count];
     std::size_t good = 0;
     for (std::size_t first = 0; first < block.lanes; first += kWidth) {

@@ -57,7 +57,8 @@ template <FeatureKind kKind>
 constexpr std::size_t kStride = kKind == FeatureKind::kVertex ? kDirectionRows : kSideRows;
 
 // Is this a feature that vector code can judge? A facet without sides is one. The witness point of
-// a vertex has to be the vertex, as after any query but those that touch: lanes do not write it.
+// a vertex has to be the vertex, because lanes do not write it. This holds after any query except
+// of touching bodies.
 bool can_be_judged(const ConvexBody& body, const Side& side) noexcept {
   if (side.kind > FeatureKind::kFacet || !few(repeats(body, side))) return false;
   return side.kind != FeatureKind::kVertex || side.point == body.vertices[side.feature].position;
@@ -124,7 +125,8 @@ constexpr std::size_t repeats_row(FeatureKind of, FeatureKind other, bool is_b) 
   return vertex ? kDirectionsAtFacet : kSides;
 }
 
-// First the feature of more dimensions, or A's of two of a kind; then the edges or limits.
+// Writes first the feature of more dimensions, or A's if both have the same kind; then the edges or
+// limits.
 template <FeatureKind kOfA, FeatureKind kOfB>
 void put_features(BatchBlock& block, std::size_t lane, const ConvexBody& a, const ConvexBody& b,
                   const TrackingState& state) noexcept {
@@ -164,8 +166,8 @@ bool bare(const ConvexBody& body, const Side& side) noexcept {
   return point_or_segment(body) && (side.kind == FeatureKind::kEdge || body.edges.empty());
 }
 
-// Says nothing in the rows from kFirstSpecialRow on. Vector code skips these rows in a block of
-// plain pairs.
+// Has the body nothing for the rows from kFirstSpecialRow on? Vector code skips these rows in a
+// block of plain pairs.
 bool plain(const ConvexBody& body) noexcept {
   return body.bounded() && body.radius == 0.0 && !point_or_segment(body);
 }

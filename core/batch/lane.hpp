@@ -5,12 +5,14 @@
 
 namespace clearance {
 
-// Whether lanes can judge the features of `state`. Only distance() can judge penetrating bodies,
-// two unbounded bodies, an unbounded body's edge with an edge or facet, too many neighbours.
+// Can lanes judge the features of `state`? Only distance() can judge penetrating bodies, two
+// unbounded bodies, an unbounded body's edge with an edge or facet, and features with too many
+// neighbours.
 [[nodiscard]] bool fits_lane(const ConvexBody& a, const ConvexBody& b,
                              const TrackingState& state) noexcept;
 
-// Without tracked pairs, for those of one pair of features. no_pair: one past the last.
+// Makes an empty block for tracked pairs with one pair of features. no_pair: one past the last
+// pair.
 void open_block(BatchBlock& block, FeaturePair features, std::uint32_t no_pair) noexcept;
 
 // Writes the rows of a lane in use. `state` has the block's features.

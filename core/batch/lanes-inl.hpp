@@ -74,8 +74,8 @@ HWY_INLINE Lanes load(const double* row) { return hn::Load(Tag(), row); }
 HWY_INLINE Points load_points(const double* rows) {
   return {load(rows), load(rows + kBlockLanes), load(rows + 2 * kBlockLanes)};
 }
-// Lanes outside `where` keep their numbers. Not by masked stores: AVX2's take a Zen 4 so long that
-// batches are 6 to 8 % slower.
+// Lanes outside `where` keep their numbers. Masked stores are not used: those of AVX2 are so slow
+// on a Zen 4 that batches take 6 to 8 % longer.
 HWY_INLINE void store_points(const Points& p, LaneMask where, double* rows) {
   const auto store = [&](Lanes v, double* row)
                          HWY_ATTR { hn::Store(hn::IfThenElse(where, v, load(row)), Tag(), row); };

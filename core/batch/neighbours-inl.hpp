@@ -61,7 +61,7 @@ HWY_INLINE Lanes named(Lanes which, NextFeature from) { return hn::Add(which, al
 HWY_INLINE Lanes next_if(LaneMask beyond_rounding, Lanes next) {
   return hn::IfThenElse(beyond_rounding, next, all(kNextUnknown));
 }
-// If s lies beyond an end of the edge, the vertex there comes first: `at_begin` or the next number.
+// If s is past an end of the edge, the vertex there comes first: `at_begin` or the next number.
 HWY_INLINE Lanes unless_past_end(Lanes begin, Lanes end, Lanes s, NextFeature at_begin,
                                  Lanes next) {
   next = hn::IfThenElse(hn::Ge(s, end), all(at_begin + 1), next);

@@ -27,7 +27,7 @@ const EdgeUse& edge_of_vertex(const ConvexBody& body, const Side& side, std::int
   return body.vertex_edges[body.vertices[side.feature].first_edge + i];
 }
 
-// Onto the vertex's edge, or past it to its far end.
+// Moves onto the vertex's edge, or past it to its far end.
 TransitionsMade along_edge(const ConvexBody& body, Side& side, std::int32_t i,
                            double derivative) noexcept {
   const EdgeUse& use = edge_of_vertex(body, side, i);
@@ -52,8 +52,8 @@ TransitionsMade from_edge_and_vertex(const Features& f, std::int32_t next) noexc
   return go(f.on_other, FeatureKind::kEdge, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
-// If an edge of the vertex approaches, the vertex at its far end is next. If the vertex lies beyond
-// a side of the facet, that edge of the facet is next.
+// If an edge of the vertex approaches, the vertex at its far end is next. If the vertex is past a
+// side of the facet, the edge at that side is next.
 TransitionsMade from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);

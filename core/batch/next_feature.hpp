@@ -1,5 +1,6 @@
-// Moves a pair whose features are no longer the closest to the neighbour that its lane has found.
-// transition() of core/feature_tracking/transitions-inl.hpp would have moved to the same.
+// For a pair whose features are no longer the closest: moves to the neighbour that its lane has
+// found. The function transition() of core/feature_tracking/transitions-inl.hpp would have moved to
+// the same neighbour.
 #pragma once
 
 #include "core/batch/block.hpp"

@@ -18,7 +18,7 @@ struct Quaternions {
   Lanes x, y, z, w;
 };
 
-// World from body, m; orientations as they came, of unit length or not.
+// World from body, m; orientations as given, of unit length or not.
 struct Poses {
   Points position;
   Quaternions orientation;
@@ -28,7 +28,7 @@ struct Rotations {
   Points x, y, z;  // rows
 };
 
-// B as seen from A, with bounds of the rounding in it: RelativePose4 of
+// The pose of B in A's frame, with bounds of its rounding error: RelativePose4 of
 // core/model/relative_pose-inl.hpp for lanes.
 struct RelativePoses {
   Rotations rotation;

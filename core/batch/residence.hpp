@@ -13,7 +13,7 @@ namespace clearance {
 
 class Residence {
  public:
-  // Features that vector code could not tell of are tried there again after so many rounds.
+  // If vector code could not decide features, they are tried there again after this many rounds.
   static constexpr std::uint16_t kRetry = 64;
   // For features that vector code does not judge: nearly unlimited.
   static constexpr std::uint16_t kNotAtAll = 0xffff;
@@ -31,7 +31,7 @@ class Residence {
   // After add(): may it enter a lane? One that changed too often has to keep its features for a
   // while.
   [[nodiscard]] bool settled(std::uint32_t now) const noexcept { return now - since_ >= wait_; }
-  // Not before so many rounds, unless it comes to other features.
+  // The pair waits for this many rounds, unless it comes to other features.
   void wait(std::uint16_t rounds) noexcept { wait_ = rounds; }
 
  private:

@@ -30,7 +30,8 @@ void BatchSlots::clear() noexcept {
   for (std::size_t i = blocks_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
 
-// Into a hole if there is one: vectors stay full, and nothing has to be moved afterwards.
+// The pair enters a hole if there is one: vectors stay full, and nothing has to be moved
+// afterwards.
 void BatchSlots::enter(std::uint32_t pair) noexcept {
   const FeaturePair features = feature_pair(of_.states[pair]);
   std::vector<Slot>& holes = settled_[static_cast<std::size_t>(features)].holes;
@@ -69,7 +70,7 @@ void BatchSlots::place(std::uint32_t pair, Slot slot) noexcept {
   slots_[pair] = slot;
 }
 
-// Still: it may have been filled or given up since.
+// Is this slot still a hole? It may have been filled or given up in the meantime.
 bool BatchSlots::is_hole(Slot slot, FeaturePair features) const noexcept {
   const BatchBlock& of = blocks_[slot.block];
   return of.features == features && slot.lane < of.lanes && of.pair[slot.lane] == of_.no_pair();

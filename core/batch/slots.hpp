@@ -28,9 +28,9 @@ struct BatchPairs {
   }
 };
 
-// Gives a pair a lane in a block of its features, numbers of its features included.
-// A pair has one lane or none. Lanes of the same features fill blocks one after another: all blocks
-// but the last are full, but for holes. Memory is taken once, by the constructor.
+// Gives a pair a lane in a block of its features, numbers of its features included. A pair has one
+// lane or none. Lanes of the same features fill blocks one after another. All blocks except the
+// last are full, apart from holes. Memory is taken once, by the constructor.
 class BatchSlots {
  public:
   struct Slot {

@@ -22,7 +22,7 @@ namespace HWY_NAMESPACE {
 struct Closest {
   HWY_INLINE Closest() {}  // as of Points
 
-  LaneMask closest;  // the KKT conditions are satisfied beyond rounding
+  LaneMask closest;  // the KKT conditions are satisfied by more than rounding
   Points point_a, point_b, local_b, normal;
   Lanes distance, certified;
   Lanes next, derivative;  // as of FailedLanes
@@ -59,7 +59,8 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
   line.find_separation();
   const Lanes begin = at.lanes(6), end = at.lanes(7);
   const LaneMask within = hn::And(hn::Gt(line.s, begin), hn::Lt(line.s, end));
-  // Rare, and a square root: only where a lane of the vector needs it (kSlender).
+  // This is rare and takes a square root, so it is done only if a lane of the vector needs it
+  // (kSlender).
   const LaneMask slender = hn::Lt(line.length, all(kSlender) * hn::Abs(line.s));
   Lanes of_separation = line.length;
   if (HWY_UNLIKELY(!hn::AllFalse(Tag(), slender))) {
@@ -106,8 +107,8 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Extreme away = Beside<!kIsB>{at, kDirectionsAtFacet}.least(
       plane.frame.opposite().direction_in_local(plane.n));
   const Lanes error = all(kDerivativeError);
-  // The order of the scalar transition: below the plane nothing is decided. Beyond a side of the
-  // facet that side takes over. Only above the facet a descending edge does.
+  // The order is that of the scalar transition. Below the plane nothing is decided. Past a side of
+  // the facet, that side takes over. Only above the facet, a descending edge takes over.
   const LaneMask above = hn::Gt(c.distance, all(0.0)), inside = hn::Ge(within.derivative, all(0.0));
   c.closest = hn::And(hn::And(above, inside), hn::Gt(away.derivative, error));
   const Lanes down =

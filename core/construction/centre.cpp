@@ -17,7 +17,7 @@ double depth(const ConvexBody& body, const Vec3& point) {
   return least;
 }
 
-// The centre of volume, by a fan of tetrahedra from the first anchor. Bounded bodies only.
+// The centre of volume, by a fan of tetrahedra from the first vertex. Bounded bodies only.
 Vec3 centroid(const ConvexBody& body) {
   const Vec3& apex = body.anchors[0];
   Vec3 moment = Vec3::Zero();
@@ -36,7 +36,7 @@ Vec3 centroid(const ConvexBody& body) {
   return volume > 0.0 ? Vec3(apex + moment / (4.0 * volume)) : apex;
 }
 
-// Goes from the mean of the anchors along the mean of the rays, by the spread of the anchors.
+// Moves from the mean of the `anchors` along the mean of the rays, by the spread of the `anchors`.
 Vec3 beyond_anchors(const ConvexBody& body) {
   Vec3 mean = Vec3::Zero();
   for (const Vec3& anchor : body.anchors) mean += anchor / static_cast<double>(body.anchors.size());

@@ -18,7 +18,7 @@ struct Triangle {
   bool alive = true;
 };
 
-// A horizon edge: the triangle outside stays, the one on this side goes.
+// A horizon edge: the triangle outside stays, and the one on this side is removed.
 struct HorizonEdge {
   int from, to;
   int outside;
@@ -51,7 +51,7 @@ class HullBuilder {
   }
 
  private:
-  // The first four points of the order that span space.
+  // Takes the first four points of the order that span space.
   bool make_simplex(const std::vector<int>& order) {
     std::array<int, 4> vertex{order.empty() ? 0 : order[0], kNoIndex, kNoIndex, kNoIndex};
     int found = order.empty() ? 0 : 1;
@@ -108,7 +108,8 @@ class HullBuilder {
     return slot;
   }
 
-  // Puts the point into the list of the first candidate that it sees; into none: it is in the hull.
+  // Puts the point into the list of the first candidate that it sees. If it sees none, it is in the
+  // hull.
   template <typename Candidates>
   void remember_one_seen(int point, const Candidates& candidates) {
     sees_[at(point)] = kNoIndex;
@@ -122,7 +123,8 @@ class HullBuilder {
     }
   }
 
-  // Each plane is evaluated once an insertion: a triangle is met from up to three sides.
+  // Each plane is evaluated only once per insertion, although a triangle is reached from up to
+  // three sides.
   bool is_seen(int t, int point) {
     Triangle& triangle = triangles_[at(t)];
     if (triangle.seen_in_round != point) {
@@ -151,7 +153,8 @@ class HullBuilder {
     free_.insert(free_.end(), going_.begin(), going_.end());
   }
 
-  // The triangles that `point` sees are connected: spread from the one it remembers.
+  // The triangles that `point` sees are connected, so the search spreads from the one that it
+  // remembers.
   void find_horizon(int point) {
     going_.clear();
     horizon_.clear();
@@ -219,7 +222,7 @@ class HullBuilder {
   std::vector<int> sees_;  // a point: the triangle whose list it is in; kNoIndex: in the hull
   std::vector<int>
       triangle_from_;      // a horizon vertex: the new triangle whose horizon edge starts there
-  std::vector<int> free_;  // slots of triangles that are gone
+  std::vector<int> free_;  // slots of removed triangles
   std::vector<int> going_, coming_;
   std::vector<HorizonEdge> horizon_;
 };

@@ -1,10 +1,10 @@
-// Convex hull of homogeneous points with every decision exact.
+// The convex hull of homogeneous points, with exact decisions.
 //
-// Randomised incremental construction (Clarkson and Shor 1989) over triangles; each point still
-// outside remembers one triangle that it sees (Barber, Dobkin and Huhdanpaa 1996). Points in a
-// triangle's plane do not see it, so degenerate input (coplanar, collinear, repeated) needs no
-// perturbation. Expected O(n log n). Afterwards coplanar triangles become faces, and what lies
-// within a face or a straight edge is gone.
+// Randomised incremental construction (Clarkson and Shor 1989) over triangles. Each point that is
+// still outside remembers one triangle that it sees (Barber, Dobkin and Huhdanpaa 1996). Points in
+// a triangle's plane do not see it, so degenerate input (coplanar, collinear, repeated) needs no
+// perturbation. The expected time is O(n log n). Afterwards coplanar triangles become faces, and
+// points within a face or a straight edge are dropped.
 #pragma once
 
 #include <array>

@@ -23,7 +23,7 @@ int apex(const HullTriangle& triangle, const HullTriangle& base) {
   return triangle.vertex[0];
 }
 
-// The face of every triangle: coplanar neighbours share one.
+// The number of the face of every triangle: coplanar neighbours share one.
 std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriangle> triangles,
                               int& count) {
   std::vector<int> face(triangles.size(), kNoFace);
@@ -49,8 +49,8 @@ std::vector<int> face_numbers(const PointSet& points, std::span<const HullTriang
   return face;
 }
 
-// The next edge of the same face's boundary: turn about the head of `edge` through the face's
-// triangles.
+// The next edge of the same face's boundary. The search turns about the head of `edge` through the
+// face's triangles.
 HalfEdge next_on_boundary(std::span<const HullTriangle> triangles, const std::vector<int>& face,
                           HalfEdge edge) {
   HalfEdge next{edge.triangle, (edge.side + 1) % 3};
@@ -81,7 +81,8 @@ std::vector<HullFace> hull_faces(const PointSet& points, std::span<const HullTri
     for (std::size_t side = 0; side < 3; ++side) {
       HalfEdge start{static_cast<int>(t), side};
       if (face_across(start) == face[t]) continue;
-      // Walk to where the neighbour changes, so that the loop starts at a true vertex.
+      // Advances to the place where the neighbour changes, so that the loop starts at a true
+      // vertex.
       HalfEdge edge = next_on_boundary(triangles, face, start);
       while (face_across(edge) == face_across(start))
         edge = next_on_boundary(triangles, face, edge);

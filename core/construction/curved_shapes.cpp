@@ -1,4 +1,4 @@
-// Factories of curved bodies. Nothing is rounded: their doubles are the definition.
+// Factories of curved bodies. Nothing is rounded: the doubles given define the body.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -22,7 +22,7 @@ ShapeError bad_radius(const char* what) {
   return {std::string(what) + " is not a length from 0 to 1e12 m"};
 }
 
-// reach: of the shape without the radius, m.
+// reach: the bounding radius of the shape without the radius around it, m.
 ShapeResult body_of(const CurvedShape& shape, double reach, double rounding) {
   ConvexBody body;
   body.curved = shape;

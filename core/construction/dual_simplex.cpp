@@ -55,8 +55,8 @@ Integer minor(const std::array<const Integer4*, 4>& m, std::size_t row, std::siz
 
 }  // namespace
 
-// By cofactors: A^-1 = adjugate / determinant, the determinant made positive, so that signs of
-// products with the adjugate are those with the inverse.
+// By cofactors: A^-1 = adjugate / determinant. The determinant is made positive, so that products
+// with the adjugate have the signs of those with the inverse.
 void DepthBasis::invert(const std::vector<DepthConstraint>& constraints) {
   std::array<const Integer4*, 4> m{};
   for (std::size_t i = 0; i < 4; ++i) m[i] = &constraints[at(member[i])].a;
@@ -113,8 +113,8 @@ Integer DepthProgramme::ample_box() const {
 
 void DepthProgramme::solve(const Integer& box) {
   constraints_.resize(at(rows_));
-  // The start is a vertex of the box at t = 1, with all of the objective on the last bound. That is
-  // dual feasible, whatever the rows are.
+  // The start is a vertex of the box at t = 1, with all of the objective on the last bound. This
+  // start is dual feasible, whatever the rows are.
   for (std::size_t i = 0; i < 3; ++i) {
     basis_.member[i] = static_cast<int>(constraints_.size());
     constraints_.push_back(bound(i, 1, free_[i] ? box : Integer(0)));
@@ -123,7 +123,8 @@ void DepthProgramme::solve(const Integer& box) {
   }
   basis_.member[3] = static_cast<int>(constraints_.size());
   constraints_.push_back(bound(3, 1, 1));
-  // Largest violation first; Bland's rule, which cannot cycle, when that takes suspiciously long.
+  // The largest violation is taken first. If that takes suspiciously long, Bland's rule is used,
+  // which cannot cycle.
   constexpr int kPatience = 200;
   for (int iteration = 0;; ++iteration) {
     basis_.invert(constraints_);
@@ -141,7 +142,7 @@ bool DepthProgramme::allows(const Integer4& xt, const Integer& denominator) cons
 }
 
 std::optional<NoInterior> DepthProgramme::proof() const {
-  // Multipliers with which the members add up to t <= (what the solution has): Farkas.
+  // The multipliers with which the members add up to t <= (t of the solution), by Farkas' lemma.
   const Integer4 multiplier = basis_.combination({0, 0, 0, 1});
   NoInterior result{{}, sgn(solution_[3]) == 0};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -196,8 +197,8 @@ int DepthProgramme::violated(bool first) const {
   return worst;
 }
 
-// Ratio test: of the members in the entering row's combination, the one whose multiplier is used up
-// first. There always is one: a small enough t satisfies every row.
+// Ratio test: among the members in the entering row's combination, the one whose multiplier is used
+// up first leaves. There is always one, because a small enough t satisfies every row.
 void DepthProgramme::pivot(int entering) {
   const Integer4 multiplier = basis_.combination({0, 0, 0, 1});
   const Integer4 share = basis_.combination(constraints_[at(entering)].a);

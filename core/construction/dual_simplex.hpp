@@ -1,9 +1,9 @@
-// How deep inside a set of half-spaces can a point be? A linear programme, solved exactly.
+// The deepest point inside a set of half-spaces, by a linear programme that is solved exactly.
 //
-// max t subject to n.x + m t <= d for every row, in four variables; m > 0 is the power of two next
-// below the largest component of |n|. Dual simplex from a vertex of a box. Pivots are in integers.
-// Pricing is in doubles, with an exact check wherever rounding could matter. At the end every row
-// holds exactly.
+// The programme is max t subject to n.x + m t <= d for every row, in four variables. Here m > 0 is
+// the power of two next below the largest component of |n|. The method is the dual simplex method
+// from a vertex of a box. Pivots are in integers. Pricing is in doubles, with an exact check
+// wherever rounding could matter. At the end every row holds exactly.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@
 
 namespace clearance::exact {
 
-// One constraint a.(x, t) <= b, and its doubles: a, b up to a positive factor, exact; NaN: use the
-// integers.
+// One constraint a.(x, t) <= b, and its doubles: a and b up to a positive factor, exactly. NaN: use
+// the integers.
 struct DepthConstraint {
   Integer4 a;
   Integer b;

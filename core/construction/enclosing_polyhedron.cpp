@@ -15,10 +15,11 @@ namespace {
 // A round takes half of the facets that are left (next_cuts): twelve are enough for thousands.
 constexpr int kMostRounds = 12;
 
-// So many points of each circle stand for a curved body when planes are chosen.
+// When planes are chosen, this many points of each circle stand for a curved body.
 constexpr int kRound = 16;
 
-// The bodies' hull: a polyhedron is the hull of spheres of these radii around its anchors.
+// The bodies' hull. A polyhedron is the hull of spheres of these radii around its vertices
+// (`anchors`).
 class Outline {
  public:
   explicit Outline(std::span<const PlacedShape> bodies) {
@@ -99,7 +100,7 @@ class Outline {
   }
 
   static void around(const Sphere& sphere, std::vector<Vec3>& points) {
-    // The 26 directions to a cube's faces, edges and corners.
+    // The 26 directions to a cube's faces, edges and vertices.
     for (int x = -1; x <= 1; ++x) {
       for (int y = -1; y <= 1; ++y) {
         for (int z = -1; z <= 1; ++z) {
@@ -165,7 +166,8 @@ std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfS
   std::stable_sort(vertices.begin(), vertices.end(), [](const auto& left, const auto& right) {
     return left.first.sticks_out > right.first.sticks_out;
   });
-  // Half of the cuts that are left, so that later cuts are chosen by the result of these.
+  // A round takes half of the cuts that are left, so that later cuts are chosen by the result of
+  // these.
   const std::size_t most = std::min(most_cuts, std::max<std::size_t>(2, most_cuts / 2));
   std::vector<HalfSpace> cuts;
   for (const auto& [cut_off, position] : vertices) {

@@ -1,4 +1,4 @@
-// A solid convex polyhedron with exact coordinates, on its way to become a ConvexBody.
+// A solid convex polyhedron with exact coordinates, from which a ConvexBody is made.
 #pragma once
 
 #include <span>

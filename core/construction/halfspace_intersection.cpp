@@ -1,4 +1,4 @@
-// Half-spaces to facets, edges and vertices through polarity. Seen from an interior point c, the
+// Converts half-spaces to facets, edges and vertices by polarity. About an interior point c, the
 // rows n.x <= d become points n / (d - n.c). The facets of the hull of these points are the
 // vertices of the intersection. A further point at the origin of the dual stands for the plane at
 // infinity: hull faces that pass through it are rays.
@@ -29,7 +29,7 @@ ShapeError no_interior(const NoInterior& proof) {
   return {"the half-spaces have no common point: " + rows + " contradict each other"};
 }
 
-// The dual points: rows first, then the plane at infinity, then caps where the body has no vertex.
+// The dual points: rows first, then the plane at infinity, then caps if the body has no vertex.
 std::vector<Integer4> dual_points(const std::vector<Integer4>& planes, const Integer4& centre) {
   std::vector<Integer4> points;
   points.reserve(planes.size() + 3);
@@ -64,7 +64,7 @@ Integer4 midpoint(const Integer4& a, const Integer4& b) {
   return result;
 }
 
-// Collects what the dual hull says about the rows.
+// Collects the facets, edges and vertices from the dual hull.
 class DualReader {
  public:
   DualReader(const std::vector<Integer4>& planes, const std::vector<HullFace>& faces,
@@ -76,7 +76,7 @@ class DualReader {
     number_facets();
   }
 
-  // With vertices: dual faces are vertices and rays.
+  // For a body with vertices: dual faces are its vertices and rays.
   Solid pointed() {
     number_nodes();
     for_each_edge([this](int left, int right, int from, int to) {
@@ -93,8 +93,8 @@ class DualReader {
     return std::move(solid_);
   }
 
-  // With lines along `direction`, cut off by two caps at equal distances: edges between rows are
-  // full lines.
+  // For a body with lines along `direction`, cut off by two caps at equal distances: edges between
+  // rows are full lines.
   Solid with_lines(const Integer3& direction) {
     for_each_edge([this](int left, int right, int from, int to) {
       const int node = static_cast<int>(solid_.nodes.size());

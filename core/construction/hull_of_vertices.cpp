@@ -13,7 +13,8 @@ Integer4 homogeneous(const Vec3& point) {
   return integer_multiple({point.x(), point.y(), point.z(), 1.0});
 }
 
-// About the middle of the bounding box, in 24 bits a coordinate: short numbers.
+// A point near the middle of the bounding box, with 24 bits a coordinate, so that numbers stay
+// short.
 Integer4 middle(std::span<const Vec3> points) {
   constexpr int kBits = 24;
   Vec3 low = points[0];
@@ -54,7 +55,7 @@ Integer4 facet_plane(const Integer4& h, const Integer4& origin) {
   return plane;
 }
 
-// The mean of three vertices of a face and one vertex beyond its plane.
+// The mean of three vertices of a face and one vertex off its plane.
 Integer4 inner_point(std::span<const Vec3> points, const PointSet& relative,
                      const std::vector<HullFace>& faces) {
   std::vector<int> vertices(faces[0].vertex.begin(), faces[0].vertex.begin() + 3);

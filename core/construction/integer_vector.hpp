@@ -1,9 +1,9 @@
 // Vectors of arbitrarily large integers: the doubles of a shape, exactly.
 //
 // A point is homogeneous: (x, y, z, w) with w > 0 stands for (x, y, z) / w. A plane n.x <= d is (n,
-// d). A positive factor changes neither, so a power of two makes integers of doubles, and no
-// fraction is ever needed. Load time only. Included by the factories' .cpp files, never by a public
-// header.
+// d). A positive factor changes neither. So a power of two makes integers of doubles, and no
+// fraction is ever needed. For load time only. Included by the factories' .cpp files, never by a
+// public header.
 #pragma once
 
 #include <gmpxx.h>
@@ -34,8 +34,8 @@ void reduce(std::span<Integer> vector);
 // The first three of four: a plane's normal, a homogeneous point's direction from the origin.
 [[nodiscard]] Integer3 head(const Integer4& vector);
 
-// The h with h.a = h.b = h.c = 0. h.p > 0 for points p on the side from which a, b, c are seen
-// counter-clockwise. Zero when the three points are in one line.
+// The plane h with h.a = h.b = h.c = 0. It has h.p > 0 for points p on the side from which a, b, c
+// are seen counter-clockwise. Zero when the three points are in one line.
 [[nodiscard]] Integer4 plane_through(const Integer4& a, const Integer4& b, const Integer4& c);
 
 }  // namespace clearance::exact

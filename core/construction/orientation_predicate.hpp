@@ -1,5 +1,5 @@
-// On which side of a plane through three points is a fourth? Always the exact answer, mostly from
-// doubles.
+// The side of a plane through three points on which a fourth point lies. The answer is always
+// exact, and mostly computed in doubles.
 #pragma once
 
 #include <array>

@@ -15,7 +15,7 @@ long bits(const Integer& x) {
   return sgn(x) == 0 ? 0 : static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
 }
 
-// x * 2^shift, towards zero for a negative shift: what is opposite stays so.
+// x * 2^shift, rounded towards zero for a negative shift, so that opposite numbers stay opposite.
 Integer shifted(const Integer& x, long shift) {
   Integer result;
   if (shift >= 0) {
@@ -72,7 +72,7 @@ struct UnitQuotients {
 };
 
 UnitQuotients unit_quotients(const Integer3& direction) {
-  // Beyond 160 bits below the largest component nothing can be seen in the result.
+  // Bits more than 160 below the largest component do not affect the result.
   constexpr long kKept = 160;
   constexpr long kRootBits = 64;
   const long longest = std::max({bits(direction[0]), bits(direction[1]), bits(direction[2])});

@@ -7,7 +7,7 @@
 
 namespace clearance::exact {
 
-// A double and whether it is the number itself.
+// A double, and whether it equals the exact number.
 struct Rounded {
   double value;
   bool exact;
@@ -22,8 +22,8 @@ struct Rounded {
 // direction / |direction|, every component within 0.51 ulp. direction is not zero.
 [[nodiscard]] Vec3 unit(const Integer3& direction);
 
-// A positive multiple of `direction` that is exactly three doubles, if one is: `exact` says so, and
-// otherwise the vector is unit(direction). Largest component in [1, 2) when exact.
+// A positive multiple of `direction` that is exactly three doubles, if there is one (`exact`).
+// Otherwise the vector is unit(direction). Largest component in [1, 2) when exact.
 struct RoundedDirection {
   Vec3 vector;
   bool exact;

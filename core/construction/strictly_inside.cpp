@@ -15,8 +15,8 @@ Integer3 exact_normal(const HalfSpace& row) {
   return head(integer_multiple({row.normal.x(), row.normal.y(), row.normal.z(), 0.0}));
 }
 
-// Coordinates in which the normals keep their rank: moving along the others is in vain or not
-// needed.
+// Coordinates in which the normals keep their full rank. A move along the others has no effect or
+// is not needed.
 std::array<bool, 3> spanning_axes(std::span<const HalfSpace> rows) {
   const NormalSpan span = normal_span(rows);
   std::array<bool, 3> free{};
@@ -96,15 +96,15 @@ NormalSpan normal_span(std::span<const HalfSpace> rows) {
 std::variant<Integer4, NoInterior> interior_point(std::span<const HalfSpace> rows) {
   const int unit = unit_exponent(rows);
   DepthProgramme programme(rows, spanning_axes(rows), unit);
-  // A deep point of a body of ordinary proportions is near its planes. One between planes that are
-  // almost parallel may be far away, and an infeasibility proof may not use the box: those need
-  // more room.
+  // A deep point of a body of ordinary proportions is near its planes. A point between planes that
+  // are almost parallel may be far away, and an infeasibility proof may not use the box. These
+  // cases need a larger box.
   for (const Integer& box : {Integer(4), Integer(Integer(1) << 40), programme.ample_box()}) {
     programme.solve(box);
     if (programme.has_interior()) break;
     if (const std::optional<NoInterior> proof = programme.proof()) return *proof;
   }
-  // Short coordinates keep the numbers of all that follows short.
+  // Short coordinates keep the numbers of all later computations short.
   for (const int bits : {24, 53, 106, 212}) {
     const Integer4 point = rounded_solution(programme, bits);
     if (deep_enough(programme, point)) return in_metres(point, unit);

@@ -1,5 +1,5 @@
-// Does an intersection of half-spaces have an interior, and where? Decided exactly, with a proof
-// either way.
+// An interior point of an intersection of half-spaces, or a proof that there is none. The decision
+// is exact.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
 // Makes the doubles of the queries from an exact solid: rounds every number once, then joins the
-// features up.
+// features.
 #include <algorithm>
 #include <cmath>
 
@@ -115,8 +115,8 @@ class Assembler {
     return rounder_.over_root(squared, squared * weight * weight);
   }
 
-  // An edge as one of its facets sees it: from `from` to `to` (kNone: infinity), the facet on the
-  // left.
+  // An edge as listed by one of its facets: from `from` to `to` (kNone: infinity), with the facet
+  // on the left.
   struct Side {
     int from, to;
     EdgeUse use;
@@ -140,8 +140,8 @@ class Assembler {
     }
   }
 
-  // Head to tail; an open chain starts with the side that comes from infinity, a closed one
-  // anywhere.
+  // Orders the sides head to tail. An open chain starts with the side that comes from infinity, a
+  // closed one anywhere.
   void chain(std::vector<Side>& sides) {
     std::sort(sides.begin(), sides.end(),
               [](const Side& a, const Side& b) { return a.from < b.from; });
@@ -161,8 +161,8 @@ class Assembler {
     }
   }
 
-  // At a sharp vertex a point may be past the vertex and beyond neither side by more than rounding.
-  // The facet gets one limit more there: across the end of the first side.
+  // At a sharp vertex a point may be past the vertex although it violates neither side by more than
+  // rounding. The facet gets one limit more there: across the end of the first side.
   void add_sharp_corners(Facet& facet) {
     facet.limits = facet.sides;
     const auto use_of = [&](std::int32_t i) {
@@ -219,7 +219,7 @@ class Assembler {
     }
   }
 
-  // Half-space and slab: each plane's point nearest to the origin.
+  // For a half-space and a slab: takes each plane's point nearest to the origin.
   void anchor_bare_planes() {
     for (const Integer4& plane : solid_.planes) {
       const Integer3 normal = head(plane);
@@ -243,7 +243,8 @@ class Assembler {
     });
   }
 
-  // The anchor of each facet that is nearest to the origin: it has the smallest rounding error.
+  // For each facet, takes the point of `anchors` that is nearest to the origin: it has the smallest
+  // rounding error.
   void place_facet_points() {
     for (std::size_t f = 0; f < body_.facets.size(); ++f) {
       Facet& facet = body_.facets[f];
@@ -283,7 +284,7 @@ bool opens_wide_enough(const std::vector<Ray>& rays) {
   return true;
 }
 
-// Along the facet's normal for which it is least, m.
+// The least thickness along any facet's normal, m.
 double thickness(const ConvexBody& body) {
   double least = kInfinity;
   for (const Facet& facet : body.facets) {

@@ -1,5 +1,5 @@
-// The support value of a whole body along a direction, in the body's frame, and the support point
-// of its active parts: the two sides of a certificate. Compiled once a vector width: see
+// The support value of a whole body along a direction and the support point of its active parts, in
+// the body's frame. A certificate needs both. Compiled once a vector width: see
 // core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_BODY_SUPPORT) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_BODY_SUPPORT
@@ -51,11 +51,10 @@ struct SideParts {
 };
 
 struct BodySupport {
-  bool known = false;  // false: the rest is not
-  std::int32_t missing =
-      kNone;  // a part whose support value is greater than the active ones', or equal
-  // The support value of the body without its radius; for a polyhedron that misses a part, of the
-  // active ones.
+  bool known = false;            // false: the other members have no meaning
+  std::int32_t missing = kNone;  // a part whose support value is at least that of the active ones
+  // The support value of the body without its radius; for a polyhedron with a part that is missing,
+  // that of the active ones.
   double value = 0.0;
   Vec4 point{};  // the mean of the active parts' support points
 };
@@ -97,8 +96,9 @@ HWY_INLINE BodySupport round_support(const Side& side, const SideParts& active, 
   return found;
 }
 
-// The greatest directional derivative along m of the edges from a vertex to others that are not
-// active and do not recede beyond rounding; -infinity: there is none.
+// Considers the edges from a vertex to others that are not active and do not recede by more than
+// rounding. Returns the greatest directional derivative of these edges along m; -infinity: there
+// are none.
 HWY_INLINE double ascent(const ConvexBody& body, std::int32_t number, const SideParts& active,
                          Vec4 m) {
   const Vertex& vertex = body.vertices[static_cast<std::size_t>(number)];
@@ -118,9 +118,9 @@ HWY_INLINE double ascent(const ConvexBody& body, std::int32_t number, const Side
   return steepest;
 }
 
-// If all edges of all active vertices recede, except those that join two of them, the active vertex
-// that is farthest along m is the support vertex. This is the vertex test of feature tracking (Lin
-// and Canny 1991).
+// The support vertex is the active vertex with the greatest m.x if all edges of all active vertices
+// recede, except those that join two of them. This is the vertex test of feature tracking (Lin and
+// Canny 1991).
 HWY_INLINE BodySupport polyhedron_support(const ConvexBody& body, const SideParts& active, Vec4 m) {
   BodySupport found;
   found.known = true;

@@ -1,4 +1,4 @@
-// A body as one query sees it, and the numbers of its smooth parts and planar faces.
+// A body during one query, and the numbers of its smooth parts and planar faces.
 #pragma once
 
 #include <algorithm>
@@ -38,8 +38,8 @@ decltype(auto) visit(const BodyView& view, F&& f) {
   return visit(view.body->curved, f, view.rim_azimuth);
 }
 
-// `within`: no point that can be closest is farther from the frame's origin, m. Closest points of
-// an unbounded polyhedron are a mean of anchors and a sum of up to three rays, each of which has a
+// `within`: no point that can be closest is farther from the frame's origin, m. A closest point of
+// an unbounded polyhedron is a mean of `anchors` plus a sum of up to three rays. Each ray has a
 // component of at least RecessionCone::least along one direction.
 [[nodiscard]] inline BodyView view_of(const ConvexBody& body, double within) noexcept {
   BodyView view{&body, body.bounding_radius};
@@ -58,9 +58,9 @@ decltype(auto) visit(const BodyView& view, F&& f) {
 [[nodiscard]] inline std::int32_t parts_of(const ConvexBody& body) noexcept {
   return visit(BodyView{&body}, [](const auto& shape) { return shape.parts(); });
 }
-// The numbers of planar faces follow those of the parts: the facets of a bounded polyhedron, or the
-// caps of a truncated cone, the lower one first. Along its normal, the whole face is the support
-// set.
+// The numbers of planar faces follow those of the parts. They are the facets of a bounded
+// polyhedron, or the caps of a truncated cone, the lower one first. Along its normal, the whole
+// face is the support set.
 [[nodiscard]] inline std::int32_t first_planar_face(const ConvexBody& body) noexcept {
   return body.is_curved() ? 2 : static_cast<std::int32_t>(body.anchors.size());
 }
@@ -85,7 +85,7 @@ decltype(auto) visit(const BodyView& view, F&& f) {
                                                  const Vec3& m, const Tangents& tangents) noexcept {
   return visit(view, [&](const auto& body) { return body.support_hessian(part, m, tangents); });
 }
-// A point of the body, but for rounding, near a point that lies near its surface.
+// For a point near the surface of the body: a point near it that lies in the body up to rounding.
 [[nodiscard]] inline Vec3 pulled_inside(const BodyView& view, const Vec3& point) noexcept {
   return visit(view, [&](const auto& body) { return Vec3(body.pulled_inside(point)); });
 }

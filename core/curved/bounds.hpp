@@ -1,4 +1,4 @@
-// What rounding does to the bounds of a curved pair, and the way from bounds of the bodies without
+// The rounding error of the bounds of a curved pair, and the step from bounds of the bodies without
 // their radii to the answer.
 #pragma once
 
@@ -11,20 +11,21 @@
 
 namespace clearance {
 
-// Counted in ulps of A's bounding radius, of B's and of the translation's length, for the support
-// values, the support points, and what is made of them. tests/core/curved/rounding_count_test.cpp
-// counts them one by one. A support point: 2 for the products with the semi-axes, 2.5 for a norm, 1
-// for a quotient, and as much again when it is pulled inside. On B also 4 to rotate the direction
-// into B's frame and 4 to rotate the point back. Then 2 to place the point and subtract, 3 for the
-// product with n, 2.5 for n's length.
+// Roundings of the support values, the support points and the results made from them. They are
+// counted in ulps of A's bounding radius, of B's and of the translation's length. The test
+// tests/core/curved/rounding_count_test.cpp counts them one by one. A support point has 2 for the
+// products with the semi-axes, 2.5 for a norm and 1 for a quotient. It has as many again when it is
+// pulled inside. B also has 4 to rotate the direction into B's frame and 4 to rotate the point
+// back. Both have 2 to place the point and subtract, 3 for the product with n, and 2.5 for n's
+// length.
 inline constexpr double kUlpsOfA = 18, kUlpsOfB = 26, kUlpsOfOffset = 12;
 
-// How well B's place is known: errors as in RelativePose, and the translation's length, m.
+// The errors of B's place, as in RelativePose, and the translation's length, m.
 struct CurvedPlace {
   double rotation_error, translation_error, offset;
 };
-// Neither bound is off by more than this, m. `upper`: the upper bound, where it is one. `size`: of
-// the pair.
+// Neither bound is off by more than this, m. `upper`: the upper bound, if there is one. `size`:
+// that of the pair.
 [[nodiscard]] inline double rounding_error(const BodyView& a, const BodyView& b,
                                            const CurvedPlace& at, double upper,
                                            double size) noexcept {
@@ -47,15 +48,15 @@ struct CurvedConclusion {
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
 };
 
-// The direction, from A to B, in which radii are added. If the bodies without their radii do not
-// touch, it is that of the witness points, so that the rest of their gap vector is as long as the
+// The direction, from A to B, in which radii are added. If the bodies without their radii are
+// disjoint, it is the direction of the gap vector. Then the rest of that vector is as long as the
 // distance.
 [[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found) noexcept {
   const Vec3 gap = found.point_on_b - found.point_on_a;
   return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;
 }
 
-// Bounds that have converged are within this of each other, by the pair's size.
+// Bounds that have converged are within this of each other, times the pair's size.
 inline constexpr double kConvergedCurvedGap = 1e-13;
 
 [[nodiscard]] inline DistanceStatus status_of(double lower, double upper, double size) noexcept {
@@ -68,7 +69,7 @@ inline constexpr double kConvergedCurvedGap = 1e-13;
   const double radii = found.radius_a + found.radius_b;
   // The sum of the radii, the error and their difference from the bound: 2 ulps of each.
   const auto rounding = [&](double bound) { return 0x1p-51 * (radii + std::abs(bound)); };
-  // Points say best how large a distance is, and directions how large a depth.
+  // Points give the best estimate of a distance, and directions that of a depth.
   const double best = found.lower < 0.0 ? found.lower : found.upper;
   DistanceResult r;
   r.lower = found.lower - found.error - radii - rounding(found.lower);

@@ -15,11 +15,11 @@ struct CapView {
   Vec3 normal;  // frame A, from A to B
 
   [[nodiscard]] BodyView& other() const noexcept { return of_a ? pair.b : pair.a; }
-  // From the cap's frame into that of the other body.
+  // Rotates a direction from the cap's frame into that of the other body.
   [[nodiscard]] Vec3 direction_to_other(const Vec3& v) const noexcept {
     return of_a ? pair.direction_to_b(v) : pair.direction_to_a(v);
   }
-  // From the other body's frame into the cap's plane.
+  // Projects a point of the other body's frame onto the cap's plane.
   [[nodiscard]] Vec2 in_plane(const Vec3& point) const noexcept {
     const Vec3 p = of_a ? pair.point_to_a(point) : pair.point_to_b(point);
     return {p.x(), p.y()};
@@ -28,7 +28,7 @@ struct CapView {
     const Vec3 at(on_cap.x(), on_cap.y(), disc.height);
     of_a ? pair.add_points(at, on_other) : pair.add_points(on_other, at);
   }
-  // The support set of the other body along the axis: its point that is farthest along -v.
+  // The point with the least v.x in the other body's support set along the axis.
   [[nodiscard]] PointOfPart support_set_point(const Vec2& v) const noexcept {
     const Vec3 m = of_a ? Vec3(-pair.direction_to_b(normal)) : normal;
     const Vec3 towards = direction_to_other(Vec3(-v.x(), -v.y(), 0.0));
@@ -46,9 +46,9 @@ struct Nearest {
   std::size_t count = 0;
 };
 
-// Gilbert's iteration (E. G. Gilbert, SIAM J. Control 4, 1966) alternates two steps: the nearest
-// point of the hull of up to three points of the set, and the set's point that is farthest from
-// there towards the axis.
+// Gilbert's iteration (E. G. Gilbert, SIAM J. Control 4, 1966) alternates two steps. One finds the
+// point nearest to the axis in the hull of up to three points of the set. The other adds the
+// support point of the set from there towards the axis.
 Nearest nearest_of_support_set(const CapView& view) {
   std::array<PlaneFunction, 5> points{};
   std::array<PointOfPart, 5> found;
@@ -95,7 +95,7 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
   test.normal = normal;
   test.closest = across <= disc.radius;
   if (across > 0.0) body.rim_azimuth = nearest.in_plane / across;
-  // If a cap of the other body is parallel, too, this is its rim's nearest point.
+  // If a cap of the other body is parallel, too, this is the nearest point of that cap's rim.
   const double other_across = std::hypot(nearest.point.x(), nearest.point.y());
   if (has_caps(*view.other().body) && other_across > 0.0) {
     view.other().rim_azimuth = Vec2(nearest.point.x(), nearest.point.y()) / other_across;

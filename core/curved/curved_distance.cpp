@@ -38,7 +38,7 @@ ActiveParts active_parts(const StartSimplex& simplex) noexcept {
 }
 
 // ---- half-spaces: one support point decides ----
-// As kUlpsOfA and its like, for the body, the plane's offset and the offset of the origins. The
+// Counts as in kUlpsOfA, for the body, the plane's offset and the offset of the origins. The
 // facet's normal is rounded, too, which adds 1 to each.
 constexpr double kUlpsOfBody = 27, kUlpsOfPlane = 5, kUlpsOfOrigins = 13;
 
@@ -105,7 +105,7 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
   CurvedPair pair(a, b, a_from_b);
-  // The search knows no planar faces.
+  // The search does not handle planar faces.
   const PartPair& first = state.active.pairs[0];
   if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
   int supports = 0;

@@ -1,4 +1,4 @@
-// The distance of two convex bodies, one of which is curved at least. Tracked: each call starts
+// The distance of two convex bodies, at least one of which is curved. Tracked: each call starts
 // where the last one ended.
 //
 // Maximises n.(b - a) over unit directions n, b and a being the bodies' support points along -n and
@@ -10,14 +10,14 @@
 
 namespace clearance {
 
-// noexcept, no heap, deterministic. Any state and any pose are accepted. See DistanceResult for
-// what the answer says. `depth`: as DistanceOptions has it. Both bodies may be polyhedra, one of
-// them bounded, but distance() answers these faster and with closer bounds.
+// noexcept, no heap, deterministic. Any state and any pose are accepted. DistanceResult explains
+// the answer. `depth`: as in DistanceOptions. Both bodies may be polyhedra if one of them is
+// bounded, but distance() answers these faster and with closer bounds.
 [[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth = true) noexcept;
 
-// The same for relative_pose(world_from_a, world_from_b), to the bit, and faster.
+// The same result, bit for bit, as for relative_pose(world_from_a, world_from_b), but faster.
 [[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                              const Pose& world_from_a, const Pose& world_from_b,
                                              TrackingState& state) noexcept;

@@ -3,8 +3,8 @@
 namespace clearance {
 namespace {
 
-// No closest point of `body` is farther from its frame's origin than this, m. One of its anchors is
-// within the sum of these three lengths of any point of the other one.
+// No closest point of `body` is farther from its frame's origin than this, m. The sum of these
+// three lengths bounds the distance of one of its `anchors` from any point of the other body.
 double farthest_closest(const ConvexBody& body, const ConvexBody& other,
                         const RelativePose& a_from_b) noexcept {
   const double to_other = a_from_b.translation.norm() + other.bounding_radius;

@@ -1,4 +1,4 @@
-// Two bodies and B's place as seen from A: support points of B - A, and the best bounds so far.
+// Two bodies and B's pose in A's frame: support points of B - A, and the best bounds so far.
 #pragma once
 
 #include "core/curved/bounds.hpp"
@@ -36,7 +36,7 @@ class CurvedPair {
   CurvedBounds bounds;
   double size;  // m: bounding radii and translation length
 
-  // B as seen from A.
+  // The pose of B in A's frame.
   [[nodiscard]] const Mat3& rotation() const noexcept { return pose_.rotation; }
   [[nodiscard]] const Vec3& translation() const noexcept { return pose_.translation; }
 

@@ -7,15 +7,18 @@
 namespace clearance {
 namespace {
 
-// The limits of one pass and of all passes. Nearly symmetric pairs would take far more.
+// Limits on the support points of one pass and of all passes. Nearly symmetric pairs would need far
+// more.
 constexpr int kSupportsOfPass = 2500, kSupports = 6000;
-// By the pair's size: the tolerance, and coarser ones for pairs for which it takes too long.
+// The tolerance as a part of the pair's size, and coarser ones for pairs for which it takes too
+// long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
 
-// A direction, the support value of A - B along it, and the support point. The rolling balls are
-// taken off both, since bodies that are less round need fewer triangles.
+// A vertex of a triangle: a direction, the support value of A - B along it, and the support point.
+// The rolling balls are subtracted from both, since bodies that are less round need fewer
+// triangles.
 struct Corner {
   Vec3 normal;
   double past;
@@ -27,9 +30,10 @@ struct Triangle {
 };
 
 // A lower bound of the support value of A - B over all directions of a triangle. For any mean p of
-// the corners' support points, the support value along n is at least n.p. If n.p is positive at all
-// corners, its minimum over the triangle is at a corner. The best p is the first player's strategy
-// in the matrix game n_i.p_k (von Neumann 1928), found by trying all subsets of the points.
+// the support points at its vertices, the support value along n is at least n.p. If n.p is positive
+// at all vertices, its minimum over the triangle is at a vertex. The best p is the first player's
+// strategy in the matrix game n_i.p_k (von Neumann 1928), found by trying all subsets of the
+// points.
 class TriangleBound {
  public:
   explicit TriangleBound(const Triangle& t) noexcept {
@@ -54,7 +58,7 @@ class TriangleBound {
   }
   [[nodiscard]] Vec3 row(std::size_t i) const noexcept { return {m_[i][0], m_[i][1], m_[i][2]}; }
 
-  // Means of two points for which two corners are equal.
+  // Means of two points for which n.p is equal at two vertices.
   void two(std::size_t k, std::size_t l) noexcept {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::size_t j = (i + 1) % 3;
@@ -67,7 +71,7 @@ class TriangleBound {
       play(weights);
     }
   }
-  // The mean for which all corners are equal.
+  // The mean for which n.p is equal at all vertices.
   void three() noexcept {
     const Vec3 w = (row(0) - row(1)).cross(row(1) - row(2));
     const Vec3 weights = w / w.sum();
@@ -139,7 +143,7 @@ class DepthSearch {
 
   enum class PassEnd { kCovered, kLimit, kDeeper };
 
-  // The best direction is a corner of the octahedron that is halved.
+  // Subdivides an octahedron that has the best direction as a vertex.
   PassEnd cover(double tolerance, int limit) noexcept {
     const Vec3 n = pair_.bounds.normal;
     const double best = depth();
@@ -163,7 +167,7 @@ class DepthSearch {
     return PassEnd::kCovered;
   }
 
-  // Halves along the longest side. The half with the lesser corner comes first.
+  // Halves the longest side. The half whose vertex has the lesser value comes first.
   void halve(const Triangle& t) noexcept {
     std::size_t from = 0;
     double longest = -1.0;

@@ -1,7 +1,7 @@
 // The thorough effort of the method in README.md. On the tangent plane of n, each pair of parts
-// gives a quadratic model of the distance along n + s; the step is the max-min programme of these
-// models. A step must improve the least of them; else it is shortened, or a missing pair of parts
-// joins.
+// gives a quadratic model of the distance along n + s. The max-min programme of these models gives
+// the step. A step must improve the least of the distances. If it does not, it is shortened, or a
+// missing pair of parts joins the programme.
 #include <algorithm>
 #include <cmath>
 
@@ -75,8 +75,8 @@ class DirectionSearch {
   }
 
   // ---- at one direction ----
-  // The first tangent follows the rim that turns fastest, so that this rim's radius does not enter
-  // the other tangent's terms.
+  // The first tangent is the direction in which the support point of a rim moves fastest. So the
+  // radius of this rim does not enter the terms of the other tangent.
   void set_tangents() noexcept {
     BodyDefaults::Rim fastest;
     const auto rim_of = [](const BodyView& view, const Vec3& m) {
@@ -118,7 +118,7 @@ class DirectionSearch {
   [[nodiscard]] PlaneMatrix regularised(const PlaneMatrix& a, const PlaneMatrix& b) const noexcept {
     PlaneMatrix q = a;
     q.add(1.0, b);
-    // Where the bodies overlap, the term is negative as long as q stays positive definite.
+    // If the bodies overlap, the term is negative as long as q stays positive definite.
     const double x = q.xx + regularisation_, y = q.yy + regularisation_;
     const bool definite = x > 0.0 && x * y - q.xy * q.xy > 0x1p-6 * x * y;
     const double term = regularisation_ > 0.0 || definite ? regularisation_ : -regularisation_;
@@ -135,8 +135,8 @@ class DirectionSearch {
     }
   }
 
-  // K is the mean of the active models' Hessians by their weights, which the programme finds with
-  // K.
+  // K is the mean of the active models' Hessians by their weights. The programme, which needs K,
+  // finds these weights.
   PlaneStep solve() noexcept {
     std::array<PlaneFunction, kModels> functions{};
     for (std::size_t i = 0; i < count_; ++i) {
@@ -156,9 +156,8 @@ class DirectionSearch {
     return found;
   }
 
-  // Adds the mean support points of the active parts, moved to where n + step has them. `again`:
-  // repeats the move by the rest of the gap vector across that direction, since rims are not
-  // straight.
+  // Adds the mean support points of the active parts, moved to their places for n + step. `again`:
+  // repeats the move by the rest of the gap vector across that direction, since rims are curved.
   PointPair add_points(const PlaneStep& found, int again = 0) noexcept {
     PointPair points;
     for (std::size_t i = 0; i < count_; ++i) {
@@ -188,7 +187,7 @@ class DirectionSearch {
     PlaneStep found = solve();
     add_points(found);
     for (int trial = 0; trial < kTrials && !pair_.is_converged(); ++trial) {
-      // At most half a right angle at once: farther away, other parts count.
+      // A step is at most half a right angle: farther away, other parts are active.
       found.step /= std::max(1.0, found.step.norm());
       const Vec3 next = turned(found.step);
       if (over_caps(next)) return;
@@ -210,7 +209,7 @@ class DirectionSearch {
       found = solve();
       add_points(found);
     }
-    // The bounds have converged. This step makes the direction as good as they are.
+    // The bounds have converged. This step makes the direction as accurate as they are.
     if (pair_.is_converged()) {
       pair_.prefer(turned(found.step));
     } else {
@@ -221,8 +220,8 @@ class DirectionSearch {
     done_ = true;
   }
 
-  // The curvature of the unit sphere adds d, the distance. While the direction is far off, it is at
-  // least half the distance of the points.
+  // The curvature of the unit sphere adds d, the distance. While the direction is far from the
+  // best, d is at least half the distance of the points.
   void set_regularisation() noexcept {
     const double farthest = std::min(pair_.bounds.upper, at_.points.gap().norm());
     const bool overlap = at_.value < -0x1p-40 * pair_.size;
@@ -230,7 +229,7 @@ class DirectionSearch {
     if (regularisation_ == 0.0) regularisation_ = 0x1p-50 * pair_.size;
   }
 
-  // A step whose gain is below rounding may still bring the points to each other.
+  // A step whose gain is below rounding may still bring the points closer.
   bool is_blind(const PlaneStep& found, const SupportPair& there) noexcept {
     const double noise = 0x1p-50 * pair_.size;
     if (found.value > noise || there.value < at_.value - noise) return false;
@@ -264,7 +263,7 @@ class DirectionSearch {
   }
   void test_caps_on_axis() noexcept { (void)over_caps(n_); }
 
-  // True: the search has ended, or goes on from the axis.
+  // True: the search has ended, or continues from the axis.
   bool try_cap(bool of_a, const Vec3& towards) noexcept {
     const double along = of_a ? towards.z() : -pair_.direction_to_b(towards).z();
     bool& tried = tried_[(of_a ? 0 : 2) + (along > 0.0 ? 1 : 0)];

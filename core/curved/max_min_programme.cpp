@@ -6,16 +6,16 @@
 namespace clearance {
 namespace {
 
-// The step at which two or three functions are equal, for two functions with the greatest value.
-// The weights have sum 1. If one is negative, fewer functions are active at the optimum.
+// The step at which two or three functions are equal; for two functions, the one with the greatest
+// value. The weights have sum 1. If one is negative, fewer functions are active at the optimum.
 struct MeetingPoint {
   Vec2 step = Vec2::Zero();
   std::array<double, 3> weights{};
 };
 
-// The step is not the sum of the weighted slopes, which may be long and cancel. Along the
-// difference of both slopes, the step is where the functions are equal; across it, both slopes
-// agree.
+// The step is not computed as the sum of the weighted slopes, which may be long and cancel. Along
+// the difference of the slopes, it leads to the place where the functions are equal. Across that
+// difference, both slopes agree.
 MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g) noexcept {
   const Vec2 slope = g.slope - f.slope, across(-slope.y(), slope.x());
   const double square = slope.squaredNorm(), value = g.value - f.value;
@@ -37,8 +37,8 @@ MeetingPoint meeting_of(const PlaneFunction& f, const PlaneFunction& g,
   return {step, {1.0 - to_g - to_h, to_g, to_h}};
 }
 
-// The change of variables that makes Q the identity: Q = L L^T; with s = L^-T r, Q becomes the
-// identity and a slope L^-1 slope.
+// The change of variables that makes Q the identity. With Q = L L^T and s = L^-T r, Q becomes the
+// identity, and a slope becomes L^-1 slope.
 struct Scaling {
   double xx, xy, yy;
 
@@ -55,9 +55,9 @@ struct Scaling {
 };
 
 // After the change of variables that makes Q the identity, the dual problem (P. Wolfe, Q. Appl.
-// Math. 19, 1961) is the least of |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of
-// sum 1. It is tried on all subsets of one to three functions. Each bounds the dual from above, so
-// the least one is the optimum, whatever rounding does to the others.
+// Math. 19, 1961) is to minimise |sum w_i slope_i|^2 / 2 + sum w_i value_i over weights >= 0 of sum
+// 1. All subsets of one to three functions are tried. Each bounds the dual from above, so the least
+// one is the optimum, whatever rounding does to the others.
 class Dual {
  public:
   Dual(const std::array<PlaneFunction, 5>& functions, std::size_t count) noexcept

@@ -1,5 +1,6 @@
-// The max-min programme of a step: the greatest value that the least of a few concave quadratic
-// functions of one plane displacement has, where all functions have the same second derivative.
+// The max-min programme of a step. A few concave quadratic functions of one plane displacement have
+// the same second derivative. The programme finds the displacement at which the least of them is
+// greatest.
 #pragma once
 
 #include <array>

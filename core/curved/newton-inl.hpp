@@ -1,6 +1,7 @@
 // Newton's method on the direction along which the distance of two bodies is greatest, with the
-// parts that are active there: the fast effort. From the last direction of a tracked pair it mostly
-// takes two steps. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// parts that are active there: the fast effort. For a tracked pair it starts from the last
+// direction and mostly takes two steps. Compiled once a vector width: see
+// core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_NEWTON) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON
 #undef CLEARANCE_CORE_NEWTON
@@ -17,13 +18,16 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Evaluated directions, planar faces among them; a tracked query takes three.
+// The limit on evaluated directions, planar faces among them; a tracked query takes three.
 inline constexpr int kIterations = 12;
-// The witness points are along the direction to this, or to rounding.
+// The gap vector of the witness points is parallel to the direction within this, or within
+// rounding.
 inline constexpr double kAlong = 0x1p-34;
-// After a longer step of a unit direction, other parts may be farther. By its square.
+// After a longer step of a unit direction, other parts may have become active. The limit is for the
+// square of the step.
 inline constexpr double kLongStep = 0x1p-10;
-// Bodies that nearly touch: after a step this short, the next one is rounding. By its square.
+// If bodies nearly touch, the next step after one this short is rounding. The limit is for the
+// square of the step.
 inline constexpr double kFinalStep = 0x1p-52;
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 
@@ -64,8 +68,8 @@ class Newton {
     return next == Next::kCertified;
   }
 
-  // The next query's first direction: of about unit length, which is known sooner than the unit
-  // normal.
+  // The first direction of the next query. It has about unit length and is known sooner than the
+  // unit normal.
   [[nodiscard]] HWY_INLINE Vec4 next_start() const {
     const bool nearly_unit = !ended_on_face_ && std::abs(step_.square - 1.0) < 0.25;
     return HWY_LIKELY(nearly_unit) ? (1.5 - 0.5 * step_.square) * x_ : end.normal;
@@ -97,7 +101,7 @@ class Newton {
     return Next::kIterate;
   }
 
-  // Adds the parts that are farther along a direction that is not the best one yet.
+  // Adds the parts that have greater support values along a direction that is not yet the best.
   HWY_NOINLINE void grow() {
     const Vec4 n = over(x_, norm(x_));
     const BodySupport a = body_support(a_, parts_.side(true), n);
@@ -139,7 +143,8 @@ class Newton {
     return (caps_of_a() && !(step_.round_a.square > least)) ||
            (caps_of_b() && !(step_.round_b.square > least));
   }
-  // Past an axis the support point of a rim jumps to its other side: the cap may be closest.
+  // When the direction passes an axis, the support point of a rim jumps to its other side: the cap
+  // may be closest.
   [[nodiscard]] HWY_INLINE bool passes_axis() const {
     return (caps_of_a() && dot(step_.round_a.squared, step_.next) <= 0.0) ||
            (caps_of_b() && dot(step_.round_b.squared, step_.next) <= 0.0);
@@ -196,7 +201,7 @@ class Newton {
     end.on_b = point_to_a(a_from_b_, end.on_b_in_b);
     return end.upper - end.lower <= tolerance_ ? Next::kCertified : Next::kGiveUp;
   }
-  // Goes on from the edge or the rim past which the nearest point lies.
+  // Continues from the edge or the rim past which the nearest point lies.
   template <bool kOfA>
   HWY_NOINLINE void leave_face(const FaceMeeting& met) {
     const Side& side = kOfA ? a_ : b_;

@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/curved/newton.cpp"
 #include "core/numerics/simd_targets.hpp"
-// That comes first.
+// This include must come first.
 #include "core/curved/bounds.hpp"
 #include "core/curved/curved_distance.hpp"
 #include "core/curved/newton-inl.hpp"
@@ -12,7 +12,7 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The part that is farthest along m (unit), or a cap where m is nearly the axis.
+// The part with the greatest support value along m (unit), or a cap if m is nearly the axis.
 HWY_INLINE std::int32_t first_part(const Side& side, Vec4 m) {
   if (!side.is_round()) return support(side.body, vec3(m)).anchor;
   const double length = norm(side.semi_axes() * m);
@@ -25,7 +25,7 @@ inline HWY_NOINLINE Vec4 start(const Side& a, const Side& b, const RelativePose4
   PartPair& pair = active.pairs[0];
   pair = {first_part(a, n), first_part(b, -direction_to_b(a_from_b, n))};
   active.count = 1;
-  // Parallel caps are left to the search; here one of the rims may be enough.
+  // Parallel caps are left to the thorough effort; here one of the rims may be enough.
   const std::int32_t face_of_b = first_planar_face(b.body);
   if (pair.a >= first_planar_face(a.body) && pair.b >= face_of_b) pair.b -= face_of_b;
   return n;

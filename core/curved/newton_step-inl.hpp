@@ -2,18 +2,18 @@
 // the direction, and finds the direction that makes the least of their distances greatest. Compiled
 // once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// The step of one active pair solves (K + d I) s' = w: w is the gap vector, d the distance, and K
-// the sum of the support Hessians, so that K n = 0 and w.n = d. Then s' = n + s is the next
-// direction as it is, s the step on the tangent plane.
+// The step of one active pair solves (K + d I) s' = w. Here w is the gap vector, d is the distance,
+// and K is the sum of the support Hessians. So K n = 0 and w.n = d. Then s' = n + s is already the
+// next direction, with s the step on the tangent plane.
 //
-// Directions have any length: for x = l n, the distance and the radii of curvature are 1/l and
-// 1/l^2 times those along n, and the step stays the same. Only the certificate needs a unit
-// direction.
+// Directions may have any length. For x = l n, the distance is 1/l times that along n, and the
+// radii of curvature are 1/l^2 times theirs. The step stays the same. Only the certificate needs a
+// unit direction.
 //
-// Where bodies nearly touch, K + d I is all but singular along n, and its determinant is rounding.
-// The step then takes its length from x.(x + s) = x.x in place of the determinant. Where the
-// regularisation of K is not d, along n or across it, w changes along n by the difference, which
-// gives the same step.
+// If bodies nearly touch, K + d I is nearly singular along n, and its determinant is rounding. The
+// step then takes its length from x.(x + s) = x.x and not from the determinant. If the
+// regularisation of K differs from d, along n or across it, w changes along n by the difference.
+// This gives the same step.
 #if defined(CLEARANCE_CORE_NEWTON_STEP) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON_STEP
 #undef CLEARANCE_CORE_NEWTON_STEP
@@ -30,8 +30,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Bodies nearly touch where the distance is less than this share of the radii of curvature: the
-// determinant has lost ten bits, and the weights of several parts would be rounding.
+// Bodies nearly touch if the distance is less than this share of the radii of curvature. The
+// determinant has then lost ten bits, and the weights of several parts would be rounding.
 inline constexpr double kNearlySingular = 0x1p-10;
 
 template <class SquaresA, class SquaresB>
@@ -49,9 +49,9 @@ class NewtonStep {
     for (std::size_t i = 1; i < parts.count(); ++i) least = std::min(least, evaluate(parts, x, i));
   }
 
-  // From x, which evaluate() has seen, to `next`, with the weights of the parts there. A part
-  // without weight is dropped. The weights decide which parts' Hessians count, so they are found
-  // twice where the Hessians differ.
+  // Steps from x, for which evaluate() was called, to `next`, and finds the weights of the parts
+  // there. A part without weight is dropped. The weights decide which parts' Hessians count, so
+  // they are found twice where the Hessians differ.
   HWY_INLINE void solve(PlacedParts& parts, Vec4 x) {
     set_regularisation(parts);
     solve_once(parts, x);
@@ -84,8 +84,8 @@ class NewtonStep {
     return value;
   }
 
-  // The curvature of the unit sphere adds d, the distance. While the direction is far off, it is
-  // half the length of the gap vector.
+  // The curvature of the unit sphere adds d, the distance. While the direction is far from the
+  // best, d is half the length of the gap vector.
   HWY_INLINE void set_regularisation(const PlacedParts& parts) {
     regularisation_ = least * per_square_;
     const double gap = dot(parts.gap[0], parts.gap[0]);
@@ -138,7 +138,8 @@ class NewtonStep {
   HWY_INLINE void set_next(Vec4 x, Vec4 y, const Cofactors& c) {
     next = HWY_LIKELY(!careful_) ? y / c.determinant : spread(square / dot(x, y)) * y;
   }
-  // The step of two pairs of parts, to where both distances are equal. False: one pair is left.
+  // The step of two pairs of parts, to the direction at which both distances are equal. False: one
+  // pair is left.
   HWY_INLINE bool meet(PlacedParts& parts, Vec4 x, const Cofactors& c) {
     const Vec4 u = parts.gap[1] - parts.gap[0];
     const Vec4 first = c.matrix * (parts.gap[0] + lift_), across = c.matrix * u;

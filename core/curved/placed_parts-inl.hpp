@@ -13,8 +13,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The arrays run along the pairs of `active`. The weights have sum 1. `gap` is the vector from A's
-// to B's support point along the direction that was evaluated last.
+// The arrays are indexed by the pairs of `active`. The weights have sum 1. `gap` is the vector from
+// A's to B's support point along the direction that was evaluated last.
 struct PlacedParts {
   HWY_INLINE PlacedParts(const Side& side_a, const Side& side_b, const RelativePose4& pose,
                          ActiveParts& parts)
@@ -49,7 +49,7 @@ struct PlacedParts {
     }
     if (active.count == 1) weight[0] = 1.0;
   }
-  // kNone: the part of this body in the heaviest pair.
+  // kNone stands for the part of this body in the pair with the greatest weight.
   void add(std::int32_t part_a, std::int32_t part_b) {
     std::size_t most = 0, least = 0;
     for (std::size_t i = 1; i < active.count; ++i) {

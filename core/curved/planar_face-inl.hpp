@@ -61,8 +61,8 @@ struct FaceMeeting {
   std::int32_t edge = kNone;  // the nearest point lies past this edge of a facet
 };
 
-// Does the other body's nearest point lie above the face? `number`: the face is A's if kOfA.
-// `part`: of the other body, as far as it is known.
+// Does the other body's nearest point lie above the face? `number`: that of the face, which is A's
+// if kOfA. `part`: the nearest part of the other body, as far as it is known.
 template <bool kOfA>
 HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const RelativePose4& a_from_b,
                                  std::int32_t number, std::int32_t part) {

@@ -1,8 +1,9 @@
 // A polyhedron as the hull of its vertices, which are its smooth parts, with the same functions as
 // the curved bodies (core/model/curved_body.hpp). Its support Hessian is 0.
 //
-// Each ray of an unbounded polyhedron counts as an edge of one length from every anchor. All points
-// that can be closest are in the hull of the anchors and of these edges' far ends.
+// Each ray of an unbounded polyhedron counts as an edge from every vertex (ConvexBody::anchors),
+// all of one length. All points that can be closest are in the hull of the vertices and of these
+// edges' far ends.
 #pragma once
 
 #include "core/model/smooth_part.hpp"
@@ -17,7 +18,7 @@ class Polyhedron : public BodyDefaults {
       : body_(body), ray_length_(ray_length) {}
 
   // ---- support ----
-  // One part an anchor, and behind these as many again for each ray.
+  // One part for each of the body's `anchors`, followed by as many again for each ray.
   [[nodiscard]] std::int32_t parts() const noexcept {
     return anchors() * (static_cast<std::int32_t>(body_.rays.size()) + 1);
   }
@@ -42,7 +43,7 @@ class Polyhedron : public BodyDefaults {
                                             const Tangents&) const noexcept {
     return {};
   }
-  // Among all vertices of the support set along m, the one that is farthest along `towards`.
+  // Among all vertices of the support set along m, the support point along `towards`.
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3& towards,
                                               double tolerance) const noexcept {
     const double top = m.dot(support_point(farthest_part(m), m));

@@ -1,10 +1,10 @@
 // The support point and the support Hessian of a body's round parts along a direction. Compiled
 // once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// A part is its middle and `radius` times D B (RoundParts). Along x, of any length, the support
+// A part is its middle plus `radius` times D B (RoundParts). Along x, of any length, the support
 // function of D B is sqrt(x.S x), with S = D^2 in the body's axes. Its gradient is S x / sqrt(x.S
-// x), its second derivative (S - S x (S x)^T / x.S x) / sqrt(x.S x). These are good enough for a
-// step of the direction, but not for the last digit of a bound.
+// x), and its second derivative is (S - S x (S x)^T / x.S x) / sqrt(x.S x). These are accurate
+// enough for a step of the direction, but not for the last digit of a bound.
 #if defined(CLEARANCE_CORE_SUPPORT_HESSIAN) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_SUPPORT_HESSIAN
 #undef CLEARANCE_CORE_SUPPORT_HESSIAN
@@ -40,7 +40,7 @@ HWY_INLINE Cofactors cofactors(const Symmetric4& m) {
   return {c, (m.main * c.main + m.beside * c.beside) + zx * zxy(c.beside)};
 }
 
-// S of a polyhedron, whose vertices are not round.
+// S of a polyhedron is zero, since its parts are points.
 struct NoSquares {
   static constexpr bool kRound = false;
 };

@@ -22,8 +22,8 @@ double by_balls(const CurvedPair& pair) noexcept {
 }
 
 // ---- ellipsoids with the same axes ----
-// h_A + h_B is a sum of square roots of linear functions of the squares of n's coordinates, which
-// is concave: over the simplex of these squares it is least at a corner.
+// h_A + h_B is a sum of square roots of linear functions of the squares of n's coordinates. It is
+// concave, so over the simplex of these squares it is least at a vertex.
 double by_semi_axes(const CurvedPair& pair) noexcept {
   const auto semi_axes = [](const auto& body) { return body.semi_axes(); };
   const Vec3 *a = visit(pair.a, semi_axes), *b = visit(pair.b, semi_axes);
@@ -62,8 +62,8 @@ struct SectionCorner {
 };
 
 // Arcs cover the directions from one end of the axis to the other. They are halved until the bound
-// of each is within the tolerance of the best value. For any mean p of the support points at an
-// arc's ends, the lesser of n.p at the ends is a bound, as for triangles of directions (depth.cpp).
+// of each is within the tolerance of the best value. Let p be any mean of the support points at an
+// arc's ends. The lesser of n.p at the ends is a bound, as for triangles of directions (depth.cpp).
 class SectionSearch {
  public:
   SectionSearch(const Section& a, const Section& b, double apart, bool opposite) noexcept

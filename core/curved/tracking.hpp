@@ -1,4 +1,4 @@
-// What a pair with a curved body remembers between queries, and how a TrackingState holds it.
+// The state of a pair with a curved body between queries, and how a TrackingState holds it.
 #pragma once
 
 #include <cmath>
@@ -16,7 +16,8 @@ struct CurvedTrackingState {
   Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
 };
 
-// Drops what the bodies do not have, more than one planar face, and a face among several pairs.
+// Drops features that the bodies do not have, more than one planar face, and a face among several
+// pairs.
 inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
                             const ConvexBody& b) noexcept {
   if (!(std::abs(state.normal.squaredNorm() - 1.0) < 0.5)) state.normal = Vec3::Zero();
@@ -32,9 +33,9 @@ inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
   if (!usable || faces > 1 || (faces == 1 && active.count > 1)) active.count = 0;
 }
 
-// A pair of parts is one number, since no more than one body is a polyhedron, and the other one has
-// at most two parts and two planar faces. The two features hold three such numbers of 21 bits. With
-// one pair only, a tracked query on an edge or a generator would take a step more.
+// A pair of parts is one number, because at most one body is a polyhedron, and the other one has at
+// most two parts and two planar faces. The two features hold three such numbers of 21 bits. With
+// one pair only, a tracked query on an edge or a generator would take one more step.
 inline constexpr unsigned kPartBits = 21;
 inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
 
@@ -51,7 +52,7 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
   return b_is_curved ? PartPair{p, q} : PartPair{q, p};
 }
 
-// Any state gives one that fits these two bodies.
+// Any state gives a CurvedTrackingState that fits these two bodies.
 [[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexBody& a,
                                               const ConvexBody& b) noexcept {
   CurvedTrackingState found;
@@ -70,7 +71,8 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
   return found;
 }
 
-// Two polyhedra, or one with more than half a million vertices and facets, may lose their parts.
+// The parts of two polyhedra, or of one with more than half a million vertices and facets, may be
+// lost.
 inline void write(const CurvedTrackingState& from, const ConvexBody& a, const ConvexBody& b,
                   TrackingState& state) noexcept {
   std::uint64_t all = 0;
@@ -87,13 +89,13 @@ inline void write(const CurvedTrackingState& from, const ConvexBody& a, const Co
   state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
 }
 
-// The fast effort (newton.cpp). False: the bodies overlap or nearly touch, or one of them is
-// unbounded, or rounding leaves the bounds too wide, or many parts are equally near. The state is
-// then a hint for thorough_distance(). It must be free of nonsense.
+// The fast effort (newton.cpp). False: the bodies overlap or nearly touch, one of them is
+// unbounded, rounding leaves the bounds too wide, or many parts are equally near. The state is then
+// a hint for thorough_distance(). It must have passed forget_nonsense().
 [[nodiscard]] bool newton_distance(const ConvexBody& a, const ConvexBody& b,
                                    const RelativePose& a_from_b, CurvedTrackingState& state,
                                    DistanceResult& result) noexcept;
-// The thorough effort (curved_distance.cpp). `depth`: where the bodies overlap.
+// The thorough effort (curved_distance.cpp). `depth`: as in DistanceOptions.
 [[nodiscard]] DistanceResult thorough_distance(const ConvexBody& a, const ConvexBody& b,
                                                const RelativePose& a_from_b,
                                                CurvedTrackingState& state, bool depth) noexcept;

@@ -1,4 +1,4 @@
-// Which kinds of features of A and B are closest. Feature tracking, its first transition and a
+// The kinds of the closest features of A and B. Feature tracking, its first transition and a
 // batch's blocks all branch on this and on nothing else.
 #pragma once
 
@@ -22,7 +22,7 @@ enum class FeaturePair : int {
 };
 inline constexpr std::size_t kFeaturePairs = 9;
 
-// For features that the bodies have; a side that is kUnknown gives a value without a name.
+// For features that the bodies have. If a kind is kUnknown, the value has no name.
 [[nodiscard]] constexpr FeaturePair feature_pair(FeatureKind on_a, FeatureKind on_b) noexcept {
   return static_cast<FeaturePair>(3 * static_cast<int>(on_a) + static_cast<int>(on_b));
 }

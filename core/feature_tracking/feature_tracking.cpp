@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/feature_tracking/feature_tracking.cpp"
 #include "core/numerics/simd_targets.hpp"
-// The line above must come first.
+// The include above must come first.
 #include "core/feature_tracking/penetrating_transitions-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -1,16 +1,16 @@
-// Feature tracking goes from the features that were closest last time to those that are closest
-// now, by their boundaries alone. This is the method of Lin and Canny (1991) and of V-Clip (Mirtich
-// 1998). The closest points lie within each other's Voronoi regions, and a violated region names
-// the next feature.
+// Feature tracking moves from the features that were closest in the last query to those that are
+// closest now, by their boundaries alone. This is the method of Lin and Canny (1991) and of V-Clip
+// (Mirtich 1998). Each closest point lies in the Voronoi region of the other body's feature. A
+// violated boundary of a region names the next feature.
 //
 // A transition is an iteration of the active set (delta, alpha, lambda) without its points. For
 // every pair of features, straight-line code decides whether they satisfy the KKT conditions, and
 // if not, which neighbour takes over. Nothing guarantees progress here, so transitions are counted,
-// and what they leave open goes to the active-set iteration. The last transition yields the
-// certificate. A vertex is its body's support if the directional derivatives of all its edges along
-// the separating direction are negative; an edge, if those of its two facets are. Where features
-// are parallel within tolerance, the points of the last query choose among all closest ones
-// (core/feature_tracking/parallel_transitions-inl.hpp).
+// and the active-set iteration answers the queries that they leave open. The last transition yields
+// the certificate. A vertex is the support point of its body if all its edges have negative
+// directional derivatives along the separating direction. An edge is the support set if its two
+// facets have. If features are parallel within tolerance, the points of the last query choose among
+// all closest ones (core/feature_tracking/parallel_transitions-inl.hpp).
 #pragma once
 
 #include "core/convex_body.hpp"
@@ -21,9 +21,9 @@ namespace clearance {
 
 enum class TrackingEnd : std::uint8_t {
   kUndecided,    // rounding cannot tell, both bodies are unbounded, or too many transitions
-  kUncertified,  // these are the closest points; the direction between them bounds the distance
-                 // worse than the bodies' precision allows
-  kCertified,    // the bodies are distance, and the bounds as close as rounding lets them be
+  kUncertified,  // these are the closest points, but the direction between them bounds the
+                 // distance less closely than the bodies' precision allows
+  kCertified,    // the bodies are disjoint, and the bounds are as close as rounding allows
 };
 
 // The transitions that a query has made so far.
@@ -37,8 +37,8 @@ struct TransitionsMade {
 }
 
 // Is the first transition straight-line code? It is for two vertices, for two edges, and for a
-// vertex with an edge or facet, of bodies that were disjoint. The sum of the two kinds tells: 0 +
-// 0, 0 + 1, 1 + 1 and 0 + 2. The bodies are not asked.
+// vertex with an edge or facet, if the bodies were disjoint. The sum of the two kinds shows this: 0
+// + 0, 0 + 1, 1 + 1 and 0 + 2. The bodies themselves are not examined.
 [[nodiscard]] inline bool has_straight_features(const TrackingState& state) noexcept {
   return !state.a.penetrating && static_cast<int>(state.a.kind) + static_cast<int>(state.b.kind) <=
                                      static_cast<int>(FeatureKind::kFacet);
@@ -56,7 +56,8 @@ struct TransitionsMade {
                                          DistanceResult& result) noexcept;
 
 // The same for bodies that penetrated each other in the last query. True: `result` is certified,
-// the depth or the distance. False: nothing is, and `state` and `result` are as they were.
+// either the depth or the distance. False: nothing is certified, and `state` and `result` are
+// unchanged.
 [[nodiscard]] bool track_penetrating_features(const ConvexBody& a, const ConvexBody& b,
                                               const RelativePose& a_from_b, TrackingState& state,
                                               DistanceResult& result) noexcept;

@@ -4,8 +4,9 @@
 // core/numerics/vec4-inl.hpp.
 //
 // The geometry is written once over the type of vectors. A single query uses Vec4, RelativePose4
-// and double for Vector, Relative and Number; a batch uses Points, RelativePoses and Lanes, with a
-// pair a lane. Both round in the same order, so that a batch gives the bits of single queries.
+// and double for Vector, Relative and Number; a batch uses Points, RelativePoses and Lanes, with
+// one pair per lane. Both round in the same order, so that a batch gives the bits of single
+// queries.
 #if defined(CLEARANCE_CORE_TRACKED_PAIR) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_TRACKED_PAIR
 #undef CLEARANCE_CORE_TRACKED_PAIR
@@ -54,7 +55,7 @@ HWY_INLINE auto inverse_square_near_1(const Vector& v) {
   return number<std::remove_cv_t<decltype(square)>>(2.0) - square;
 }
 
-// One of the bodies, A or B, as seen from the other.
+// One of the bodies, A or B, and its pose relative to the other.
 template <bool kIsB, class Relative>
 struct BodyFrame {
   const Relative& a_from_b;
@@ -148,8 +149,8 @@ struct FacetPlane {
 };
 
 // An edge of this body and a vertex of the other, in frame A. The rotation in doubles is not quite
-// rigid, so B's unit vectors are not quite of unit length there. In frame B it would be A that is
-// stretched, however far away it is.
+// rigid, so B's unit vectors are not quite of unit length there. In frame B, A would be stretched,
+// however far away it is.
 template <bool kIsB, class Relative, class Vector, class Number>
 struct EdgeAndVertex {
   HWY_INLINE EdgeAndVertex(const Relative& pose, const Vector& edge_start, const Vector& direction,
@@ -165,13 +166,13 @@ struct EdgeAndVertex {
         s(along_edge()) {}
 
   // Finds `separation`, from the edge to the vertex, by two cross products; it is as long as
-  // `across`. A difference of long vectors would leave something along the edge by cancellation.
+  // `across`. In a difference of long vectors, cancellation would leave a part along the edge.
   HWY_INLINE void find_separation() {
     across = cross(from_start, e);
     separation = cross(e, across);
     length = norm(across);
   }
-  // |separation|, computed anew where cross products are too coarse: kSlender.
+  // |separation|, computed again if cross products are too coarse: kSlender.
   [[nodiscard]] HWY_INLINE Number slender_length() const {
     if constexpr (kIsB) return norm(separation) / inverse_norm_near_1(e);
     return norm(separation);
@@ -203,7 +204,8 @@ struct EdgeAndVertex {
   }
 };
 
-// The lines of an edge of A and one of B, in frame A but for own_..., and where they are nearest.
+// The lines of an edge of A and one of B, and the points at which they are nearest. All is in frame
+// A, except the members local_...
 template <class Relative, class Vector, class Number>
 struct EdgeLines {
   HWY_INLINE EdgeLines(const Relative& pose, const Vector& start_of_a, const Vector& direction_of_a,
@@ -232,7 +234,7 @@ struct EdgeLines {
     found.point_b = start_b + t * f;
   }
 
-  // m: rounding tilts the normal, and along an edge the bodies' support values may exceed the
+  // m: rounding tilts the normal. Along an edge the bodies' support values may therefore exceed the
   // computed ones by this. The radii are those of spheres around the frames' origins.
   [[nodiscard]] HWY_INLINE Number tilt_error_of_edges(const Vector& normal, Number radius_a,
                                                       Number radius_b) const {
@@ -245,15 +247,15 @@ struct EdgeLines {
   Number s, t;  // m
 };
 
-// It takes four transitions at most from two vertices to two parallel facets; more of them go round
-// in circles.
+// It takes at most four transitions from two vertices to two parallel facets; more of them are a
+// cycle.
 inline constexpr int kMostParallel = 6;
 
 // The end of one transition.
 enum class Transition {
-  kClosest,    // the KKT conditions are satisfied beyond rounding: these are the closest features
-  kMoved,      // a neighbouring feature takes over
-  kDeferred,   // of a first transition: the features are parallel, which is not decided there
+  kClosest,  // the KKT conditions are satisfied by more than rounding: the features are the closest
+  kMoved,    // a neighbouring feature takes over
+  kDeferred,   // the features are parallel, which a first transition does not decide
   kUndecided,  // rounding cannot tell, or straight-line code has no case for this pair
 };
 
@@ -284,7 +286,8 @@ struct TrackedPair {
   double certified;
   double error_bound;  // m: Precision::error_bound
   int transitions;
-  int parallel_transitions;  // of these, to features that are parallel within tolerance
+  int parallel_transitions;  // those of the transitions that led to features parallel within
+                             // tolerance
 
   // For penetrating bodies (core/feature_tracking/penetrating_transitions-inl.hpp):
   bool penetrating = false;
@@ -295,13 +298,14 @@ struct TrackedPair {
     return feature_pair(on_a.kind, on_b.kind);
   }
 
-  // Counts a transition to parallel features: rounding may make them go round in circles.
+  // Counts a transition to parallel features: rounding may make such transitions cycle.
   [[nodiscard]] HWY_INLINE Transition parallel() {
     return ++parallel_transitions > kMostParallel ? Transition::kUndecided : Transition::kMoved;
   }
 };
 
-// The feature that takes over. A bad pose may lead to the open end of an edge, where there is none.
+// Moves to the feature that takes over. A bad pose may lead to the open end of an edge, which has
+// no vertex.
 HWY_INLINE Transition to_vertex(Side& side, std::int32_t vertex) {
   side.kind = vertex == kNone ? FeatureKind::kUnknown : FeatureKind::kVertex;
   side.feature = vertex;

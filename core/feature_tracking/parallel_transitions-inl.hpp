@@ -1,10 +1,10 @@
 // Transitions of features that are parallel within tolerance: whole edges or facets are closest.
 // Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
-// Any pair of points that face each other would do. The point halfway between the last witness
-// points of both bodies moves no faster than the bodies, and mostly lies within both features. If
-// it does not, the nearest point on the side that it has passed takes its place. The tilt of the
-// normal against the features is taken off the certified distance.
+// Any pair of points that face each other would be a closest pair. The point halfway between the
+// last witness points of both bodies moves no faster than the bodies, and mostly lies within both
+// features. If it does not, the nearest point on the side that it has passed takes its place. The
+// certified distance is reduced for the tilt of the normal against the features.
 #if defined(CLEARANCE_CORE_PARALLEL_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_PARALLEL_TRANSITIONS
 #undef CLEARANCE_CORE_PARALLEL_TRANSITIONS
@@ -22,17 +22,17 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// m: taken off the certified distance of a normal that is off a right angle to a feature by `tilt`.
-// The tilt may change a support value over the whole size of a body, and it is enough to count the
-// smaller body.
+// m: the amount by which the certified distance is reduced if the normal is off a right angle to a
+// feature by `tilt`. The tilt may change a support value over the whole size of a body. It is
+// enough to count the smaller body.
 HWY_INLINE double tilt_error(const TrackedPair& pair, double tilt) {
   const double a = pair.a.bounded() ? pair.a.bounding_radius : kInfinity;
   const double b = pair.b.bounded() ? pair.b.bounding_radius : kInfinity;
   return 2.0 * std::min(a, b) * (tilt + kTiltError);
 }
 
-// Moves from an edge to that facet beside it which does not recede along g beyond rounding. False:
-// both recede.
+// Moves from an edge to the facet beside it that does not recede along g by more than rounding.
+// False: both recede.
 HWY_INLINE bool to_approaching_facet(const Edge& edge, Vec4 g, double limit, Side& side) {
   if (edge.facet[0] == kNone) return false;
   const Vec2 along = facet_derivatives(edge, g);
@@ -48,8 +48,8 @@ inline std::int32_t shared_facet(const Edge& first, const Edge& second) {
   return kNone;
 }
 
-// No edge of this vertex approaches beyond rounding. Moves to the feature that is orthogonal to g
-// there: an edge, the facet of two such edges, or the vertex itself.
+// For a vertex of which no edge approaches by more than rounding. Moves to the feature that is
+// orthogonal to g there: an edge, the facet of two such edges, or the vertex itself.
 inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const Vec3& g,
                                      double limit) {
   const Vertex& vertex = body.vertices[side.feature];
@@ -72,7 +72,7 @@ inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const V
 // The part of a line that lies within a facet's sides.
 struct Span {
   double from, to;  // along the line
-  // the edges that end it; kNone: it began or ended there already
+  // the edges that end it; kNone: the line itself began or ended there
   std::int32_t side[2]{kNone, kNone};
   [[nodiscard]] bool empty() const { return !(from < to); }
   // If the span is empty: the edge that the line passes by.
@@ -123,7 +123,7 @@ HWY_INLINE double halfway(const Owner<kIsB>& edge_of, Vec4 start, Vec4 direction
   return dot(mine + 0.5 * (theirs - mine) - start, direction);
 }
 
-// The owner's edge on the other's facet.
+// The owner's edge and the other body's facet are parallel.
 template <bool kIsB>
 inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   const Edge& edge = owner.body().edges[owner.side().feature];
@@ -158,8 +158,8 @@ HWY_INLINE Vec4 onto(const Facet& facet, Vec4 p) {
 }
 
 // The point of B's facet halfway between the last witness points, in frame B. False: these points
-// are so far off the plane of the facet that rounding leaves `local` beside it. They may be another
-// pair's, or far out on a half-space.
+// are so far off the plane of the facet that rounding leaves `local` off the plane. They may be
+// those of another pair, or far out on a half-space.
 HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& of_b, Vec4& local) {
   const Vec4 mine = load3(pair.on_b.point), n = load3_of_4(of_b.normal);
   const Vec4 theirs = point_to_b(pair.a_from_b, load3(pair.on_a.point));
@@ -186,7 +186,7 @@ inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point
   return true;
 }
 
-// The same for a point on B's facet that has passed an edge of A's, or else of B's.
+// The same for a point on B's facet that has passed an edge of A's facet, or else one of B's.
 inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a,
                                     std::int32_t crossed_b, Vec4& local) {
   if (crossed_a == kNone) return slide_back(Owner<true>(pair), crossed_b, local);
@@ -196,7 +196,7 @@ inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a,
   return true;
 }
 
-// To the vertex of the owner's facet that is the support point along g, in the owner's frame.
+// Moves to the vertex of the owner's facet that is the support point along g, in the owner's frame.
 template <bool kIsB>
 inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
   const ConvexBody& body = owner.body();
@@ -217,8 +217,8 @@ inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
   return to_vertex(owner.side(), support);
 }
 
-// Facets that are tilted against each other: the vertex of one that is lowest above the other takes
-// over, preferably the smaller body's.
+// For facets that are tilted against each other. The vertex of one that is lowest above the other
+// takes over, preferably that of the smaller body.
 inline HWY_NOINLINE Transition leave_facets(TrackedPair& pair, Vec4 n, Vec4 m) {
   if (!pair.a.bounded() || (pair.b.bounded() && pair.b.bounding_radius > pair.a.bounding_radius)) {
     return to_support_vertex(Owner<false>(pair), vec3(-direction_to_a(pair.a_from_b, m)));
@@ -252,7 +252,8 @@ inline HWY_NOINLINE Transition facet_facet(TrackedPair& pair) {
   return Transition::kClosest;
 }
 
-// Parallel edges that face each other nowhere: their facing ends are next.
+// For parallel edges that face each other nowhere: the ends that are nearest to each other are
+// next.
 inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edge& second,
                                  bool after, bool same_way) {
   to_vertex(pair.on_a, first.vertex[after ? 1 : 0]);
@@ -276,7 +277,7 @@ inline HWY_NOINLINE Transition parallel_edges(TrackedPair& pair, const Vec4& sta
   pair.local_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);
   pair.point_b = point_to_a(pair.a_from_b, pair.local_b);
   const Vec4 rough = pair.point_b - pair.point_a;
-  const Vec4 g = rough - dot(rough, e) * e;  // without the part of e that cancellation has left
+  const Vec4 g = rough - dot(rough, e) * e;  // without the part along e that cancellation has left
   const double distance = norm(g), limit = -kDerivativeError * distance;
   const bool on_a = to_approaching_facet(first, g, limit, pair.on_a);
   const bool on_b =

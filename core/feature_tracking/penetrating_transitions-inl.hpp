@@ -1,20 +1,20 @@
-// Penetrating bodies whose depth is found between the same features as in the last query, or their
-// neighbours. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// Transitions of penetrating bodies whose depth is between the same features as in the last query,
+// or their neighbours. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
 // Let h be the displacement of B along n after which the features touch. It bounds the penetration
 // depth from above, as separating features bound the distance from below. The transitions of
 // transitions-inl.hpp, with the sign reversed, find h.
 //
-// That no other direction is shorter follows from two sets that the Minkowski difference
-// (core/penetration/depth.hpp) contains beyond rounding:
+// No other direction is shorter. This follows from two sets that the Minkowski difference
+// (core/penetration/depth.hpp) contains by more than rounding:
 // - A disc across n, of radius w around the point h n. w is the inradius of the contact: the
 // distance of the touching point from the sides of its facet.
 // - The difference of the two interior points, at -d along n and l across it.
 //
-// Along a direction at an angle f to n the support value of the disc is h cos f + w sin f, which is
-// at least h up to tan(f/2) = w/h. That of the interior points is at least -d cos f - l sin f: a
-// sinusoid, lowest at one end of the angles that are left. So it is enough that this is at least h
-// where the disc ends.
+// Consider a direction at an angle f to n. The support value of the disc is h cos f + w sin f. It
+// is at least h up to tan(f/2) = w/h. The support value of the interior points is at least -d cos f
+// - l sin f. This sinusoid is lowest at one end of the other angles. So it is enough that it is at
+// least h at tan(f/2) = w/h.
 #if defined(CLEARANCE_CORE_PENETRATING_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_PENETRATING_TRANSITIONS
 #undef CLEARANCE_CORE_PENETRATING_TRANSITIONS
@@ -30,8 +30,8 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
-// A margin far above rounding, as a part of the pair's size. It is enough to know that other
-// directions are longer by it or not.
+// A margin far above rounding, as a part of the pair's size. The test only has to show whether
+// other directions are longer by this margin.
 inline constexpr double kAmple = 1e-9;
 
 // The distance of a point of a facet's plane from the sides of the facet; negative: outside.
@@ -83,7 +83,7 @@ HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
   lines.place_witnesses(pair);
   pair.distance = -std::abs(across) / sine;
   pair.inradius = to_end * sine;
-  // The exact plane of the edges may be nearer by the tilt of the normal as well.
+  // The exact plane of the edges may also be nearer by the tilt of the normal.
   const double tilt =
       lines.tilt_error_of_edges(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
   pair.certified = pair.distance - tilt;
@@ -97,7 +97,7 @@ HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
     case FeaturePair::kVertexVertex:
     case FeaturePair::kVertexEdge:
     case FeaturePair::kEdgeVertex:
-      return Transition::kUndecided;  // no plane parts the bodies there
+      return Transition::kUndecided;  // no plane separates the bodies there
     case FeaturePair::kEdgeEdge:
       return penetrating_edges(pair);
     default:
@@ -134,8 +134,8 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   return true;
 }
 
-// Tracks the features of bodies that penetrated each other. True: the depth is certified, or that
-// the bodies are disjoint now. False: the features are those that it began with.
+// Tracks the features of bodies that penetrated each other. True: either the depth is certified, or
+// the bodies are certified disjoint now. False: the features are unchanged.
 HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   if (!pair.a.bounded() && !pair.b.bounded()) return false;
   if (!exists(pair.a, pair.on_a) || !exists(pair.b, pair.on_b)) return false;
@@ -152,7 +152,7 @@ HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   return false;
 }
 
-// The result of a tracking that has certified something.
+// The result of tracking that has certified the depth or the distance.
 HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
   DistanceResult r = result_of(pair);
   r.path = DistancePath::kPenetration;

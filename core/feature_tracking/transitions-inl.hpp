@@ -20,11 +20,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The first transition of a query is compiled by itself. Nothing there needs the pair in memory, so
-// its findings stay in registers: boxes would cost 3 % more without.
+// The first transition of a query is compiled separately. Nothing there needs the pair in memory,
+// so its findings stay in registers. Otherwise boxes would cost 3 % more.
 enum class Tracking { kFirst, kFurther };
 
-// Enough for 99.9 % of the tracked queries of the facet-ball workload; more is left to the
+// Enough for 99.9 % of the tracked queries of the facet-ball workload. Longer ones are left to the
 // active-set iteration.
 inline constexpr int kMostTransitions = 24;
 
@@ -38,8 +38,8 @@ inline Transition leave_vertex(const ConvexBody& body, Side& side, const Steepes
   return to_edge(side, use.edge);
 }
 
-// Leaves the vertex whose edge approaches faster. False: none approaches beyond rounding, and both
-// sides move to parallel features.
+// Leaves the vertex whose edge approaches faster. False: no edge approaches by more than rounding,
+// and both sides move to parallel features.
 inline HWY_NOINLINE bool leave_either(const ConvexBody& a, const ConvexBody& b, const Vertex& of_a,
                                       const Vertex& of_b, Side& on_a, Side& on_b, Vec4 g, Vec4 back,
                                       double limit) {
@@ -189,7 +189,7 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   return Transition::kClosest;
 }
 
-// The one place that branches on the pair of features of disjoint bodies.
+// For disjoint bodies, this is the only branch on the pair of features.
 template <Tracking kMode>
 HWY_INLINE Transition transition(TrackedPair& pair) {
   assert(exists(pair.a, pair.on_a) || pair.on_a.kind == FeatureKind::kUnknown);
@@ -208,7 +208,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
     default:
       break;
   }
-  // has_straight_features() lets one pair more come to a first transition.
+  // has_straight_features() admits one more pair to a first transition.
   if constexpr (kMode == Tracking::kFirst) return facet_vertex(Owner<false>(pair));
   switch (pair.features()) {
     case FeaturePair::kEdgeFacet:
@@ -275,8 +275,8 @@ HWY_INLINE TrackingEnd track(TrackedPair& pair) {
   return continue_tracking(pair);
 }
 
-// The result of a tracking that is not undecided. Each store of four numbers leaves one too many
-// behind it, which the next store overwrites; the last one is overwritten by the status.
+// The result of a tracking that is not undecided. Each store of four numbers writes one too many,
+// which the next store overwrites. The status overwrites the last one.
 HWY_INLINE DistanceResult result_of(const TrackedPair& pair) {
   DistanceResult r;
   store4(

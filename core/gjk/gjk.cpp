@@ -11,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// Bounds that are wider than promised then say so by the status kIterationLimit.
+// If the bounds are wider than promised after these rounds, the status is kIterationLimit.
 constexpr int kRounds = 64;
 
 using Wide = Vector<DoubleDouble>;
@@ -30,15 +30,15 @@ struct DifferenceVertex {
 };
 using WideSimplex = Simplex<DifferenceVertex, DoubleDouble>;
 
-// B - A by its support points, placed in twice the precision: simplices are slender where bodies
-// nearly touch, and differences of their vertices would be left with few digits.
+// B - A by its support points, placed in double-double. If bodies nearly touch, simplices are
+// slender, and in doubles the differences of their vertices would keep few digits.
 class WideMinkowskiDifference {
  public:
   WideMinkowskiDifference(const ActiveFeature& a, const ActiveFeature& b,
                           const RelativePose& a_from_b, const Precision& p) noexcept
       : a_(a), b_(b), pose_(a_from_b), p_(p) {}
 
-  // The support point along -n, n in the common frame.
+  // The support point along -n, with n in frame A.
   [[nodiscard]] DifferenceVertex support_point(const Vec3& n) const noexcept {
     return make(cut_off_support(a_.body(), n, p_.extent_a),
                 cut_off_support(b_.body(), -b_.direction_to_local(n), p_.extent_b));
@@ -50,7 +50,7 @@ class WideMinkowskiDifference {
   }
 
  private:
-  // Unbounded bodies are cut off far beyond the closest points.
+  // Unbounded bodies are cut off four times farther out than the closest points can be.
   static Vec3 cut_off_support(const ConvexBody& body, const Vec3& m, double reach) noexcept {
     Vec3 point = body.anchors[support(body, m).anchor];
     const Ray* steepest = nullptr;
@@ -78,9 +78,9 @@ class WideMinkowskiDifference {
   const Precision& p_;
 };
 
-// The sides keep their features and take the points, as near to the features as these allow: a
-// tracked query begins there. Among points that are equally close within rounding, those of the
-// latest direction are chosen.
+// `a` and `b` keep their features and take the points, as near to the features as these allow. The
+// next tracked query begins there. Among points that are equally close within rounding, those of
+// the latest direction are chosen.
 void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
                    const WideSimplex& simplex, double length, const Precision& p) noexcept {
   if (length > r.distance + p.gap_tolerance) return;
@@ -96,8 +96,9 @@ void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
 
 void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& r) noexcept {
-  // The point of the simplex bounds the distance from above, its direction's support values from
-  // below: each round's n is the normal at that point (Gilbert, Johnson and Keerthi 1988).
+  // The point of the simplex bounds the distance from above. The support values along its direction
+  // bound it from below: n of each round is the normal at that point (Gilbert, Johnson and Keerthi
+  // 1988).
   const WideMinkowskiDifference body(a, b, a_from_b, p);
   WideSimplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.

@@ -1,5 +1,5 @@
-// The slower, robust path, taken where rounding kept the active-set iteration from certifying its
-// result.
+// The slower, robust method, for queries in which rounding kept the active-set iteration from
+// certifying its result.
 #pragma once
 
 #include "core/active_set/active_feature.hpp"
@@ -9,11 +9,11 @@
 
 namespace clearance {
 
-// Tightens `result` (a conclusion of the fast path, all in the common frame) as far as doubles
-// allow. Works on vertices alone, as the hull of the points that the model stores, so that there is
-// no disagreement between rounded facets, edges and vertices; the closest point of the
-// Minkowski difference's simplex (Gilbert, Johnson, Keerthi) is computed in twice the precision.
-// Bounds only ever improve. The sides end at the witness points, by the features they had.
+// Tightens `result`, the result of the active-set iteration in frame A, as far as doubles allow. A
+// body is the hull of the vertices that the model stores. So rounded facets, edges and vertices
+// cannot disagree. The closest point of the Minkowski difference's simplex (Gilbert, Johnson and
+// Keerthi 1988) is computed in double-double. The bounds never get worse. `a` and `b` keep their
+// features and end at the witness points.
 void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, const Precision& p,
             DistanceResult& result) noexcept;
 

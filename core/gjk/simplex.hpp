@@ -1,6 +1,7 @@
 // The simplex of the algorithm of Gilbert, Johnson and Keerthi (IEEE J. Robotics and Automation 4,
-// 1988): up to four points of the Minkowski difference B - A, and their hull's point that is
-// closest to the origin. T is the number type: double, or DoubleDouble where simplices are slender.
+// 1988). It has up to four points of the Minkowski difference B - A, and the point of their hull
+// that is closest to the origin. T is the number type: double, or DoubleDouble where simplices are
+// slender.
 #pragma once
 
 #include <array>
@@ -53,8 +54,8 @@ struct ClosestPoint {
 };
 
 // Barycentric coordinates of the origin's projection on the affine hull of one to four points, by
-// Cramer's rule; those of other points stay 0. False: the points are affinely dependent, and a
-// smaller subset has the closest point.
+// Cramer's rule; those of other points stay 0. Returns false if the points are affinely dependent;
+// a smaller subset then has the closest point.
 template <class T>
 [[nodiscard]] bool projection_weights(const std::array<Vector<T>, 4>& p,
                                       const std::array<std::size_t, 4>& at, std::size_t count,
@@ -94,9 +95,9 @@ template <class T>
 }
 
 // Tries all 15 subsets and takes the closest projection that lies within its subset's hull.
-// Johnson's recursion decides by the signs of determinants which subset it is. Where rounding
-// changes a sign, it ends at the wrong subset or at none, while the least length is off by rounding
-// at most. points[0, size): any, degenerate simplices included.
+// Johnson's recursion decides by the signs of determinants which subset it is. If rounding changes
+// a sign, the recursion ends at the wrong subset or at none. The least length, however, is off by
+// rounding at most. points[0, size) may be any, degenerate simplices included.
 template <class T>
 [[nodiscard]] ClosestPoint<T> closest_to_origin(const std::array<Vector<T>, 4>& points,
                                                 std::size_t size) noexcept {
@@ -122,11 +123,12 @@ template <class T>
   return best;
 }
 
-// Point has a member `difference`, a Vector<T>, and says by operator== whether it is another one.
+// Point has a member `difference`, a Vector<T>, and operator==, which recognises a point that is
+// present already.
 template <class Point, class T>
 class Simplex {
  public:
-  // False: the point is there already, and no progress is possible.
+  // False: the simplex has this point already, and no progress is possible.
   [[nodiscard]] bool add(const Point& point) noexcept {
     for (std::size_t i = 0; i < size_; ++i) {
       if (points_[i] == point) return false;

@@ -10,13 +10,13 @@
 
 namespace clearance {
 
-// Is the pose finite, and are the frames no more than kLargestCoordinate apart?
+// Is the pose finite, and is the translation at most kLargestCoordinate long?
 [[nodiscard]] inline bool is_good(const RelativePose& pose) noexcept {
   return pose.rotation.allFinite() && pose.translation.norm() <= kLargestCoordinate;
 }
 
-// The answer for a pose that is not good. The state becomes cold: what a query leaves in it after
-// such a pose depends on the query's path.
+// The answer for a pose that is not good. The state becomes cold, because its contents after such a
+// pose would depend on the query's path.
 [[nodiscard]] inline DistanceResult of_bad_pose(TrackingState& state) noexcept {
   state = {};
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();

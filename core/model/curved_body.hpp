@@ -1,6 +1,6 @@
-// The bodies that are not polyhedra, each in a file of its own; and the one place that tells them
-// apart. A new body adds a line here, a kind and its parameters in core/curved_shape.hpp, and a
-// factory in core/construction.
+// The bodies that are not polyhedra, each in a file of its own, and the one place that
+// distinguishes their kinds. A new body adds a line here, a kind and its parameters in
+// core/curved_shape.hpp, and a factory in core/construction.
 #pragma once
 
 #include "core/model/ellipsoid.hpp"

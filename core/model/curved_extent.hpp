@@ -1,5 +1,5 @@
-// How far a curved shape reaches, and points that stand for it. Without the radius around it, in
-// its own frame.
+// The extent of a curved shape, and points that stand for it, without the radius around it, in the
+// local frame.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,18 @@
 
 namespace clearance {
 
-// The support function: the greatest m.x of its points; within a few roundings of |m| times their
-// distance from the origin. m need not be unit.
+// The support function: the greatest m.x over the points of the shape. It is within a few roundings
+// of |m| times their distance from the origin. m need not be unit.
 [[nodiscard]] double support_value(const CurvedShape& shape, const Vec3& m) noexcept;
 
-// No point is farther from `position` than this, m; within a few roundings. Of truncated cones, and
-// from an ellipsoid's centre, one is as far.
+// The greatest distance of a point of the shape from `position`, m, within a few roundings. It is
+// exact for truncated cones and from an ellipsoid's centre, and otherwise an upper bound.
 [[nodiscard]] double farthest_from(const CurvedShape& shape, const Vec3& position) noexcept;
 
-// The middle of a small sphere around it.
+// The centre of a small sphere around the shape.
 [[nodiscard]] Vec3 middle(const CurvedShape& shape) noexcept;
 
-// Points of its surface, all around: `round` of each circle.
+// Points on the whole surface: `round` on each circle.
 [[nodiscard]] std::vector<Vec3> surface_points(const CurvedShape& shape, int round);
 
 }  // namespace clearance

@@ -2,8 +2,8 @@
 // four at a time. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
 //
 // A vertex is the support point of a convex body along g if all its edges recede: every directional
-// derivative along g is negative. An edge across g is the support if both of its facets recede.
-// These are the tests that certify a pair.
+// derivative along g is negative. An edge orthogonal to g is the support set if both of its facets
+// recede. These are the tests that certify a pair.
 #if defined(CLEARANCE_CORE_EDGE_SCAN) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_EDGE_SCAN
 #undef CLEARANCE_CORE_EDGE_SCAN
@@ -76,8 +76,8 @@ HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
   return edge.facet[0] == kNone || both_less(facet_derivatives(edge, g), vec2(limit));
 }
 
-// The edge of that limit of the facet's polygon beyond which the tip lies farthest; kNone: the tip
-// lies within.
+// The edge of the limit of the facet's polygon that the tip violates most; kNone: the tip lies
+// within.
 HWY_INLINE std::int32_t crossed_side(const ConvexBody& body, const Facet& facet, Vec4 tip) {
   const double* row = body.facet_limits.row(facet.first_side);
   const std::int32_t n = facet.limits;

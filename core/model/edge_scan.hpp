@@ -1,4 +1,4 @@
-// The edge with the greatest directional derivative of those that leave a vertex.
+// Among the edges that leave a vertex, finds the one with the greatest directional derivative.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@ struct SteepestEdge {
   std::int32_t at = kNone;         // index into vertex_edges and neighbours
 };
 
-// The first of equals; g: in the body's frame. Sums in the order of vector registers' and a batch's
-// lanes.
+// If several are equal, the first one. g: in the body's frame. Sums have the same order as in
+// vector registers and in a batch's lanes.
 [[nodiscard]] inline SteepestEdge steepest_edge(const ConvexBody& body, const Vertex& vertex,
                                                 const Vec3& g) noexcept {
   SteepestEdge best;

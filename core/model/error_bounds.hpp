@@ -1,4 +1,4 @@
-// Bounds of the rounding in one query, as lengths, by which every other bound is widened.
+// Bounds of the rounding error in one query, in metres. Every other bound is widened by them.
 //
 // One ulp here is 2^-53, the largest relative error of one rounding. The counts are upper bounds.
 // Their derivation is in core/README.md, "Why the bounds hold in floating point", and
@@ -18,7 +18,7 @@ struct Precision {
   double size;  // m: extent_a + extent_b + |translation|, the unit of the ulps
   // m: no bound computed in doubles from this model is off by more, up or down.
   double error_bound;
-  // m: an upper bound this close to the lower one (before error_bound) is as good as it gets.
+  // m: doubles cannot bring the upper bound closer to the lower one than this (before error_bound).
   double gap_tolerance;
   double extent_a, extent_b;  // m: the closest points lie within these of their frames' origins
   double promised;            // m: the bounds of a converged answer differ by no more
@@ -29,7 +29,7 @@ struct Precision {
   }
 };
 
-// The errors of B's place as seen from A, and its distance (m).
+// The errors of B's pose in A's frame, and its distance (m).
 struct PlacePrecision {
   double rotation_error, translation_error;  // as in RelativePose
   double translation;                        // |translation|
@@ -38,10 +38,10 @@ struct PlacePrecision {
 // `farthest`: an upper bound of the distance or penetration depth (m). It limits the part of an
 // unbounded body in which the closest points can lie.
 //
-// A wrong rotation moves a point of B by at most its error times extent_b. Or B is fixed and the
-// wrong rotation turns A about B's origin, and no point of A is farther from there than extent_a
-// plus the translation. The part of the error that is no rotation then stretches the distance. Both
-// are bounds, so the smaller one counts.
+// A wrong rotation moves a point of B by at most its error times extent_b. Alternatively, B is
+// fixed and the wrong rotation rotates A about B's origin. No point of A is farther from there than
+// extent_a plus the translation. The part of the error that is not a rotation then stretches the
+// distance. Both are bounds, so the smaller one counts.
 [[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   assert(!(farthest < 0.0) && !(b_in_a.translation < 0.0));

@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/model/pose.cpp"
 #include "core/numerics/simd_targets.hpp"
-// The line above must come first.
+// The include above must come first.
 #include "core/model/relative_pose-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();

@@ -34,9 +34,9 @@ void add_neighbours(ConvexBody& body) {
   }
 }
 
-// The least distance of a facet from the interior point, less its error. In roundings: 2 of the
-// normal, 3 of the product, 1 of the difference. Users add the radius to a product, which takes 2
-// more.
+// The least distance of a facet from the interior point, less its error. The error has 2 roundings
+// of the normal, 3 of the product and 1 of the difference. Users add the radius to a product, which
+// takes 2 more.
 double inner_radius(const ConvexBody& body) {
   constexpr double kRoundings = 16 * kUlp;
   if (!body.bounded() || body.facets.empty()) return 0.0;
@@ -78,9 +78,9 @@ void add_planes(ConvexBody& body) {
   }
 }
 
-// Rays and an orthonormal basis of the lineality space (Gram and Schmidt). A line that has more
-// than half of it across those before it is a new direction; the rest that rounding leaves of
-// others is not.
+// Rays and an orthonormal basis of the lineality space (Gram and Schmidt). A line is a new
+// direction if more than half of it is orthogonal to the lines before it. The remainder that
+// rounding leaves of other lines is smaller.
 void sort_rays(const ConvexBody& body, RecessionCone& out) {
   for (const Ray& ray : body.rays) {
     if (!ray.is_line) {
@@ -94,7 +94,7 @@ void sort_rays(const ConvexBody& body, RecessionCone& out) {
 
 // Two directions are tried. The first is against the sum of the facets' normals: no ray leads out
 // of a facet, and only lines run along all facets. The second is the sum of the rays, which is good
-// for slender cones; of many rays one may be at right angles to it.
+// for slender cones; one of many rays may be orthogonal to it.
 double least_part(const RecessionCone& of, const Vec3& against_normals) {
   Vec3 along = Vec3::Zero();
   for (const Vec3& ray : of.rays) along += ray;

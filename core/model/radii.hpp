@@ -12,14 +12,14 @@ namespace clearance {
   return a.radius + b.radius;
 }
 
-// The rounding error, m, of a bound of about `distance` when the sum of the radii is taken off.
+// The rounding error, m, when the sum of the radii is subtracted from a bound of about `distance`.
 [[nodiscard]] inline double rounding_of_radii(double sum, double distance) noexcept {
   return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
 }
 
-// Bounds of the polyhedra's distance are `gap` from each other. Will they be as near as a converged
-// answer's when the radii are taken off? That widens each by its rounding error, and rounds it by
-// as much at most. `size`: Precision::size.
+// `gap` is the difference of the bounds of the polyhedra's distance. Will it be that of a converged
+// answer when the radii are subtracted? The subtraction widens each bound by its rounding error,
+// and rounds it by at most as much. `size`: Precision::size.
 [[nodiscard]] inline bool converges_with_radii(const ConvexBody& a, const ConvexBody& b,
                                                double size, double distance, double gap) noexcept {
   const double sum = radii(a, b);
@@ -36,7 +36,7 @@ namespace clearance {
 // Witness points move from the polyhedra's surfaces to the rounded bodies'.
 inline void add_radii(DistanceResult& r, const ConvexBody& a, const ConvexBody& b) noexcept {
   const double sum = radii(a, b);
-  if (sum == 0.0 || r.upper == -kInfinity) return;  // bodies that no translation separates stay so
+  if (sum == 0.0 || r.upper == -kInfinity) return;  // no translation separates these bodies
   const double rounding = rounding_of_radii(sum, r.upper);
   r.distance -= sum;
   r.lower -= sum + rounding;

@@ -19,8 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
 // A 3 x 3 matrix by its cyclic diagonals: the elements (i, i), (i, i + 1) and (i, i + 2), modulo 3.
-// Its product with a vector takes that vector rotated by no, one and two lanes. So nothing is
-// spread over a register, and no rows or columns have to be put together.
+// Its product with a vector takes that vector rotated by no, one and two lanes. So no element is
+// spread over a register, and no rows or columns have to be assembled.
 struct Diagonals {
   Vec4 main, next, last;
 };
@@ -28,7 +28,7 @@ HWY_INLINE Vec4 operator*(const Diagonals& m, Vec4 v) {
   return (m.main * v + m.next * yzx(v)) + m.last * zxy(v);
 }
 
-// B as seen from A, and the inverse rotation as well.
+// The pose of B in A's frame, and the inverse rotation.
 struct RelativePose4 {
   Diagonals rotation, transposed;
   Vec4 translation;
@@ -45,8 +45,8 @@ HWY_INLINE Vec4 point_to_b(const RelativePose4& r, Vec4 p) {
   return direction_to_b(r, p - r.translation);
 }
 
-// conj(a) * b: the orientation of B as seen from A. b is spread as it is loaded: queries wait for
-// permutations of registers.
+// conj(a) * b: the orientation of B in A's frame. b is spread while it is loaded, because queries
+// wait for permutations of registers.
 HWY_INLINE Vec4 relative(Vec4 a, const double* b) {
   const Vec4 by_x = with_signs(pick<3, 2, 1, 0>(a), vec4(0.0, -0.0, 0.0, 0.0));
   const Vec4 by_y = with_signs(pick<2, 3, 0, 1>(a), vec4(0.0, 0.0, -0.0, 0.0));
@@ -106,8 +106,8 @@ HWY_INLINE bool may_be_exact(double w_of_a, double z_of_both) {
   return !has_digits(w_of_a) || !has_digits(z_of_both);
 }
 
-// For quaternions that are not of unit length to rounding, and for frames that are far away from
-// each other.
+// The test for quaternions that are not of unit length within rounding, and for frames that are far
+// away from each other.
 inline HWY_NOINLINE bool is_good(const Pose& world_from_a, const Pose& world_from_b,
                                  double translation_length) {
   return is_unit(world_from_a.orientation) && is_unit(world_from_b.orientation) &&

@@ -1,5 +1,5 @@
-// The twelve numbers that a DistanceResult begins with, as vector registers store them: several at
-// once, across the borders of its members.
+// The first twelve numbers of a DistanceResult. Vector registers store several of them at once,
+// across the borders of its members.
 #pragma once
 
 #include <cstddef>
@@ -15,8 +15,8 @@ static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
 // So that four numbers may be stored from point_on_b on, before the status is written.
 static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
 
-// The address of number i in the storage of the whole result. A pointer to a member would end with
-// that member. This one is made from the bytes of the result, and may go up to their end.
+// The address of number i in the storage of the whole result. A pointer to a member is valid only
+// within that member. This one is made from the bytes of the result, and is valid up to their end.
 [[nodiscard]] inline double* number_at(DistanceResult& result, std::size_t i) noexcept {
   std::byte* const bytes = reinterpret_cast<std::byte*>(&result);
   return static_cast<double*>(static_cast<void*>(bytes + i * sizeof(double)));

@@ -1,10 +1,11 @@
-// What the smooth parts of convex bodies have in common. A body is the hull of its smooth parts,
-// and its support function h(m) = max m.x is the greatest of theirs. Everything is in the body's
-// frame.
+// The common definitions for the smooth parts of convex bodies. A body is the hull of its smooth
+// parts, and its support function h(m) = max m.x is the greatest of theirs. Everything is in the
+// body's frame.
 //
-// The gradient of a part's h is its support point, and the second derivative of h, restricted to
-// the tangent plane of m, is its support Hessian: the eigenvalues are the principal radii of
-// curvature (R. Schneider, Convex Bodies: The Brunn-Minkowski Theory, 2nd ed. 2014, section 2.5).
+// The gradient of a part's h is its support point. The second derivative of h, restricted to the
+// tangent plane of m, is its support Hessian. The eigenvalues of the Hessian are the principal
+// radii of curvature (R. Schneider, Convex Bodies: The Brunn-Minkowski Theory, 2nd ed. 2014,
+// section 2.5).
 #pragma once
 
 #include <cmath>
@@ -49,8 +50,8 @@ struct Ball {
   double radius = 0.0;  // m
 };
 
-// All smooth parts of an ellipsoid or of a truncated cone have one form: height e_z + radius D B, B
-// being the unit ball and D = diag(semi_axes). A disc has D = diag(1, 1, 0). A single part is D B.
+// All smooth parts of an ellipsoid or of a truncated cone have the form height e_z + radius D B. B
+// is the unit ball and D = diag(semi_axes). A disc has D = diag(1, 1, 0). A single part is D B.
 struct RoundParts {
   const double* semi_axes;  // three
   const Disc* parts;
@@ -92,14 +93,14 @@ struct ScaledDirection {
   return {std::cos(angle), std::sin(angle)};
 }
 
-// What a body has unless its own file says more.
+// Defaults that a body's own file may override.
 struct BodyDefaults {
   static constexpr bool kHasCaps = false;
   static constexpr int kNoAxis = -1, kAnyAxis = 3;
 
   [[nodiscard]] RoundParts round_parts() const noexcept { return {nullptr, nullptr, 0, false}; }
 
-  // The radius of a ball that rolls inside the body and reaches every point of its surface, m.
+  // The radius of a ball that rolls inside the body and touches every point of its surface, m.
   [[nodiscard]] double rolling_ball() const noexcept { return 0.0; }
   // The axis of a solid of revolution, 0 to 2; kAnyAxis: a ball.
   [[nodiscard]] int axis_of_revolution() const noexcept { return kNoAxis; }
@@ -108,7 +109,7 @@ struct BodyDefaults {
   [[nodiscard]] Vec2 section_support(const Vec2&) const noexcept { return Vec2::Zero(); }
   // The semi-axes of an ellipsoid.
   [[nodiscard]] const Vec3* semi_axes() const noexcept { return nullptr; }
-  // Along a rim the support point moves fastest when m turns: in this direction, with this radius
+  // The support point moves fastest along a rim when m rotates: in this direction, with this radius
   // of curvature (m).
   struct Rim {
     Vec3 tangent = Vec3::Zero();

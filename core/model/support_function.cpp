@@ -13,16 +13,16 @@ namespace {
 // Below this many vertices a scan is cheaper than a climb.
 constexpr std::size_t kScan = 24;
 
-// Goes from vertex to vertex in a direction m.
+// Climbs from vertex to vertex in a direction m.
 struct Climber {
   Vec3 m;
   std::int32_t at;
   double steepest = kInfinity;  // directional derivative along m of that edge of `at`
 };
 
-// Moves along the steepest edge if its derivative is positive beyond rounding, so the climb ends.
-// It compares derivatives, because the heights of close vertices may round to the same. True: it
-// has moved. No branches: neither the move nor the edge is predictable.
+// Moves along the steepest edge if its derivative is positive by more than rounding, so the climb
+// ends. It compares derivatives, because the heights of close vertices may round to the same. True:
+// it has moved. No branches: neither the move nor the edge is predictable.
 bool climb(const ConvexBody& body, Climber& climber) noexcept {
   const Vertex& vertex = body.vertices[climber.at];
   const double* row = body.outgoing.row(vertex.first_edge);
@@ -60,8 +60,8 @@ void climb_together(const ConvexBody& body, Climber* climbers, std::size_t count
 
 // The vertices reached from one another by edges that are orthogonal to m within rounding. On the
 // exact polytope every vertex that is not the support point has an ascending edge, and ascending
-// edges lead to the support point. An edge that leaves this set descends beyond rounding, so no
-// ascending path leaves it: the support point is in it.
+// edges lead to the support point. An edge that leaves this set descends by more than rounding. So
+// no ascending path leaves it, and the support point is in it.
 class NearlySupporting {
  public:
   bool add(std::int32_t vertex) noexcept {
@@ -91,9 +91,10 @@ double derivative_by_rays(const RecessionCone& cone, const Vec3& across) noexcep
   return steepest / cone.least;
 }
 
-// The same bound for cones whose rays all but cancel, as those of a gable of a small slope. If all
-// rays have negative derivatives along a direction near `across`, beyond rounding, the tilt of
-// `across` against that direction is a bound. The direction tried is just past the steepest ray.
+// The same bound for cones whose rays nearly cancel, for example those of a gable of a small slope.
+// Suppose that all rays have derivatives along a direction near `across` that are negative by more
+// than rounding. Then the tilt of `across` against that direction is a bound. The direction tried
+// is just past the steepest ray.
 double derivative_past_steepest(const RecessionCone& cone, const Vec3& across) noexcept {
   const auto steeper = [&](const Vec3& r, const Vec3& s) { return across.dot(r) < across.dot(s); };
   const auto steepest = std::max_element(cone.rays.begin(), cone.rays.end(), steeper);
@@ -162,8 +163,8 @@ Support support(const ConvexBody& body, const Vec3& m) noexcept {
   return best;
 }
 
-// A point is an anchor plus a sum of rays. Its parts along and across the lines are no longer than
-// the sum.
+// A point is a point of the hull of the `anchors` plus a sum of rays. Its parts along and across
+// the lines are no longer than the sum.
 double support_along_rays(const ConvexBody& body, const Vec3& m, double within) noexcept {
   if (body.bounded()) return 0.0;
   const RecessionCone& cone = body.recession_cone;

@@ -16,16 +16,16 @@ struct Support {
 };
 
 // Exact up to the rounding of the products. On bodies of many vertices it climbs along edges from
-// the vertex that the start table names. It leaves out no vertex that could be higher
+// the vertex that the start table names. It omits no vertex that could have a greater m.x
 // (support_function.cpp). Other bodies are scanned. m: unit up to rounding, in the body's frame.
 [[nodiscard]] Support support(const ConvexBody& body, const Vec3& m) noexcept;
 
 // Over all anchors, without the edge graph.
 [[nodiscard]] Support support_by_scan(const ConvexBody& body, const Vec3& m) noexcept;
 
-// By how much the support value of an unbounded body along m may exceed that of its anchors. Counts
-// points no farther than `within` (m) from the frame's origin. Rounding included. 0 for a bounded
-// body.
+// The excess that the support value of an unbounded body along m may have over that of its
+// `anchors`. Only points within `within` (m) of the frame's origin count. Rounding included. 0 for
+// a bounded body.
 [[nodiscard]] double support_along_rays(const ConvexBody& body, const Vec3& m,
                                         double within) noexcept;
 

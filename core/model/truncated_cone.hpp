@@ -1,5 +1,5 @@
-// A truncated cone around the z-axis, cylinders and cones among them: the hull of two discs, which
-// are its smooth parts, with a planar face (cap) at each end.
+// A truncated cone around the z-axis; cylinders and cones are special cases. It is the hull of two
+// discs, which are its smooth parts, with a planar face (cap) at each end.
 //
 // h(m) = max over both discs of height m_z + radius |(m_x, m_y)|. Along the axis a whole disc is
 // the support set; there the rim point in the direction of `rim_azimuth` stands for it.
@@ -15,8 +15,9 @@ namespace clearance {
 class TruncatedCone : public BodyDefaults {
  public:
   static constexpr bool kHasCaps = true;
-  // Below this sine, a direction is the axis, and which way it leans is noise. What a disc's
-  // support point then falls short is part of the rounding error (bounds.hpp).
+  // Below this sine, a direction counts as the axis, and the side to which it leans is noise. The
+  // support value that a disc's support point then misses is part of the rounding error
+  // (bounds.hpp).
   static constexpr double kOnAxis = 0x1p-51;
 
   explicit TruncatedCone(const CurvedShape& shape, const Vec2& rim_azimuth = {1.0, 0.0}) noexcept
@@ -46,8 +47,8 @@ class TruncatedCone : public BodyDefaults {
                                             const Tangents& tangents) const noexcept {
     return clearance::support_hessian(SemiAxes(kUnitDisc), disc(part), scaled(m), tangents);
   }
-  // The support set along m is a disc along the axis, a generator where both rims are equally far,
-  // and one point of a rim otherwise.
+  // The support set along m is a disc if m is the axis. It is a generator if both rims have the
+  // same support value, and one point of a rim otherwise.
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3& towards,
                                               double tolerance) const noexcept {
     constexpr double kParallel = 0x1p-50;

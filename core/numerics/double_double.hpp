@@ -1,8 +1,8 @@
-// Twice the precision of a double: the unevaluated sum of two of them, about 32 digits.
+// A number of about 32 digits: the unevaluated sum of two doubles.
 //
 // Sums and products of doubles are exact by the error-free transformations of Knuth and Dekker.
-// They need no fused multiply-add and give the same bits on every machine. Magnitudes between
-// 1e-140 and 1e140.
+// They need no fused multiply-add and give the same bits on every machine. Magnitudes must be
+// between 1e-140 and 1e140.
 #pragma once
 
 #include <cmath>

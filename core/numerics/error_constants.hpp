@@ -1,4 +1,4 @@
-// The counts of roundings that the bounds are made of, for the scalar and the vector code of a
+// The counts of roundings from which the bounds are made, for the scalar and the vector code of a
 // query.
 #pragma once
 
@@ -14,8 +14,8 @@ inline constexpr double kRoundedUp = 1.0 + 0x1p-50;
 inline constexpr double kNearlyUnit = 0x1p-28;
 
 // The counts below are to first order. The second order is 2^-50 of it, and every count is rounded
-// up by more. tests/core/model/rounding_count_test.cpp looks for the poses where all roundings at
-// once are worst.
+// up by more. The test tests/core/model/rounding_count_test.cpp searches for the poses where all
+// roundings at once are worst.
 
 // Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
 // - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
@@ -36,9 +36,10 @@ inline constexpr double kProductError = 9 * kUlp;
 
 // R(q/|q|)^T v by two cross products, q = (x, w) of unit length and exact inputs. A cross product
 // of u and v is off by 2/sqrt 3 ulps of |u||v| in its products and 1 of itself. So c = x cross v is
-// off by 2.16 |x|, which x cross c - w c rotates without making it longer. That difference has
-// errors of 2.16 |x|, |w| and 1 of its own, in |c| <= |x|. The sum is below 5.37, and counts twice.
-// The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5. The product with it: 2, the sum: 1.
+// off by 2.16 |x|, which x cross c - w c rotates without making it longer. The difference x cross c
+// - w c has errors of 2.16 |x|, |w| and 1 of its own, times |c| <= |x|. The sum is below 5.37, and
+// counts twice. The factor 2/|q|^2 is off by 3.75, of 2|x|: 7.5. The product with it: 2, the sum:
+// 1.
 inline constexpr double kTurnError = 21.25 * kUlp;
 
 // The errors of RelativePose: the rotation's in the 2-norm, and the translation's per metre between
@@ -55,40 +56,41 @@ inline constexpr double kStretched = kMatrixError / kRotationError;
 // The errors of n.(R b + t - a) / |n| and |R b + t - a| in ulps of |a|, |b| and |t|. The points a
 // and b are on their features, in frame A, and B is as the doubles of R make it. Every direction is
 // brought to unit length. The counts:
-//   rotating a vector (the products 3^(1/2), two of them summed 2^(1/2), together 3; all three 1):
-//   4; placing it, and the difference of a and b: 1 each of what is placed, which is no longer than
-//   all three together; a cross product with an edge 2.16, a norm 2.5, a product with a normal 3, a
-//   norm's quotient 2.5 + 1;
-//   an edge is at right angles to n but for 3.2, over twice a body's size.
-// For an edge and a vertex that comes to 12, 11 and 7, for a facet and a vertex to 9, 9 and 9. For
-// two edges it is 10, 22 and 9, most of it from the direction of B's edge. Not all of that can
-// occur together with the rotation's own error: in the worst pose 15 % of the whole is left (the
+// - rotating a vector: 4 (the products 3^(1/2), two of them summed 2^(1/2), together 3; the sum of
+//   all three 1);
+// - placing it, and the difference of a and b: 1 each of the vector that is placed, which is no
+//   longer than all three together;
+// - a cross product with an edge: 2.16; a norm: 2.5; a product with a normal: 3; a quotient by a
+//   norm: 2.5 + 1;
+// - an edge is orthogonal to n except for 3.2, over twice a body's size.
+// For an edge and a vertex the sums are 12, 11 and 7, for a facet and a vertex 9, 9 and 9. For two
+// edges they are 10, 22 and 9, most of it from the direction of B's edge. Not all of these can
+// occur together with the rotation's own error. In the worst pose 15 % of the whole is left (the
 // test's kind "edge, edge").
 inline constexpr double kUlpsOnA = 12, kUlpsOnB = 18, kUlpsBetween = 10;
 
 // Squares of lengths below 1e-154 underflow, and a norm may be wrong by as much (m).
 inline constexpr double kUnderflow = 1e-150;
 
-// Bounds that differ by no more than this, before the error bound, are as good as it gets, and
-// nothing else is tried. The index is the number of unbounded bodies: errors of direction grow
-// along their rays.
+// If bounds differ by no more than this, before the error bound, no other method is tried. The
+// index is the number of unbounded bodies: errors of direction grow along their rays.
 inline constexpr double kGapToleranceUlps[] = {6.5, 16.0, 16.0};
 
 // The promise of a converged answer: upper - lower is at most 1e-14 of Precision::size. For bodies
 // that overlap or touch, and for two unbounded ones, it is 1.25e-14.
 inline constexpr double kConvergedGap = 90 * kUlp, kContactGap = 112 * kUlp;
 
-// Relative error of a sum of radii, and of a bound from which it has been taken off.
+// Relative error of a sum of radii, and of a bound from which it has been subtracted.
 inline constexpr double kRadiusRounding = 0x1.1p-53;
 
 // Below this angle between a vector and an edge, rounding (2.5 ulps of the vector) may tilt their
 // cross product towards the edge. A second cross product then comes out too short.
 inline constexpr double kSlender = 0x1p-20;
 
-// A directional derivative beyond this, per unit length, has the sign that exact arithmetic would
-// give with the doubles of R. Of these 8 ulps, the body's unit vector takes 1, the rotated
-// direction 4, and their product 2. The last sum of the product is exact there, or its rounding as
-// small as the derivative.
+// A directional derivative larger than this in magnitude, per unit length, has the sign that exact
+// arithmetic would give with the doubles of R. The body's unit vector takes 1 of these 8 ulps, the
+// rotated direction 4, and their product 2. The last sum of the product is exact there, or its
+// rounding as small as the derivative.
 inline constexpr double kDerivativeError = 0x1p-50;
 
 // The error of a slope: the rounding of its direction, its product and its sum.

@@ -7,7 +7,7 @@
 namespace clearance {
 
 // Most arcs are settled by one point that is deep enough below both facets. It is Y's lowest
-// vertex, or its inner sphere where the bodies are deep in each other.
+// vertex, or its inner sphere if the bodies penetrate deeply.
 void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   lower_to(best_.height);
   const bool sphere = of_y.sphere() != nullptr;
@@ -21,7 +21,7 @@ void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   }
 }
 
-// The first of two listed facets takes the arc between them.
+// If both facets of an arc are listed, the first one takes it.
 void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   const ConvexBody& x = body_.x();
   const Facet& here = x.facets[facet];
@@ -38,8 +38,8 @@ void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   }
 }
 
-// The vertex of Y that was looked up below a facet, or the deepest of those held against all
-// facets, if it is deep enough. A facet that a sphere has settled is looked up now.
+// The vertex of Y that was looked up below a facet, or the deepest of those compared with all
+// facets, if it is deep enough. For a facet that a sphere has settled, a vertex is looked up now.
 Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
   if (of_y.vertex(facet) == DeepestPoints::kNoVertex) {
     const Facet& here = body_.x().facets[facet];

@@ -1,4 +1,4 @@
-// The depth search for two bounded bodies, whose points are held against many facets at a time.
+// The depth search for two bounded bodies. It compares points with many facets at a time.
 #include <algorithm>
 
 #include "core/model/support_function.hpp"
@@ -8,7 +8,8 @@
 namespace clearance {
 namespace {
 
-// To hold points against all facets takes as long as to look up a few, and one more in so many.
+// Comparing points with all facets takes as long as kFew look-ups, plus one for every
+// kFacetsALookUp facets.
 constexpr std::size_t kFew = 16, kFacetsALookUp = 32;
 std::size_t few_of(const ConvexBody& body) noexcept {
   return kFew + body.facets.size() / kFacetsALookUp;
@@ -16,8 +17,8 @@ std::size_t few_of(const ConvexBody& body) noexcept {
 
 }  // namespace
 
-// A body of few vertices: all of them are held against all facets, so the depth below each facet is
-// exact.
+// For a body of few vertices: all of them are compared with all facets, so the depth below each
+// facet is exact.
 void NormalSearch::take_least(const Facing& facing, const DeepestVertices& vertices) noexcept {
   const std::int32_t facet = vertices.where_least();
   const Facet& f = facing.body.facets[facet];
@@ -38,8 +39,8 @@ std::int32_t NormalSearch::look_up(const Facing& facing, std::int32_t facet) noe
 }
 
 // Settles facets that the points leave open. The deepest vertex below the least deep facet is one
-// more point to hold against all facets, as long as it brings the goal nearer. It hardly does if
-// the direction of the last query was the first target. After that the other body's inner sphere is
+// more point to compare with all facets, as long as it makes progress. It makes hardly any if the
+// direction of the last query was the first target. After that the other body's inner sphere is
 // tried, and then vertices again.
 DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
                                                  DeepestPoints& points) noexcept {
@@ -64,8 +65,8 @@ DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
   return shallow;
 }
 
-// Settles the facets that are still open. Any vertex that is deep enough will do; if none is known,
-// the deepest is looked for.
+// Settles the facets that are still open. Any vertex that is deep enough settles a facet; if none
+// is known, the deepest is searched.
 void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) noexcept {
   const DeepestPoints::Shallow shallow = narrow_down(facing, points);
   if (ended_early()) return;
@@ -87,7 +88,7 @@ void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) n
   }
 }
 
-// Goes one by one: the point found for one facet settles most of its neighbours.
+// Settles them one by one: the point found for one facet settles most of its neighbours.
 void NormalSearch::look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
                                std::uint16_t* vertices) noexcept {
   std::int32_t last = kNone;
@@ -129,7 +130,7 @@ void NormalSearch::facets_of_y_by_points() noexcept {
 }
 
 // Along the arc between two facets' normals h is at least the smaller of the two heights of one
-// point of Y. Those that the main point does not settle are few, mostly.
+// point of Y. Mostly, the main point leaves few arcs open.
 void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
   lower_to(best_.height);
   const ConvexBody& x = body_.x();
@@ -146,8 +147,9 @@ void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
   }
 }
 
-// By what is known at the ends of an arc: the lowest vertex of Y there, or one nearly as low. Up to
-// half of what bounds may differ by is left for where they take over from one another.
+// Uses the vertices known at the ends of an arc: the lowest vertex of Y there, or one nearly as
+// low. Up to half of the tolerance between bounds is left for the places where one vertex takes
+// over from the other.
 bool NormalSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
                            const DeepestPoints::Point* sphere) noexcept {
   const auto on_arc = [&](const Vec3& p) {
@@ -167,7 +169,7 @@ bool NormalSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, con
   return true;
 }
 
-// The same vertices, to begin with.
+// Begins with the same vertices.
 void NormalSearch::arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept {
   const Arc arc = across(body_.x().edges[use.edge]);
   const auto known = [&](const Vec2& at, const Vec3& p) {

@@ -30,8 +30,8 @@ Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& b
   return {-b.direction_to_a(normal).normalized(), kNone, best.facet};
 }
 
-// At no distance, for heights: vertices are anchors, and of an unbounded body, too, no more than
-// those counts there.
+// The precision of heights, for distance 0. The vertices are the bodies' `anchors`, and even for an
+// unbounded body only these count.
 Precision precision_of_vertices(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose& a_from_b) noexcept {
   Precision p = precision(a, b, a_from_b, 0.0);
@@ -72,8 +72,9 @@ double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
                         const RelativePose& a_from_b, const Precision& p, double least) noexcept {
   const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
-  // With B where the doubles of the pose say, up to the nearest rotation, there is less rounding.
-  // If the bodies penetrate there, their distance is at most the displacement of B back from there.
+  // There is less rounding if B is placed by the doubles of the pose, up to the nearest rotation.
+  // If the bodies penetrate there, their distance is at most the displacement of B back from that
+  // place.
   RelativePose placed = a_from_b;
   const double off = off_rotation(a_from_b.rotation);
   placed.rotation_error = off;
@@ -83,7 +84,8 @@ double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
   return least - rounding - 2.0 * off * p.extent_b;
 }
 
-// Two points or segments have no inside: they meet in a point and are parted by next to nothing.
+// Two points or segments have no inside: they meet in a point, and a minimal translation separates
+// them.
 Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
                         const Precision& p) noexcept {
   const auto along = [](const ActiveFeature& s) {

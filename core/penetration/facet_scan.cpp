@@ -2,7 +2,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/penetration/facet_scan.cpp"
 #include "core/numerics/simd_targets.hpp"
-// That comes first.
+// This include must come first.
 #include <hwy/highway.h>
 
 #include "core/penetration/facet_scan.hpp"
@@ -57,7 +57,7 @@ double deepest_of_all(const double* row, std::size_t stride, std::size_t end, co
   return hn::GetLane(hn::MinOfLanes(tag, least));
 }
 
-// A bit a point that is as deep as `enough`.
+// Sets one bit for each point that is as deep as `enough`.
 void mark_deep(const double* row, std::size_t end, const double* points, std::size_t count,
                double enough, std::uint64_t* marks) {
   const Tag tag;
@@ -92,8 +92,8 @@ HWY_INLINE Numbers below(const Facets& facets, const DeepestPoints::Point& point
   return hn::Add(facets.over(point.at.data()), hn::Set(Tag(), point.radius));
 }
 
-// `row`: of `count` facets. Lists where none of the points is as deep as `enough`; rest: how deep
-// the deepest is below the others, at least.
+// `row`: of `count` facets. Lists the facets below which no point is as deep as `enough`. rest: the
+// least depth of the deepest point below the other facets.
 std::size_t list_shallow(const double* row, std::size_t count, const DeepestPoints::Point* points,
                          std::size_t end, double enough, std::uint16_t* list, double& rest_least,
                          std::int32_t& where_least) {
@@ -123,7 +123,8 @@ std::size_t list_shallow(const double* row, std::size_t count, const DeepestPoin
   return size;
 }
 
-// Lists where one point is not as deep as `enough`; lanes past the row's end may be among them.
+// Lists the facets below which one point is not as deep as `enough`; lanes past the row's end may
+// be among them.
 std::size_t list_not_below(const double* row, std::size_t count, const DeepestPoints::Point* point,
                            double enough, std::uint16_t* list) {
   const Tag tag;

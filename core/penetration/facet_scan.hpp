@@ -1,4 +1,4 @@
-// How deep do points of one body lie below the facets of another? Many facets at a time.
+// The depth of points of one body below the facets of another, many facets at a time.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace clearance {
 
-// For each facet n.x <= d of a body: the greatest d - n.x (m) over the vertices of another body,
-// and the vertex that has it.
+// For each facet n.x <= d of a body, finds the deepest vertex of another body: the greatest d - n.x
+// (m) over its vertices.
 class DeepestVertices {
  public:
   static constexpr std::size_t kMostVertices = 24;
@@ -90,8 +90,8 @@ class DeepestPoints {
       return (facet.offset - facet.normal.dot(at)) + radius;
     }
     // A point at least this deep below two facets is `enough` deep below all planes between them.
-    // The centre of a sphere must be inside both for certain. Past the edge of a body that is all
-    // but flat, a centre may be outside both by less than rounding, and along the arc by metres.
+    // The centre of a sphere must be inside both for certain. Past the edge of a nearly flat body,
+    // a centre may be outside both by less than rounding, but along the arc by metres.
     [[nodiscard]] double for_arcs(double enough) const noexcept {
       return std::max(enough, radius + margin);
     }
@@ -127,15 +127,15 @@ class DeepestPoints {
     return vertices_[static_cast<std::size_t>(facet)];
   }
 
-  // The facets that none of the points is so deep (m) below.
+  // The facets below which no point is so deep (m).
   struct Shallow {
     std::span<const std::uint16_t> facets;  // ascending; valid until the next list
     double rest;                            // m: the least depth below the others
     std::int32_t where_least;               // the first facet of all with the least depth
   };
   [[nodiscard]] Shallow list_shallow(double enough) noexcept;
-  // Lists the facets below which the point is not deep enough to be so along arcs as well;
-  // is_listed() knows them, too.
+  // Lists the facets below which the point is not deep enough for arcs as well. is_listed() then
+  // answers for them.
   [[nodiscard]] std::span<const std::uint16_t> list_not_below(const Point& point,
                                                               double enough) noexcept;
   // Is one of the points that deep below both facets, and so below all between them?

@@ -2,8 +2,8 @@
 //
 // On the arc n = ((1 - s) l + s r) / N with 0 <= s <= 1 and N <= 1. A point c of the Minkowski
 // difference gives h(n) >= c.n. If positive, c.n is at least (1 - s) c.l + s c.r. Between two
-// directions of the arc it is at least the lesser of the two values there. So every s, however
-// rounded, at which one point takes over from the other gives a bound that holds.
+// directions of the arc it is at least the lesser of the two values there. So every s at which one
+// point takes over from the other, however rounded, gives a valid bound.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,8 @@ struct OnArc {
   [[nodiscard]] double least() const noexcept { return std::min(l, r); }
 };
 
-// One point up to where they cross, and the other from there on; or one of them all along.
+// Uses one point up to the place where their heights cross, and the other from there on; or one of
+// them along the whole arc.
 [[nodiscard]] inline double least_of_two(const OnArc& first, const OnArc& last) noexcept {
   const double alone = std::max(first.least(), last.least());
   const double lead = first.l - last.l, behind = last.r - first.r;

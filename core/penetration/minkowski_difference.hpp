@@ -1,4 +1,4 @@
-// The set of all differences x - y of two bodies' points, as the depth search sees it.
+// The set of all differences x - y of two bodies' points, in the form that the depth search reads.
 //
 // Everything is in the frame of one of the two, X. Translating Y by v separates the bodies when v
 // is not inside this set. The support value of the set along a unit direction n is the displacement
@@ -59,7 +59,7 @@ class MinkowskiDifference {
     return x_is_b_ ? Vec3(-(a_from_b_.rotation.transpose() * n)) : n;
   }
 
-  // The support point of Y against n: an anchor and its position.
+  // The support point of Y against n: the index of a vertex in `anchors`, and its position.
   [[nodiscard]] std::int32_t lowest_anchor_of_y(const Vec3& n) const noexcept {
     return support(y_, -direction_to_y(n)).anchor;
   }

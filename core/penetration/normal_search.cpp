@@ -6,13 +6,14 @@
 namespace clearance {
 namespace {
 
-// Parts of one arc that wait their turn. A split leaves one part behind, and the other shrinks by
-// at least a vertex of Y's outline. On the hard cases of tests/ no more than 4 have ever waited.
+// The most parts of one arc that may wait. A split leaves one part waiting, and the other shrinks
+// by at least a vertex of Y's outline. On the hard cases of tests/ no more than 4 have ever waited.
 constexpr std::size_t kWaiting = 48;
 // Samples of one arc, or as many as Y has vertices: more than are on its outline.
 constexpr std::size_t kSamples = 1024;
 
-// Is the body unbounded along n: has one of its rays a directional derivative above `margin`?
+// Is the body unbounded along n? It is if one of its rays has a directional derivative above
+// `margin`.
 bool is_unbounded_along(const ConvexBody& body, const Vec3& n, double margin) noexcept {
   const auto is_above = [&](const Vec3& ray) { return n.dot(ray) > margin * ray.norm(); };
   return is_above(body.recession_cone.inwards) ||

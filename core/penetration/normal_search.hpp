@@ -1,4 +1,5 @@
-// One search for the direction in which two bodies part soonest (see core/penetration/depth.hpp).
+// One search for the direction of the shortest translation that separates two bodies (see
+// core/penetration/depth.hpp).
 #pragma once
 
 #include <array>
@@ -21,8 +22,8 @@ class NormalSearch {
     std::int32_t facet = kNone;
   };
 
-  // gap_tolerance: m, the distance from the best h within which a bound from below must come.
-  // direction_error: that of a direction rotated into the other body's frame.
+  // gap_tolerance: m; a bound from below must come within this of the best h. direction_error: the
+  // error of a direction rotated into the other body's frame.
   NormalSearch(const MinkowskiDifference& body, double gap_tolerance,
                double direction_error) noexcept
       : body_(body),
@@ -33,7 +34,7 @@ class NormalSearch {
   // Any unit n. It is only a target to beat: the values of facets and arcs are found again there.
   // The search begins on the arc of `edge_of_x`, unless that is kNone.
   void guess(const Vec3& n, std::int32_t edge_of_x) noexcept;
-  // Each of these stays the best unless another is better beyond rounding.
+  // Each of these stays the best unless another is better by more than rounding.
   void guess_facet_of_x(std::int32_t facet) noexcept {
     look_at_facet_of_x(facet);
     hold(best_.n);
@@ -71,7 +72,7 @@ class NormalSearch {
     held_ = n;
     steady_ = 0.5 * gap_tolerance_;
   }
-  // The direction guessed, as facets and arcs have it.
+  // Is n the guessed direction, as facets and arcs represent it?
   [[nodiscard]] bool is_held(const Vec3& n) const noexcept {
     return (n - held_).squaredNorm() < kSame * kSame;
   }
@@ -98,7 +99,7 @@ class NormalSearch {
   void arcs() noexcept;
   void arc_of(const Edge& edge) noexcept;
   void run_bounded() noexcept;
-  // One of the bodies, whose facets are looked at, and the other.
+  // The body whose facets are evaluated, and the other body.
   struct Facing {
     const ConvexBody& body;
     const ConvexBody& other;
@@ -129,7 +130,7 @@ class NormalSearch {
                                 std::int32_t vertex) noexcept;
   void few_vertices() noexcept;
   void facets_of_y_bounded() noexcept;
-  // 82 kB of stack each, which a body of few vertices does not go past.
+  // Each takes 82 kB of stack, which bodies of few vertices do not need.
   [[gnu::noinline]] void many_vertices() noexcept;
   [[gnu::noinline]] void facets_of_y_by_points() noexcept;
   void arcs(DeepestVertices& of_y) noexcept;

@@ -11,8 +11,8 @@
 namespace clearance {
 namespace {
 
-// The direction along which the features of a tracking state part the bodies. False: they do not
-// say.
+// The direction along which the features of a tracking state separate the bodies. False: the
+// features determine none.
 bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const TrackingState& state,
                   Separator& out) noexcept {
   const auto has = [](const TrackingState::Side& side, FeatureKind kind, std::size_t count) {
@@ -85,8 +85,8 @@ void measure_penetration(const ConvexBody& a, const ConvexBody& b, const Relativ
     conclude_penetrating(a, b, a_from_b, found, state, result);
     return;
   }
-  // Neither certainly disjoint nor certainly overlapping: both the distance's bounds and the
-  // depth's hold, and so do the better ones of them.
+  // The bodies are neither certainly disjoint nor certainly overlapping. Both the bounds of the
+  // distance and those of the depth hold, and so do the better ones of them.
   if (-found.upper > result.lower) {
     result.lower = -found.upper;
     result.normal = found.normal;

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-// For bodies that penetrated each other in the last query: answers this one, if they do still.
+// For bodies that penetrated each other in the last query: answers this query if they still do.
 // False: that is not certified; `result` is not touched, and the features of `state` are where a
 // search should begin.
 [[nodiscard]] bool track_penetration(const ConvexBody& a, const ConvexBody& b,

@@ -11,8 +11,8 @@
 namespace clearance {
 namespace {
 
-// The points that meet when B has been moved by its depth are found with B moved a little farther.
-// It moves by the depth again, and at least by this part of the bodies' size. Otherwise the
+// The points that meet after B has been moved by the depth are found with B moved a little farther.
+// B moves by the depth again, and at least by this part of the bodies' size. Otherwise the
 // direction between the closest points would be lost in rounding.
 constexpr double kFarther = 0x1p-20;
 
@@ -21,7 +21,7 @@ constexpr double kFarther = 0x1p-20;
 // more than kNearer, where it is sqrt(2^-43 2^-53) = 2^-48.
 constexpr double kBeside = 0x1p-50, kNearer = 0x1p-44;
 
-// The closest points of A and of B as `moved`, from the features of the state on.
+// The closest points of A and of B at the pose `moved`, starting from the features of the state.
 std::uint16_t closest_when_moved(const ConvexBody& a, const ConvexBody& b,
                                  const RelativePose& moved, TrackingState& state) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &moved);
@@ -42,12 +42,12 @@ double take_points(const RelativePose& a_from_b, const TrackingState& state,
   return (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
 }
 
-// Points that are less than this part of the size from where the normal leads stay where they are:
-// rounding does as much.
+// Points within this part of the size from the place to which the normal leads stay unchanged:
+// rounding moves them as much.
 constexpr double kPointTolerance = 0x1p-47;
 
-// Starts from the features of the state. Returns by how much the points lie beside each other
-// across the normal, and leaves the result alone if that is more than `beside`.
+// Starts from the features of the state. Returns the distance of the points from each other across
+// the normal, and leaves the result unchanged unless that is less than `beside`.
 double bring_together(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                       const RelativePose& moved, double beside, TrackingState& state,
                       DistanceResult& r) noexcept {
@@ -59,7 +59,7 @@ double bring_together(const ConvexBody& a, const ConvexBody& b, const RelativePo
   return beside;
 }
 
-// At the support vertices along the normal, of bodies that have any.
+// A state at the support vertices along the normal, for bodies that have vertices.
 TrackingState at_support_vertices(const ConvexBody& a, const ConvexBody& b,
                                   const RelativePose& a_from_b, const Vec3& normal) noexcept {
   const std::int32_t of_a = support(a, normal).anchor;
@@ -86,8 +86,8 @@ void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePos
   if (!(beside > kBeside * size)) return;
   moved.translation = a_from_b.translation + (found.value + kNearer * size) * found.normal;
   const double nearer = bring_together(a, b, a_from_b, moved, beside, state, r);
-  // The features may be tilted by more than rounding. At so small a distance they cannot be told
-  // from the right ones, and no transition leaves them.
+  // The features may be tilted by more than rounding. At so small a distance they cannot be
+  // distinguished from the right ones, and no transition leaves them.
   const double along = (r.point_on_b - r.point_on_a).dot(r.normal) - r.distance;
   if (std::abs(along) <= kPointTolerance * size || a.vertices.empty() || b.vertices.empty()) return;
   TrackingState support = at_support_vertices(a, b, a_from_b, found.normal);

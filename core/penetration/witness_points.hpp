@@ -8,7 +8,7 @@
 
 namespace clearance {
 
-// Finds the points that meet when B has been moved clear of A by the depth `found`. Writes them to
+// Finds the points that meet when B has been moved by the depth `found`, clear of A. Writes them to
 // `result`, in frame A, whose distance and normal are known, and to `state`, which holds the last
 // features.
 void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,

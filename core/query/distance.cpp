@@ -12,7 +12,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/query/distance.cpp"
 #include "core/numerics/simd_targets.hpp"
-// The line above must come first.
+// The include above must come first.
 #include <cassert>
 
 #include "core/distance.hpp"
@@ -25,7 +25,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The two ways in by poses: has_straight_features(state) says which. Either accepts any state.
+// The two entries by poses: has_straight_features(state) decides which one. Either accepts any
+// state.
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state);
@@ -62,8 +63,8 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 #else
 namespace {
 
-// The place in which Highway keeps the vector width that it has chosen. Asking for it calls another
-// library, around which all arguments have to be saved, so this asks once.
+// Caches the place in which Highway keeps the vector width that it has chosen. Highway's own
+// function is in another library, and a call has to save all arguments, so it is called once.
 std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
 
 HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
@@ -88,8 +89,8 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 
 #endif
 
-// The same order of methods for a relative pose. Nothing is inlined here: the speed of this one
-// matters less.
+// The same order of methods for a relative pose. Nothing is inlined here, because the speed of this
+// overload matters less.
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
@@ -164,7 +165,7 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                 {pair.transitions, pair.parallel_transitions}, first);
 }
 
-// The pair is a new one, so that the pair of from_straight_features() can stay in registers.
+// The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
 HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                                    const RelativePose4& a_from_b,
                                                    TrackingState& state, TransitionsMade start,
@@ -176,7 +177,7 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
-// No features, parallel ones, penetrating bodies, or a curved body.
+// For states without features or with parallel ones, for penetrating bodies, and for curved bodies.
 HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, TransitionsMade start) {
@@ -190,7 +191,8 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
-// One argument more than fits into registers costs a cold query 3 %: so there are two of these.
+// There are two of these functions, because one argument more than fits into registers costs a cold
+// query 3 %.
 DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                               const Pose& world_from_b, TrackingState& state) {
   return distance_from(a, b, world_from_a, world_from_b, state, {});

@@ -18,12 +18,11 @@
 namespace clearance {
 namespace {
 
-// The bounds of the polyhedra's distance that are known so far; the error bound is not yet taken
-// off.
+// The bounds of the polyhedra's distance that are known so far, without the error bound.
 struct Bounds {
   double lower = -kInfinity;
   double upper = kInfinity;
-  double points_error = 0.0;  // m: the error of the points' places above the error bound
+  double points_error = 0.0;  // m: the error of the points' places in excess of the error bound
   Vec3 normal = Vec3::Zero();
 
   [[nodiscard]] double certified_upper() const noexcept { return upper + points_error; }
@@ -35,8 +34,8 @@ struct Bounds {
   }
 };
 
-// Tries the separating directions in their order, until the bounds are as near to each other as
-// rounding allows.
+// Tries the separating directions in order, until the bounds are as near to each other as rounding
+// allows.
 void certify_lower(Bounds& bounds, const ActiveFeature& a, const ActiveFeature& b,
                    const Precision& p) noexcept {
   for (const Separator& s : separators(a, b)) {
@@ -78,8 +77,8 @@ double certified_distance(const Vec3& n, double distance, const ActiveFeature& a
   return distance - 2.0 * (p.extent_a * along_edge(a) + p.extent_b * along_edge(b));
 }
 
-// m: the rounding error of points of unbounded bodies that lie farther out than Precision assumes,
-// as those of lines that are nearly parallel.
+// m: the rounding error of points of unbounded bodies that lie farther out than Precision assumes.
+// Lines that are nearly parallel have such points.
 double error_far_out(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
                      const Precision& p) noexcept {
   if (a.body().bounded() || b.body().bounded()) return 0.0;
@@ -91,8 +90,8 @@ double error_far_out(const ActiveFeature& a, const ActiveFeature& b, const Relat
 // The distance of the polyhedra, without radii: DQP3, its certificate, and GJK if that is too wide.
 DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
                              const RelativePose& a_from_b) noexcept {
-  // Any two points bound the distance from above. That limits the part of an unbounded body in
-  // which the closest points can lie.
+  // Any two points bound the distance from above. This bound limits the part of an unbounded body
+  // in which the closest points can lie.
   const double first = (b.point_in_a() - a.point_in_a()).norm();
   const Precision start = precision(a.body(), b.body(), a_from_b, first);
   const Dqp3Outcome outcome = dqp3(a, b, start.gap_tolerance);
@@ -117,13 +116,15 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
     refine(a, b, a_from_b, p, result);
     result.path = DistancePath::kGjk;
   }
-  // Points far away, with large rounding errors, may come out nearer than the certified bound.
+  // Points far away have large rounding errors, and their distance may come out below the certified
+  // bound.
   result.distance = std::max(result.distance, std::min(result.lower, result.upper));
   result.iterations = outcome.iterations;
   return result;
 }
 
-// Starts from the features of the state, which gets the new ones. For the polyhedra, without radii.
+// Starts from the features of the state, and writes the new ones to it. For the polyhedra, without
+// radii.
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, bool depth) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);

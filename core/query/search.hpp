@@ -8,9 +8,9 @@
 
 namespace clearance {
 
-// distance() by the active-set iteration from the features of the state on, and by GJK if that
-// certifies too little. If `depth`, bodies that penetrate each other get their penetration depth as
-// well.
+// distance() by the active-set iteration, starting from the features of the state, and by GJK if
+// the iteration certifies too little. If `depth`, bodies that penetrate each other get their
+// penetration depth as well.
 [[nodiscard]] DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth) noexcept;

@@ -1,5 +1,5 @@
 // distance() for a batch, which may have made the first transitions of a pair itself. A batch makes
-// so many queries in a row that it looks up the machine's vector width once for all of them.
+// many queries in a row, so it looks up the machine's vector width once for all of them.
 #pragma once
 
 #include "core/distance_result.hpp"
