@@ -31,8 +31,8 @@ inline void append_numbers(Pose& pose, std::vector<double*>& numbers) {
   for (int k = 0; k < 4; ++k) numbers.push_back(&pose.orientation.coeffs()[k]);
 }
 
-// Changes numbers until the input ends: to neighbouring doubles, to zero, to another of the
-// numbers, by a little, or by powers of two from 2^-powers to below 2^powers.
+// Changes numbers until the input ends. They become neighbouring doubles, zero or another of the
+// numbers, or change by a little or by powers of two from 2^-powers to below 2^powers.
 inline void change(std::span<double* const> numbers, int powers, Bytes& bytes) {
   while (bytes.any_left()) {
     double& x = *numbers[bytes.word() % numbers.size()];

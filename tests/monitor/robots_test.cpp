@@ -229,7 +229,7 @@ TEST(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
   EXPECT_EQ(between(cell, monitor, "finger", "wall").age_b_ns +
                 between(cell, monitor, "finger", "wall").age_a_ns,
             0);
-  // In a tick whose clock readings are incomplete and earlier, ages are unknown.
+  // In a tick whose time is before that of the previous tick, ages are unknown.
   monitor.tick({}, {}, {kStart - kTick, kOffset});
   EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kStale);
 }

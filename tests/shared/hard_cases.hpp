@@ -1,10 +1,10 @@
 // Pairs of bodies and motions that are hard for a distance algorithm. A seed gives the same case on
 // every platform.
 //
-// The families contain what has broken distance code: features that are parallel up to a tilt,
-// aspect ratios to 1e6 and contact to the last bit. Other families contain overlap by less than
-// rounding, units from 1e-9 to 1e9, poses far from the world's origin and unbounded bodies. Gaps
-// are set with the exact oracle.
+// The families contain what has broken distance code: features parallel up to a tilt, aspect ratios
+// to 1e6, and contact to the last bit. Other families contain overlap by less than rounding, units
+// from 1e-9 to 1e9, poses far from the world's origin and unbounded bodies. Gaps are set with the
+// exact oracle.
 #pragma once
 
 #include <cstdint>

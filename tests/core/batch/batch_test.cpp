@@ -196,8 +196,8 @@ TEST(DistanceBatch, KeepsTheSignsOfZeros) {
   }
 }
 
-// Boxes at a distance of two, rotated so that the given feature of each is closest: 0 is a vertex,
-// 1 an edge, 2 a face.
+// Boxes at a distance of two, rotated so that the given feature of each is closest (0: vertex, 1:
+// edge, 2: face).
 Pose turned_to(int feature, double x) {
   const Vec3 closest[] = {{1.0, 1.0, 1.0}, {1.0, 1.0, 0.02}, {1.0, 0.03, 0.02}};
   const Vec3 to = x < 0.0 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
@@ -303,8 +303,8 @@ TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
   }
 }
 
-// From far away, rounding moves witness points off their facets, and the projection back to the
-// facet is rounded as well. The error is 1e-8 m when the boxes have returned.
+// For distant bodies, rounding moves witness points off their facets, and the projection back to
+// the facet is rounded as well. The error is 1e-8 m when the boxes have returned.
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOfWhatComesBackFromFarAway) {
   Mat3 turn;  // exactly three times a rotation
   turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;

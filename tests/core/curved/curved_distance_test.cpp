@@ -78,7 +78,7 @@ TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
                 8.0);  // half of each cap over the other
   expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);  // side by side
   expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0,
-                15.0);  // rim to rim, 3 and 4 m apart
+                15.0);  // rim to rim, offsets 3 m and 4 m
   const Pose crossed = turned_at(3, 0, 0, Vec3::UnitX(), kHalfTurn / 2);
   expect_answer(answer(a, b, at(0, 0, 0), crossed), 1.5, 8.0, 1e-16);
 }

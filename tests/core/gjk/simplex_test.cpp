@@ -1,6 +1,6 @@
-// The simplex of GJK, in doubles and in double-double. Oracles: closed forms, and the optimality
-// condition. The point v of a convex set is closest to the origin if and only if v.(p - v) >= 0 for
-// all points p of the set.
+// The simplex of GJK, in doubles and in double-double. Oracles: closed forms and the optimality
+// condition. The point v of a convex set is closest to the origin where v.(p - v) >= 0 for all
+// points p of the set.
 #include "core/gjk/simplex.hpp"
 
 #include <gtest/gtest.h>

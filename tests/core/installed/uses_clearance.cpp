@@ -11,8 +11,8 @@
 
 using clearance::Pose;
 
-// Checks two unit cubes whose centres are 2.5 m apart, alone and in a batch. The answers may differ
-// from `expected` by rounding.
+// Checks two unit cubes with centres at a distance of 2.5 m, alone and in a batch. The answers may
+// differ from `expected` by rounding.
 bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
   const auto cube = std::get<clearance::ConvexBody>(clearance::box({0.5, 0.5, 0.5}));
   clearance::TrackingState state;

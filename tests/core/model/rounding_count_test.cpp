@@ -257,7 +257,7 @@ struct Evaluated {
       const double lengths = pair.a.edges[0].end + pair.b.edges[0].end;
       by_roundings = std::max(by_roundings, lower_across(pair, at).worst() + 2.5 * lengths);
     }
-    // As in precision(), for bodies whose bounding radii are these.
+    // The error bound of precision(), for bodies whose bounding radii are these.
     const double o = (pair.pose_b.position - pair.pose_a.position).norm();
     const double a = reach_a(), b = reach_b();
     const double turned = std::min(b, a + o + kStretched * apart.value());

@@ -1,8 +1,8 @@
 // Oracle: exact rational arithmetic (GMP). u is 2^-53.
 //
 // Bounds: Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of
-// double-word arithmetic" (2017). The relative error of a sum is at most 3 u^2, of a product 5 u^2,
-// of a quotient 10 u^2, of a root 25/8 u^2. Each is rounded up to a power of two here.
+// double-word arithmetic" (2017). The relative errors are at most 3 u^2 (sum), 5 u^2 (product), 10
+// u^2 (quotient) and 25/8 u^2 (root). Each is rounded up to a power of two here.
 #include "core/numerics/double_double.hpp"
 
 #include <gmpxx.h>

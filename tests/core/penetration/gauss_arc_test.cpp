@@ -147,9 +147,9 @@ struct PlateAndPillar {
   }
 };
 
-// The pillar's centre may be outside both facets at an edge of the rim by less than rounding can
-// detect, and yet far outside that edge. For plates of 1e-16 m and less, depths were once up to 6
-// mm too large.
+// At an edge of the rim, the pillar's centre may be outside both facets by less than rounding can
+// detect, and yet far outside the edge. For plates of 1e-16 m and less, depths were once up to 6 mm
+// too large.
 TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   Random random(2);
   for (int k = 0; k < 32; ++k) {
@@ -164,7 +164,7 @@ TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   }
 }
 
-// Two unit directions less than half a turn apart, points, and a ball.
+// Two unit directions at an angle of less than half a turn, points, and a ball.
 struct ArcCase {
   Vec3 l, r, first, last, middle;
   double radius;

@@ -185,7 +185,8 @@ TYPED_TEST(ListOf, NamesEveryFieldThatTheIdlHasOnce) {
 }
 
 // The bytes of one field, found by its name in the IDL: the IDL is reduced to that field. `around`
-// is the struct that contains the field's struct, and the offset at which the value then begins.
+// is the IDL of the structs that contain the field's struct. `begin` is the offset at which the
+// value then begins.
 std::vector<std::byte> bytes_by_name(std::span<const std::byte> cdr, const std::string& record,
                                      const IdlField& field, const std::string& around,
                                      std::string_view top, std::size_t begin) {
