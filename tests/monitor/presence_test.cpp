@@ -36,7 +36,7 @@ class Presence : public testing::Test {
       samples.push_back(test::sample(object, test::at(x, 0, 0), now));
     return monitor->tick(samples, now);
   }
-  // Runs a tick with all balls, 1 m apart.
+  // Runs a tick with all balls, at distances of 1 m.
   const Report& tick_all() { return tick({{kLeft, 0.0}, {kMiddle, 1.0}, {kRight, 2.0}}); }
   const Report& tick_outer() { return tick({{kLeft, 0.0}, {kRight, 2.0}}); }
 

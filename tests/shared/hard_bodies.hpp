@@ -17,8 +17,8 @@ using oracle::Body;
 // The hull of random points on a sphere or in a box.
 [[nodiscard]] Body random_hull(Random& random, int points);
 // Facets distributed evenly over the unit sphere as in §3.5: `order` rings from pole to pole, 2 *
-// order facets at the equator. Orders 2, 4, 6, 8, 10, 15, 20, 30 and 40 have 6, 22, 46, 82, 128,
-// 288, 510, 1148 and 2042 facets, which is half of the thesis's N1 + N2.
+// order facets at the equator. Numbers of facets: 6, 22, 46, 82, 128, 288, 510, 1148, 2042 for
+// orders 2, 4, 6, 8, 10, 15, 20, 30, 40. These are half of the thesis's N1 + N2.
 [[nodiscard]] Body facet_ball(int order);
 // The hull of the normals of facet_ball(order), which is its polar dual.
 [[nodiscard]] Body dual_ball(int order);

@@ -86,8 +86,8 @@ TEST(Chapter5Alternating, TakesTheRoundsThatTheThesisCounts) {
     double separation, tolerance;
     int rounds;
   };
-  // §5.2. Its 21 rounds to 1e-8 at the standard test are left out. This implementation needs 25,
-  // with a ratio of 0.49 per round, which agrees with the 14 rounds to 1e-4.
+  // §5.2. The thesis's 21 rounds to 1e-8 at the standard test are left out. This implementation
+  // needs 25, with a ratio of 0.49 per round, which agrees with the thesis's 14 rounds to 1e-4.
   for (const Counted& c : {Counted{kStandard, 1e-4, 14}, {0.1, 1e-4, 78}, {0.1, 1e-8, 163}}) {
     const CrossedTest test = crossed_test(c.separation);
     const bench::Run run = [&](int rounds) {
@@ -149,7 +149,7 @@ TEST(Chapter5Line, ItsClosestPointsHaveOneNormalAcrossTheLine) {
     const Line line{random.uniform(6.0, 20.0) * random.direction(), random.direction()};
     const ClosestPoints found = line_to_ellipsoid(line, axes);
     const Vec3 between = found.on_a - found.on_b;
-    if (between.norm() < 1e-9) {  // the trajectory passes through it
+    if (between.norm() < 1e-9) {  // the line passes through the ellipsoid
       EXPECT_LE(found.on_b.cwiseQuotient(axes).norm(), 1.0 + 1e-12);
       continue;
     }

@@ -106,7 +106,7 @@ TEST_F(ReplayReport, ThePlotsCurveHoldsTheRunsLeastDistance) {
   const std::vector<PlotPoint> hand = curve_of(svg, "hand - box");
   ASSERT_GT(hand.size(), 150u);
   const auto least = std::ranges::min_element(hand, {}, &PlotPoint::y);
-  const double pixel_mm = 8.0;  // 2 m on 350 pixels, rounded up
+  const double pixel_mm = 8.0;  // 2 m on 350 pixels, with a margin
   EXPECT_NEAR(least->y, kLeastMm, pixel_mm);
   EXPECT_NEAR(least->x, kLeastAtS, 0.003);
   EXPECT_NEAR(hand.front().y, kLeastMm + 120.0, pixel_mm);

@@ -107,7 +107,7 @@ class Poses {
   }
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
 
-  // Translates everything by this vector from the cell's positions, m.
+  // Translates everything by this vector from the positions in the cell, m.
   void move_by(const Vec3& way) { moved_ = way; }
   // Multiplies the twists of the motion by this factor.
   void scale_twists(double factor) { twist_factor_ = factor; }

@@ -260,7 +260,7 @@ TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   EXPECT_THAT(cell().notes.back(), HasSubstr("watched: foot - mast, mast - head"));
 }
 
-// As in MoveIt: pairs disabled by default, without the enabled ones, and pairs disabled
+// The rules are MoveIt's: pairs disabled by default, without the enabled ones, and pairs disabled
 // individually.
 TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   write("little_description/urdf/little.srdf",

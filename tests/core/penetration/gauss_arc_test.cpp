@@ -147,9 +147,9 @@ struct PlateAndPillar {
   }
 };
 
-// At an edge of the rim, the pillar's centre may be outside both facets by less than rounding can
-// detect, and yet far outside the edge. For plates of 1e-16 m and less, depths were once up to 6 mm
-// too large.
+// At an edge of the rim, rounding cannot always tell that the pillar's centre is outside both
+// facets, although it is far outside the edge. For plates of 1e-16 m and less, depths were once up
+// to 6 mm too large.
 TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   Random random(2);
   for (int k = 0; k < 32; ++k) {

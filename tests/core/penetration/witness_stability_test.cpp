@@ -84,7 +84,7 @@ std::vector<Swing> motions() {
 }
 
 struct Moved {
-  double witness = 0.0, bodies = 0.0;  // largest movement in one step, m, in the world
+  double witness = 0.0, bodies = 0.0;  // movement in one step, m, in the world
 };
 
 std::vector<Moved> run(const FacingPair& pair, const Swing& motion, double tilt,

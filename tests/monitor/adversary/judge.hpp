@@ -19,7 +19,8 @@ class Judge {
   // Checks one tick. If the report is false, the running test fails and the function returns false.
   [[nodiscard]] bool accepts(const Report& report, const Monitor& monitor, Adversary& adversary);
 
-  // The number of ticks, from the thirtieth on, in which a zone was entered only as a precaution.
+  // The number of zone states, counted per tick from the thirtieth on, that are active only as a
+  // precaution.
   [[nodiscard]] int uncertain_zones() const { return uncertain_zones_; }
 
  private:

@@ -1,4 +1,4 @@
-// The pairs that the broad phase leaves out. That their bounds are true is tested in
+// The pairs that the broad phase leaves out. The truth of their bounds is tested in
 // tests/monitor/adversary.
 #include "monitor/broad_phase/broad_phase.hpp"
 

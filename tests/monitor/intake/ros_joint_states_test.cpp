@@ -113,8 +113,8 @@ TEST_F(RosJointStatesTest, AreStampedWhenTheySayOrWhenTheyWereSent) {
   EXPECT_EQ(heard.one().joints.at(0).stamp_ns, now());
 }
 
-// Stamps of a simulation's clock, for example. Live, they are used and the user is told once. From
-// a log, they are replaced and counted.
+// Stamps of a simulation's clock, for example. Live, they are used and the user is told once. In a
+// log, they are replaced and counted.
 TEST_F(RosJointStatesTest, OfAnotherClockAreToldOnceLiveAndReplacedOutOfALog) {
   Heard log(cell, {.is_log = true});
   const RosMessage simulated =

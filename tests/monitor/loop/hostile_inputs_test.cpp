@@ -1,6 +1,6 @@
 // Inputs with stepped clocks, and with lost, delayed and occasionally wild poses from several
-// sources, compared with the true motion. No bound of a report is false, and no zone is left
-// wrongly, beyond what the poses of the last age limit allow.
+// sources, compared with the true motion. No bound of a report is false and no zone is left
+// wrongly, except for what the poses of the last age limit allow.
 #include <gtest/gtest.h>
 
 #include <cmath>

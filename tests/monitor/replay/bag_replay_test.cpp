@@ -108,7 +108,7 @@ TEST_F(BagReplay, DistancesAreThoseOfTheJointsInTheBag) {
   EXPECT_GT(checked, 150);
 }
 
-// As in live operation, joints that come every 100 ms are late after 30 ms, and a regression test
+// Joints that come every 100 ms are late after 30 ms, as in live operation, and a regression test
 // shows it.
 TEST_F(BagReplay, StalenessShowsBetweenMessagesAsItDoesLive) {
   std::vector<RosMessage> messages = motion(30, 100);
