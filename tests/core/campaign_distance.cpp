@@ -23,8 +23,8 @@ namespace {
 struct Tally {
   long asked = 0, failed = 0, cases = 0;
   long iterations = 0, most_iterations = 0;
-  double widest =
-      0.0;  // except at the iteration limit: upper - lower, relative to DistanceJudge::size
+  // except at the iteration limit: upper - lower, relative to DistanceJudge::size
+  double widest = 0.0;
 };
 
 // Streams of neighbouring seeds differ by only one draw. No case draws as many numbers as this

@@ -14,12 +14,12 @@ namespace clearance::test {
 
 // Everything that may differ from the defaults.
 struct ChildOptions {
-  int out = -1,
-      err = -1;  // descriptors for the two output streams; -1 stands for the file that is kept
-  std::vector<std::pair<std::string, std::string>> environment =
-      {};  // variables added to the environment
-  std::optional<std::size_t> most_file_bytes =
-      {};  // limit of a file's size, which simulates a full disk
+  // descriptors for the two output streams; -1 stands for the file that is kept
+  int out = -1, err = -1;
+  // variables added to the environment
+  std::vector<std::pair<std::string, std::string>> environment = {};
+  // limit of a file's size, which simulates a full disk
+  std::optional<std::size_t> most_file_bytes = {};
 };
 
 class ChildProcess {

@@ -196,8 +196,8 @@ double DistanceJudge::size(const DistanceResult& r, const ExactDistance& truth, 
 std::vector<std::string> DistanceJudge::faults_along(const DistanceResult& r, double tolerance,
                                                      const Pose& pose_a, const Pose& pose_b) {
   if (!(std::abs(r.normal.norm() - 1.0) <= 1e-14)) return {"an overlap without a normal"};
-  const double placing =
-      4.0 * kUlp * pose_b.position.norm();  // rounding of B's position in the world
+  // rounding of B's position in the world
+  const double placing = 4.0 * kUlp * pose_b.position.norm();
   const auto parted_by = [&](double depth) {
     Pose parted = pose_b;
     parted.position +=

@@ -31,9 +31,9 @@ class DistanceJudge {
 
   // The errors of the result; empty if there are none. It checks the following.
   // - The numbers are finite where they must be, and lower <= distance <= upper.
-  // - The bounds hold, compared exactly. If the depth is not known, B moved along the normal by the
-  //   upper bound must be disjoint from A. Moved by less than the lower bound, it must not be. Both
-  //   hold to 1e-14 of size().
+  // - The bounds hold, compared exactly. If the depth is not known, B must miss A when it is moved
+  //   along the normal by -lower. Moved by less than -upper, it must meet A. Both hold to 1e-14 of
+  //   size().
   // - The status is true: converged within 1e-14 of size(), overlapping and touching within
   //   1.25e-14.
   // - The witness points lie on their bodies and are separated by `distance` along the normal, to
@@ -58,8 +58,8 @@ class DistanceJudge {
   // `farthest`: the distance or the depth, m.
   [[nodiscard]] double size(double farthest, const Pose& pose_a, const Pose& pose_b) const;
   // Checks the bounds of an overlap along its own normal, to `tolerance` and the rounding of B's
-  // position. B must miss A if it is moved by the lower bound. It must meet A if it is moved by
-  // less than the upper bound.
+  // position. B must miss A if it is moved by -lower. It must meet A if it is moved by less than
+  // -upper.
   [[nodiscard]] std::vector<std::string> faults_along(const DistanceResult& r, double tolerance,
                                                       const Pose& pose_a, const Pose& pose_b);
   // Returns true if a ball of radius `depth` fits into the intersection of both bodies. For a point

@@ -208,8 +208,8 @@ Body unbounded(Random& random) {
       out.rows.resize(static_cast<std::size_t>(random.integer(1, 3)));
   }
   Body turned = random.chance(0.5) ? rotated(out, random.rotation()) : out;
-  const bool is_prism =
-      kind == 5 || kind == 6;  // under a rotation its sides would not stay parallel
+  // under a rotation its sides would not stay parallel
+  const bool is_prism = kind == 5 || kind == 6;
   return is_prism ? out : turned;
 }
 

@@ -148,8 +148,8 @@ HardCase razors(Random& random) {
   const auto blade = [&](double way) {
     const double angle = random.log_uniform(1e-6, 1.0), length = random.log_uniform(1e-2, 1e3);
     Body out = wedge(angle, length);
-    if (way < 0.0)
-      out = rotated(std::move(out), Quat(0, 0, 0, 1));  // about z, which makes the edge point to -x
+    // about z, which makes the edge point to -x
+    if (way < 0.0) out = rotated(std::move(out), Quat(0, 0, 0, 1));
     return shifted(std::move(out), {0.0, random.uniform(-off, off), random.uniform(-1e-3, 1e-3)});
   };
   Body a = blade(1.0), b = blade(-1.0);

@@ -131,8 +131,8 @@ TEST_F(ReplayReport, IsOnePageThatNamesExpectationsAndWorstMomentsWithPictures) 
   ChildProcess child(
       kReplay, {"check", "--cell", path("cell.yaml"), path("run.mcap"), "--report",
                 path("run.html"), "--expect-no-zone", "stop", "--expect-min-distance", "0.05"});
-  EXPECT_EQ(1, child.wait(std::chrono::seconds(250)))
-      << child.output();  // the time includes the start of a browser
+  // the time includes the start of a browser
+  EXPECT_EQ(1, child.wait(std::chrono::seconds(250))) << child.output();
   const std::string html = read_text(folder / "run.html");
   EXPECT_THAT(html, HasSubstr("NOT all of them hold"));
   EXPECT_THAT(html, HasSubstr("zone stop"));

@@ -118,8 +118,8 @@ TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
   ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("cycle "); })) << watch.output();
   watch.signal(SIGSTOP);
-  std::this_thread::sleep_for(
-      std::chrono::milliseconds(1500));  // three times the age at which a report is called old
+  // three times the age at which a report is called old
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   watch.signal(SIGCONT);
   // The line of that moment, or the line one second later.
   EXPECT_TRUE(eventually(

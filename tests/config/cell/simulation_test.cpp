@@ -48,8 +48,8 @@ std::vector<PoseAt> at(const Simulation& simulation, double t_s) {
 TEST(Simulation, TwistIsTheDerivativeOfThePose) {
   const Simulation simulation = moving_cell();
   const double step = 1e-5;
-  const Vec3 point(0.2, -0.1,
-                   0.3);  // a point of the object that rotation and translation both move
+  // a point of the object that rotation and translation both move
+  const Vec3 point(0.2, -0.1, 0.3);
   for (const double t : {0.0, 0.31, 1.7, 12.9}) {
     const auto before = at(simulation, t - step), now = at(simulation, t),
                after = at(simulation, t + step);

@@ -105,8 +105,8 @@ double sampled_error(const std::vector<ConvexBody>& bodies, const TriangleMesh& 
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
           const Triangle triangle = mesh.triangle(t);
           const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-          if (normal.norm() == 0.0)
-            continue;  // a degenerate triangle: its points belong to its neighbours
+          // a degenerate triangle: its points belong to its neighbours
+          if (normal.norm() == 0.0) continue;
           nearest = std::min(nearest, distance_by_regions(triangle, point));
         }
         worst = std::max(worst, nearest);

@@ -74,11 +74,11 @@ TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
 TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
   const ConvexBody a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
   expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);  // coaxial
-  expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0,
-                8.0);  // half of each cap over the other
+  // half of each cap over the other
+  expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);
   expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);  // side by side
-  expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0,
-                15.0);  // rim to rim, offsets 3 m and 4 m
+  // rim to rim, offsets 3 m and 4 m
+  expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0, 15.0);
   const Pose crossed = turned_at(3, 0, 0, Vec3::UnitX(), kHalfTurn / 2);
   expect_answer(answer(a, b, at(0, 0, 0), crossed), 1.5, 8.0, 1e-16);
 }

@@ -135,7 +135,8 @@ std::array<Body, 3> plain_bodies(Random& random) {
 TEST(ExactOracle, KnowsPrismsAndLensesByTheirOutlineAsByAllThatThereMayBe) {
   Random random(5);
   const Eigen::Quaterniond upright(1, -1, -1, -1);  // maps x to z
-  const auto turn = [&] {  // with small integers, so that products are exact
+  // with small integers, so that products are exact
+  const auto turn = [&] {
     const int x = random.integer(-9, 9), y = random.integer(-9, 9), z = random.integer(-9, 9);
     return Eigen::Quaterniond(1, x, y, z);
   };

@@ -1,4 +1,4 @@
-// distance() against the exact truth, on every family of hard cases and motions.
+// Compares distance() with the exact truth, on every family of hard cases and motions.
 #include <gtest/gtest.h>
 
 #include <cmath>

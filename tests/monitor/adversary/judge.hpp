@@ -43,10 +43,10 @@ class Judge {
   int tick_ = -1;
   // Distances by pair, m: in this tick, and the least at the tried instants since the last tick.
   std::vector<long double> now_, since_;
-  std::vector<std::uint64_t>
-      known_for_;  // by pair: number of consecutive ticks in which it was known
-  std::array<std::uint32_t, 4>
-      counted_{};              // numbers of evaluated, carried, stale and unknown pairs
+  // by pair: number of consecutive ticks in which it was known
+  std::vector<std::uint64_t> known_for_;
+  // numbers of evaluated, carried, stale and unknown pairs
+  std::array<std::uint32_t, 4> counted_{};
   std::uint64_t stalest_ = 0;  // ticks
   int uncertain_zones_ = 0;
 };

@@ -143,8 +143,8 @@ TEST_P(McapOf, WindowGivesTheSameMessagesWithAndWithoutAnIndex) {
   const ScratchFolder folder;
   write_small(folder / "a.mcap", 100, GetParam());
   const std::string whole = read_text(folder / "a.mcap");
-  write_text(folder / "cut.mcap",
-             whole.substr(0, whole.size() - 8));  // no closing magic and therefore no index
+  // no closing magic and therefore no index
+  write_text(folder / "cut.mcap", whole.substr(0, whole.size() - 8));
   for (std::uint64_t start = 990; start < 1520; start += 17) {
     const McapWindow window{start, start + 60};
     const ReadBack indexed = read_back(folder / "a.mcap", window);

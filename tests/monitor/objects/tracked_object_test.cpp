@@ -107,8 +107,8 @@ TEST(TrackedObject, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   next.stamp_ns += 4 * kTick;
   next.world_from_object.position += Vec3(0.004, 0, 0);
   next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
-  next.world_from_object.orientation.coeffs() *=
-      -1.0;  // the same orientation with the opposite sign
+  // the same orientation with the opposite sign
+  next.world_from_object.orientation.coeffs() *= -1.0;
   take(next, state);
   EXPECT_TRUE(state.velocity_known());
   EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);

@@ -81,8 +81,8 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
     const double lower = hulls.lower(0, TickView{objects, parts, 1, table}, budget);
     EXPECT_EQ(budget.left(), 9u);
     const double truth = two.exact_distance(objects[0].pose.position, objects[1].pose.position);
-    EXPECT_LE(lower, truth + 1e-14)
-        << "round " << round;  // the addition of positions rounds in the oracle
+    // the addition of positions rounds in the oracle
+    EXPECT_LE(lower, truth + 1e-14) << "round " << round;
     apart += lower > 0.0;
   }
   EXPECT_GT(apart, 30);

@@ -112,8 +112,8 @@ TEST_F(BagReplay, DistancesAreThoseOfTheJointsInTheBag) {
 // shows it.
 TEST_F(BagReplay, StalenessShowsBetweenMessagesAsItDoesLive) {
   std::vector<RosMessage> messages = motion(30, 100);
-  for (RosMessage& message : messages)
-    message.log_ns -= message.log_ns % kMs;  // all at the same time
+  // all at the same time
+  for (RosMessage& message : messages) message.log_ns -= message.log_ns % kMs;
   write_mcap_bag(folder / "bag.mcap", messages);
   const std::uint32_t pair = pair_of("upper", "wall");
   int stale = 0, fresh = 0;

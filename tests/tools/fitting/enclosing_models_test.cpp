@@ -157,8 +157,8 @@ TEST(EnclosingModels, AreAboutAsGoodWhereverTheBodyIs) {
     const auto models = enclosing_models(some_body(seed));
     const auto moved = enclosing_models(some_body(seed, 1.0, random.pose(0.5)));
     for (std::size_t i = 0; i < std::min(models.size(), moved.size()); ++i) {
-      if (models[i].kind == ModelKind::kPolyhedron)
-        continue;  // chosen greedily: ties depend on the rotation
+      // chosen greedily: ties depend on the rotation
+      if (models[i].kind == ModelKind::kPolyhedron) continue;
       EXPECT_NEAR(moved[i].error, models[i].error, 0.2 * models[i].error + 1e-9)
           << seed << " " << name(models[i].kind);
     }
