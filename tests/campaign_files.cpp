@@ -1,9 +1,10 @@
-// Seeded campaign: damaged files of every kind that a person or a network hands in. Cells, URDF and
-// SRDF, planning scenes, meshes, pose logs, recordings and cases are mutated and read as the
+// Seeded campaign with damaged files of every kind that a person or a network provides. Cells, URDF
+// and SRDF, planning scenes, meshes, pose logs, recordings and cases are mutated and read as the
 // programs read them.
 //
-// Oracle: reading ends, in a value or in a fault that says something; a crash ends the campaign and
-// leaves the damaged file in the folder that it printed. tests/config holds what a good answer is.
+// Oracle: reading ends, in a value or in a fault with a message. A crash ends the campaign and
+// leaves the damaged file in the folder that the program printed. The tests in tests/config define
+// good answers.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -29,8 +30,7 @@ namespace {
 using test::read_text;
 using test::write_text;
 
-// One kind of file: what it looks like when it is good, and what reads it. `read` says whether the
-// file was taken.
+// One kind of file: a valid example and its reader. `read` returns whether the file was accepted.
 struct Kind {
   std::string name, file, good;
   std::function<bool(const std::filesystem::path& file)> read;
@@ -175,7 +175,7 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
   return all;
 }
 
-// False: the good file itself was not taken.
+// Returns false if the valid file itself was not accepted.
 bool run(const Kind& kind, const test::ScratchFolder& folder, std::uint64_t first,
          std::uint64_t count) {
   const std::filesystem::path file = folder / kind.file;

@@ -10,12 +10,12 @@
 
 namespace clearance {
 
-// Returns a whole cell, of which `sections` begins in line 4.
+// Returns a whole cell, in which `sections` begins in line 4.
 inline std::string cell_text(const std::string& sections) {
   return "name: test\nunits: {length: m, angle: deg}\nrate_hz: 500\n" + sections;
 }
 
-// Reads a text that must be a good cell.
+// Reads a text that must be a valid cell.
 inline Cell read_good(const std::string& text, const std::filesystem::path& file = "cell.yaml") {
   CellResult result = parse_cell(text, file);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
@@ -28,7 +28,7 @@ inline Scene scene_of(const std::string& text, const std::filesystem::path& file
   return read_good(text, file).scene;
 }
 
-// Returns the errors of a text, a line each; none for a good one.
+// Returns the errors of a text, one per line; empty if the text is valid.
 inline std::string errors_of(const std::string& text,
                              const std::filesystem::path& file = "cell.yaml") {
   const CellResult result = parse_cell(text, file);
@@ -39,7 +39,7 @@ inline std::string errors_of(const std::string& text,
   return lines;
 }
 
-// Two moving boxes and a floor; every test adds what it is about.
+// Two moving boxes and a floor. Each test adds its own sections.
 inline const std::string kBoxes =
     "objects:\n"
     "  - {name: left, groups: [arm], box: {size: [1, 1, 1]}}\n"

@@ -1,9 +1,9 @@
-// Long seeded campaign: distance() on every hard family, cold, tracked, swapped, with nonsense
-// states, with any features that the bodies have, and with the state of another pair.
+// Long seeded campaign: distance() on every hard family. Queries are cold, tracked and swapped, and
+// start from nonsense states, from any features of the bodies, and from the state of another pair.
 //
 // Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
-// tests/shared/distance_judge.hpp. Prints what is wrong and writes each failing case as a line that
-// clearance-distance reads.
+// tests/shared/distance_judge.hpp. The program prints what is wrong and writes each failing case as
+// a line that clearance-distance reads.
 #include <cstdio>
 #include <cstdlib>
 #include <fstream>
@@ -23,10 +23,12 @@ namespace {
 struct Tally {
   long asked = 0, failed = 0, cases = 0;
   long iterations = 0, most_iterations = 0;
-  double widest = 0.0;  // but at the iteration limit: upper - lower, over DistanceJudge::size
+  // except at the iteration limit: upper - lower, relative to DistanceJudge::size
+  double widest = 0.0;
 };
 
-// Streams of neighbouring seeds are the same but for one draw; no case draws as often as this.
+// Streams of neighbouring seeds differ by only one draw. No case draws as many numbers as this
+// stride.
 constexpr std::uint64_t kSeedStride = 100000;
 
 class Campaign {
@@ -77,7 +79,7 @@ class Campaign {
     }
   }
 
-  // True when nothing has been found.
+  // Returns true if no fault has been found.
   bool summary() const {
     long failed = 0;
     for (const auto& [name, t] : tallies_) {
@@ -117,7 +119,7 @@ class Campaign {
   std::ofstream findings_;
   std::map<std::string, Tally> tallies_;
   Tally* tally_ = nullptr;
-  TrackingState last_;  // of the pair before
+  TrackingState last_;  // state of the previous pair
   std::string id_, last_written_;
   std::function<std::string()> line_;
 };

@@ -1,9 +1,10 @@
 // Fuzz target (libFuzzer) of distance() of curved bodies.
 //
-// Oracle: 50 digits, of tests/shared/curved_oracle.hpp, through tests/shared/curved_judge.hpp; and
-// the sanitizers. The input picks a hard case by family and seed and then changes numbers of it: to
-// neighbours, to others of the same case, by powers of two, by a little. It is asked cold, with a
-// state that the input makes up, and with the state that this leaves where B has moved.
+// Oracle: 50 digits of tests/shared/curved_oracle.hpp, through tests/shared/curved_judge.hpp; and
+// the sanitizers. The input selects a hard case by family and seed, and then changes some of its
+// numbers. Numbers change to neighbouring doubles, to other numbers of the case, by powers of two,
+// or by a little. The query is asked cold, with a state that the input makes up, and with the
+// resulting state after B has moved.
 //
 // To build and run (Debian: apt-get install clang libclang-rt-14-dev):
 //
@@ -48,7 +49,7 @@ void change(CurvedCase& c, Bytes& bytes) {
   }
 }
 
-// A body, and one that 50 digits are enough for.
+// Returns true if the bodies are valid and 50 digits are enough for them.
 bool has_truth(CurvedCase& c) {
   for (const double* x : numbers_of(c)) {
     if (!(std::abs(*x) < 1e6)) return false;

@@ -1,12 +1,12 @@
 // Fuzz target (libFuzzer) of the shape factories, distance() and DistanceBatch.
 //
-// Oracle: the exact rational distance of tests/shared/exact_oracle.hpp, through
-// tests/shared/distance_judge.hpp; of a batch, single queries, bit by bit; and the sanitizers. The
-// input picks a hard case by family and seed and then changes doubles of it: to neighbours, to
-// zero, to other doubles of the same case. It is asked with a state that the input makes up, with
-// the state that this leaves where B has moved, and without the depth.
+// Oracles: the exact rational distance of tests/shared/exact_oracle.hpp, through
+// tests/shared/distance_judge.hpp; single queries, bit by bit, for the batch; and the sanitizers.
+// The input selects a hard case by family and seed, and then changes some of its doubles. Doubles
+// change to neighbours, to zero, or to other doubles of the case. The query is asked with a state
+// that the input makes up, with the resulting state after B has moved, and without the depth.
 //
-// To build, a quarter of an hour on one core, and to run it (Debian: apt-get install clang
+// The build takes a quarter of an hour on one core. To build and run (Debian: apt-get install clang
 // libclang-rt-14-dev):
 //
 //   CXX=clang++ CC=clang cmake -B build-fuzz -G Ninja -DCLEARANCE_FUZZ=ON -DCLEARANCE_CORE_ONLY=ON
@@ -57,7 +57,7 @@ TrackingState::Side any_side(Bytes& bytes) {
   return out;
 }
 
-// Empty bodies, radii that none has and zero quaternions have no truth to be held against.
+// Empty bodies, invalid radii and zero quaternions have no true distance to compare with.
 bool has_truth(const hard::HardCase& c) {
   const auto is_radius = [](double r) { return r >= 0.0 && r <= kLargestCoordinate; };
   if (!is_radius(c.a.radius) || !is_radius(c.b.radius)) return false;
@@ -77,7 +77,7 @@ class Fuzzed {
   [[nodiscard]] bool refused() const { return !judge_.refusal().empty(); }
   [[nodiscard]] const DistanceJudge& judge() const { return judge_; }
 
-  // `state`: any.
+  // `state` may be any state.
   void ask(TrackingState& state) {
     const DistanceResult result = judge_.ask(c_.pose_a, c_.pose_b, state);
     const oracle::ExactDistance truth = judge_.truth(c_.pose_a, c_.pose_b);
@@ -95,7 +95,8 @@ class Fuzzed {
     if (random.chance(0.7)) c_.pose_b.orientation = turn * c_.pose_b.orientation;
   }
 
-  // Twice where they are, so that the second round is one of vector code, and where B has moved.
+  // Asks twice at the same poses, so that the second round uses vector code, and once after B has
+  // moved.
   void follow_in_batch(Random& random) {
     const ConvexBody* const bodies[] = {&judge_.a(), &judge_.b()};
     const BodyPair pairs[] = {{0, 1}, {1, 0}};

@@ -1,4 +1,4 @@
-// What the fuzz targets make of the bytes that they are given.
+// Decodes the bytes that a fuzz target receives.
 #pragma once
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-// The input, byte by byte; zeros behind its end.
+// The input, byte by byte, followed by zeros.
 class Bytes {
  public:
   Bytes(const std::uint8_t* data, std::size_t size) : data_(data), size_(size) {}
@@ -31,8 +31,8 @@ inline void append_numbers(Pose& pose, std::vector<double*>& numbers) {
   for (int k = 0; k < 4; ++k) numbers.push_back(&pose.orientation.coeffs()[k]);
 }
 
-// Changes numbers until the input ends: to neighbours, to zero, to others of them, by powers of two
-// from 2^-powers to below 2^powers, by a little.
+// Changes numbers until the input ends. They become neighbouring doubles, zero or another of the
+// numbers, or change by a little or by powers of two from 2^-powers to below 2^powers.
 inline void change(std::span<double* const> numbers, int powers, Bytes& bytes) {
   while (bytes.any_left()) {
     double& x = *numbers[bytes.word() % numbers.size()];

@@ -1,4 +1,4 @@
-// Oracle for the tick: every pair of parts asked afresh, without tracking, triage or a motion
+// Oracle for the tick: a new query for every pair of parts, without tracking, triage or a motion
 // bound.
 #pragma once
 
@@ -9,7 +9,7 @@
 
 namespace clearance::test {
 
-// Distance of two objects, as far as the queries can tell.
+// Bounds of the distance of two objects, as narrow as the queries give them.
 struct DistanceBounds {
   double lower = kInfinity, upper = kInfinity;
 };

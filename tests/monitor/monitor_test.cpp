@@ -48,7 +48,7 @@ TEST(Monitor, PutsTheWitnessPointOfABodyAKilometreAwayOnItToItsOwnRounding) {
     const Pose far{1000.0 * random.in_box(1.0).normalized(), random.rotation()};
     const Pose here{Vec3::Zero(), random.rotation()};
     std::vector<Part> parts = {test::block(Vec3(0.1, 0.2, 0.3))};
-    if (k % 2 == 1) parts.push_back(test::ball(0.1));  // asked one by one, not in a batch
+    if (k % 2 == 1) parts.push_back(test::ball(0.1));  // queried singly, not in a batch
     Scene scene = test::cell_of(
         {test::moving("far", parts), test::fixed("here", {test::capsule(1.0, 0.25)}, here)});
     scene.pairs[0].publish = true;
@@ -125,7 +125,7 @@ TEST(Monitor, ALiftedFloorCarriesItsBounds) {
   EXPECT_LE(far.lower, 1.89);
 }
 
-// Moving objects, zones, published pairs and every kind of trouble, from one seed.
+// Moving objects, zones, published pairs and every kind of fault, from one seed.
 class Trouble {
  public:
   explicit Trouble(std::uint64_t seed) : random_(seed) {
@@ -152,7 +152,7 @@ class Trouble {
     now_ns_ += kTick;
     for (std::uint32_t i = 0; i < poses_.size(); ++i) {
       poses_[i].position += random_.in_box(0.01);
-      // Late for a while: 3, of which nobody states a speed, and 4.
+      // Objects 3 (without a stated speed) and 4 are late for a while.
       if ((i == 3 || i == 4) && now_ns_ % (100 * kTick) > 40 * kTick) continue;
       if (random_.uniform(0, 1) < 0.3) continue;
       samples_.push_back(test::sample(i, poses_[i], now_ns_));

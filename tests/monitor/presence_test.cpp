@@ -1,7 +1,7 @@
-// Objects that are known not to be there.
+// Objects that are known to be absent.
 //
-// Oracles: the closed form for capsules; for what a tick may trust after an absence, a monitor that
-// was made afterwards and has never heard of anything else.
+// Oracles: the closed form for capsules. For the trust after an absence, a monitor that was created
+// afterwards and has no earlier inputs.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::uint32_t kLeft = 0, kMiddle = 1, kRight = 2;
 
-// Three balls of radius 0.1 on a line, all pairs published and in one zone that ends at 0.3 m.
+// Three balls of radius 0.1 on a line. All pairs are published and belong to one zone that ends at
+// 0.3 m.
 class Presence : public testing::Test {
  protected:
   Presence() {
@@ -27,7 +28,7 @@ class Presence : public testing::Test {
   }
   void make() { monitor.emplace(scene); }
 
-  // A tick with poses of these balls at x.
+  // Runs a tick with poses of these balls at x.
   const Report& tick(const std::vector<std::pair<std::uint32_t, double>>& places) {
     now += test::kTick;
     std::vector<PoseSample> samples;
@@ -35,7 +36,7 @@ class Presence : public testing::Test {
       samples.push_back(test::sample(object, test::at(x, 0, 0), now));
     return monitor->tick(samples, now);
   }
-  // All of them 1 m from each other.
+  // Runs a tick with all balls, at distances of 1 m.
   const Report& tick_all() { return tick({{kLeft, 0.0}, {kMiddle, 1.0}, {kRight, 2.0}}); }
   const Report& tick_outer() { return tick({{kLeft, 0.0}, {kRight, 2.0}}); }
 
@@ -229,8 +230,8 @@ TEST_F(Presence, AllocatesNothing) {
   EXPECT_EQ(allocations(), before);
 }
 
-// Twelve bars that turn, jump, leave and come back, of which a budget of a few queries a tick
-// evaluates hardly any: bounds from before an absence would not hold.
+// Twelve bars that rotate, jump, leave and return. A budget of a few queries per tick evaluates
+// hardly any of them. Bounds from before an absence would not hold.
 class ComingAndGoing {
  public:
   ComingAndGoing(std::uint64_t seed, std::uint32_t budget) : random_(seed) {
@@ -286,7 +287,7 @@ class ComingAndGoing {
           static_cast<double>(test::true_distance(scene_.objects[scene_.pairs[p].first], a.pose,
                                                   scene_.objects[scene_.pairs[p].second], b.pose));
       least = std::min(least, truth);
-      if (truth < 0.0) continue;  // the closed form has no depth
+      if (truth < 0.0) continue;  // the closed form gives no depth
       ASSERT_LE(pair.lower, truth + 1e-12) << "pair " << p;
       ASSERT_GE(pair.upper, truth - 1e-12) << "pair " << p;
       ASSERT_LE(pair.swept_lower, pair.lower);

@@ -1,4 +1,4 @@
-// Robots through the tick: joint states in, distances of their links out.
+// Robots in the tick: joint states are the input, distances of their links the output.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -30,7 +30,7 @@ PoseSample pose_of(std::uint32_t object, const LinkState& link, std::int64_t now
   return sample;
 }
 
-// The pair between these objects.
+// Returns the pair between these objects.
 PairReport between(const Scene& scene, const Monitor& monitor, const std::string& a,
                    const std::string& b) {
   for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
@@ -54,7 +54,8 @@ TEST(RobotsInTheTick, DistancesFollowTheJoints) {
               5.0 - 0.45 - 0.05 * std::sin(std::numbers::pi / 3.0), 1e-12);
 }
 
-// Of whatever position within a thousand radians; and the shapes that are asked are wider by it.
+// The positions are within a thousand radians. The queried shapes are enlarged by the rounding
+// error.
 TEST(RobotsInTheTick, BoundsAccountForTheRoundingOfTheChain) {
   const Scene scene = test::scara_cell(", base: {on: cart}");
   ForwardKinematics kinematics(scene.robots);
@@ -146,8 +147,8 @@ TEST(RobotsInTheTick, AZoneOfLinksIsActiveUntilTheirJointsAreKnown) {
   EXPECT_FALSE(monitor.tick({}, joints(0.0, 0.0, 0.0, now), now).zones[0].active);
 }
 
-// Each joint by its own limits: the shoulder turns 2 rad/s, the elbow anyhow, but only about
-// itself.
+// Each joint moves within its own limits: the shoulder at 2 rad/s; the elbow at any speed, but only
+// about its axis.
 TEST(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
   const Scene cell = test::scara_cell();
   Monitor monitor(cell);
@@ -160,7 +161,7 @@ TEST(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
   const double reach = std::hypot(0.9, 0.05, 0.05);
   EXPECT_NEAR(upper.lower, 5.0 - 0.9 - 0.1 * reach, 2e-3);
   EXPECT_LE(upper.lower, 5.0 - 0.9 - 0.1 * reach + 1e-12);
-  // Out to the finger, which is 2.1 m from the shoulder, and 0.05 m in radius.
+  // The bound extends to the finger, which is 2.1 m from the shoulder and has a radius of 0.05 m.
   const PairReport finger = between(cell, monitor, "finger", "wall");
   EXPECT_NEAR(finger.lower, 5.0 - 2.15 - 0.1 * 2.15, 1e-9);
   EXPECT_TRUE(std::isnan(finger.closing_speed));
@@ -228,7 +229,7 @@ TEST(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
   EXPECT_EQ(between(cell, monitor, "finger", "wall").age_b_ns +
                 between(cell, monitor, "finger", "wall").age_a_ns,
             0);
-  // A tick that is told less than the one before knows no ages.
+  // In a tick whose time is before that of the previous tick, ages are unknown.
   monitor.tick({}, {}, {kStart - kTick, kOffset});
   EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kStale);
 }

@@ -1,4 +1,4 @@
-// A cell with a robot of three joints, and joint states of it.
+// A cell with a robot of three joints, and its joint states.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 namespace clearance::test {
 
-// Two links of a metre that swing about z, and a finger that slides out of the second.
+// Two links of one metre that swing about z, and a finger that slides out of the second.
 inline const std::string kScaraUrdf = R"(<robot name="scara">
   <link name="foot"><collision><origin xyz="0 0 -1"/><geometry><box size="0.2 0.2 0.2"/></geometry></collision></link>
   <link name="upper"><collision><origin xyz="0.5 0 0"/><geometry><box size="0.8 0.1 0.1"/></geometry></collision></link>
@@ -35,7 +35,7 @@ inline const std::string kScaraRest =
     "zones:\n"
     "  - {name: near, between: [upper, wall], enter_below: 3.5, leave_above: 3.6}\n";
 
-// `base`: more keys of the robot.
+// `base` contains further keys of the robot.
 inline Scene scara_cell(const std::string& base = "") {
   const ScratchFolder folder;
   write_text(folder / "scara.urdf", kScaraUrdf);

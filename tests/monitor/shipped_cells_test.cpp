@@ -1,6 +1,6 @@
-// The tick on the cells that are shipped, in the motion that they simulate.
+// The tick on the shipped cells, in their simulated motion.
 //
-// Oracle: every pair of parts asked afresh, without tracking, triage or a motion bound.
+// Oracle: a new query for every pair of parts, without tracking, triage or a motion bound.
 #include <gtest/gtest.h>
 
 #include <algorithm>

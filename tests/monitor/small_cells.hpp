@@ -1,7 +1,7 @@
 // Cells of capsules, spheres and boxes for the tests of the tick, and the true distance of
 // capsules.
 //
-// The oracle is the closed form for two segments, in long double and with exact part offsets; it
+// The oracle is the closed form for two segments, in long double and with exact part offsets. It
 // shares nothing with core/.
 #pragma once
 
@@ -30,7 +30,7 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   return {"ball", made(point(Vec3::Zero(), radius)), object_from_part};
 }
 
-// Along x of the part, its middle at the part's origin.
+// A capsule along x of the part. Its centre is the part's origin.
 [[nodiscard]] inline Part capsule(double length, double radius, const Pose& object_from_part = {}) {
   const Vec3 end(0.5 * length, 0.0, 0.0);
   return {"capsule", made(segment(-end, end, radius)), object_from_part};
@@ -40,12 +40,12 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   return {"block", made(box(half_extents)), object_from_part};
 }
 
-// Everything below z = 0 of the part.
+// The half-space below z = 0 of the part.
 [[nodiscard]] inline Part floor(const Pose& object_from_part = {}) {
   return {"floor", half_space(Vec3::UnitZ(), 0.0), object_from_part};
 }
 
-// Most tests put it where they like.
+// A moving object. Most tests choose its pose themselves.
 [[nodiscard]] inline Object moving(std::string name, std::vector<Part> parts) {
   Object object;
   object.may_jump = true;
@@ -62,7 +62,7 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   return object;
 }
 
-// All pairs in which something moves; nothing published, no zones.
+// All pairs with a moving object; no published pairs and no zones.
 [[nodiscard]] inline Scene cell_of(std::vector<Object> objects) {
   Scene scene;
   scene.name = "small";
@@ -76,7 +76,7 @@ inline constexpr std::int64_t kStart = 1'700'000'000'000'000'000;  // ns
   return scene;
 }
 
-// Every pair of the cell.
+// A zone over every pair of the cell.
 [[nodiscard]] inline Zone zone_over(const Scene& scene, double enter_below, double leave_above) {
   Zone zone{"zone", "all", "all", enter_below, leave_above, {}};
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) zone.pairs.push_back(p);
@@ -99,7 +99,7 @@ using LongVec = Eigen::Matrix<long double, 3, 1>;
   return q.toRotationMatrix() * point + pose.position.cast<long double>();
 }
 
-// A ball's or capsule's segment in the world: both ends.
+// Both end points of a ball's or capsule's segment in the world.
 [[nodiscard]] inline std::array<LongVec, 2> segment_in_world(const Part& part,
                                                              const Pose& world_from_object) {
   std::array<LongVec, 2> ends;
@@ -133,7 +133,8 @@ using LongVec = Eigen::Matrix<long double, 3, 1>;
   return std::min(least, (w + s * u - t * v).norm());
 }
 
-// Of two objects made of balls and capsules. Cores that meet do not occur in random cells.
+// The true distance of two objects made of balls and capsules. Intersecting segments do not occur
+// in random cells.
 [[nodiscard]] inline long double true_distance(const Object& a, const Pose& world_from_a,
                                                const Object& b, const Pose& world_from_b) {
   long double least = std::numeric_limits<long double>::infinity();

@@ -1,4 +1,4 @@
-// The checks between the tick's stages can fail: each is given what it forbids.
+// The checks between the tick's stages can fail: each receives the state that it forbids.
 #include "monitor/stage_borders.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-// For all tests of this program.
+// Enables the costly checks for all tests of this program.
 const bool kCostlyOnesToo = (check_costly_borders(), true);
 
 class StageBordersDeathTest : public testing::Test {
@@ -19,7 +19,7 @@ class StageBordersDeathTest : public testing::Test {
   }
 };
 
-// Two balls, 0.8 m from each other in one zone.
+// Two balls at a distance of 0.8 m in one zone.
 Report usual_report() {
   Scene scene = test::cell_of(std::vector<Object>(2, test::moving("ball", {test::ball(0.1)})));
   scene.pairs[0].publish = true;
@@ -58,7 +58,7 @@ TEST_F(StageBordersDeathTest, AnObjectWithAnUnusablePoseEndsTheProgram) {
   std::vector<TrackedObject> objects(2);
   const std::vector<std::uint32_t> changed{0}, first = first_parts(scene);
   const TickView view{objects, parts, 1, table};
-  check_displaced(changed, first, view);  // an object without a pose is none
+  check_displaced(changed, first, view);  // an object without a pose does not count
   objects[0].input.has_value = true;
   parts[0].placed = true;
   check_displaced(changed, first, view);

@@ -8,7 +8,7 @@
 
 namespace clearance::test {
 
-// Two balls of radius 0.1; the second fixed, 1 m along x.
+// Two balls of radius 0.1. The second one is fixed, 1 m along x.
 inline Scene two_balls() {
   Scene scene = cell_of({moving("a", {ball(0.1)}), fixed("b", {ball(0.1)}, at(1, 0, 0))});
   scene.pairs[0].publish = true;

@@ -4,7 +4,8 @@
 #include <cstdlib>
 #include <new>
 
-// What the linker calls malloc and its like when it has been told to wrap them (CMakeLists.txt).
+// With --wrap (CMakeLists.txt), the linker sends calls of malloc and its relatives to these
+// functions.
 extern "C" {
 void* __real_malloc(std::size_t size);
 void* __real_calloc(std::size_t count, std::size_t size);

@@ -1,12 +1,12 @@
-// Counts what operator new hands out, in the whole test program, and malloc and its like, wherever
-// they are called from what is linked into it: Eigen's matrices come from there.
+// Counts the allocations of operator new in the whole test program. Calls of malloc and its
+// relatives are counted wherever the linked code makes them: Eigen's matrices are allocated there.
 #pragma once
 
 #include <cstdint>
 
 namespace clearance {
 
-// Allocations of this thread so far, and how many bytes they asked for.
+// The number of allocations that this thread has made so far, and the bytes that they asked for.
 [[nodiscard]] std::uint64_t allocations() noexcept;
 [[nodiscard]] std::uint64_t allocated_bytes() noexcept;
 

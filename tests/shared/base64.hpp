@@ -1,4 +1,4 @@
-// Bytes as text, for programs that read lines.
+// Encodes bytes as text, for programs that read lines.
 #pragma once
 
 #include <cstddef>

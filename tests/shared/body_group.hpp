@@ -1,4 +1,4 @@
-// Several bodies in one frame, as tests enclose them in models.
+// Several bodies in one frame, for tests that enclose them in models.
 #pragma once
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 
 namespace clearance::test {
 
-// Some bodies in one frame, for the core and for the exact oracle.
+// Bodies in one frame, as the core's models and as the exact oracle's bodies.
 struct Group {
   std::vector<oracle::Body> bodies;
   std::vector<ConvexBody> shapes;

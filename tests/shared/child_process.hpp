@@ -1,4 +1,5 @@
-// A program of ours as a user starts it: a process of its own, its output kept.
+// Runs one of this project's programs as a user starts it: in a process of its own, with its output
+// kept.
 #pragma once
 
 #include <chrono>
@@ -11,31 +12,35 @@
 
 namespace clearance::test {
 
-// What is not as usual.
+// Everything that may differ from the defaults.
 struct ChildOptions {
-  int out = -1, err = -1;  // descriptors for the two output streams; -1: the file that is kept
-  std::vector<std::pair<std::string, std::string>> environment = {};  // added
-  std::optional<std::size_t> most_file_bytes = {};  // that a file may get: a disk that is full
+  // descriptors for the two output streams; -1 stands for the file that is kept
+  int out = -1, err = -1;
+  // variables added to the environment
+  std::vector<std::pair<std::string, std::string>> environment = {};
+  // limit of a file's size, which simulates a full disk
+  std::optional<std::size_t> most_file_bytes = {};
 };
 
 class ChildProcess {
  public:
-  // Starts at once. `program` is a path; both output streams go to one file.
+  // Starts the program at once. `program` is a path. Both output streams go to one file.
   ChildProcess(const std::string& program, std::vector<std::string> arguments,
                const ChildOptions& options = {});
-  ~ChildProcess();  // kills it if it still runs
+  ~ChildProcess();  // kills the process if it still runs
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
   void signal(int number) const;
-  // The exit status; 128 + the signal that ended it; -1 when it still runs after the limit.
+  // Returns the exit status, 128 + the signal that ended the process, or -1 if it still runs after
+  // the limit.
   int wait(std::chrono::seconds limit = std::chrono::seconds(60));
   [[nodiscard]] bool running();
-  // What it has written so far.
+  // The output written so far.
   [[nodiscard]] std::string output() const;
   [[nodiscard]] bool wrote(const std::string& text) const;
-  // Whether it has logged a line with this code (monitor/app/log_lines.hpp) that names all of
-  // these.
+  // Returns true if the program has logged a line with this code (monitor/app/log_lines.hpp) that
+  // contains all of these names.
   [[nodiscard]] bool told(const std::string& code,
                           const std::vector<std::string>& names = {}) const;
 

@@ -40,7 +40,7 @@ CurvedBody box_of(const Vec3& half) {
   return body;
 }
 
-// Cylinder, cone or truncated cone.
+// A cylinder, a cone or a truncated cone.
 CurvedBody any_cone(Random& random, double least) {
   const double r = random.log_uniform(least, 1.0), h = random.log_uniform(least, 1.0);
   const int kind = random.integer(0, 3);
@@ -82,7 +82,8 @@ double tilt_of(Random& random) {
   return random.chance(0.25) ? 0.0 : random.log_uniform(1e-14, 1e-3);
 }
 
-// Both bodies together, half of the times: then nothing is along the world's axes any more.
+// Moves both bodies together in half of the cases, after which nothing is parallel to the world's
+// axes.
 void move_together(Random& random, CurvedCase& c) {
   if (random.chance(0.5)) return;
   const Pose world = random.pose(random.log_uniform(0.1, 10.0));
@@ -90,7 +91,7 @@ void move_together(Random& random, CurvedCase& c) {
   c.pose_b = compose(world, c.pose_b);
 }
 
-// The farthest point of the body, turned, along n; a radius adds to it.
+// The support point along n of the rotated body; a radius adds to it.
 Vec3 farthest(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3& n) {
   const Vec3 m = turn.conjugate() * n;
   Vec3 best = Vec3::Zero();
@@ -113,7 +114,8 @@ Vec3 farthest(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3
   return turn * best + body.radius * n;
 }
 
-// B's farthest point against n comes to lie `gap` over A's along n: they are apart by that.
+// Places B so that its support point along -n lies `gap` beyond A's support point along n. The
+// distance is then `gap`.
 void face(CurvedCase& c, const Vec3& n, double gap) {
   const Vec3 on_a = farthest(c.a, c.pose_a.orientation, n);
   const Vec3 on_b = farthest(c.b, c.pose_b.orientation, -n);
@@ -205,7 +207,7 @@ CurvedCase of_an_apex(Random& random) {
   return c;
 }
 
-// Side by side, generators along each other up to a tilt.
+// Two bodies side by side, with parallel generators up to a tilt.
 CurvedCase of_tilted_sides(Random& random) {
   CurvedCase c;
   c.a = any_cone(random, 0.1);

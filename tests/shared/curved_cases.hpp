@@ -1,7 +1,9 @@
-// Pairs of curved bodies that are hard for a distance algorithm, from seeds: the same everywhere.
+// Pairs of curved bodies that are hard for a distance algorithm. A seed gives the same pair on
+// every platform.
 //
-// Thin to 1 : 10^4, discs and needles, parallel caps, one axis, rim on rim, an apex, tilts from
-// 1e-14 to 1e-3, one centre, nearly spherical, any pair of kinds; rounded or not, and polyhedra.
+// The families contain aspect ratios up to 1 : 10^4, discs, needles, parallel caps, common axes and
+// rims that meet. They also contain apexes, tilts from 1e-14 to 1e-3, concentric and nearly
+// spherical bodies, and polyhedra. All pairs of kinds occur, with and without radii.
 #pragma once
 
 #include <span>
@@ -27,7 +29,7 @@ struct CurvedFamily {
 
 [[nodiscard]] std::span<const CurvedFamily> curved_families();
 
-// The core's model of a body, or the reason why it was refused.
+// The core's model of a body, or the reason for its refusal.
 [[nodiscard]] ShapeResult curved_model(const oracle::CurvedBody& body);
 
 }  // namespace clearance::hard

@@ -11,7 +11,7 @@ namespace {
 using oracle::Real;
 
 constexpr double kPromised = 1e-13;
-constexpr double kTruthDigits = 1e-20;  // of the size
+constexpr double kTruthDigits = 1e-20;  // relative to the size
 constexpr int kDirections = 40, kClimbs = 200;
 
 double reach_of(const oracle::CurvedBody& body) {

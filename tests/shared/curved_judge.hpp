@@ -1,5 +1,5 @@
-// Holds answers about curved bodies against the truth in 50 digits, and says in words what is wrong
-// with them.
+// Compares answers about curved bodies with the truth in 50 digits, and states in words what is
+// wrong with them.
 #pragma once
 
 #include <string>
@@ -16,14 +16,15 @@ class CurvedJudge {
 
   [[nodiscard]] const oracle::RealBounds& truth() const { return truth_; }
   [[nodiscard]] bool cores_meet() const { return truth_.lower < -1e300; }
-  // Of both bodies and the distance, m: what 1e-13 is relative to.
+  // The size of both bodies and their distance, m. The tolerance of 1e-13 is relative to it.
   [[nodiscard]] double size() const { return size_; }
 
-  // What the result gets wrong; empty when nothing:
-  //  - its bounds, compared in 50 digits; of cores that overlap, the lower one with what its own
-  //    normal proves, the upper one with what any of 40 directions and their neighbourhood prove
-  //  - where it says that it has converged: bounds and distance to 1e-13 of size()
-  //  - the witness points of bodies that are apart: on their bodies to 1e-13 of size()
+  // The errors of the result; empty if there are none. It checks the following.
+  // - The bounds are compared in 50 digits. For overlapping cores, the lower bound is compared with
+  //   what the result's own normal proves. The upper bound is compared with what 40 directions and
+  //   their neighbourhoods prove.
+  // - If the status is converged, bounds and distance are right to 1e-13 of size().
+  // - The witness points of disjoint bodies lie on their bodies to 1e-13 of size().
   [[nodiscard]] std::vector<std::string> faults(const DistanceResult& r) const;
 
  private:

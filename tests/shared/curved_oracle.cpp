@@ -8,12 +8,12 @@ namespace clearance::oracle {
 namespace {
 
 using boost::multiprecision::sqrt;
-using RealMatrix = std::array<RealVec, 3>;  // by rows
+using RealMatrix = std::array<RealVec, 3>;  // stored by rows
 
-// Of the ellipsoid method; each takes a digit off the bounds in about forty.
+// The iteration limit of the ellipsoid method. About forty iterations gain one digit of the bounds.
 constexpr int kMostRounds = 20000;
-// A deeper cut, of the way from the centre to the surface, would leave a disc of an ellipsoid, and
-// after some of them fewer digits than doubles have.
+// The limit of a cut's depth, as a fraction of the way from the centre to the surface. A deeper cut
+// would leave a disc-like ellipsoid, and after a few of them fewer digits than doubles have.
 constexpr double kDeepestCut = 0.5;
 
 Real dot(const RealVec& a, const RealVec& b) {
@@ -33,7 +33,7 @@ RealMatrix rotation_of(const Eigen::Quaterniond& q) {
            {s * (x * z - w * y), s * (y * z + w * x), 1 - s * (x * x + y * y)}}};
 }
 
-// A body without its radius in the world, with everything in Real.
+// A body without its radius, placed in the world, with all numbers in Real.
 class RealBody {
  public:
   explicit RealBody(const PlacedCurvedBody& placed)
@@ -43,7 +43,7 @@ class RealBody {
     for (const Vec3& p : placed.body->points) points_.push_back(exact_of(p));
   }
 
-  // The farthest point along n; where there are many, one of them.
+  // The support point along n; one of them if there are several.
   [[nodiscard]] RealVec support(const RealVec& n) const {
     RealVec m;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -89,20 +89,21 @@ class RealBody {
   std::vector<RealVec> points_;
 };
 
-// From A's support point along n to B's against it.
+// The vector from A's support point along n to B's support point along -n.
 RealVec apart_at(const RealBody& a, const RealBody& b, const RealVec& n) {
   const RealVec on_a = a.support(n), on_b = b.support({-n[0], -n[1], -n[2]});
   return {on_b[0] - on_a[0], on_b[1] - on_a[1], on_b[2] - on_a[2]};
 }
 
-// All centre + root u with |u| <= 1. The root of the matrix, and not the matrix, has half as many
-// digits between its longest and its shortest axis.
+// The set of all centre + root u with |u| <= 1. Storing the root of the matrix instead of the
+// matrix halves the number of digits between the longest and the shortest axis.
 struct DirectionEllipsoid {
   RealVec centre{Real(0), Real(0), Real(0)};
   RealMatrix root{
       {{Real(1), Real(0), Real(0)}, {Real(0), Real(1), Real(0)}, {Real(0), Real(0), Real(1)}}};
 
-  // root^T a: a.n is within its length of a.centre.
+  // Returns root^T a. Over the ellipsoid, a.n differs from a.centre by at most the length of this
+  // vector.
   [[nodiscard]] RealVec seen(const RealVec& a) const {
     RealVec out;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -111,7 +112,8 @@ struct DirectionEllipsoid {
     return out;
   }
 
-  // The smallest one around what is left where a.(n - centre) <= -depth |seen(a)|, 0 <= depth < 1.
+  // Replaces the ellipsoid by the smallest one that contains its part with a.(n - centre) <= -depth
+  // |seen(a)|, 0 <= depth < 1.
   void cut(const RealVec& a, const Real& depth) {
     RealVec u = seen(a);
     const Real norm = length(u);
@@ -128,7 +130,7 @@ struct DirectionEllipsoid {
   }
 };
 
-// Without radii; 0 is a lower bound of what is never negative.
+// Bounds the distance without radii. It is never negative, so 0 is a valid lower bound.
 RealBounds maximise(const RealBody& a, const RealBody& b, const Real& tolerance) {
   DirectionEllipsoid around;
   RealBounds found{Real(0), Real(std::numeric_limits<double>::max())};

@@ -1,15 +1,17 @@
-// How far curved bodies are apart, in 50 digits: the truth that core/curved is held against.
+// The distance of curved bodies in 50 digits: the truth that core/curved is compared with.
 //
-// The distance is the greatest value over |n| <= 1 of the concave function
-//   g(n) = n.t - h_A(n) - h_B(-n),
-// h being support functions. The ellipsoid method (D. B. Yudin and A. S. Nemirovski, 1976; N. Z.
-// Shor, 1977; with deep cuts as in R. G. Bland, D. Goldfarb and M. J. Todd, "The ellipsoid method:
-// a survey", 1981) maximises it. It needs no derivatives but the support points, no smoothness and
-// no active pieces, and what it says is its own proof: every direction bounds the greatest value
-// from below, and of the ellipsoid that still holds the best direction, with centre c, matrix P and
-// support points w apart at c, g(c) + sqrt(w.P w) bounds it from above. Doubles are exact here and
-// a quaternion q is the rotation of q / |q|. Shares nothing with core/ but the structs of the
-// input.
+// The distance is the greatest value of a concave function over |n| <= 1, with support functions h:
+//   g(n) = n.t - h_A(n) - h_B(-n).
+// The ellipsoid method maximises it (D. B. Yudin and A. S. Nemirovski, 1976; N. Z. Shor, 1977; with
+// deep cuts as in R. G. Bland, D. Goldfarb and M. J. Todd, "The ellipsoid method: a survey", 1981).
+// It needs only support points: no other derivatives, no smoothness and no active smooth parts.
+//
+// The result contains its proof. Every direction bounds the greatest value from below. Let the
+// ellipsoid that contains the best direction have centre c and matrix P. Let w be the vector
+// between the support points at c. Then g(c) + sqrt(w.P w) is an upper bound.
+//
+// Doubles are taken as exact, and a quaternion q as the rotation of q / |q|. The oracle shares
+// nothing with core/ but the structs of the input.
 #pragma once
 
 #include <array>
@@ -25,7 +27,7 @@ using Real = boost::multiprecision::number<boost::multiprecision::gmp_float<50>,
                                            boost::multiprecision::et_off>;
 using RealVec = std::array<Real, 3>;
 
-// The hull of `points` where there are any; else an ellipsoid or a truncated cone. A ball of
+// The hull of `points` if there are any, otherwise an ellipsoid or a truncated cone. A ball of
 // `radius` is added to either.
 struct CurvedBody {
   std::vector<Vec3> points;
@@ -38,19 +40,21 @@ struct PlacedCurvedBody {
   Pose world_from_body;
 };
 
-// lower <= truth <= upper.
+// Invariant: lower <= truth <= upper.
 struct RealBounds {
   Real lower, upper;
 };
 
-// Of the bodies' signed distance. The bounds are within `tolerance` (m) of each other, unless the
-// bodies without radii overlap: then `lower` is the lowest double, `upper` minus the radii.
-// Throws std::logic_error where 50 digits are too few, as for 1e-25 of bodies that are 1 m large
-// and meet vertex to vertex; 1e-20 has been enough for all families.
+// Bounds the signed distance of the bodies. The bounds differ by at most `tolerance` (m), unless
+// the bodies overlap without their radii. In that case `lower` is the lowest double and `upper` is
+// minus the sum of the radii. Throws std::logic_error where 50 digits are too few, for example at a
+// tolerance of 1e-25 for bodies of 1 m that meet vertex to vertex. A tolerance of 1e-20 has been
+// enough for all families.
 [[nodiscard]] RealBounds curved_truth(const PlacedCurvedBody& a, const PlacedCurvedBody& b,
                                       double tolerance);
 
-// What the direction n (world, not zero, any length) proves: the signed distance is at least this.
+// The lower bound of the signed distance that the direction n proves. n is in the world frame, not
+// zero and of any length.
 [[nodiscard]] Real apart_along(const PlacedCurvedBody& a, const PlacedCurvedBody& b, const Vec3& n);
 
 }  // namespace clearance::oracle

@@ -18,11 +18,12 @@ using oracle::Body;
 using oracle::ExactDistance;
 using oracle::Rational;
 
-// Relative to DistanceJudge::size: of the gap between the bounds, apart and else; and of where the
-// witness points may lie.
+// Tolerances relative to DistanceJudge::size: for the gap between the bounds of disjoint bodies,
+// for that gap otherwise, and for the positions of witness points.
 constexpr double kApartTolerance = 1e-14, kMetTolerance = 1.25e-14, kPointTolerance = 1.5e-14;
 
-// Rows or points; where their features are not plain, the exact depth takes the square of it.
+// The largest number of rows or points for which the depth is checked exactly. If the features are
+// not plain, the exact depth takes the square of it.
 constexpr std::size_t kDepthOf = 16;
 
 template <class... Values>
@@ -32,7 +33,7 @@ std::string text(const char* format, Values... values) {
   return out;
 }
 
-// How far the point p of frame A lies outside a body, exactly rounded up.
+// The distance of the point p (frame A) from a body, computed exactly and rounded up.
 double outside(oracle::ExactBody& body, const Pose& pose, double radius, const Vec3& p,
                const Pose& pose_a) {
   oracle::ExactBody point(Body{{}, {p}, 0.0});
@@ -40,7 +41,8 @@ double outside(oracle::ExactBody& body, const Pose& pose, double radius, const V
   return std::max(0.0, d.upper - radius);
 }
 
-// `by` taken off everywhere. A point or a segment is left as it is: there is nothing to take off.
+// The body with every facet moved inwards by `by`. A point or a segment is returned unchanged,
+// because it has no interior.
 Body eroded(Body body, double by) {
   for (HalfSpace& row : body.rows) row.offset -= by * row.normal.norm() * (1.0 + 1e-15);
   return body;
@@ -63,7 +65,8 @@ bool are_numbers(const DistanceResult& r, Faults& faults) {
   return finite;
 }
 
-// `depth_known`: the truth is that of the bodies, and not only that they overlap.
+// `depth_known`: `truth` contains the depth of an overlap, and not only the fact that the bodies
+// overlap.
 void look_at_bounds(const DistanceResult& r, const ExactDistance& truth, bool depth_known,
                     Faults& faults) {
   faults.unless(r.lower <= r.distance && r.distance <= r.upper,
@@ -102,7 +105,8 @@ void look_at_status(const DistanceResult& r, const ExactDistance& truth, double 
                 text("%s with a gap of %.3g, more than %.3g", status, gap, tolerance));
 }
 
-// Are the points where distance and normal say? `placed`: what rounding may do to a point.
+// Checks that the witness points agree with distance and normal. `placed` is the rounding error
+// allowed for a point.
 void look_at_witnesses(const DistanceResult& r, double placed, Faults& faults) {
   const Vec3 between = r.point_on_b - r.point_on_a;
   faults.unless(std::abs(r.normal.norm() - 1.0) <= 1e-14,
@@ -192,7 +196,8 @@ double DistanceJudge::size(const DistanceResult& r, const ExactDistance& truth, 
 std::vector<std::string> DistanceJudge::faults_along(const DistanceResult& r, double tolerance,
                                                      const Pose& pose_a, const Pose& pose_b) {
   if (!(std::abs(r.normal.norm() - 1.0) <= 1e-14)) return {"an overlap without a normal"};
-  const double placing = 4.0 * kUlp * pose_b.position.norm();  // of B in the world, as doubles
+  // rounding of B's position in the world
+  const double placing = 4.0 * kUlp * pose_b.position.norm();
   const auto parted_by = [&](double depth) {
     Pose parted = pose_b;
     parted.position +=
@@ -216,7 +221,7 @@ bool DistanceJudge::overlap_by(double depth, const Pose& pose_a, const Pose& pos
     return oracle::exact_distance(eroded(body_a_, depth), pose_a, eroded(body_b_, depth), pose_b)
         .cores_meet();
   } catch (const std::invalid_argument&) {
-    return false;  // nothing left of one of them
+    return false;  // the erosion leaves nothing of one body
   }
 }
 
@@ -247,7 +252,8 @@ std::vector<std::string> DistanceJudge::faults(const DistanceResult& r, const Ex
     for (const auto& fault : faults_along(r, tolerance, pose_a, pose_b))
       faults.all.push_back(fault);
   }
-  // A floor through both origins has no size that a rounding error could be relative to.
+  // With a floor that passes through both origins, no length exists that a rounding error could be
+  // relative to.
   if (reach == 0.0 && r.status == DistanceStatus::kIterationLimit) return faults.all;
   look_at_status(r, truth, tolerance, faults);
   if (r.status == DistanceStatus::kTouching && tolerance > 0.0 && truth.cores_meet()) {

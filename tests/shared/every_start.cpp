@@ -6,7 +6,7 @@
 namespace clearance::test {
 namespace {
 
-// Each feature that the body has, with a point on it, and none.
+// Each feature of the body with a point on it, and the state without a feature.
 std::vector<TrackingState::Side> every_side(const ConvexBody& body) {
   std::vector<TrackingState::Side> out(1);
   const auto add = [&](FeatureKind kind, std::size_t feature, const Vec3& point) {

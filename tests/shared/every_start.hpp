@@ -1,4 +1,4 @@
-// A query from every pair of features that the bodies have.
+// Runs a query from every pair of features of the two bodies.
 #pragma once
 
 #include <string>
@@ -7,8 +7,8 @@
 
 namespace clearance::test {
 
-// What the first wrong answer gets wrong, and from where; empty when none is. A body may also have
-// no feature to begin at.
+// Describes the first wrong answer and its initial features; empty if all answers are right. The
+// initial state may also have no feature of a body.
 [[nodiscard]] std::string fault_from_any_start(DistanceJudge& judge, const Pose& pose_a,
                                                const Pose& pose_b);
 

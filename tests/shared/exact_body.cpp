@@ -31,7 +31,7 @@ Integer row_product(const std::vector<Integer>& a, const std::vector<Integer>& b
   return sum;
 }
 
-// Reduces `m` to row echelon form in place, each pivot one; returns the pivot columns.
+// Reduces `m` to row echelon form in place, with pivots of one. Returns the pivot columns.
 std::vector<std::size_t> reduce(Matrix& m, std::size_t columns) {
   std::vector<std::size_t> pivots;
   for (std::size_t column = 0; column < columns && pivots.size() < m.size(); ++column) {
@@ -81,14 +81,14 @@ IntegerVec primitive(const RationalVec& v) {
   return {out[0], out[1], out[2]};
 }
 
-// maximise objective.x subject to the rows, in any number of variables.
+// Maximises objective.x subject to the rows, in any number of variables.
 struct ExactBody::Program {
   const std::vector<Row>& rows;
   std::size_t dimension;
 
   struct Corner {
     Point point;
-    Matrix inverse;  // of the basis rows: column j is minus the edge that leaves row j
+    Matrix inverse;  // inverse of the basis rows: column j is minus the edge that leaves row j
   };
 
   [[nodiscard]] Vector normal(int row) const {
@@ -126,7 +126,8 @@ struct ExactBody::Program {
     return out;
   }
 
-  // The row met first on the way from `from` along `edge`; the first of several (Bland). -1: none.
+  // The first row that is met from `from` along `edge`; among equal ones the one of lowest index
+  // (Bland). Returns -1 if there is none.
   [[nodiscard]] int blocking_row(const Point& from, const std::vector<Integer>& edge) const {
     int best = -1;
     Integer best_slack, best_slope;
@@ -143,8 +144,8 @@ struct ExactBody::Program {
     return best;
   }
 
-  // From a feasible point to a vertex: moves along what the tight rows leave free until three (or
-  // four) hold it.
+  // Moves from a feasible point to a vertex: along the directions that the active rows leave free,
+  // until three (or four) rows determine it.
   [[nodiscard]] std::vector<int> corner_near(const Vector& start) const {
     std::vector<int> basis;
     Matrix held;
@@ -179,8 +180,7 @@ struct ExactBody::Program {
     return basis;
   }
 
-  // Moves `basis` to an optimal one; or returns the ray along which the objective grows without
-  // end.
+  // Moves `basis` to an optimal basis, or returns a ray along which the objective is unbounded.
   std::optional<std::vector<Integer>> maximise(const std::vector<Integer>& objective,
                                                std::vector<int>& basis, long& pivots) const {
     while (true) {
@@ -227,8 +227,8 @@ ExactBody::ExactBody(const Body& body) {
   basis_ = Program{rows_, 3}.corner_near(feasible_point());
 }
 
-// A body that contains a line has no vertices. It is the sum of its lines and of its section by the
-// plane through the origin that is normal to them, and that one has vertices.
+// A body that contains a line has no vertices. It is the sum of its lines and its section by the
+// plane through the origin that is normal to them. The section has vertices.
 void ExactBody::pin_lines() {
   Matrix normals;
   for (const Row& row : rows_) normals.emplace_back(row.normal.begin(), row.normal.end());
@@ -240,7 +240,8 @@ void ExactBody::pin_lines() {
   }
 }
 
-// Phase one: the least s >= 0 for which all n.x - s <= d have a solution must be zero.
+// Phase one of the simplex method: the least s >= 0 for which all n.x - s <= d have a solution must
+// be zero.
 std::vector<Rational> ExactBody::feasible_point() const {
   Integer s = 0;
   for (const Row& row : rows_) {
@@ -331,7 +332,7 @@ bool ExactBody::proves_bound(const RationalVec& direction, const Rational& value
     const Row& row = rows_[basis_[j]];
     for (std::size_t k = 0; k < 3; ++k) sum[k] += multiplier * row.normal[k];
     reach += multiplier * row.offset;
-    // A row that only pins a line is no row of the body, and proves nothing.
+    // A row that only pins a line does not belong to the body, and proves nothing.
     if (static_cast<std::size_t>(basis_[j]) >= given_rows_ && multiplier != 0) return false;
   }
   return sum == direction && reach <= value;

@@ -10,7 +10,7 @@
 namespace clearance::oracle {
 namespace {
 
-// Directions whose sine is above this are good to 1e-10 in doubles.
+// Directions whose sine is above this limit are accurate to 1e-10 in doubles.
 constexpr double kCrossing = 1e-5;
 
 constexpr std::size_t kCornersAsked = 8;
@@ -30,7 +30,7 @@ Vec3 rounded(const RationalVec& v) {
   return out.normalized();
 }
 
-// The same direction once, whatever its length and sign.
+// Keeps each direction once, regardless of its length and sign.
 void drop_parallels(std::vector<RationalVec>& edges) {
   std::set<IntegerVec> seen;
   std::erase_if(edges, [&](const RationalVec& edge) {
@@ -46,7 +46,8 @@ class Search {
   Search(const Body& a, const Pose& pose_a, const Body& b, const Pose& pose_b)
       : a_(a), b_(b), place_(pose_a, pose_b) {}
 
-  // Along n (frame A, any length), exactly: how far must B go, if less than is known?
+  // Computes exactly how far B must move along n (frame A, any length), and keeps the value if it
+  // is the smallest so far.
   void look(const RationalVec& n) {
     if (is_zero(n) || a_corner_is_as_far(n)) return;
     const std::optional<RationalVec> corner = remember_corner(n);
@@ -57,14 +58,15 @@ class Search {
     root_ = std::sqrt(best_->get_d());
   }
 
-  // Nearly the same in doubles, from any corners that are known; more of them only make it larger.
+  // Estimates the same value in doubles from the vertices known so far. Further vertices can only
+  // increase it.
   [[nodiscard]] bool hopeless(const Vec3& n) {
     if (!best_) return false;
     double least = -1e300;
     for (const Vec3& corner : rounded_corners_) least = std::max(least, corner.dot(n));
     return least > root_ + 1e-9 * (root_ + size_);
   }
-  // The corner of {a - b} that is farthest along n, if there is one.
+  // The vertex of {a - b} that is the support point along n, if there is one.
   std::optional<RationalVec> remember_corner(const RationalVec& n) {
     const Support of_a = a_.support(primitive(n));
     if (of_a.is_ray) return {};
@@ -81,7 +83,7 @@ class Search {
   [[nodiscard]] const std::optional<Rational>& best() const { return best_; }
 
  private:
-  // Of neighbouring directions it is mostly one of the last.
+  // For neighbouring directions, the support point is usually among the latest vertices.
   [[nodiscard]] bool a_corner_is_as_far(const RationalVec& n) const {
     if (!best_) return false;
     const Rational enough = *best_ * dot(n, n);
@@ -137,7 +139,7 @@ std::optional<Rational> exact_squared_depth(const Body& a, const Pose& world_fro
       }
     }
   }
-  // Points and segments have no inside, and may have no direction of their own.
+  // Points and segments have no interior, and may have no normals or edges.
   const auto flat = [](const Body& body) { return body.rows.empty() && body.points.size() < 3; };
   if (flat(a) && flat(b)) return Rational(0);
   return search.best();

@@ -11,7 +11,8 @@ namespace {
 
 const RationalVec kAlongZ = {0, 0, 1};
 
-// Does the line where rows i and j meet run along the body? Clips it by all other rows.
+// Returns true if the intersection line of rows i and j contains an edge of the body. It clips the
+// line by all other rows.
 bool is_edge(const std::vector<HalfSpace>& rows, std::size_t i, std::size_t j) {
   const RationalVec n = exact(rows[i].normal), m = exact(rows[j].normal);
   const RationalVec along = cross(n, m);
@@ -61,14 +62,15 @@ Features features_of_points(const std::vector<Vec3>& points) {
   return out;
 }
 
-// Every row is a side or an end of a prism along z.
+// Returns true if every row is a side or an end of a prism along z.
 bool is_prism(const std::vector<HalfSpace>& rows) {
   return std::ranges::all_of(rows, [](const HalfSpace& row) {
     return row.normal.z() == 0.0 || (row.normal.x() == 0.0 && row.normal.y() == 0.0);
   });
 }
 
-// Two sides meet along z, a side and an end across the side's normal.
+// Two sides meet along z. A side and an end meet in a direction normal to z and to the side's
+// normal.
 void add_edges_of_prism(const std::vector<HalfSpace>& rows, Features& out) {
   out.edges.push_back(kAlongZ);
   for (const HalfSpace& row : rows) out.edges.push_back(cross(exact(row.normal), kAlongZ));
@@ -100,8 +102,8 @@ bool is_lens(const std::vector<Layer>& layers) {
          layers[2].size() == 1;
 }
 
-// The corners of a layer's outline, by turns to the left (A. M. Andrew, "Another efficient
-// algorithm for convex hulls in two dimensions", 1979); of one that is no polygon, its ends.
+// The vertices of a layer's outline, counter-clockwise (A. M. Andrew, "Another efficient algorithm
+// for convex hulls in two dimensions", 1979). If the layer is not a polygon, its end points.
 std::vector<RationalVec> outline(Layer layer) {
   std::vector<RationalVec> out;
   for (int half = 0; half < 2; ++half) {
@@ -132,7 +134,7 @@ Features features_of_prism(const std::vector<Layer>& layers) {
   return out;
 }
 
-// A facet has a side of the polygon and a tip, or a corner and both tips.
+// A facet contains a side of the polygon and a tip, or a vertex of it and both tips.
 Features features_of_lens(const std::vector<Layer>& layers) {
   Features out;
   const RationalVec tips[] = {exact(layers[0][0]), exact(layers[2][0])};

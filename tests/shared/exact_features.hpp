@@ -1,4 +1,4 @@
-// The directions in which an exact body has facets and edges.
+// The directions in which an exact body may have facets and edges.
 #pragma once
 
 #include <vector>
@@ -7,17 +7,17 @@
 
 namespace clearance::oracle {
 
-// In the body's own frame, any length; more directions than there are, and with repetitions. A
-// normal leads outwards.
+// Directions in the body's local frame, of any length. The lists may contain repetitions and
+// directions that belong to no feature. A normal points outwards.
 struct Features {
   std::vector<RationalVec> normals, edges;
 };
 
 [[nodiscard]] Features features_of(const Body& body);
 
-// Is that no more work than there are rows or points? So it is of what these show to be a prism
-// along z, or a lens: a polygon across z and a point on either side of it. Of others it takes the
-// cube.
+// Returns true if the number of features is proportional to the number of rows or points. The rows
+// or points must show that the body is a prism along z or a lens. A lens is a polygon normal to z
+// with a point on either side of it. For other bodies the work is cubic.
 [[nodiscard]] bool features_are_plain(const Body& body);
 
 }  // namespace clearance::oracle

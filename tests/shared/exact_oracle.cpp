@@ -10,7 +10,7 @@
 namespace clearance::oracle {
 namespace {
 
-// A vertex of {b - a}, or a ray of it, and what of each body it was made of; all in frame A.
+// A vertex or a ray of {b - a}, and the parts of each body that it consists of; all in frame A.
 struct Generator {
   RationalVec difference, of_a, of_b;
   bool is_ray;
@@ -36,8 +36,8 @@ std::vector<Rational> solve(std::vector<std::vector<Rational>> m, std::vector<Ra
   return r;
 }
 
-// The corral of Wolfe's method: affinely independent generators with non-negative weights (those of
-// the vertices add up to one), and the point of their hull that is nearest to the origin.
+// The corral of Wolfe's method: affinely independent generators with non-negative weights, and the
+// point of their hull that is nearest to the origin. The weights of the vertices add up to one.
 class Corral {
  public:
   void add(Generator generator) {
@@ -77,7 +77,7 @@ class Corral {
   }
 
  private:
-  // Weights of the point nearest to the origin in the affine hull.
+  // The weights of the point that is nearest to the origin in the affine hull.
   [[nodiscard]] std::vector<Rational> affine_minimum() const {
     const std::size_t n = generators_.size();
     std::vector<std::vector<Rational>> m(n + 1, std::vector<Rational>(n + 1, 0));
@@ -106,7 +106,8 @@ class Corral {
   std::vector<Rational> weights_;
 };
 
-// The next generator of {b - a} on the way to the origin as seen from `nearest`.
+// The next generator of {b - a}: its support point or ray in the direction from `nearest` to the
+// origin.
 Generator next_generator(ExactBody& a, ExactBody& b, const Placement& place,
                          const RationalVec& nearest) {
   const Rational minus_one = -1;
@@ -120,8 +121,8 @@ Generator next_generator(ExactBody& a, ExactBody& b, const Placement& place,
   return {of_b - on_a.vector, on_a.vector, of_b, false};
 }
 
-// The proof that (p, q) is a closest pair: both lie in their bodies, and the planes through them
-// across the line between them have all of A on one side and all of B on the other.
+// Proves that (p, q) is a closest pair. Both points must lie in their bodies. The planes through
+// them, normal to the line between them, must have all of A on one side and all of B on the other.
 void prove_optimal(const ExactBody& a, const ExactBody& b, const Placement& place,
                    const Corral& corral, const RationalVec& p, const RationalVec& q) {
   const RationalVec gap = q - p;

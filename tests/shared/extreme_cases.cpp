@@ -10,7 +10,7 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-// Without end along z; given by small integers where `plain`.
+// A prism without ends along z, given by small integers if `plain`.
 Body column(Random& random, bool plain) {
   Body out;
   switch (random.integer(0, 3)) {

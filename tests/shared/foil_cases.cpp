@@ -11,7 +11,8 @@ namespace {
 
 using Quat = Eigen::Quaterniond;
 
-// Points of the unit circle: on all digits, or on so few that opposite ones have the same.
+// Points of the unit circle: in full precision, or with so few digits that opposite points have the
+// same ones.
 struct Circle {
   int count;
   double start;
@@ -28,7 +29,7 @@ struct Circle {
   }
 };
 
-// Of unit radius, along z; by its sides or by its corners.
+// A prism of unit radius along z, given by its sides or by its vertices.
 Body prism(const Circle& circle, double half_height, bool by_rows) {
   Body out;
   const Vec3 up = half_height * Vec3::UnitZ();
@@ -81,14 +82,14 @@ HardCase foils(Random& random) {
   c.pose_b.orientation = tilted(random) * spin;
   c.pose_b.position = random.uniform(0.0, 1.9) * aside;
   const double way = random.unit();
-  if (way < 0.2) {  // an end on the plate, or all but
+  if (way < 0.2) {  // an end on the plate or almost on it
     const double deep = random.chance(0.3) ? 0.0 : random.log_uniform(1e-18, 1e-2);
     c.pose_b.position.z() = kHalfHeight + random.sign() * deep;
-  } else if (way < 0.5) {  // apart, or touching by a side, a corner, an end
+  } else if (way < 0.5) {  // disjoint, or touching by a side, a vertex or an end
     c.pose_b.position = 5.0 * (random.chance(0.5) ? aside : random.direction());
     const double gap = random.log_uniform(1e-17, 1.0);
     set_gap(c, random.chance(0.3) ? 0.0 : random.sign() * gap);
-  } else {  // through it
+  } else {  // through the plate
     c.pose_b.position.z() = random.uniform(-1.0, 1.0);
   }
   if (random.chance(0.3)) {

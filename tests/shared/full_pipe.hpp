@@ -1,4 +1,4 @@
-// A pipe that nobody reads: every byte that it can hold is in it already.
+// A pipe that no process reads and whose buffer is already full.
 #pragma once
 
 #include <fcntl.h>
@@ -19,7 +19,7 @@ class FullPipe {
     const std::string filler(4096, '.');
     while (::write(ends_[1], filler.data(), filler.size()) > 0) {
     }
-    fcntl(ends_[1], F_SETFL, 0);  // who writes now waits for a reader
+    fcntl(ends_[1], F_SETFL, 0);  // a writer now waits for a reader
   }
   ~FullPipe() {
     for (const int end : ends_) close(end);
@@ -29,7 +29,8 @@ class FullPipe {
 
   [[nodiscard]] int in() const noexcept { return ends_[1]; }
 
-  // Reads on until nothing comes for `quiet_ms`; what was read, without what filled the pipe.
+  // Reads until nothing arrives for `quiet_ms`. Returns what was read without the bytes that filled
+  // the pipe.
   std::string read(int quiet_ms) {
     std::string text;
     std::array<char, 4096> bytes;

@@ -20,7 +20,7 @@ Vec3 perpendicular(const Vec3& n, Random& random) {
   return v / std::max(v.norm(), 1e-300);
 }
 
-// Where the fraction u of the way from `low` to `high` is when steps multiply.
+// The value at the fraction u between `low` and `high` on a logarithmic scale.
 double between(double u, double low, double high) { return low * std::pow(high / low, u); }
 
 }  // namespace
@@ -37,7 +37,7 @@ Body box(const Vec3& half_extents) {
 Body random_polytope(Random& random, int facets) {
   Body out;
   for (int k = 4; k < facets; ++k) add_row(out, random.direction(), random.uniform(0.5, 1.0));
-  // A tetrahedron's normals close it.
+  // The facets with a tetrahedron's normals make the body bounded.
   const Eigen::Quaterniond turn = random.rotation();
   for (const Vec3& n : {Vec3(1, 1, 1), Vec3(1, -1, -1), Vec3(-1, 1, -1), Vec3(-1, -1, 1)}) {
     add_row(out, turn * n, random.uniform(0.9, 1.7));
@@ -103,7 +103,7 @@ Body needle(Random& random, double aspect) {
   const double start = random.uniform(0.0, 2 * kPi);
   for (int k = 0; k < sides; ++k) {
     const double azimuth = start + 2 * kPi * k / sides;
-    // Sharpened at one end now and then.
+    // In some cases the prism is tapered towards one end.
     const double taper = random.chance(0.5) ? 1.0 / aspect : 0.0;
     add_row(out, {std::cos(azimuth), std::sin(azimuth), taper}, 1.0 / aspect);
   }
@@ -186,7 +186,7 @@ Body unbounded(Random& random) {
       out.rows = wedge(random.log_uniform(1e-5, 3.0), 1.0).rows;
       out.rows.resize(2);
       break;
-    case 3:  // corner
+    case 3:  // corner of three planes
       add_row(out, {1, tilt, 0}, 0.3);
       add_row(out, {0, 1, 0}, 0.2);
       add_row(out, {0, 0, 1}, 0.1);
@@ -208,7 +208,8 @@ Body unbounded(Random& random) {
       out.rows.resize(static_cast<std::size_t>(random.integer(1, 3)));
   }
   Body turned = random.chance(0.5) ? rotated(out, random.rotation()) : out;
-  const bool is_prism = kind == 5 || kind == 6;  // turned, its sides would not be parallel
+  // under a rotation its sides would not stay parallel
+  const bool is_prism = kind == 5 || kind == 6;
   return is_prism ? out : turned;
 }
 
@@ -264,12 +265,12 @@ Body with_duplicate_rows(Body body, Random& random) {
     switch (random.integer(0, 2)) {
       case 0:  // the same doubles
         break;
-      case 1: {  // the same plane, exactly
+      case 1: {  // exactly the same plane
         const double factor = std::ldexp(1.0, random.integer(-40, 40));
         row = {row.normal * factor, row.offset * factor};
         break;
       }
-      default: {  // almost the same
+      default: {  // almost the same plane
         const double length = row.normal.norm();
         const double tilt = random.log_uniform(1e-16, 1e-4);
         row.normal += perpendicular(row.normal, random) * length * tilt;

@@ -23,7 +23,8 @@ Quat small_turn(const Vec3& axis, double angle) {
   return {std::cos(angle / 2), v.x(), v.y(), v.z()};
 }
 
-// Arguments are drawn one statement at a time: their order would differ between compilers.
+// Arguments are drawn in separate statements, because compilers evaluate the arguments of a call in
+// different orders.
 Quat random_turn(Random& random, double least, double most) {
   const double angle = random.log_uniform(least, most);
   return small_turn(random.direction(), angle);
@@ -34,7 +35,7 @@ Vec3 random_offset(Random& random, double least, double most) {
   return length * random.direction();
 }
 
-// Puts B beside A in a random direction, clear of it where both are bounded.
+// Places B beside A in a random direction, disjoint from it if both are bounded.
 void place_beside(HardCase& c, Random& random) {
   const double reach = std::sqrt(3.0) * (extent(c.a) + extent(c.b));
   const double distance = reach * (random.chance(0.5) ? 1.0 : random.log_uniform(1, 10));
@@ -49,7 +50,8 @@ HardCase placed(Body a, Body b, Random& random) {
   return c;
 }
 
-// Gaps from contact to well apart, relative to `size`; a quarter overlaps.
+// A gap between contact and a clear distance, relative to `size`; a quarter of the gaps are
+// overlaps.
 double any_gap(Random& random, double size) {
   const double magnitude = size * random.log_uniform(1e-16, 1.0);
   return random.chance(0.25) ? -magnitude : magnitude;
@@ -61,7 +63,7 @@ HardCase anywhere(Body a, Body b, Random& random) {
   return c;
 }
 
-// The whole pair moved rigidly, up to rounding.
+// Moves the whole pair rigidly, up to rounding.
 void move_world(HardCase& c, Random& random, double least, double most) {
   const Quat turn = random.rotation();
   move_together(c, turn, random_offset(random, least, most));
@@ -81,7 +83,7 @@ HardCase facet_balls(Random& random) {
   return anywhere(std::move(a), std::move(b), random);
 }
 
-// Boxes face to face, edge over face, or corner over corner, parallel up to `tilt`.
+// Boxes face to face, edge to face, or vertex to vertex, parallel up to `tilt`.
 HardCase parallel_boxes(Random& random) {
   const Vec3 half_a = Vec3::Constant(0.1) + random.in_box(1.0).cwiseAbs();
   Vec3 half_b = Vec3::Constant(0.1) + random.in_box(1.0).cwiseAbs();
@@ -105,7 +107,7 @@ HardCase parallel_boxes(Random& random) {
   return c;
 }
 
-// Blades edge to edge, the edges crossing or parallel up to a tilt.
+// Blades edge to edge, whose edges cross or are parallel up to a tilt.
 HardCase edges(Random& random) {
   const double angle_a = random.log_uniform(1e-5, 2.5), angle_b = random.log_uniform(1e-5, 2.5);
   Body a = wedge(angle_a, 1.0), b = rotated(wedge(angle_b, 1.0), Quat(0, 0, 0, 1));
@@ -138,7 +140,7 @@ HardCase slivers(Random& random) {
   return anywhere(std::move(a), std::move(b), random);
 }
 
-// Tips where many facets meet, tip to tip, on a common axis up to a tilt, or against a face.
+// Tips at which many facets meet: tip to tip, on a common axis up to a tilt, or against a face.
 HardCase tips(Random& random) {
   const auto tip = [&] {
     const int sides = random.integer(3, 40);
@@ -185,7 +187,7 @@ HardCase sizes(Random& random) {
   return c;
 }
 
-// Far from the world's origin, or with coordinates far from the origin of their own frame.
+// Bodies far from the world's origin, or with coordinates far from the origin of their own frame.
 HardCase far_from_origin(Random& random) {
   HardCase c = random_pair(random);
   if (random.chance(0.7)) {
@@ -199,14 +201,14 @@ HardCase far_from_origin(Random& random) {
   return c;
 }
 
-// Contact decided by integers: exactly zero, exactly one unit, exactly flush.
+// Contact decided by integers: a gap of exactly zero or one unit, or exactly flush faces.
 HardCase lattices(Random& random) {
   HardCase c{"", lattice(random), lattice(random), {}, {}};
   for (int axis = 0; axis < 3; ++axis) c.pose_b.position[axis] = random.integer(-6, 6);
   if (random.chance(0.5)) {
     const Quat turns[] = {{1, 1, 0, 0}, {0, 0, 1, 0}, {1, 1, 1, 1}, {1, 0, 0, -1}, {0, 1, 1, 0}};
     c.pose_b.orientation =
-        turns[random.integer(0, 4)].normalized();  // by 90, 180 or 120 degrees: exact
+        turns[random.integer(0, 4)].normalized();  // by 90, 180 or 120 degrees, which is exact
   }
   if (random.chance(0.3)) move_world(c, random, 0.1, 10.0);
   return c;
@@ -265,7 +267,8 @@ HardCase links(Random& random) {
   return c;
 }
 
-// Spheres and capsules: their cores may touch or lie within while their surfaces are far inside.
+// Spheres and capsules. Their cores may touch or lie within each other, while their surfaces
+// overlap deeply.
 HardCase round_bodies(Random& random) {
   Body a = rounded(random);
   Body b = random.chance(0.4)   ? rounded(random)
@@ -280,7 +283,7 @@ HardCase round_bodies(Random& random) {
   return c;
 }
 
-// Quaternions as far from unit length as is accepted, turns that almost permute the axes.
+// Quaternions as far from unit length as is accepted, and rotations that almost permute the axes.
 HardCase odd_poses(Random& random) {
   HardCase c = random_pair(random);
   const Quat turns[] = {{1, 0, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0}, {1, 1, 1, 1}, {1, 0, 0, -1}};

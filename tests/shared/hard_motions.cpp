@@ -21,7 +21,7 @@ Pose pose_at(const Vec3& position, const Quat& orientation = {1, 0, 0, 0}) {
   return {position, orientation};
 }
 
-// B passes A on a straight line, both turning slowly.
+// B passes A on a straight line while both rotate slowly.
 HardMotion flyby(Random& random, int steps) {
   HardMotion m = pair_of(random, "flyby");
   const double reach = extent(m.a) + extent(m.b);
@@ -36,7 +36,7 @@ HardMotion flyby(Random& random, int steps) {
   return m;
 }
 
-// Turning by half a radian a step.
+// The body rotates by half a radian per step.
 HardMotion spin(Random& random, int steps) {
   HardMotion m = pair_of(random, "spin");
   const Vec3 axis = random.direction();
@@ -48,7 +48,8 @@ HardMotion spin(Random& random, int steps) {
   return m;
 }
 
-// Anywhere at every fifth step, sometimes very far or deep inside; small moves in between.
+// Every fifth step moves B to any place, sometimes very far away or deep inside. The steps between
+// are small.
 HardMotion teleport(Random& random, int steps) {
   HardMotion m = pair_of(random, "teleport");
   const double reach = extent(m.a) + extent(m.b);
@@ -66,7 +67,8 @@ HardMotion teleport(Random& random, int steps) {
   return m;
 }
 
-// Boxes with parallel faces sliding over each other, flush now and then, tilted towards the end.
+// Boxes with parallel faces slide over each other, are flush at times, and are tilted towards the
+// end.
 HardMotion slide(Random& random, int steps) {
   const Vec3 half = Vec3::Constant(0.2) + random.in_box(0.5).cwiseAbs();
   HardMotion m{"slide", box(half), box(Vec3::Constant(0.25)), {}};
@@ -82,7 +84,7 @@ HardMotion slide(Random& random, int steps) {
   return m;
 }
 
-// Stops for long, moves by the last bits, goes on.
+// The motion rests for long, moves by the last bits, and continues.
 HardMotion stationary(Random& random, int steps) {
   HardMotion m = pair_of(random, "stationary");
   const double reach = extent(m.a) + extent(m.b);
@@ -98,7 +100,7 @@ HardMotion stationary(Random& random, int steps) {
   return m;
 }
 
-// Into contact, through, and out again.
+// The bodies move into contact, through each other, and out again.
 HardMotion through(Random& random, int steps) {
   HardMotion m = pair_of(random, "through");
   const double reach = 1.2 * (extent(m.a) + extent(m.b));
@@ -112,7 +114,7 @@ HardMotion through(Random& random, int steps) {
   return m;
 }
 
-// Down to a gap near the last bits of a double, and back.
+// The gap falls to the last bits of a double and grows again.
 HardMotion graze(Random& random, int steps) {
   HardCase start{"", any_bounded(random), any_bounded(random), {}, {}};
   start.pose_a.orientation = random.rotation();
@@ -132,7 +134,7 @@ HardMotion graze(Random& random, int steps) {
   return m;
 }
 
-// Tips that roll over each other: many facets become active one after the other.
+// Tips roll over each other, so that many facets become active one after another.
 HardMotion roll(Random& random, int steps) {
   const int sides = random.integer(6, 40);
   HardMotion m{"roll", cone(sides, random.log_uniform(0.1, 1.5), 1.0), Body{}, {}};

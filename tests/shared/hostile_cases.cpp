@@ -15,7 +15,7 @@ using Quat = Eigen::Quaterniond;
 
 double either_sign(Random& random, double magnitude) { return random.sign() * magnitude; }
 
-// B moved away from A until they are apart, then back to a gap, now and then.
+// Moves B away from A, and in most cases back to a small gap or overlap.
 void part(HardCase& c, const Vec3& way, double size, Random& random) {
   c.pose_b.position = c.pose_a.position + 3.0 * size * way;
   if (random.chance(0.2)) return;
@@ -28,7 +28,7 @@ Body thin_body(Random& random) {
   return random.chance(0.5) ? needle(random, aspect) : plate(random, 1.0 / aspect);
 }
 
-// The corners of an n-gon's prism.
+// The vertices of a prism with n sides.
 Body prism_corners(Random& random) {
   Body out;
   const int sides = random.integer(3, 8);
@@ -148,7 +148,8 @@ HardCase razors(Random& random) {
   const auto blade = [&](double way) {
     const double angle = random.log_uniform(1e-6, 1.0), length = random.log_uniform(1e-2, 1e3);
     Body out = wedge(angle, length);
-    if (way < 0.0) out = rotated(std::move(out), Quat(0, 0, 0, 1));  // about z: edge to -x
+    // about z, which makes the edge point to -x
+    if (way < 0.0) out = rotated(std::move(out), Quat(0, 0, 0, 1));
     return shifted(std::move(out), {0.0, random.uniform(-off, off), random.uniform(-1e-3, 1e-3)});
   };
   Body a = blade(1.0), b = blade(-1.0);

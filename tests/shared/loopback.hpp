@@ -1,4 +1,5 @@
-// DDS for tests: on loopback, and apart from every other test run on this machine.
+// DDS for tests: on the loopback interface, and separated from every other test run on this
+// machine.
 #pragma once
 
 #include <unistd.h>
@@ -13,8 +14,8 @@
 
 namespace clearance::test {
 
-// A domain and a partition of our own at every call. Domains alone repeat (there are few),
-// partitions do not. Domains below 100 keep clear of the ports that the kernel hands out.
+// Returns a new domain and a new partition at every call. Domains repeat, because there are few;
+// partitions do not. Domains below 100 avoid the ports that the kernel assigns.
 [[nodiscard]] inline DdsOptions own_dds() {
   static std::atomic<int> calls{0};
   const auto pid = static_cast<std::uint32_t>(getpid());
@@ -24,7 +25,7 @@ namespace clearance::test {
   return dds;
 }
 
-// Waits until something is so; false after a time that only a broken program needs.
+// Waits until a condition is true. Returns false after a time that only a broken program exceeds.
 [[nodiscard]] inline bool eventually(const std::function<bool()>& is_so,
                                      std::chrono::seconds limit = std::chrono::seconds(60)) {
   const auto end = std::chrono::steady_clock::now() + limit;

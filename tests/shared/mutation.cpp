@@ -10,7 +10,7 @@
 namespace clearance::test {
 namespace {
 
-// From 0 to `most`.
+// A number from 0 to `most`.
 std::size_t any(std::size_t most, std::mt19937& random) {
   return std::uniform_int_distribution<std::size_t>(0, most)(random);
 }
@@ -38,7 +38,7 @@ void edit(std::string& text, std::mt19937& random) {
   if (text.empty()) text = "x";
 }
 
-// The next run of digits from a random place on becomes another number.
+// Replaces the next run of digits after a random position by another number.
 void replace_number(std::string& text, std::mt19937& random) {
   constexpr std::array<std::string_view, 14> kNumbers = {
       "0",     "-1",         "1",    "9",     "13",  "4096",       "65536",

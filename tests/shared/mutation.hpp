@@ -1,4 +1,4 @@
-// Damages files, for tests of what reads them.
+// Damages files, for tests of their readers.
 #pragma once
 
 #include <random>
@@ -6,11 +6,13 @@
 
 namespace clearance::test {
 
-// `text` after one to four edits: bytes erased, put in, changed, copied elsewhere. Never empty.
+// Returns `text` after one to four edits: bytes erased, inserted, changed, or copied elsewhere. The
+// result is never empty.
 [[nodiscard]] std::string mutated(std::string text, std::mt19937& random);
 
-// As mutated(), with edits that formats with counts and indices fear: a whole number that is
-// replaced by another, four bytes by an extreme integer or float, and the end cut off.
+// Like mutated(), with additional edits that are dangerous for formats with counts and indices. An
+// integer is replaced by another, four bytes are replaced by an extreme integer or float, or the
+// end is cut off.
 [[nodiscard]] std::string mutated_numbers(std::string bytes, std::mt19937& random);
 
 }  // namespace clearance::test

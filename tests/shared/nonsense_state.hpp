@@ -1,4 +1,4 @@
-// Tracking states that no query has left behind.
+// Tracking states that no query has produced.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,8 @@
 
 namespace clearance::test {
 
-// Features that the body may not have; points anywhere up to where squares overflow and beyond.
+// Features that the body may not have, and points of any magnitude, including those whose squares
+// overflow.
 [[nodiscard]] inline TrackingState::Side nonsense_side(const ConvexBody& body, Random& random) {
   TrackingState::Side out;
   out.kind = static_cast<FeatureKind>(random.integer(0, 6));
@@ -28,7 +29,7 @@ namespace clearance::test {
   return out;
 }
 
-// Any feature that the body has and a point on it, or none.
+// Any feature of the body and a point on it, or no feature.
 [[nodiscard]] inline TrackingState::Side other_side(const ConvexBody& body, Random& random) {
   TrackingState::Side out;
   const int dimension = random.integer(0, 2);
@@ -53,7 +54,7 @@ namespace clearance::test {
   return out;
 }
 
-// Of the same bodies somewhere else.
+// A state of the same bodies in another pose.
 [[nodiscard]] inline TrackingState other_state(const ConvexBody& a, const ConvexBody& b,
                                                Random& random) {
   TrackingState out{other_side(a, random), other_side(b, random)};

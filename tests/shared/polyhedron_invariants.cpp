@@ -32,7 +32,7 @@ class Inspection {
     broken_.push_back(claim + " (number " + std::to_string(number) + ")");
   }
 
-  // What rounding may do to a coordinate or a plane's height at this point.
+  // The rounding error allowed for a coordinate or a plane's offset at this point.
   double tolerance(const Vec3& near) const {
     return 4.0 * body_.position_error + 0x1p-49 * near.norm();
   }
@@ -199,7 +199,8 @@ class Inspection {
     }
   }
 
-  // Euler: a bounded surface is a sphere; an unbounded one with vertices a plane.
+  // Euler's formula: the surface of a bounded body is a sphere, that of an unbounded body with
+  // vertices is a plane.
   void check_counts() {
     const auto vertices = static_cast<std::int64_t>(body_.vertices.size());
     const auto edges = static_cast<std::int64_t>(body_.edges.size());

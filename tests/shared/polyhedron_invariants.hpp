@@ -1,5 +1,5 @@
-// Does a ConvexBody keep what core/convex_body.hpp promises? For tests of whatever
-// makes one.
+// Checks that a ConvexBody satisfies the promises of core/convex_body.hpp. For tests of all its
+// factories.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-// One sentence for each promise found broken; geometry is held to the rounding that the body
+// One sentence for each broken promise. Geometry is checked to the rounding error that the body
 // declares.
 [[nodiscard]] std::vector<std::string> broken_invariants(const ConvexBody& body);
 

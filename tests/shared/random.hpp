@@ -1,4 +1,4 @@
-// Seeded random numbers that are the same on every standard library.
+// Seeded random numbers that are equal on every standard library.
 #pragma once
 
 #include <cmath>
@@ -21,14 +21,15 @@ class Random {
     return z ^ (z >> 31);
   }
 
-  // In [0, 1).
+  // A number in [0, 1).
   double unit() { return static_cast<double>(next() >> 11) * 0x1p-53; }
   double uniform(double low, double high) { return low + (high - low) * unit(); }
-  // The exponent is uniform: for quantities that matter by their order of magnitude.
+  // A number with a uniformly distributed logarithm, for quantities whose order of magnitude
+  // matters.
   double log_uniform(double low, double high) {
     return std::exp(uniform(std::log(low), std::log(high)));
   }
-  // In [low, high].
+  // A number in [low, high].
   int integer(int low, int high) {
     return low + static_cast<int>(next() % static_cast<std::uint64_t>(high - low + 1));
   }
@@ -44,14 +45,14 @@ class Random {
     const double r = std::sqrt(1.0 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
-  // Uniform over rotations (Shoemake 1992).
+  // A uniformly distributed rotation (Shoemake 1992).
   Eigen::Quaterniond rotation() {
     const double u = unit(), a = uniform(0.0, 2.0 * std::numbers::pi),
                  b = uniform(0.0, 2.0 * std::numbers::pi);
     const double s = std::sqrt(1.0 - u), t = std::sqrt(u);
     return {t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b)};
   }
-  // Within a box around the origin, turned anyhow.
+  // A position within a box around the origin, and any rotation.
   Pose pose(double half) {
     const Vec3 position = in_box(half);
     return {position, rotation()};

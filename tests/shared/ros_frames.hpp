@@ -1,4 +1,4 @@
-// A publisher of transforms as ROS 2 has them.
+// A publisher of transforms in ROS 2's format.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 
 namespace clearance::test {
 
-// Child in parent.
+// The pose of a child frame in its parent frame.
 struct Frame {
   std::string parent, child;
   Vec3 position = Vec3::Zero();
@@ -34,7 +34,7 @@ class RosFrames {
     return eventually([this] { return matched_readers(writer_) > 0; });
   }
 
-  // All with one stamp, as they are.
+  // Sends all transforms unchanged, with one stamp.
   void send_at(std::int64_t stamp_ns, const std::vector<Frame>& frames) {
     Sample<tf2_msgs_msg_dds__TFMessage_> message;
     reserve_sequence(message->transforms, frames.size());

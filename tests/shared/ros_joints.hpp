@@ -1,4 +1,4 @@
-// A publisher of joint states as ROS 2 has them.
+// A publisher of joint states in ROS 2's format.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ class RosJoints {
     return eventually([this] { return matched_readers(writer_) > 0; });
   }
 
-  // Lists are sent as they are, however long. Without a stamp: now.
+  // Sends the lists unchanged, whatever their lengths. The default stamp is the current time.
   void send(const std::vector<std::string>& names, const std::vector<double>& positions,
             const std::vector<double>& velocities = {}) {
     send_at(dds_time(), names, positions, velocities);

@@ -1,4 +1,4 @@
-// A folder of its own for a test, removed with everything in it.
+// A private folder for a test, removed with all its contents.
 #pragma once
 
 #include <stdlib.h>

@@ -5,8 +5,8 @@
 namespace clearance::hard {
 namespace {
 
-// Its edge is at z = 0, on x = 0 it has a facet with a sharp corner, and so it has on x = -1, or
-// else its edge is a corner.
+// The edge of this body is at z = 0. At x = 0 it has a facet with a sharp corner. At x = -1 it has
+// another one, unless the body is a needle, whose edge is only a vertex.
 Body sharp_body(double opening, double middle, bool needle) {
   Body out;
   out.rows.push_back({Vec3(0.0, 1.0, -opening), middle});
@@ -17,7 +17,7 @@ Body sharp_body(double opening, double middle, bool needle) {
   return out;
 }
 
-// With a corner, an edge along z or a facet across x at x = 0, and all else at x > 0.
+// A body with a vertex, an edge along z or a facet normal to x at x = 0. The rest of it has x > 0.
 Body body_above(Random& random) {
   const int kind = random.integer(0, 2);
   if (kind == 2) return shifted(box(Vec3(0.25, 0.25, 0.5)), Vec3(0.25, 0.0, 0.0));

@@ -1,16 +1,16 @@
-// Bodies with corners and edges so sharp that a point which is off their sides by no more than
-// rounding may be past them by anything, and others that stand exactly where that is so.
+// Bodies with very sharp corners and edges, and others close to them. A point may be outside the
+// sides by no more than rounding, and yet be any distance past the corner.
 #pragma once
 
 #include "tests/shared/hard_cases.hpp"
 
 namespace clearance::hard {
 
-// B: a wedge or needle of 1e-11 to 1 rad whose plane of symmetry is y = 0 or, so that its sides'
-// lines cancel, y = 1. A: a corner, an edge or a facet in that plane or ulps beside it, above the
-// wedge or past its edge, next to its sharp corner.
+// B is a wedge or a needle of 1e-11 to 1 rad. Its plane of symmetry is y = 0, or y = 1 so that the
+// lines of its sides cancel. A has a vertex, an edge or a facet in that plane or ulps beside it. A
+// stands above the wedge or past its edge, next to the sharp corner.
 [[nodiscard]] HardCase sharp_corners(Random& random);
-// A passes the sharp corner, in that plane.
+// A passes the sharp corner of B within the plane of symmetry.
 [[nodiscard]] HardMotion past_corners(Random& random, int steps);
 
 }  // namespace clearance::hard

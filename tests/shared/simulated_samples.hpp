@@ -1,4 +1,4 @@
-// What a simulated cell's moving objects would report.
+// The samples that a simulated cell's moving objects would report.
 #pragma once
 
 #include <vector>

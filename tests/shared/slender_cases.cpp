@@ -15,7 +15,7 @@ Body segment(Random& random) {
   return {{}, {-end, end}, radius};
 }
 
-// Opens downwards; the origin is its tip, or on its edge.
+// An unbounded wedge that opens downwards. The origin is its tip, or lies on its edge.
 Body wedge_without_end(Random& random) {
   const double opening = random.log_uniform(1e-5, 1e-2);
   const int sides = random.chance(0.5) ? 2 : random.integer(3, 8);
@@ -37,7 +37,7 @@ Body broad_wedge(Random& random) {
   return out;
 }
 
-// Its sides lean away from the middle alike, or each as it likes; some do not meet in one tip.
+// The sides have equal slopes or independent ones. In some cases they do not meet in one tip.
 Body broad_cone(Random& random) {
   const auto slope = [&] { return random.log_uniform(1e-5, 1e-2); };
   const double alike = random.chance(0.5) ? slope() : 0.0;
@@ -54,7 +54,7 @@ Body broad_cone(Random& random) {
   return out;
 }
 
-// In either order; the bodies' origins are up to `apart` from each other along each axis.
+// The two bodies in either order. The offset of their origins is up to `apart` along each axis.
 HardCase with_any_bounded(Body wedge, double apart, Random& random) {
   Body other = any_bounded(random);
   if (random.chance(0.5)) std::swap(wedge, other);
@@ -82,11 +82,11 @@ HardCase twisted_images(Random& random) {
   for (int k = random.integer(5, 8); k > 0; --k) {
     a.points.emplace_back(random.integer(-2, 2), random.integer(-2, 2), random.integer(-2, 2));
   }
-  // Whatever these are, they are a solid with them.
+  // Together with these points, any of the others form a solid.
   for (const Vec3& corner : {Vec3(2, 2, 0), Vec3(-2, 2, 0), Vec3(0, 2, 1), Vec3(0, 1, 0)}) {
     a.points.push_back(corner);
   }
-  const Eigen::Quaterniond turn = random.rotation();  // so that no edge lies along an axis
+  const Eigen::Quaterniond turn = random.rotation();  // so that no edge is parallel to an axis
   a = rotated(std::move(a), turn);
   Body b = a;
   for (Vec3& point : b.points) point = -point;

@@ -16,7 +16,7 @@ const Quat kTurns[] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1},  
 
 Quat any_turn(Random& random) { return kTurns[random.integer(0, 9)].normalized(); }
 
-// Both bodies by the same pose: what they share, they share exactly.
+// Places both bodies by the same pose. Coordinates that were equal stay exactly equal.
 void place_both(HardCase& c, Random& random) {
   if (random.chance(0.4)) return;
   c.pose_a.orientation = c.pose_b.orientation =
@@ -35,7 +35,8 @@ HardCase shared_corners(Random& random) {
   HardCase c{"", random_hull(random, random.integer(6, 16)), {}, {}, {}};
   if (random.chance(0.3)) c.a = lattice(random);
   if (c.a.points.empty()) c.a = dual_ball(random.integer(2, 3));
-  // The corners that are farthest one way go to B as well, beside others beyond them.
+  // The vertices that are extreme in one direction are copied to B, together with vertices farther
+  // in that direction.
   const Vec3 way = random.direction();
   const auto height = [&](const Vec3& p) { return way.dot(p); };
   std::sort(c.a.points.begin(), c.a.points.end(),

@@ -1,4 +1,4 @@
-// The instruction sets that vector code may run with on this machine, one at a time.
+// The instruction sets that vector code may use on this machine, one at a time.
 #pragma once
 
 #include <hwy/targets.h>
@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// While it lives, all vector code uses one instruction set.
+// While an object of this class lives, all vector code uses one instruction set.
 class OnlyWith {
  public:
   explicit OnlyWith(std::int64_t target) { choose(target); }
@@ -26,7 +26,8 @@ class OnlyWith {
   }
 };
 
-// One lane (not on Arm, where two are the least), two, four, eight, as far as this machine goes.
+// The supported numbers of lanes: one (not on Arm, whose minimum is two), two, four, eight, as far
+// as this machine supports them.
 inline std::vector<std::int64_t> vector_widths() {
   std::vector<std::int64_t> all;
   for (const std::int64_t target : {HWY_SCALAR, HWY_SSE4, HWY_NEON, HWY_AVX2, HWY_AVX3}) {

@@ -30,7 +30,7 @@ std::vector<Integer> shortest(const Plane& plane) {
   return result;
 }
 
-// Do the vectors span at least a plane?
+// Returns true if the vectors span at least a plane.
 bool span_a_plane(const std::vector<RationalVec>& vectors) {
   for (const RationalVec& v : vectors) {
     if (!is_zero(cross(vectors[0], v))) return true;
@@ -131,7 +131,7 @@ HullEnumeration enumerate_hull(std::span<const Vec3> points) {
       }
     }
   }
-  // A corner is where three planes with independent normals meet.
+  // A point is a vertex if three planes with independent normals meet there.
   for (const RationalVec& point : p) {
     std::vector<RationalVec> normals;
     for (const Plane& plane : planes) {

@@ -1,4 +1,5 @@
-// The example of an avoiding arm beside the daemon, and the programme that its controller solves.
+// The example of an avoiding arm beside the daemon, and the quadratic programme that its controller
+// solves.
 #include <gtest/gtest.h>
 
 #include <sstream>
@@ -10,7 +11,7 @@
 namespace clearance::test {
 namespace {
 
-// Onto one plane: the nearest point in the metric of H, by its multiplier.
+// The closed form for one plane: the nearest point in the metric of H, by its multiplier.
 TEST(AvoidProgramme, IsTheClosedFormForOneInequality) {
   Random random(2);
   for (int i = 0; i < 100; ++i) {
@@ -37,7 +38,7 @@ TEST(AvoidProgramme, MeetsEveryInequalityWhereThatIsPossibleAndSplitsWhereItIsNo
   box.b << -1, -1, -1, -1;
   const Eigen::VectorXd corner = avoid::minimise(h, f, box, 1e6);
   EXPECT_LT((corner - Eigen::Vector2d(1.0, 1.0)).norm(), 1e-9);
-  // x >= 1 and x <= -1: each costs the price, so neither wins.
+  // The constraints x >= 1 and x <= -1 have the same penalty, so neither prevails.
   const avoid::Inequalities never{Eigen::MatrixXd{{1.0, 0.0}, {-1.0, 0.0}},
                                   Eigen::Vector2d(1.0, 1.0)};
   const Eigen::VectorXd between = avoid::minimise(h, Eigen::Vector2d::Zero(), never, 10.0);
@@ -49,7 +50,7 @@ struct Outcome {
   double nearest = 0.0, mean_error = 0.0, largest_error = 0.0;  // m
 };
 
-// The line that begins with `name`.
+// Parses the line that begins with `name`.
 Outcome outcome_of(const std::string& output, const std::string& name) {
   std::istringstream lines(output);
   Outcome outcome;

@@ -22,7 +22,7 @@ const char* const kSrdf = R"(<robot name="scara">
 </robot>
 )";
 
-// The elbow folds the lower arm back over the upper one; the finger slides out.
+// The elbow folds the lower arm back over the upper one, and the finger slides out.
 std::vector<RosMessage> folding(double most) {
   std::vector<RosMessage> messages;
   for (int i = 0; i <= 200; ++i) {
@@ -125,7 +125,7 @@ TEST_F(BagTool, ConvertedBagReplaysToTheSameBytes) {
   EXPECT_THAT(output, HasSubstr("2 batches"));
 }
 
-// A daemon that records compressed, in several files, with few pairs and no health.
+// The daemon records in compressed form, in several files, with few pairs and without health.
 TEST_F(BagTool, DaemonRecordsWhatItIsToldAndTheFilesCompareAsOne) {
   const CellFile cell(small_cell("small"));
   const DdsOptions dds = own_dds();

@@ -1,5 +1,5 @@
-// The methods of the thesis's chapter 5 that clearance-bench compares, held against its golden
-// values and against 50 digits: no rival may be a worse one than it is.
+// The methods of the thesis's chapter 5 that clearance-bench compares. They are compared with its
+// golden values and with 50 digits, so that no competing method is implemented worse than it is.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -86,8 +86,8 @@ TEST(Chapter5Alternating, TakesTheRoundsThatTheThesisCounts) {
     double separation, tolerance;
     int rounds;
   };
-  // §5.2; its 21 rounds to 1e-8 at the standard test are left out: here they are 25, at a ratio of
-  // 0.49 a round, which its 14 to 1e-4 have as well.
+  // §5.2. The thesis's 21 rounds to 1e-8 at the standard test are left out. This implementation
+  // needs 25, with a ratio of 0.49 per round, which agrees with the thesis's 14 rounds to 1e-4.
   for (const Counted& c : {Counted{kStandard, 1e-4, 14}, {0.1, 1e-4, 78}, {0.1, 1e-8, 163}}) {
     const CrossedTest test = crossed_test(c.separation);
     const bench::Run run = [&](int rounds) {
@@ -149,7 +149,7 @@ TEST(Chapter5Line, ItsClosestPointsHaveOneNormalAcrossTheLine) {
     const Line line{random.uniform(6.0, 20.0) * random.direction(), random.direction()};
     const ClosestPoints found = line_to_ellipsoid(line, axes);
     const Vec3 between = found.on_a - found.on_b;
-    if (between.norm() < 1e-9) {  // through it
+    if (between.norm() < 1e-9) {  // the line passes through the ellipsoid
       EXPECT_LE(found.on_b.cwiseQuotient(axes).norm(), 1.0 + 1e-12);
       continue;
     }

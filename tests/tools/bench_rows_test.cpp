@@ -1,4 +1,4 @@
-// The names and counters of the rows of clearance-bench and clearance-thesis, which scripts read.
+// The names and counters in the rows of clearance-bench and clearance-thesis, which scripts read.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ std::set<std::string> names(const std::string& program) {
   return out;
 }
 
-// As JSON gives them.
+// The rows as JSON contains them.
 nlohmann::json rows_of(const std::string& filter) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "rows.json").string();
@@ -95,7 +95,7 @@ TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
   }
 }
 
-// The script that makes the pages in tools/bench/measured.
+// Tests the script that makes the pages in tools/bench/measured.
 TEST(BenchReport, ShowsTheRowsOfTheJsonThatItIsGiven) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "rows.json").string();

@@ -22,7 +22,7 @@ oracle::ExactBody hull_of_vertices(const ConvexBody& body) {
 class BenchTruth : public testing::TestWithParam<std::string> {};
 
 TEST_P(BenchTruth, IsOneOfTheDoublesAroundTheExactDistance) {
-  constexpr std::size_t kEvery = 11;  // poses of a trajectory
+  constexpr std::size_t kEvery = 11;  // only every eleventh pose of a trajectory
   const Workload& load = workload(GetParam());
   for (std::size_t i = 0; i < load.trajectories.size(); ++i) {
     const Trajectory& t = load.trajectories[i];

@@ -1,4 +1,5 @@
-// A daemon that dies, one that hangs, and two on one cell: what their clients see, over real DDS.
+// A daemon that dies, one that hangs, and two on one cell: the observations of their clients, over
+// real DDS.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -20,7 +21,7 @@ std::uint32_t alive_writers(dds_entity_t reader) {
   return status.alive_count;
 }
 
-// A cell, a client with default liveliness, and how soon that one is told.
+// A cell, a client with default liveliness, and the time within which that client is notified.
 struct WatchedDaemon {
   test::CellFile cell{test::small_cell("small")};
   Cell read = cell.cell();
@@ -29,7 +30,8 @@ struct WatchedDaemon {
   test::Distances distances{client, read};
   ChildProcess daemon{test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds))};
 
-  // Cyclone itself gives a dead process up after 10 s: a tenth of that, where the lease is 100 ms.
+  // Cyclone itself declares a dead process lost after 10 s. This limit is a tenth of that, where
+  // the lease is 100 ms.
   static constexpr std::chrono::seconds kSoon{1};
 
   void run() {
@@ -81,7 +83,8 @@ TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
   EXPECT_TRUE(second.told("other-daemon-first")) << second.output();
   EXPECT_TRUE(eventually([&] { return first.told("other-daemon-later"); })) << first.output();
 
-  // Until the second one knew, clients had reports of both, and could tell them apart.
+  // Until the second daemon detected the first, clients received reports of both and could
+  // distinguish them.
   std::map<std::uint64_t, std::uint64_t> cycle_of;
   std::uint64_t after = 0;
   const bool went_on = eventually([&] {

@@ -1,5 +1,5 @@
-// Things that follow frames of tf, over real DDS: what is published, what the log says, and that a
-// recording of it replays to the bit.
+// Objects and bases that follow frames of tf, over real DDS: the publications, the log, and a
+// recording that replays to the bit.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +31,7 @@ class DaemonFrames : public WatchedDaemon {
   Participant second{dds};
 };
 
-// And falls silent: late by the age limit, and named.
+// The publisher then falls silent: the object is late by the age limit, and is named.
 TEST_F(DaemonFrames, PlaceAnObjectAndTheBaseOfARobot) {
   start();
   RosFrames frames(client);
@@ -113,7 +113,8 @@ TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
   EXPECT_TRUE(daemon->wrote("'stamps: sent' of 'ros2' would take the time"));
 }
 
-// Objects and bases, static and changing, with a turn and a new parent on the way.
+// Objects and bases with static and changing transforms. During the run one rotates and one gets a
+// new parent.
 TEST_F(DaemonFrames, OfARecordingReplayToTheBit) {
   const std::string recording = folder / "run.mcap";
   start({"--record", recording});

@@ -1,4 +1,4 @@
-// A clock that is stepped, objects that two sources send, poses that cannot be: over real DDS.
+// A stepped clock, objects that two sources send, and impossible poses, over real DDS.
 #include <gtest/gtest.h>
 
 #include <chrono>
@@ -15,7 +15,7 @@ namespace {
 constexpr std::int64_t kMs = 1'000'000;
 constexpr std::int64_t kSecond = 1000 * kMs;
 
-// Two boxes over a floor, 2 m apart and moving slowly; late after 0.2 s.
+// Two boxes above a floor, 2 m apart, moving slowly, and late after 0.2 s.
 const std::string kCell = R"(name: inputs
 units: {length: m, angle: deg}
 rate_hz: 200
@@ -40,7 +40,8 @@ class DaemonInputs : public testing::Test {
     daemon.emplace(kDaemon, with({cell.path()}, dds_arguments(dds)), options);
     distances.settle();
   }
-  // Sends poses every 5 ms until a report of this status comes; false after the time.
+  // Sends poses every 5 ms until a report with this status arrives. Returns false after the time
+  // limit.
   bool send_until(PairStatus status, std::int64_t limit_ns) {
     return reach(status, limit_ns, [&] { robot.send(t_s += 0.005); });
   }
@@ -88,7 +89,7 @@ class SteppedClock : public DaemonInputs {
     ASSERT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
   }
   std::string file() const { return (folder / "ahead").string(); }
-  // The clock of the machine on which daemon and robot run.
+  // Steps the clock of the machine on which daemon and robot run.
   void step(std::int64_t ahead_ns) {
     std::fstream out(file(), std::ios::binary | std::ios::out | std::ios::in);
     if (!out) out.open(file(), std::ios::binary | std::ios::out);

@@ -1,5 +1,4 @@
-// A robot by its joint states, as real drivers send them, over real DDS: what is published and what
-// the log says.
+// A robot with joint states as real drivers send them, over real DDS: the publications and the log.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -19,7 +18,7 @@ const std::vector<std::string> kNames = {"shoulder", "elbow", "push"};
 
 class DaemonJoints : public WatchedDaemon {
  protected:
-  // `keys`: more keys of the robot.
+  // `keys` contains further keys of the robot.
   void start(const std::string& keys = ", age_limit_ms: 200") {
     watch(
         "name: joints\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
@@ -33,7 +32,7 @@ class DaemonJoints : public WatchedDaemon {
   }
 };
 
-// Wall at x = 5. Of the upper link, at the angle 0, the end is at 0.9 m.
+// The wall is at x = 5. At the angle 0 the end of the upper link is at 0.9 m.
 TEST_F(DaemonJoints, OfRos2PlaceTheLinksOfARobot) {
   start();
   RosJoints joints(client);
@@ -56,7 +55,8 @@ TEST_F(DaemonJoints, OfRos2PlaceTheLinksOfARobot) {
       told("joints-heard", {"arm", "shoulder, elbow, push"})));
 }
 
-// The arm's driver and the gripper's, each with its joints; then the gripper's falls silent.
+// The drivers of the arm and of the gripper each send their own joints. Then the gripper's driver
+// falls silent.
 TEST_F(DaemonJoints, OfSeveralPublishersAreOneRobot) {
   start();
   RosJoints arm(client), gripper(client);
@@ -76,7 +76,7 @@ TEST_F(DaemonJoints, OfSeveralPublishersAreOneRobot) {
   EXPECT_TRUE(step_until(5, send_arm, told("joints-late", {"1 joint of arm"}))) << daemon->output();
 }
 
-// A joint_state_publisher that was left running: the first one keeps the joints.
+// A joint_state_publisher was left running. The first publisher keeps the joints.
 TEST_F(DaemonJoints, OfAPublisherThatSendsZerosAreRefusedAndNamed) {
   start();
   RosJoints driver(client), zeros(client);
@@ -121,7 +121,7 @@ TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
         joints.send(kNames, {0.0, 0.0, 0.1});
       },
       [&] { return is("finger", PairStatus::kConverged); }));
-  // The shoulder turns at 2 rad/s at most: 0.4 rad in an age limit.
+  // The shoulder rotates at 2 rad/s at most, which is 0.4 rad in an age limit.
   EXPECT_TRUE(step_until(
       5,
       [&] {
@@ -133,7 +133,7 @@ TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
   EXPECT_FALSE(is("upper", PairStatus::kConverged));
 }
 
-// 10 Hz, an age limit of 20 ms.
+// Joint states at 10 Hz, with an age limit of 20 ms.
 TEST_F(DaemonJoints, ThatComeMoreSeldomThanTheirAgeLimitAreNamedOnceWithOneThatFits) {
   start("");
   RosJoints joints(client);
@@ -163,7 +163,7 @@ TEST_F(DaemonJoints, OfAThousandHertzAreAllTaken) {
   EXPECT_FALSE(daemon->told("batches-lost")) << daemon->output();
 }
 
-// A simulation's clock: seconds since its start.
+// A simulation's clock, which counts seconds since its start.
 TEST_F(DaemonJoints, StampedByAnotherClockAreNamedAndUsableByTheTimeTheyAreSent) {
   start();
   RosJoints joints(client);

@@ -1,4 +1,5 @@
-// What the daemon writes for people: it never waits for them, and strangers cannot write in it.
+// The daemon's output for people: the daemon never waits for its readers, and strangers cannot
+// write into it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +13,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// Many sources and poses that are refused: what makes the log write most.
+// Many sources and refused poses, which make the log write the most.
 class Flood {
  public:
   Flood(Participant& participant, const Cell& cell)
@@ -20,7 +21,7 @@ class Flood {
 
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
 
-  // One batch with a pose of an object that does not exist.
+  // Sends one batch with a pose of an object that does not exist.
   void send(const std::string& source) {
     PoseBatch batch;
     batch.source = SourceName(source);
@@ -37,7 +38,7 @@ class Flood {
   std::uint64_t sent_ = 0;
 };
 
-// A daemon of a cell of its own, and what a client needs to talk to it.
+// A daemon with its own cell, and everything that a client needs to communicate with it.
 class DaemonOutput : public testing::Test {
  protected:
   void expect_reports_without_a_gap(int count, Flood& flood) {

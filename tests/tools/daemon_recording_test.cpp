@@ -1,4 +1,4 @@
-// --record: what is in the file, and what becomes of a daemon whose disk fails it.
+// --record: the content of the file, and the behaviour of a daemon whose disk fails.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 const bool kNoHangingDisk = std::string(CLEARANCE_HANGING_DISK).empty();
 
-// A daemon that records, with a client of its reports and its health.
+// A daemon that records, with a client for its reports and its health.
 class RecordingDaemon : public testing::Test {
  protected:
   explicit RecordingDaemon(const std::string& text = small_cell("small")) : cell(text) {}
@@ -25,20 +25,20 @@ class RecordingDaemon : public testing::Test {
   std::string path(const std::string& name) const { return (folder / name).string(); }
 
   void start(const ChildOptions& options = {}) {
-    // Uncompressed, so that the file grows fast.
+    // The recording is uncompressed, so that the file grows fast.
     daemon.emplace(kDaemon,
                    with({cell.path(), "--record", path("run.mcap"), "--record-uncompressed"},
                         dds_arguments(dds)),
                    options);
     distances.settle();
   }
-  // With a disk that hangs as long as the file 'hang' exists.
+  // Starts the daemon with a disk that hangs as long as the file 'hang' exists.
   void start_on_a_disk_that_may_hang() {
     start({.environment = {{"LD_PRELOAD", CLEARANCE_HANGING_DISK},
                            {"CLEARANCE_DISK_HANGS_IF", path("hang")}}});
     ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; })) << daemon->output();
   }
-  // Reports go on without a gap.
+  // Expects that reports continue without a gap.
   void expect_reports(int count) {
     std::uint64_t cycle = 0;
     for (int i = 0; i < count; ++i) {
@@ -50,7 +50,8 @@ class RecordingDaemon : public testing::Test {
       cycle = (*report)->cycle;
     }
   }
-  // Until the health topic says this of the recording, and that so much is missing.
+  // Waits until the health topic reports this state of the recording and this number of missing
+  // messages.
   bool health_says(const std::string& what, std::uint64_t missing = 0) {
     Sample<clearance_msg_Health> sample;
     void* pointer = &*sample;
@@ -61,7 +62,7 @@ class RecordingDaemon : public testing::Test {
              sample->recording_missing >= missing;
     });
   }
-  // What a fault of the file must lead to, whichever it is.
+  // The consequences that every fault of the file must have.
   void expect_told(const std::string& what) {
     EXPECT_TRUE(health_says(what)) << daemon->output();
     EXPECT_TRUE(eventually([&] { return daemon->told("recording-stopped"); }));
@@ -192,7 +193,8 @@ TEST_F(RecordingDaemon, TellsThatItsDiskIsFull) {
   EXPECT_THAT(output, testing::ContainsRegex("[1-9][0-9]+ ticks, "));
 }
 
-// A disk that takes nothing any more (a network file system that is away): write() does not return.
+// A disk that accepts nothing any more, such as a network file system that is unreachable: write()
+// does not return.
 TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
   if (kNoHangingDisk) GTEST_SKIP() << "no preloading with sanitizers";
   start_on_a_disk_that_may_hang();
@@ -205,7 +207,7 @@ TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
   EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
 }
 
-// The queue in front of the disk holds a thousand reports: a fast daemon fills it in a second.
+// The queue before the disk holds a thousand reports. A fast daemon fills it in a second.
 class FastRecordingDaemon : public RecordingDaemon {
  protected:
   FastRecordingDaemon() : RecordingDaemon(small_cell_at("1000")) {}

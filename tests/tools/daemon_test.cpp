@@ -1,4 +1,4 @@
-// clearanced itself, started as a user starts it, with real DDS on loopback in between.
+// clearanced itself, started as a user starts it, with real DDS on loopback.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -21,8 +21,8 @@ std::uint64_t last_used(const clearance_msg_Distances& report) {
   return report.sources._length == 0 ? 0 : report.sources._buffer[0].sequence_number;
 }
 
-// Sends `count` batches, each when a report was made with the one before, until one was made with
-// the last.
+// Sends `count` batches. Each one is sent after a report that used the previous one; the function
+// returns after a report that used the last.
 Reports run_in_step(test::Poses& poses, test::Distances& distances, std::size_t count) {
   Reports reports;
   std::uint64_t used = 0;
@@ -43,7 +43,7 @@ void expect_same_pair(const PairReport& offline, const clearance_msg_PairDistanc
                       std::uint64_t cycle) {
   EXPECT_EQ(online.pair, offline.pair) << "cycle " << cycle;
   EXPECT_EQ(online.status, static_cast<std::uint8_t>(offline.status)) << "cycle " << cycle;
-  // Bounds that overlap are what any two correct runs have; the same build gives the same bits.
+  // Any two correct runs have overlapping bounds; the same build gives the same bits.
   EXPECT_LE(online.lower, offline.upper) << "cycle " << cycle;
   EXPECT_GE(online.upper, offline.lower) << "cycle " << cycle;
   if (offline.status == PairStatus::kUnknown) return;
@@ -56,12 +56,12 @@ void expect_same_pair(const PairReport& offline, const clearance_msg_PairDistanc
   EXPECT_EQ(online.closing_speed, offline.closing_speed) << "cycle " << cycle;
 }
 
-// Drives Monitor::tick with what each report says that it used.
+// Calls Monitor::tick with the inputs that each report names as used.
 void expect_offline_run_agrees(const Scene& scene, const std::vector<PoseBatch>& sent,
                                const Reports& reports) {
   Monitor monitor(scene);
   const clearance_msg_Distances& first = **reports.front();
-  // Before the first report that we heard there were no poses: only the count of cycles matters.
+  // Before the first received report there were no poses, so only the count of cycles matters.
   for (std::uint64_t cycle = 1; cycle < first.cycle; ++cycle) monitor.tick({}, first.now_ns);
   std::uint64_t used = 0;
   for (const auto& report : reports) {
@@ -109,7 +109,7 @@ TEST(Daemon, EveryReportIsWhatAnOfflineRunOfTheSameStreamGives) {
   expect_daemon_agrees_with_offline_run(cell.path(), 100);
 }
 
-// At 200 Hz, so that a sanitizer on a busy machine keeps up with every report.
+// The rate is 200 Hz, so that a sanitizer on a busy machine keeps up with every report.
 TEST(Daemon, AgreesWithTheOfflineRunOnAShippedCell) {
   std::ostringstream text;
   text << std::ifstream(std::string(CLEARANCE_SOURCE) + "/config/cells/mcintyre.yaml").rdbuf();
@@ -145,7 +145,8 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   EXPECT_TRUE(eventually([&] { return daemon.told("zone-unknown", {"'near'", "left - right"}); }));
-  // Again and again: of poses that are a few milliseconds old the bodies may be elsewhere by now.
+  // The poses are sent repeatedly, because the bodies may have moved a few milliseconds after a
+  // pose.
   EXPECT_TRUE(eventually([&] {
     poses.send(0.0);  // 0.8 m apart
     return daemon.told("zone-left", {"'near'"});
@@ -215,7 +216,7 @@ TEST(Daemon, IsNotHeldUpByAClientThatStopped) {
   stopped.signal(SIGSTOP);
   ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
   distances.settle();
-  // More than any buffer between the daemon and the stopped client holds back.
+  // More reports than any buffer between the daemon and the stopped client can hold.
   const Reports reports = run_in_step(poses, distances, 300);
   ASSERT_FALSE(reports.empty());
   for (std::size_t i = 1; i < reports.size(); ++i) {

@@ -1,4 +1,4 @@
-// clearance-distance as its users run it: files and pipes in, lines out, exit status.
+// clearance-distance as its users run it: files and pipes in, lines and an exit status out.
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -34,7 +34,7 @@ class DistanceTool : public testing::Test {
 
   [[nodiscard]] std::string read(const char* file) const { return test::read_text(path(file)); }
 
-  // Arguments as a shell reads them; `in` is the standard input.
+  // `arguments` as a shell reads them; `in` is the standard input.
   Outcome run(const std::string& arguments, const std::string& in = "") {
     std::ofstream(path("in")) << in;
     const std::string command = std::string(CLEARANCE_BIN) + "/clearance-distance " + arguments +
@@ -100,7 +100,7 @@ TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
     DistanceJudge judge(c.a, c.b);
     TrackingState state;
     const DistanceResult expected = judge.ask(c.pose_a, c.pose_b, state);
-    if (expected.lower == -kInfinity) continue;  // no translation parts them: null
+    if (expected.lower == -kInfinity) continue;  // no translation separates them: null
     const bool overlapping = expected.upper < 0.0;
     const double sign = overlapping ? -1.0 : 1.0;
     const char* lower = overlapping ? "penetration_upper" : "lower";
@@ -171,7 +171,7 @@ TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {
   EXPECT_LT(tracked_iterations, cold_iterations);
 }
 
-// The cubes are 0.5 m apart, then 0.25 m deep.
+// The cubes are first 0.5 m apart, then 0.25 m deep in each other.
 std::string with_exact(std::string line, const std::string& exact) {
   return line.insert(1, exact + ",");
 }
@@ -205,7 +205,7 @@ TEST_F(DistanceTool, ChecksItsAnswersAgainstExactOnes) {
   EXPECT_NE(overlap.err.find("status overlapping, exactly 0.1"), std::string::npos) << overlap.err;
 }
 
-// No bounds in doubles are a millionth of an ulp apart.
+// Bounds in doubles cannot differ by a millionth of an ulp.
 TEST_F(DistanceTool, ChecksHowFarItsBoundsAreApart) {
   const std::string apart = with_exact(cubes("apart", 1.7), R"("distance":"0.7")");
   const std::string deep =
@@ -239,7 +239,7 @@ TEST_F(DistanceTool, ACheckOfNothingFails) {
     const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), bad));
     EXPECT_EQ(r.status, 1) << bad;
   }
-  // Of two unbounded bodies true bounds are promised, and no more is asked.
+  // For two unbounded bodies, only true bounds are promised and checked.
   const std::string half = R"({"halfspaces":[[1,0,0,1]]})";
   const Outcome r = run("--cases - --out - --check",
                         R"({"id":"x","distance":"0","penetration":"1","a":)" + half + R"(,"b":)" +
@@ -334,7 +334,7 @@ TEST_F(DistanceTool, SaysWhatIsWrongWithItsArguments) {
   EXPECT_NE(help.out.find("Example"), std::string::npos) << help.out;
 }
 
-// The example of --help is run as it stands.
+// The example in --help is run unchanged.
 TEST_F(DistanceTool, HelpShowsAnExampleThatWorks) {
   const std::string help = run("--help").out;
   const std::size_t start = help.find("  echo '");

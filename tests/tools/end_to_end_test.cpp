@@ -1,5 +1,5 @@
-// A recorded stream through the real programs, over real DDS on loopback: clearance-replay
-// publishes it, clearanced measures, clearance-record listens as any client would.
+// A recorded stream through the real programs, over real DDS on loopback. clearance-replay
+// publishes it, clearanced measures, and clearance-record listens like any client.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// A second at 200 Hz: the right box comes to 0.2 m from the left one, stays a while, and leaves.
+// One second at 200 Hz: the right box approaches the left one to 0.2 m, stays a while, and leaves.
 std::string visiting_log() {
   std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
   for (int k = 0; k < 200; ++k) {
@@ -57,7 +57,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
 
   ChildProcess client(kRecord, with({"-o", path("heard.mcap")}, where));
   Participant probe(dds);
-  const Poses poses(probe, cell);  // never sends: it only tells who listens
+  const Poses poses(probe, cell);  // never sends, and only shows which readers exist
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; })) << client.output();
   ChildProcess daemon(kDaemon, with({path("cell.yaml")}, where));
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 2; })) << daemon.output();
@@ -80,7 +80,7 @@ TEST(EndToEnd, ARecordedStreamGivesOverDdsWhatItGivesOffline) {
   EXPECT_TRUE(daemon.wrote(" 0 reports dropped")) << daemon.output();
 }
 
-// Every 10 ms for 0.2 s, at half a radian a second.
+// One state every 10 ms for 0.2 s, at half a radian per second.
 void record_turning_joint(const std::string& file, const Cell& cell) {
   RecordingWriter writer(file, cell.topics);
   writer.catalogue(*make_catalogue(cell), kStart);

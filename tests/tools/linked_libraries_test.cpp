@@ -1,4 +1,4 @@
-// The libraries that programs need: those that talk to no daemon need no DDS.
+// The libraries that programs need: a program that does not communicate with a daemon needs no DDS.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// The libraries that a program names for the loader, and those that these need themselves.
+// The libraries that a program names for the loader, and their own dependencies.
 std::string libraries_of(const std::string& program) {
   const std::string command = "ldd " CLEARANCE_BIN "/" + program;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(popen(command.c_str(), "r"), pclose);

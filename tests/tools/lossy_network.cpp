@@ -40,7 +40,7 @@ bool set_address(int socket, unsigned long what, const std::string& text) {
          ioctl(socket, what, &request) == 0;
 }
 
-// The calling thread goes into a new namespace with lo and eth0. Empty: done.
+// Moves the calling thread into a new namespace with lo and eth0. Returns an empty text on success.
 std::string enter_namespace(int number, int& tap) {
   if (unshare(CLONE_NEWNET) != 0) return failed("a network namespace cannot be made");
   tap = open("/dev/net/tun", O_RDWR | O_CLOEXEC | O_NONBLOCK);
@@ -57,7 +57,8 @@ std::string enter_namespace(int number, int& tap) {
   return refusal;
 }
 
-// An Ethernet frame with IPv4 whose header says "more fragments" or an offset.
+// Returns true for an Ethernet frame with an IPv4 header that has "more fragments" set or a
+// non-zero offset.
 bool is_ip_fragment(const std::uint8_t* frame, std::size_t size) {
   constexpr std::size_t kEthernet = 14;
   if (size < kEthernet + 20 || frame[12] != 0x08 || frame[13] != 0x00) return false;
@@ -124,7 +125,7 @@ void LossyWire::carry(int one, int other) {
         ++frames_;
         fragments_ += is_ip_fragment(frame.data(), static_cast<std::size_t>(size));
         if (chance(random) < loss_) continue;
-        // What the other end cannot take is lost as well.
+        // A frame that the other end cannot accept is lost as well.
         if (write(ends[static_cast<std::size_t>(1 - from)].fd, frame.data(),
                   static_cast<std::size_t>(size)) < 0) {
           continue;

@@ -1,6 +1,6 @@
 // Two machines on a network that loses packets: two network namespaces of this process and a wire
-// between them, without names that others could see and without the kernel's netem, which few
-// kernels of containers have.
+// between them. The namespaces have no names visible to other processes. The kernel's netem is not
+// needed, which few container kernels have.
 #pragma once
 
 #include <atomic>
@@ -15,8 +15,8 @@
 
 namespace clearance::test {
 
-// A thread in a network namespace of its own, which has lo and eth0 (a TAP device) with 10.77.0.N.
-// Programs that the thread starts are in it, too.
+// A thread in its own network namespace, which has lo and eth0 (a TAP device) with 10.77.0.N.
+// Programs that the thread starts are in the namespace, too.
 class NetworkNamespace {
  public:
   explicit NetworkNamespace(int number);
@@ -24,11 +24,11 @@ class NetworkNamespace {
   NetworkNamespace(const NetworkNamespace&) = delete;
   NetworkNamespace& operator=(const NetworkNamespace&) = delete;
 
-  // Why there is none; empty: it is there.
+  // The reason why the namespace could not be created; empty if it exists.
   [[nodiscard]] const std::string& refusal() const noexcept { return refusal_; }
-  // The other end of eth0: Ethernet frames.
+  // The other end of eth0, which carries Ethernet frames.
   [[nodiscard]] int frames() const noexcept { return tap_; }
-  // Runs this in the namespace, and waits until it is done.
+  // Runs the task in the namespace, and waits until it is done.
   void run(const std::function<void()>& task);
 
  private:
@@ -43,7 +43,7 @@ class NetworkNamespace {
   std::thread thread_;
 };
 
-// Carries frames between two namespaces, but for a share that it drops.
+// Carries frames between two namespaces, and drops a fraction of them.
 class LossyWire {
  public:
   LossyWire(int one, int other);
@@ -51,9 +51,9 @@ class LossyWire {
   LossyWire(const LossyWire&) = delete;
   LossyWire& operator=(const LossyWire&) = delete;
 
-  void lose(double share) { loss_ = share; }  // 0 to 1
+  void lose(double share) { loss_ = share; }  // fraction of lost frames, 0 to 1
   [[nodiscard]] std::uint64_t frames() const { return frames_; }
-  // Those of them that carried a part of an IPv4 datagram only.
+  // The number of frames that carried only a part of an IPv4 datagram.
   [[nodiscard]] std::uint64_t ip_fragments() const { return fragments_; }
 
  private:

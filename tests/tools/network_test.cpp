@@ -1,5 +1,5 @@
-// Two machines: reports above 20 kB on a network that loses one packet in ten, and programs that
-// know nothing of our configuration.
+// Two machines: reports above 20 kB on a network that loses one packet in ten, and programs that do
+// not use this project's configuration.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -17,7 +17,7 @@ namespace {
 using test::ChildProcess;
 using test::eventually;
 
-// Twenty boxes, all 190 pairs of them published: reports of 38 kB.
+// Twenty boxes with all 190 pairs published: reports of 38 kB.
 std::string crowded_cell() {
   std::string text = R"(
 name: crowd
@@ -33,7 +33,7 @@ objects:
   return text + "pairs:\n  - {between: [all, all], publish: true}\n";
 }
 
-// Of the calling thread's namespace: how many IP fragments were made since it is there.
+// The number of IP fragments created in the calling thread's namespace since its start.
 std::uint64_t fragments_created() {
   std::ifstream file("/proc/thread-self/net/snmp");
   std::string names, values, name, value;
@@ -47,7 +47,7 @@ std::uint64_t fragments_created() {
   return 0;
 }
 
-// "123 reports in 2.0 s, 4 missed".
+// Parses "123 reports in 2.0 s, 4 missed".
 std::pair<std::uint64_t, std::uint64_t> came_and_missed(const std::string& summary) {
   std::smatch found;
   if (!std::regex_search(summary, found, std::regex("(\\d+) reports in .* s, (\\d+) missed")))
@@ -86,7 +86,7 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
 }
 
-// A participant of Cyclone as it comes, on another machine, with nothing that we configure.
+// A participant with Cyclone's default configuration on another machine.
 bool hears_health_by_default(std::uint32_t domain) {
   const dds_entity_t participant = dds_create_participant(domain, nullptr, nullptr);
   EXPECT_GT(participant, 0);
@@ -113,7 +113,7 @@ TEST(Network, OfEveryProgramWithoutAConfigurationIsTheDefaultInterface) {
   }
   test::LossyWire wire(robot.frames(), panel.frames());
   const test::CellFile cell(test::small_cell("default"));
-  constexpr std::uint32_t kDomain = 117;  // that nothing in this process has configured
+  constexpr std::uint32_t kDomain = 117;  // a domain that nothing in this process has configured
   std::optional<ChildProcess> daemon;
   robot.run([&] {
     daemon.emplace(test::kDaemon, std::vector<std::string>{cell.path(), "--interface", "default",
@@ -128,7 +128,7 @@ TEST(Network, OfEveryProgramWithoutAConfigurationIsTheDefaultInterface) {
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
 }
 
-// Here a tag, which only programs share that were given it.
+// The variable contains a tag here. Only programs with the same tag communicate.
 TEST(Network, OfCyclonesOwnVariableIsJoined) {
   const test::CellFile cell(test::small_cell("variable"));
   const auto arguments = test::dds_arguments(test::own_dds());

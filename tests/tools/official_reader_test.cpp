@@ -1,4 +1,4 @@
-// The official JavaScript reader reads our recordings. CTest installs its packages first
+// The official JavaScript reader reads the project's recordings. CTest first installs its packages
 // (tests/CMakeLists.txt).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -82,7 +82,7 @@ TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
   EXPECT_EQ(report->pairs._buffer[1].status, theirs["pairs"][1]["status"]);
   EXPECT_EQ(report->pairs._buffer[1].evaluated_cycle, theirs["pairs"][1]["evaluated_cycle"]);
 
-  // One pose of each object so far: nobody knows how fast they close.
+  // Only one pose of each object has arrived, so the closing speed is unknown.
   const json& first = read["streamed"]["topics"]["clearance/distances"]["first"];
   EXPECT_EQ("NaN", first["minimum"]["closing_speed"]);
   EXPECT_EQ("NaN", first["minimum"]["time_to_contact"]);

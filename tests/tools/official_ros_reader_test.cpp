@@ -1,6 +1,6 @@
-// What our programs write for ROS 2, as it is on DDS: the public packages decode it by the
-// definitions that ROS 2 publishes, to the values that are meant. tools/setup --tests installs
-// them.
+// The project's messages for ROS 2, as DDS carries them. The public packages decode them by the
+// definitions that ROS 2 publishes, and must find the intended values. tools/setup --tests installs
+// the packages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ namespace {
 using nlohmann::json;
 using Bytes = std::vector<std::byte>;
 
-// Samples of a topic as they came.
+// The samples of a topic as they arrived, undecoded.
 class RawTopic {
  public:
   RawTopic(Participant& participant, const RosType& type, const std::string& topic)
@@ -48,7 +48,7 @@ class RawTopic {
   std::vector<Bytes> came_;
 };
 
-// What the packages make of them.
+// The values that the packages decode.
 std::vector<json> read_officially(const std::string& type, const std::vector<Bytes>& messages) {
   const ScratchFolder folder;
   std::string lines;
@@ -66,7 +66,7 @@ std::vector<json> read_officially(const std::string& type, const std::vector<Byt
   return values;
 }
 
-// As Cyclone's generated type has it.
+// The message as Cyclone's generated type represents it.
 template <class T>
 Sample<T> decoded(const Bytes& message) {
   CdrDecoder decoder;
@@ -85,7 +85,7 @@ class OfficialRosReader : public testing::Test {
   Participant client{dds};
 };
 
-// Of the tests' cell: two boxes whose zone is active while they are nearer than 0.3 m.
+// The cell of these tests has two boxes, whose zone is active while they are nearer than 0.3 m.
 TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
   const CellFile cell(small_cell("official") + "ros2: {diagnostics: true, world_frame: map}\n");
   const Cell read = cell.cell();
@@ -161,7 +161,7 @@ TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
       EXPECT_EQ("-Infinity", numbers[i]["data"]) << "of the ticks before the first poses";
     }
   }
-  // Half a box apart from each other and from the floor, about.
+  // The boxes are about half a box apart from each other and from the floor.
   EXPECT_GT(numbers.back()["data"], 0.1);
   EXPECT_LT(numbers.back()["data"], 3.0);
   daemon.signal(SIGTERM);

@@ -1,5 +1,5 @@
-// Bags as the official writer of MCAP and the public packages for ROS 2's messages make them: we
-// read what they wrote, and what our tests write themselves is the same to the byte.
+// Bags from the official writer of MCAP and the public packages for ROS 2's messages. The project's
+// reader must read them, and the tests' own writers must produce the same bytes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ json time_of(std::int64_t ns) {
   return {{"sec", ns / 1'000'000'000}, {"nsec", ns % 1'000'000'000}};
 }
 
-// What is in the bag: as the packages take it, and as our tests write it.
+// The content of the bag, once as the packages take it and once as the tests write it.
 struct Both {
   json spec = {{"compression", ""}, {"messages", json::array()}};
   std::vector<RosMessage> ours;
@@ -65,7 +65,7 @@ Both motion() {
 
 class OfficialWriter : public testing::Test {
  protected:
-  // What node prints.
+  // Returns the output of node.
   std::string write(const json& spec, const std::string& out) {
     write_text(folder / "spec.json", spec.dump());
     const std::string command =
@@ -106,7 +106,7 @@ TEST_F(OfficialWriter, ItsBagsAreReadWhicheverWayTheyAreCompressed) {
   }
 }
 
-// The whole way, against a bag that SQLite's library wrote.
+// The complete chain, compared with a bag that SQLite's library wrote.
 TEST_F(OfficialWriter, ItsBagsMoveTheRobotOfACell) {
   const Cell cell{scara_cell()};
   both.spec["compression"] = "zstd";

@@ -28,7 +28,7 @@ zones:
   - {name: stop, between: [robot, still], enter_below: 0.1, leave_above: 0.15}
 )";
 
-// The hand comes down to 80 mm above the box.
+// The hand descends to 80 mm above the box.
 std::string descending_log() {
   std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
   for (int tick = 0; tick < 200; ++tick) {
@@ -50,7 +50,7 @@ class RecordReplay : public RunsPrograms {
     write_text(folder / "cell.yaml", kCell);
     write_text(folder / "log.csv", descending_log());
   }
-  // run() with a signal that waits for the program before it has begun.
+  // Like run(), with a signal that is pending before the program begins.
   int run_stopped(int signal, const std::string& program,
                   const std::vector<std::string>& arguments) {
     sigset_t both, before;
@@ -72,7 +72,7 @@ class RecordReplay : public RunsPrograms {
   int replay(const std::vector<std::string>& more) {
     return run(kReplay, with({"check", "--cell", path("cell.yaml"), path("run.mcap")}, more));
   }
-  // run.mcap over DDS into again.mcap, slowly.
+  // Publishes run.mcap over DDS slowly, and records it in again.mcap.
   void publish_and_record_again(std::string& recorder_output) {
     const auto where = dds_arguments(own_dds());
     ChildProcess recorder(kRecord, with({"-o", path("again.mcap")}, where));
@@ -157,7 +157,7 @@ TEST_F(RecordReplay, RecordingOfAMonitorComparesEqualAndAnAlteredOneNamesTheFiel
   record_run(cell, folder / "run.mcap", {.ticks = 100});
   EXPECT_EQ(0, replay({"--compare"})) << output;
   EXPECT_THAT(output, HasSubstr("100 reports compared"));
-  // The cell is in the recording, too.
+  // The recording also contains the cell.
   EXPECT_EQ(0, run(kReplay, {"check", path("run.mcap"), "--compare"})) << output;
   std::vector<Kept> messages = messages_of(folder / "run.mcap");
   Kept& last =
@@ -253,7 +253,7 @@ TEST_F(RecordReplay, TwoOutputsAreTwoFiles) {
   EXPECT_FALSE(std::filesystem::exists(folder / "both"));
 }
 
-// Before there were subcommands, --offline chose `check`, and `publish` had no name.
+// Before there were subcommands, --offline selected `check`, and `publish` had no name.
 TEST_F(RecordReplay, FormerSpellingsDoTheSameAndNameThePresentOnes) {
   ASSERT_EQ(0, record_log()) << output;
   const std::string csv = path("table.csv"), run_mcap = path("run.mcap"), cell = path("cell.yaml");
@@ -307,13 +307,13 @@ TEST_F(RecordReplay, WhatIsPublishedOverDdsAndRecordedAgainIsTheSameBytes) {
     for (const Kept& message : received) {
       if (message.kind == kind) b.push_back(text_of(message));
     }
-    // Samples of two sources with the same stamp may change places.
+    // Samples of two sources with the same stamp may be swapped.
     std::ranges::sort(a);
     std::ranges::sort(b);
     EXPECT_EQ(a.size(), b.size());
     EXPECT_TRUE(a == b);
   }
-  // And it still replays to the same reports, although topics overtook each other.
+  // The recording still replays to the same reports, although topics overtook each other.
   EXPECT_EQ(0, run(kReplay, {"check", path("again.mcap"), "--compare"})) << output;
 }
 

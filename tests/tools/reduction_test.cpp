@@ -1,6 +1,6 @@
-// clearance-scene reduce: its parts, and which model it calls the cheapest. Oracles: the closed
-// form of an L's error, a cell made of what was printed, and the cost of every model by its
-// figures.
+// clearance-scene reduce: the parts, and the model that it names as the cheapest. Oracles: the
+// closed form of an L's error, a cell made of the printed models, and the cost of every model from
+// its figures.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -21,7 +21,7 @@ using nlohmann::json;
 
 class Reduction : public testing::Test {
  protected:
-  // An L of two bars, 2 m long and 0.5 m wide and high.
+  // An L of two bars, each 2 m long and 0.5 m wide and high.
   Reduction() {
     std::ofstream(file("l.obj"))
         << "v 0 0 0\nv 2 0 0\nv 2 0.5 0\nv 0.5 0.5 0\nv 0.5 2 0\nv 0 2 0\n"
@@ -60,7 +60,7 @@ class Reduction : public testing::Test {
 
 TEST_F(Reduction, AHullIsAsFarFromAnLAsItsHypotenuseAndTwoPartsAreTheL) {
   const json body = reduced({});
-  // The middle of the hypotenuse is (1.25, 1.25): 0.75 from both bars.
+  // The midpoint of the hypotenuse is (1.25, 1.25), at a distance of 0.75 from both bars.
   const double error = model(body, "hull")["error"];
   EXPECT_GE(error, 0.75);
   EXPECT_LE(error, 0.75 * 1.02 + 1e-5);
@@ -103,8 +103,8 @@ TEST_F(Reduction, PartsThatWereChosenMakeACell) {
   EXPECT_EQ(std::get<Cell>(read).scene.objects[0].parts.size(), 2u);
 }
 
-// By the schedule that tools/scene/watching.hpp describes: nine ticks of 1 ms are taken off, and
-// what is left is at least 16 / 4096 m and four ticks.
+// The schedule is described in tools/scene/watching.hpp. Nine ticks of 1 ms are subtracted, and the
+// remainder is at least 16 / 4096 m and four ticks.
 TEST_F(Reduction, TheCheapestModelIsTheOneThatCostsLeastOfAllThatKeepThePairAway) {
   const double speed = 2.0;
   const json body = reduced({"--distance", "0.1", "1", "30", "--speed", "2"});

@@ -1,5 +1,5 @@
 // Plots and reports of a replay, as a person attaches them to a review. The oracle of the curves is
-// the run itself: a ball that comes down to 80 mm above a box, and leaves again.
+// the run itself: a ball descends to 80 mm above a box and leaves again.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,7 @@ zones:
   - {name: stop, between: [robot, still], enter_below: 0.1, leave_above: 0.15}
 )";
 
-// A metre a second down, and up again.
+// The ball moves down at one metre per second, and up again.
 std::string visit_log() {
   std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
   for (int tick = 0; tick < 200; ++tick) {
@@ -48,7 +48,7 @@ struct PlotPoint {
   double x, y;
 };
 
-// The last line of a path: what stands before is a sample for the legend.
+// The points of the last line of a path. The line before it is a sample for the legend.
 std::vector<PlotPoint> points_of(std::string path) {
   path.erase(0, path.rfind('M'));
   static const std::regex kPoint(R"(([-\d.]+),([-\d.]+))");
@@ -59,12 +59,12 @@ std::vector<PlotPoint> points_of(std::string path) {
   return points;
 }
 
-// The curve of this title in the plot's own units, by the two lowest numbers on its axis (mm) and
-// by the ends of the run (s).
+// The curve with this title, converted to the plot's units. The two lowest numbers on the axis give
+// the scale in mm, and the ends of the run give it in s.
 std::vector<PlotPoint> curve_of(const std::string& svg, const std::string& title) {
   static const std::regex kTick(
       R"rx(d='M[\d.]+,([\d.]+) L[^']*'/>\s*<g transform="[^"]*"[^>]*text-anchor="end">\s*<text><tspan[^>]*> ?([-\d.]+)</tspan>)rx");
-  std::vector<std::pair<double, double>> ticks;  // pixel, mm
+  std::vector<std::pair<double, double>> ticks;  // (pixel, mm)
   for (std::sregex_iterator at(svg.begin(), svg.end(), kTick), end; at != end; ++at) {
     ticks.emplace_back(std::stod((*at)[1]), std::stod((*at)[2]));
   }
@@ -106,7 +106,7 @@ TEST_F(ReplayReport, ThePlotsCurveHoldsTheRunsLeastDistance) {
   const std::vector<PlotPoint> hand = curve_of(svg, "hand - box");
   ASSERT_GT(hand.size(), 150u);
   const auto least = std::ranges::min_element(hand, {}, &PlotPoint::y);
-  const double pixel_mm = 8.0;  // 2 m on 350 pixels, and a little
+  const double pixel_mm = 8.0;  // 2 m on 350 pixels, with a margin
   EXPECT_NEAR(least->y, kLeastMm, pixel_mm);
   EXPECT_NEAR(least->x, kLeastAtS, 0.003);
   EXPECT_NEAR(hand.front().y, kLeastMm + 120.0, pixel_mm);
@@ -131,7 +131,8 @@ TEST_F(ReplayReport, IsOnePageThatNamesExpectationsAndWorstMomentsWithPictures) 
   ChildProcess child(
       kReplay, {"check", "--cell", path("cell.yaml"), path("run.mcap"), "--report",
                 path("run.html"), "--expect-no-zone", "stop", "--expect-min-distance", "0.05"});
-  EXPECT_EQ(1, child.wait(std::chrono::seconds(250))) << child.output();  // a browser starts
+  // the time includes the start of a browser
+  EXPECT_EQ(1, child.wait(std::chrono::seconds(250))) << child.output();
   const std::string html = read_text(folder / "run.html");
   EXPECT_THAT(html, HasSubstr("NOT all of them hold"));
   EXPECT_THAT(html, HasSubstr("zone stop"));
@@ -139,9 +140,9 @@ TEST_F(ReplayReport, IsOnePageThatNamesExpectationsAndWorstMomentsWithPictures) 
   EXPECT_THAT(html,
               HasSubstr("<td>80.000 mm, certified to be from 80.000 to 80.000 mm: hand - box"));
   EXPECT_THAT(html, HasSubstr("<figcaption>0.1200 s: "));
-  EXPECT_THAT(html, HasSubstr("<title>hand - box</title>"));  // the plot stands in the page
+  EXPECT_THAT(html, HasSubstr("<title>hand - box</title>"));  // the page contains the plot
   EXPECT_THAT(html, HasSubstr("src=\"data:image/png;base64,iVBORw0KGgo"));
-  // Nothing is fetched from anywhere: what is named elsewhere are the names of XML's own languages.
+  // The page fetches nothing: the only addresses in it are names of XML namespaces.
   static const std::regex kElsewhere(
       R"rx((src|href)\s*=\s*["'](?!#|data:)[^"']*["']|url\(|@import)rx");
   std::smatch found;

@@ -1,5 +1,5 @@
-// clearance-robot moves what a cell names by URDF: the shipped cell of two such arms, from joint
-// states to distances.
+// clearance-robot moves the robots that a cell defines by URDF. The shipped cell of two such arms
+// is tested from joint states to distances.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -16,14 +16,14 @@ namespace {
 const std::string kArms = std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arms.yaml";
 const std::string kArm = std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arm/arm.urdf";
 
-// Every published pair of a report is known and on time.
+// Returns true if every published pair of a report is known and on time.
 bool all_known(const clearance_msg_Distances& report) {
   return report.unknown == 0 && report.stale == 0;
 }
 
 class RobotJoints : public testing::Test {
  protected:
-  // A robot with these arguments moves `cell`, which a daemon watches, until everything is known.
+  // Runs a robot with these arguments on `cell`, which a daemon watches, until everything is known.
   void moves(const std::vector<std::string>& cell, const Cell& read,
              const std::vector<std::string>& arguments) {
     Distances distances(client, read);
@@ -47,7 +47,7 @@ class RobotJoints : public testing::Test {
   Participant client{dds};
 };
 
-// An age limit that a busy machine keeps.
+// An age limit that a busy machine can meet.
 const std::vector<std::string> kSlow = {"--age-limit-ms", "2000"};
 
 TEST_F(RobotJoints, OfTheShippedArmsSwingThroughTheirRanges) {

@@ -25,7 +25,7 @@ inline const std::string kRecord = std::string(CLEARANCE_BIN) + "/clearance-reco
 inline const std::string kReplay = std::string(CLEARANCE_BIN) + "/clearance-replay";
 inline const std::string kWatch = std::string(CLEARANCE_BIN) + "/clearance-watch";
 
-// A cell in a file of its own, removed in the end.
+// A cell in a temporary file of its own.
 class CellFile {
  public:
   explicit CellFile(const std::string& text) {
@@ -44,11 +44,11 @@ class CellFile {
   std::string path_;
 };
 
-// Runs programs on files in a folder of its own.
+// Runs programs on files in a private folder.
 class RunsPrograms : public testing::Test {
  protected:
   [[nodiscard]] std::string path(const std::string& name) const { return (folder / name).string(); }
-  // Exit code; what it wrote goes to `output`.
+  // Returns the exit code. The program's output goes to `output`.
   int run(const std::string& program, const std::vector<std::string>& arguments) {
     ChildProcess child(program, arguments);
     const int status = child.wait();
@@ -60,7 +60,7 @@ class RunsPrograms : public testing::Test {
   std::string output;
 };
 
-// Two boxes that swing over a floor; slow enough for any machine and sanitizer.
+// Two boxes that swing above a floor, slowly enough for any machine and sanitizer.
 inline std::string small_cell(const std::string& name, int age_limit_ms = 10'000) {
   return "name: " + name +
          R"(
@@ -94,7 +94,7 @@ inline std::vector<std::string> with(std::vector<std::string> first,
   return first;
 }
 
-// Sends the cell's simulated motion, a batch a call.
+// Sends the cell's simulated motion, one batch per call.
 class Poses {
  public:
   Poses(Participant& participant, const Cell& cell, std::string_view source = "test")
@@ -107,14 +107,14 @@ class Poses {
   }
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
 
-  // Everything is farther on by this than the cell says, m.
+  // Translates everything by this vector from the positions in the cell, m.
   void move_by(const Vec3& way) { moved_ = way; }
-  // Twists are this many times those of the motion.
+  // Multiplies the twists of the motion by this factor.
   void scale_twists(double factor) { twist_factor_ = factor; }
-  // Stamps are of a clock that is ahead by this.
+  // Makes stamps come from a clock that is ahead by this time.
   void set_clock_ahead(std::int64_t ns) { clock_ahead_ns_ = ns; }
 
-  // Everything that was sent, in order; numbers count from 1.
+  // All batches sent so far, in order. Numbers count from 1.
   [[nodiscard]] const std::vector<PoseBatch>& sent() const noexcept { return sent_; }
 
   void send(double t_s, bool with_twist = true) {
@@ -150,14 +150,14 @@ class Poses {
   Sample<clearance_msg_PoseBatch> sample_;
 };
 
-// Reads distances as any client would.
+// Reads distances as any client does.
 class Distances {
  public:
   Distances(Participant& participant, const Cell& cell)
       : reader_(participant.reader(TopicKind::kDistances, cell.topics.distances, 8192)) {}
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
 
-  // Past discovery: until both ends know each other, reports may be missing.
+  // Waits for discovery: until both ends know each other, reports may be missing.
   void settle() {
     std::uint64_t cycle = 0;
     for (int in_a_row = 0; in_a_row < 5;) {
@@ -168,7 +168,7 @@ class Distances {
     }
   }
 
-  // The next report; null when none comes.
+  // Returns the next report, or null if none arrives.
   std::unique_ptr<Sample<clearance_msg_Distances>> next() {
     auto sample = std::make_unique<Sample<clearance_msg_Distances>>();
     void* pointer = &**sample;

@@ -1,4 +1,4 @@
-// clearance-view as a test starts it, and what the scripts of view_js print.
+// clearance-view as a test starts it, and the output of the scripts in view_js.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace clearance::test {
 
 inline const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
 
-// The lines of JSON that a script has printed.
+// Returns the lines of JSON that a script has printed.
 inline std::vector<nlohmann::json> lines_of(const ChildProcess& script) {
   std::vector<nlohmann::json> lines;
   std::istringstream text(script.output());

@@ -1,4 +1,4 @@
-// clearance-scene itself: what it writes, and how it ends.
+// clearance-scene itself: its output and its exit status.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -109,7 +109,7 @@ TEST_F(SceneProgram, WritesAWarehouseOfAsManyObjectsAsAskedFor) {
       << output_;
 }
 
-// A cell of a block of two parts, 1 m apart, and a floor.
+// A cell with a block of two parts, 1 m apart, and a floor.
 constexpr const char* kTwoParts = R"(name: two_parts
 units: {length: m, angle: rad}
 objects:
@@ -156,7 +156,7 @@ TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
     EXPECT_GE(model["error"].get<double>(), 0.0);
   }
   EXPECT_EQ(chosen, 1);
-  EXPECT_TRUE(body["models"][0]["chosen"]);  // the sphere is cheapest
+  EXPECT_TRUE(body["models"][0]["chosen"]);  // the sphere is the cheapest model
 }
 
 TEST_F(SceneProgram, ReducesNothingThatIsMissing) {
@@ -193,7 +193,7 @@ TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
       << daemon.output();
 }
 
-// A post, a slide beside it, a tip that the slide moves through the post, and what is far from all
+// A post, a slide beside it, a tip that the slide moves through the post, and a body far from all
 // of them.
 std::string crane_urdf() {
   const auto link = [](const std::string& name, const std::string& at, const std::string& radius) {
@@ -226,7 +226,7 @@ TEST_F(SceneProgram, ProposesPairsThatMayTouchBySampling) {
                            "link1=\"slide\" link2=\"far\" reason=\"Never\""}) {
     EXPECT_NE(proposed.find(pair), std::string::npos) << pair << " in\n" << proposed;
   }
-  // The tip's joint is within 0.6 m of the post in 0.3 of its range.
+  // The tip's joint is within 0.6 m of the post for 0.3 of its range.
   const std::size_t at =
       proposed.find("in contact in", proposed.find("link2=\"tip\" reason=\"Def"));
   EXPECT_NEAR(std::stod(proposed.substr(at + 14)), 600.0, 60.0) << proposed;
@@ -260,7 +260,7 @@ TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
       << text;
 }
 
-// Before there were subcommands, an option chose what to do.
+// Before there were subcommands, an option selected the action.
 TEST_F(SceneProgram, FormerSpellingsDoTheSameAndNameThePresentOnes) {
   std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
                                             "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";

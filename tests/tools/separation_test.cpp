@@ -1,4 +1,5 @@
-// Speed and separation monitoring as a client meets it: over DDS, in a recording, on a terminal.
+// Speed and separation monitoring as a client meets it: over DDS, in a recording, and on a
+// terminal.
 #include <gtest/gtest.h>
 
 #include <csignal>
@@ -10,7 +11,7 @@
 namespace clearance::test {
 namespace {
 
-// A person who stands 2 m in front of a robot that stands: 1.7 m apart.
+// A person who stands 2 m in front of a standing robot, at a distance of 1.7 m.
 const char* const kPersonAndRobot = R"(name: hall
 units: {length: m, angle: deg}
 rate_hz: 200
@@ -70,7 +71,8 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   EXPECT_EQ(sample->scene_revision, read.scene.revision);
   EXPECT_GE(sample->publish_ns, sample->now_ns);
   EXPECT_NEAR(pair.clearance, 1.7, 1e-9);
-  // C, and the way of 1.6 m/s while the robot reacts and the pose gets older.
+  // The protective distance is C plus the distance at 1.6 m/s during the robot's reaction and the
+  // age of the pose.
   const double age_s = 1e-9 * static_cast<double>(pair.age_human_ns);
   EXPECT_NEAR(pair.protective_distance, 0.1 + 1.6 * (0.1 + age_s), 1e-9);
   EXPECT_EQ(pair.scaling, 1.0);

@@ -1,4 +1,4 @@
-// The stretches of a run, against all that was ever added.
+// The stretches of a run, compared with all values that were added.
 #include <gtest/gtest.h>
 
 #include <algorithm>

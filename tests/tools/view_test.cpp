@@ -1,4 +1,4 @@
-// clearance-view as people and programs see it: in a browser, and through Foxglove's own client.
+// clearance-view as people and programs use it: in a browser, and through Foxglove's own client.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -30,14 +30,14 @@ using test::View;
 
 const std::string kScripts = CLEARANCE_VIEW_JS;
 
-// What stays after the run, to be looked at: a folder in the build.
+// A folder in the build for pictures that are kept after the run.
 std::string pictures() {
   const std::filesystem::path folder = CLEARANCE_VIEW_PICTURES;
   std::filesystem::create_directories(folder);
   return folder.string();
 }
 
-// Until the daemon has poses of both boxes.
+// Waits until the daemon has poses of both boxes.
 void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
   Participant client(dds);
   test::Distances reports(client, cell);
@@ -63,7 +63,7 @@ class ViewOfARecording : public testing::Test {
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
   }
 
-  // The report with the least distance that is no old one.
+  // The entry with the least distance that is not stale.
   [[nodiscard]] clearance_msg_PairDistance worst() const {
     RecordingReader reader(file);
     RecordedMessage message;
@@ -107,7 +107,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   const json shown = lines_of(page).front();
   EXPECT_EQ(shown["errors"], json::array());
   ASSERT_EQ(shown["samples"].size(), 10u) << page.output();
-  // On a busy machine the page has been faster than this loop.
+  // On a busy machine, the page may have received a report before this loop.
   while (distances.rbegin()->first < shown["samples"].back()["cycle"]) ASSERT_TRUE(hear());
   int compared = 0;
   for (const json& sample : shown["samples"]) {
@@ -116,7 +116,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
     EXPECT_EQ(known->second, sample["distance"].get<double>()) << sample;
     ++compared;
   }
-  EXPECT_GE(compared, 1);  // a busy machine leaves reports out, of the page or of this loop
+  EXPECT_GE(compared, 1);  // on a busy machine the page or this loop skips reports
   EXPECT_EQ(shown["chosen"], 1);
   EXPECT_GT(shown["rows"], 100);
   EXPECT_EQ(shown["zones"].size(), cell.scene.zones.size());
@@ -132,7 +132,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   EXPECT_EQ(view.end(), 0);
 }
 
-// A person and a robot that stand 1.7 m apart, until the poses end.
+// A person and a robot stand 1.7 m apart until the poses end.
 TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
   const test::CellFile cell(R"(name: hall
 units: {length: m, angle: deg}
@@ -171,7 +171,8 @@ simulation:
   ASSERT_EQ(measured.size(), 6u);
   EXPECT_EQ(measured[0], "people: person – robot");
   EXPECT_EQ(measured[1], "1700");  // mm
-  // C, and the way of 1.6 m/s while the robot reacts and the pose gets older, up to the age limit.
+  // C, and the distance at 1.6 m/s during the robot's reaction and the age of the pose, up to the
+  // age limit.
   const double protective = std::stod(measured[2]);
   EXPECT_GE(protective, 260.0);
   EXPECT_LE(protective, 260.0 + 1.6 * 300.0);
@@ -224,12 +225,12 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
   EXPECT_EQ(first["pairs"], second["pairs"]);
 }
 
-// What the reports and zones of the recording say up to this time, s after the first report.
+// The content of the recording's reports and zones up to this time, s after the first report.
 struct Before {
   std::uint64_t cycle = 0;
   bool zone_active = false;
   double least = kInfinity;          // m
-  double least_of_pair = kInfinity;  // of pair 2
+  double least_of_pair = kInfinity;  // for pair 2
 };
 Before before(const std::string& file, double time_s) {
   RecordingReader reader(file);
@@ -262,7 +263,8 @@ double least_in(const json& curve) {
   return least;
 }
 
-// To times between ticks: a report less than a microsecond later is the one that is meant.
+// The jumps lead to times between ticks. A report less than a microsecond later counts as the one
+// of that time.
 TEST_F(ViewOfARecording, AJumpBringsTheZonesAndTheHistoryOfItsMoment) {
   View view({cell.path(), "--replay", file});
   ChildProcess client("/usr/bin/env", {"node", kScripts + "/jump.mjs", view.socket(), "1.1024",
@@ -314,7 +316,7 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
                   {"schemaName", "clearance::msg::Distances"},
                   {"schemaEncoding", "omgidl"}}));
   EXPECT_EQ(found["channels"]["/tf"]["schemaName"], "tf2_msgs/msg/TFMessage");
-  // In order, each once, and not all of them: a frame shows the newest.
+  // The cycles are in order and occur once, but not all of them: a frame shows the newest.
   const std::vector<std::uint64_t> cycles = found["cycles"];
   EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end());
   EXPECT_GT(cycles.back() - cycles.front(), cycles.size() - 1);
@@ -326,7 +328,7 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   ASSERT_EQ(bodies.size(), 3u);
   EXPECT_EQ(bodies[0]["frame"], "left");
   EXPECT_EQ(bodies[0]["type"], 11);
-  EXPECT_EQ(bodies[0]["points"], 36);  // a box: twelve triangles
+  EXPECT_EQ(bodies[0]["points"], 36);  // a box has twelve triangles
   EXPECT_EQ(found["last"]["/tf"]["transforms"].size(), 3u);
   EXPECT_EQ(found["last"]["/clearance/closest"][0]["type"], 5);
   EXPECT_EQ(view.end(), 0);
@@ -359,7 +361,7 @@ TEST(View, DrawsLiveWhatFollowsFrames) {
     return client.wrote("\"cycles\"");
   })) << client.output();
   EXPECT_EQ(client.wait(), 0) << client.output();
-  std::map<std::string, double> drawn;  // x of what is drawn, by name
+  std::map<std::string, double> drawn;  // x coordinate of each drawn object, by name
   const json found = lines_of(client).front();
   for (const json& each : found["last"]["/tf"]["transforms"]) {
     drawn[each["child_frame_id"]] = each["transform"]["translation"]["x"];
@@ -390,7 +392,7 @@ TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
     const std::vector<std::uint64_t> cycles = lines_of(client).front()["cycles"];
     EXPECT_GT(cycles.front(), last);
     last = cycles.back();
-    // Longer than readers of reports are kept for nobody.
+    // This time is longer than readers of reports are kept without a viewer.
     if (look == 0) std::this_thread::sleep_for(std::chrono::seconds(7));
   }
 }

@@ -86,7 +86,7 @@ TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
   EXPECT_NE(summary.find("left - right, at cycle "), std::string::npos) << summary;
 }
 
-// In a terminal, which `script` plays: the screen is not printed otherwise.
+// The program runs in a terminal, which `script` simulates: without one the screen is not printed.
 TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
   const test::CellFile cell(test::small_cell("small"));
   const auto dds = test::dds_arguments(test::own_dds());
@@ -101,7 +101,7 @@ TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
   ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced has ended "); })) << watch.output();
-  // The same line goes on: "minimum", "was", the figure, with colours between them.
+  // The rest of the line contains "minimum", "was" and the figure, with colours between them.
   EXPECT_TRUE(eventually([&] {
     const std::string output = watch.output();
     const std::size_t ended = output.find("clearanced has ended ");
@@ -118,9 +118,10 @@ TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
   ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("cycle "); })) << watch.output();
   watch.signal(SIGSTOP);
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));  // three times what is called old
+  // three times the age at which a report is called old
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   watch.signal(SIGCONT);
-  // The line of that moment, or the one a second later.
+  // The line of that moment, or the line one second later.
   EXPECT_TRUE(eventually(
       [&] {
         return watch.wrote("(the reports are ") ||
@@ -144,7 +145,7 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
   ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no pose of left"); }))
       << watch.output();
   ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
-  // 0.8 m apart, until that is known; then silence.
+  // Sends poses at 0.8 m until the distance is known, and then falls silent.
   ASSERT_TRUE(eventually([&] {
     poses.send(0.0);
     return daemon.told("zone-left", {"'near'"});

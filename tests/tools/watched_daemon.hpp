@@ -1,4 +1,4 @@
-// A daemon that a test feeds and watches: the last report, and what the log says.
+// A daemon that a test feeds and watches: the last report and the log.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace clearance::test {
 
 class WatchedDaemon : public testing::Test {
  protected:
-  // A cell of this text, beside which scara.urdf lies.
+  // Starts the daemon on a cell with this text, in the folder of scara.urdf.
   void watch(const std::string& text, const std::vector<std::string>& more = {}) {
     write_text(folder / "scara.urdf", kScaraUrdf);
     cell = folder / "cell.yaml";
@@ -27,7 +27,7 @@ class WatchedDaemon : public testing::Test {
     distances->settle();
   }
 
-  // Every `period_ms` until `is_so`, or the time is over.
+  // Calls `step` every `period_ms` until `is_so` is true or the time is over.
   template <class Step, class IsSo>
   bool step_until(int period_ms, const Step& step, const IsSo& is_so, int seconds = 20) {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
@@ -51,9 +51,9 @@ class WatchedDaemon : public testing::Test {
     while (dds_take(distances->reader(), &pointer, &info, 1, 1) == 1) {
     }
   }
-  // As of the last report.
+  // The pair in the last report.
   const clearance_msg_PairDistance& pair(const std::string& link) const {
-    std::uint32_t place = 0;  // in the report, which has the published ones only
+    std::uint32_t place = 0;  // index in the report, which contains only published pairs
     for (const ObjectPair& of : scene.pairs) {
       if (!of.publish) continue;
       if (scene.objects[of.first].name == link || scene.objects[of.second].name == link)

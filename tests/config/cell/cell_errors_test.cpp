@@ -13,11 +13,11 @@ namespace {
 
 struct Mistake {
   const char* name;
-  std::string sections;  // after the three lines of cell_text(); '@' stands before the mistake
-  std::string error;     // the beginning of the error there
+  std::string sections;  // after the three lines of cell_text(); '@' marks the mistake
+  std::string error;     // the expected beginning of the error at that place
 };
 
-// One object with this shape, and something to pair it with.
+// One object with this shape, and another object to pair it with.
 std::string with_shape(const std::string& shape, const std::string& more = "") {
   return "objects:\n  - {name: a" + more + ", " + shape +
          "}\n  - {name: b, sphere: {radius: 1}}\n" + "pairs: [{between: [a, b]}]\n";
@@ -382,7 +382,7 @@ TEST(CellMistakes, TooManyObjectsAndZonesAreRefused) {
   EXPECT_THAT(errors, testing::HasSubstr("found 257 zones; expected at most 256"));
 }
 
-// Shapes of 10,000 objects and their 50 million pairs would take most of a minute and 2 GB.
+// The shapes of 10,000 objects and their 50 million pairs would take most of a minute and 2 GB.
 TEST(CellMistakes, OfTooManyObjectsNoneIsRead) {
   std::string objects = "objects:\n";
   for (int i = 0; i < 10'000; ++i) {

@@ -86,7 +86,7 @@ TEST(CellFile, EverySettingArrives) {
   EXPECT_EQ(scene.zones[0].pairs, std::vector<std::uint32_t>{1});
 }
 
-// kBoxes in mm with a zone of people over 'right' and a robot, 'left'.
+// kBoxes in mm, with a zone for people over 'right' and a robot, 'left'.
 std::string with_separation(const std::string& terms) {
   return "name: test\nunits: {length: mm, angle: deg}\n" + kBoxes +
          "  - {between: [left, right], publish: false}\n"
@@ -170,10 +170,10 @@ TEST(CellFile, RightAnglesInDegreesAreExact) {
                 "pairs: [{between: [a, c]}, {between: [b, c]}]\n"));
   const RelativePose turned = relative_pose(Pose{}, scene.objects[0].world_from_object);
   EXPECT_EQ(turned.rotation_error, 0.0);
-  // Roll first: y to z, z to -y; then the yaw of -90 degrees: x to -y, y to x.
+  // Roll is applied first: y to z, z to -y. The yaw of -90 degrees follows: x to -y, y to x.
   EXPECT_EQ(turned.rotation * Vec3::UnitX(), -Vec3::UnitY());
   EXPECT_EQ(turned.rotation * Vec3::UnitY(), Vec3::UnitZ());
-  // Half of a square's diagonal twice, to the bit, and true zeros.
+  // Two components are exactly half of a square's diagonal, and the zeros are exact.
   const Eigen::Quaterniond half = scene.objects[1].world_from_object.orientation;
   EXPECT_EQ(std::abs(half.x()), std::abs(half.z()));
   EXPECT_EQ(half.y(), 0.0);

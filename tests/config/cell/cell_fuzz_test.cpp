@@ -1,6 +1,6 @@
-// Oracle: whatever the bytes, reading a cell ends in a scene whose indices hold, or in errors that
-// name a line of the file, what was found there and what was expected. Seeds are fixed; a failure
-// prints its own.
+// Oracle: whatever the bytes, reading a cell ends in a scene with valid indices, or in errors. Each
+// error names a line of the file, what was found there and what was expected. Seeds are fixed, and
+// a failure prints its seed.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -68,7 +68,7 @@ TEST(CellFuzz, EveryDamagedCellIsReadOrRefusedWithAPlace) {
       ++refused;
     }
   }
-  EXPECT_GT(scenes, 50);  // an edit of a comment or of a number leaves a good cell
+  EXPECT_GT(scenes, 50);  // an edit of a comment or of a number leaves a valid cell
   EXPECT_GT(refused, 200);
 }
 

@@ -28,15 +28,16 @@ Pairs pairs_of(const Scene& scene) {
   return pairs;
 }
 
-// Names the groups that a case does not use, so that they are not refused; the pair a0-b0 comes
-// with it.
+// Names the groups that a case does not use, so that they are not refused. This adds the pair
+// a0-b0.
 const std::string kNamed =
     "  - {between: [all, b0], publish: false}\n  - {between: [a, b1], publish: false}\n"
     "  - {between: [f, b0], publish: false}\n  - {between: [b, a0], publish: false}\n";
 
 TEST(Pairs, EveryTwoObjectsOfTheSidesMeetOnceInSceneOrder) {
   const Scene scene = scene_of(cell_text(kObjects + "pairs:\n" + kNamed));
-  // Everything against b0; the a's against b1; a0 against the b's: a0-b1 and a0-b0 come twice.
+  // The rules pair everything with b0, the a's with b1, and a0 with the b's. The pairs a0-b1 and
+  // a0-b0 occur twice.
   EXPECT_EQ(pairs_of(scene),
             (Pairs{{0, 1}, {0, 4}, {1, 2}, {1, 3}, {1, 4}, {1, 5}, {1, 6}, {3, 4}, {4, 5}}));
 }

@@ -17,7 +17,7 @@ namespace {
 using testing::ElementsAre;
 using testing::HasSubstr;
 
-// Every type of joint, written leaf first: the order of a file has no meaning.
+// Every type of joint, with the leaf written first, because the order of a file has no meaning.
 const std::string kWalkerUrdf = R"(<robot name="walker">
   <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
   <link name="mast"><collision><origin xyz="0 0 0.5"/><geometry><cylinder radius="0.1" length="1"/></geometry></collision></link>
@@ -52,7 +52,7 @@ class Robots : public testing::Test {
         "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
   }
 
-  // A cell with these robots and objects, in which everything is watched.
+  // A cell with these robots and objects, in which all pairs are watched.
   static std::string cell(const std::string& robots, const std::string& rest) {
     return "name: test\nunits: {length: m, angle: deg}\nrobots:\n" + robots + rest;
   }

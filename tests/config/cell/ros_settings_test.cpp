@@ -1,4 +1,4 @@
-// The settings of a cell for ROS 2: topics that are written, frames that are followed.
+// The settings of a cell for ROS 2: topics to write and frames to follow.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -52,7 +52,8 @@ TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
               HasSubstr("found 'frame' of a fixed object"));
 }
 
-// The root hangs on a floating joint that the URDF does not have; all else stays the same.
+// The root is connected by a floating joint that the URDF does not contain. Everything else stays
+// the same.
 TEST(RosSettingsOfACell, FloatTheBaseOfARobotThatFollowsAFrame) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);

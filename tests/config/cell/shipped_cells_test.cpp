@@ -1,4 +1,4 @@
-// The cells under config/cells: what their comments claim, and that their motion makes sense.
+// The cells under config/cells: the claims in their comments, and the plausibility of their motion.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -92,8 +92,8 @@ std::set<std::string> zones_entered(const Cell& cell) {
   return entered;
 }
 
-// The speed of the fastest point of any part, over the motion, never exceeds what the object
-// states.
+// During the motion, the speed of the fastest point of any part never exceeds the speed that the
+// object states.
 void expect_stated_speeds(const Cell& cell) {
   const Scene& scene = cell.scene;
   Instant instant(cell);
@@ -116,7 +116,7 @@ void expect_stated_speeds(const Cell& cell) {
   }
 }
 
-// Every moving object is moved, and comes back after the period.
+// Every moving object moves, and returns after the period.
 void expect_whole_motion(const Cell& cell) {
   const Scene& scene = cell.scene;
   std::vector<PoseAt> start, end;
@@ -159,7 +159,7 @@ TEST(McIntyreCell, HasTheThesisCounts) {
   EXPECT_EQ(scene.objects[15].name, "floor");
   EXPECT_EQ(scene.objects[15].parts[0].shape.facets.size(), 1u);
   for (const ObjectPair& pair : scene.pairs) {
-    EXPECT_LT(pair.first, 14u);  // no self-collisions
+    EXPECT_LT(pair.first, 14u);  // no pair within one arm
     EXPECT_GE(pair.second, 14u);
   }
 }
@@ -185,8 +185,9 @@ TEST(TwoArmsCell, HasTwoSevenJointArmsAndThirtyObstacles) {
   ASSERT_EQ(cell.simulation.chains.size(), 2u);
   EXPECT_EQ(cell.simulation.chains[0].joints.size(), 7u);
   EXPECT_EQ(cell.simulation.chains[1].joints.size(), 7u);
-  // Self: 2 x (28 - 7 adjacent - 2 held at one distance). Each other: 8 x 8 less the two fixed
-  // bases. Obstacles: 14 moving links x 30 less 2 pedestals, and 2 bases x 3 moving obstacles.
+  // Within an arm: 2 x (28 - 7 adjacent - 2 at a constant distance). Between the arms: 8 x 8 less
+  // the two fixed bases. Obstacles: 14 moving links x 30 less 2 pedestals, and 2 bases x 3 moving
+  // obstacles.
   EXPECT_EQ(scene.pairs.size(), 2u * 19u + 63u + 14u * 30u - 2u + 6u);
 }
 

@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Two revolute joints and a slide, all askew, on a rotated base; beside them a spinning mover.
+// Two revolute joints and a slide with oblique axes, on a rotated base, and beside them a spinning
+// object.
 Simulation moving_cell() {
   Simulation simulation;
   const Eigen::Quaterniond turned = Eigen::Quaterniond(0.9, 0.1, -0.3, 0.2).normalized();
@@ -47,7 +48,8 @@ std::vector<PoseAt> at(const Simulation& simulation, double t_s) {
 TEST(Simulation, TwistIsTheDerivativeOfThePose) {
   const Simulation simulation = moving_cell();
   const double step = 1e-5;
-  const Vec3 point(0.2, -0.1, 0.3);  // of the object: rotation and translation both move it
+  // a point of the object that rotation and translation both move
+  const Vec3 point(0.2, -0.1, 0.3);
   for (const double t : {0.0, 0.31, 1.7, 12.9}) {
     const auto before = at(simulation, t - step), now = at(simulation, t),
                after = at(simulation, t + step);
@@ -74,7 +76,7 @@ TEST(Simulation, APlanarArmIsWhereTheClosedFormPutsIt) {
        .motion = {0.0, kPi / 2.0, 0.25, 0.0}});
   simulation.chains.push_back(chain);
   const auto poses =
-      at(simulation, 1.0);  // a quarter period: the second joint stands at 90 degrees
+      at(simulation, 1.0);  // after a quarter period the second joint is at 90 degrees
   EXPECT_LT((poses[1].world_from_object.position - Vec3(0.0, 2.0, 0.0)).norm(), 1e-15);
   EXPECT_LT(
       (transform(poses[1].world_from_object, Vec3(1.0, 0.0, 0.0)) - Vec3(-1.0, 2.0, 0.0)).norm(),

@@ -1,6 +1,6 @@
-// Oracles: points of every triangle against every part's half-spaces; and the distance of points of
-// the parts' surface from every triangle, without a tree, by regions (C. Ericson, Real-Time
-// Collision Detection, 5.1.5).
+// Oracles: points of every triangle compared with every part's half-spaces. In the other direction,
+// the distance of points on the parts' surface from every triangle, without a tree, by regions (C.
+// Ericson, Real-Time Collision Detection, 5.1.5).
 #include "config/decomposition/convex_parts.hpp"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ namespace {
 struct Drawn {
   std::string name;
   TriangleMesh mesh;
-  std::size_t most_parts;  // that are expected within the tolerance
+  std::size_t most_parts;  // parts expected within the tolerance
   double tolerance = 5e-3;
 };
 std::ostream& operator<<(std::ostream& out, const Drawn& drawn) { return out << drawn.name; }
@@ -48,7 +48,7 @@ std::vector<ConvexBody> bodies_of_parts(const ConvexParts& parts) {
   return bodies;
 }
 
-// Returns how far a point lies outside; negative: inside.
+// Returns the distance of a point outside the body; negative if it is inside.
 double outside(const ConvexBody& body, const Vec3& point) {
   double most = -kInfinity;
   for (const Facet& facet : body.facets) {
@@ -83,7 +83,7 @@ double distance_by_regions(const Triangle& t, const Vec3& p) {
   return (p - t[0] - vb / (va + vb + vc) * ab - vc / (va + vb + vc) * ac).norm();
 }
 
-// Returns the largest distance from the mesh of points on the surface of the union.
+// Returns the largest distance from the mesh over sampled points on the surface of the union.
 double sampled_error(const std::vector<ConvexBody>& bodies, const TriangleMesh& mesh, int samples) {
   Random random(7);
   double worst = 0.0;
@@ -105,7 +105,8 @@ double sampled_error(const std::vector<ConvexBody>& bodies, const TriangleMesh& 
         for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
           const Triangle triangle = mesh.triangle(t);
           const Vec3 normal = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]);
-          if (normal.norm() == 0.0) continue;  // its points are those of its neighbours
+          // a degenerate triangle: its points belong to its neighbours
+          if (normal.norm() == 0.0) continue;
           nearest = std::min(nearest, distance_by_regions(triangle, point));
         }
         worst = std::max(worst, nearest);
@@ -143,7 +144,7 @@ TEST_P(ConvexPartsOf, AreNowhereFartherFromTheMeshThanTheirError) {
     EXPECT_LE(parts.parts.size(), most);
     const double sampled = sampled_error(bodies_of_parts(parts), GetParam().mesh, 40);
     EXPECT_LE(sampled, parts.error) << most;
-    EXPECT_GE(sampled, 0.5 * parts.error - 1e-6) << most;  // nor is the bound an empty one
+    EXPECT_GE(sampled, 0.5 * parts.error - 1e-6) << most;  // the bound is not much too large either
   }
 }
 

@@ -1,4 +1,4 @@
-// Meshes whose shape is known, for the tests of their convex parts. Lengths in metres.
+// Meshes of known shape, for the tests of their convex parts. Lengths are in metres.
 #pragma once
 
 #include <array>
@@ -33,8 +33,8 @@ inline void add_box(const Vec3& low, const Vec3& high, TriangleMesh& mesh, bool 
   }
 }
 
-// Two bars of 50 mm that meet at a right angle, 200 mm long. Its inner corner sees every other
-// corner.
+// Two bars of 50 mm that meet at a right angle, 200 mm long. Every other vertex is visible from the
+// inner corner.
 inline TriangleMesh l_shape() {
   const std::array<Vec2, 6> outline = {Vec2(0.05, 0.05), Vec2(0.05, 0.2), Vec2(0.0, 0.2),
                                        Vec2(0.0, 0.0),   Vec2(0.2, 0.0),  Vec2(0.2, 0.05)};
@@ -54,7 +54,7 @@ inline TriangleMesh l_shape() {
   return mesh;
 }
 
-// Around z; 32 by 16 quadrangles.
+// A torus around z, with 32 by 16 quadrilaterals.
 inline TriangleMesh torus() {
   TriangleMesh mesh;
   const auto point = [](int i, int k) {
@@ -70,7 +70,7 @@ inline TriangleMesh torus() {
   return mesh;
 }
 
-// Sheets without thickness: four walls and a floor.
+// Four walls and a floor, made of sheets without thickness.
 inline TriangleMesh open_box() {
   TriangleMesh mesh;
   add_box({0.0, 0.0, 0.0}, {0.12, 0.1, 0.08}, mesh, false);
@@ -84,14 +84,14 @@ inline TriangleMesh nested_boxes() {
   return mesh;
 }
 
-// The L with triangles that are a point, that are a line, and that stand twice.
+// The L with additional triangles: some degenerate to a point or a line, others are repeated.
 inline TriangleMesh degenerate_l() {
   TriangleMesh mesh = l_shape();
   mesh.triangles.insert(mesh.triangles.end(), {{0, 0, 0}, {2, 3, 2}, {0, 2, 4}, {0, 2, 4}});
   return mesh;
 }
 
-// A thin rib of 0.2 mm between two blocks, of triangles a thousand times as long as wide.
+// A thin rib of 0.2 mm between two blocks. Its triangles are a thousand times as long as wide.
 inline TriangleMesh slivers() {
   TriangleMesh mesh;
   add_box({0.0, 0.0, 0.0}, {0.04, 0.04, 0.04}, mesh);

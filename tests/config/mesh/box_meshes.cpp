@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// Corner i has the bits of i as x, y, z.
+// The bits of i are the coordinates x, y, z of vertex i.
 constexpr int kBoxCorners = 8;
 constexpr std::array<std::array<int, 3>, 12> kBoxTriangles = {{{0, 2, 1},
                                                                {1, 2, 3},
@@ -31,7 +31,7 @@ std::string corner_text(int corner) {
                      corner_coordinate(corner, 1), corner_coordinate(corner, 2));
 }
 
-// The bytes of a number, the lowest first unless `big_endian`.
+// The bytes of a number, in little-endian order unless `big_endian`.
 template <class Number>
 std::string number_bytes(Number number, bool big_endian = false) {
   std::string bytes(reinterpret_cast<const char*>(&number), sizeof number);

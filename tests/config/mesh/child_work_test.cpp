@@ -53,7 +53,7 @@ TEST(ChildWork, WorkWithoutEndIsEnded) {
   EXPECT_EQ("took longer than 1 s", waiting.fault);
 }
 
-// Sanitizers map more themselves.
+// Sanitizers map more memory themselves.
 #if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
 TEST(ChildWork, WorkThatTakesTooMuchMemoryIsEnded) {
   const ChildWork work = in_child([] { return std::string(std::size_t{200} << 20, 'x'); },

@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-// A directory of its own for each test, gone afterwards.
+// A private directory for each test, removed afterwards.
 class MeshFile : public testing::Test {
  protected:
   void write(const std::string& name, const std::string& bytes) {
@@ -42,8 +42,8 @@ class MeshFile : public testing::Test {
   test::ScratchFolder directory_;
 };
 
-// A unit cube's corners and one point within, as triangles of a binary STL: hull of 8 vertices, 6
-// facets.
+// The vertices of a unit cube and one interior point, as triangles of a binary STL. The hull has 8
+// vertices and 6 facets.
 std::string binary_stl() {
   const float corners[9][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0},         {0, 0, 1},
                                {1, 0, 1}, {0, 1, 1}, {1, 1, 1}, {0.5f, 0.5f, 0.5f}};
@@ -144,7 +144,7 @@ TEST_F(MeshFile, AFaceThatNamesAVertexThatIsNotThereIsRefused) {
               HasSubstr("index.ply': a face names vertex 70000 of 4; expected"));
 }
 
-// 200 numbers are announced for an array of 24.
+// The accessor announces 200 numbers for an array of 24.
 TEST_F(MeshFile, AColladaAccessorThatLeavesItsArrayIsRefused) {
   std::string dae = box_mesh("Collada").bytes;
   dae.replace(dae.find("count=\"8\" stride"), 9, "count=\"67\"");

@@ -1,7 +1,7 @@
-// Oracle: whatever the bytes of a mesh file, a cell with it is refused with the file's name and a
-// reason, or its part lies within the limits that config/README.md states, the same each time that
-// it is read. The meshes are made here: boxes as programs export them. Seeds are fixed; a failure
-// prints its own.
+// Oracle: whatever the bytes of a mesh file, one of two results is allowed. A cell with it is
+// refused with the file's name and a reason. Otherwise its part lies within the limits stated in
+// config/README.md, and is the same each time it is read. The test makes the meshes itself: boxes
+// as programs export them. Seeds are fixed, and a failure prints its seed.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -21,8 +21,8 @@ namespace {
 
 class MeshMutation : public testing::TestWithParam<BoxMesh> {};
 
-// Each mutation takes a child process: 2 to 5 ms, 15 ms where assimp reads OBJ. All formats take
-// some seconds, as a crash can be seen in no other way.
+// Each mutation needs a child process: 2 to 5 ms, and 15 ms if assimp reads OBJ. All formats take
+// several seconds. A crash can be detected in no other way.
 std::uint32_t mutations_of(const BoxMesh& mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return mesh.extension == "obj" ? 10 : 50;

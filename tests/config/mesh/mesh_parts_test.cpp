@@ -26,7 +26,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 
-// A cell with an L of sheet bars, and the lines that reading it told.
+// A cell with an L of sheet bars, and the lines that its reader logged.
 class PartsOfMeshes : public testing::Test {
  protected:
   PartsOfMeshes() {
@@ -164,7 +164,7 @@ TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {
   EXPECT_THAT(told_, IsEmpty());
 }
 
-// clearanced and clearance-robot are started together on a new cell.
+// clearanced and clearance-robot are started at the same time on a new cell.
 TEST_F(PartsOfMeshes, AreMadeByOneProgramAtATime) {
   const Scene first = read();
   const auto made = only_file(folder_ / "clearance.parts");
@@ -222,7 +222,7 @@ TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
   EXPECT_THAT(told_, HasSubstr("raise max_parts (now 1) or tolerance in the cell\n"));
 }
 
-// More grains, far from each other, than a mesh may have parts.
+// More grains, far from each other, than the number of parts that a mesh may have.
 TriangleMesh dust() {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < 40; ++i) {

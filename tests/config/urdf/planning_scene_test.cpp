@@ -1,4 +1,4 @@
-// Planning scenes in MoveIt's text format, in both of its forms.
+// Planning scenes in both forms of MoveIt's text format.
 #include "config/urdf/planning_scene.hpp"
 
 #include <gmock/gmock.h>
@@ -81,7 +81,7 @@ TEST(PlanningScene, HasItsObjectsShapesAndPlaces) {
   EXPECT_TRUE(scene.notes.empty());
 }
 
-// Before 2020 objects had no pose and no subframes.
+// Before 2020, objects had no pose and no subframes.
 TEST(PlanningScene, MayBeOfTheOlderForm) {
   const PlanningScene scene = scene_from(
       "old\n* a\n1\nbox\n1 1 1\n1 2 3\n0 0 0 1\n0 0 0 0\n* b\n1\ncone\n0.5 1\n0 0 0\n0 0 0 1\n"
@@ -119,7 +119,7 @@ TEST(PlanningScene, FaultsAreNamedWithTheirLine) {
   EXPECT_THAT(fault_of("s\n* a\n1e300\n"), HasSubstr("3: found 1e+300; expected how many shapes"));
 }
 
-// A file that ends anywhere is refused, and does not crash.
+// A file that is cut off at any point is refused, and causes no crash.
 TEST(PlanningScene, CutOffAnywhereIsRefused) {
   const std::size_t whole = kKitchen.rfind('.');
   for (std::size_t length = 0; length < whole; ++length)
@@ -140,7 +140,7 @@ TEST(PlanningScene, IsAGroupOfFixedObjectsInACell) {
   EXPECT_TRUE(scene.objects[1].fixed);
   EXPECT_EQ(scene.objects[1].world_from_object.position, Vec3(1, 2, 0.6));
   EXPECT_EQ(scene.pairs.size(), 2u);
-  // The revision is also that of the file.
+  // The revision of the cell depends also on that of the file.
   std::ofstream(folder / "kitchen.scene", std::ios::app) << "\n";
   EXPECT_NE(scene.revision, scene_of(cell, folder / "cell.yaml").revision);
   std::ofstream(folder / "kitchen.scene") << "kitchen\n* a\n1\nboxes\n.\n";

@@ -44,7 +44,7 @@ const std::string kSrdf = R"(<robot name="little">
 </robot>
 )";
 
-// A package directory of its own for each test, gone afterwards.
+// A private package directory for each test, removed afterwards.
 class RobotCellFile : public testing::Test {
  protected:
   RobotCellFile() {
@@ -74,7 +74,7 @@ class RobotCellFile : public testing::Test {
 
   Scene scene() { return scene_of(cell().yaml, root_ / "cells" / "little.yaml"); }
 
-  // All faults, a line each.
+  // Returns all faults, one per line.
   std::string fault() {
     const auto result = robot_cell(options_);
     std::string lines;
@@ -103,7 +103,7 @@ TEST_F(RobotCellFile, EveryLinkWithShapesIsAnObjectInItsLinkFrame) {
 
 TEST_F(RobotCellFile, DisabledPairsAreAllowedWithTheirReasons) {
   const Scene scene = this->scene();
-  ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
+  ASSERT_EQ(scene.pairs.size(), 1u);  // foot with head
   EXPECT_EQ(scene.pairs[0].first, 0u);
   EXPECT_EQ(scene.pairs[0].second, 2u);
   EXPECT_THAT(cell().yaml, HasSubstr(R"(between: ["head", "mast"], reason: "Say \"never\"")"));
@@ -242,13 +242,13 @@ TEST_F(RobotCellFile, WithoutAnSrdfNeighboursAreLeftOutAndNamed) {
                           "no SRDF: neighbours are left out, and every other pair of links is "
                           "watched: foot - mast, mast - head"));
   const Scene scene = this->scene();
-  ASSERT_EQ(scene.pairs.size(), 1u);  // foot against head
+  ASSERT_EQ(scene.pairs.size(), 1u);  // foot with head
   EXPECT_EQ(scene.pairs[0].first, 0u);
   EXPECT_EQ(scene.pairs[0].second, 2u);
   EXPECT_THAT(cell().yaml, HasSubstr("reason: \"Adjacent in the URDF\""));
 }
 
-// The mast rotates in a bearing that has no shape of its own.
+// The mast rotates in a bearing that has no shape.
 TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   options_.srdf.clear();
   std::string text = kUrdf;
@@ -260,7 +260,8 @@ TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   EXPECT_THAT(cell().notes.back(), HasSubstr("watched: foot - mast, mast - head"));
 }
 
-// As in MoveIt: pairs disabled by default, less the enabled ones, and pairs disabled one by one.
+// The rules are MoveIt's: pairs disabled by default, without the enabled ones, and pairs disabled
+// individually.
 TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   write("little_description/urdf/little.srdf",
         "<robot name=\"little\">\n"
@@ -273,7 +274,7 @@ TEST_F(RobotCellFile, DefaultsOfAnSrdfHoldButForPairsThatItEnables) {
   EXPECT_EQ(scene.pairs[1].first, 1u);
   EXPECT_THAT(cell().yaml, HasSubstr("reason: \"disabled by default in the SRDF\""));
   EXPECT_THAT(cell().notes, testing::Contains(HasSubstr("1 pairs are disabled by default")));
-  // A pair that is disabled one by one stays so.
+  // A pair that is disabled individually stays disabled.
   write("little_description/urdf/little.srdf",
         "<robot name=\"little\">\n"
         "  <disable_default_collisions link=\"head\"/>\n"

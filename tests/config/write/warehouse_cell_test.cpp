@@ -45,7 +45,7 @@ TEST(WarehouseCell, NothingTouches) {
   for (const std::uint32_t objects : {100u, 400u}) {
     Cell cell = cell_of({.objects = objects});
     Scene& scene = cell.scene;
-    scene.budget = 1'000'000;  // everything, in every tick
+    scene.budget = 1'000'000;  // evaluates everything in every tick
     Monitor monitor(scene);
     for (int step = 0; step < 300; ++step) {
       const std::int64_t now = 1'000'000'000 + 100'000'000 * static_cast<std::int64_t>(step);

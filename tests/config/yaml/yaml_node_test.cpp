@@ -70,7 +70,8 @@ TEST(YamlNode, ASecondDocumentIsRefused) {
 
 TEST(YamlNode, WhatIsNotUtf8IsRefusedWhereItStands) {
   EXPECT_EQ(tree("name: \u00e9\u20ac\U0001F916\n").entries.size(), 1u);
-  // Latin-1, a character cut short, an overlong one, a surrogate, beyond Unicode.
+  // Latin-1, a truncated character, an overlong one, a surrogate, and a value above Unicode's
+  // range.
   for (const char* bytes : {"\xff", "\xe2\x82", "\xc0\xaf", "\xed\xa0\x80", "\xf4\x90\x80\x80"}) {
     const YamlFault found = fault("a: 1\nname: fl" + std::string(bytes) + "\n");
     EXPECT_EQ(found.line, 2);

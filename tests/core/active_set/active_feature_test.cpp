@@ -1,4 +1,5 @@
-// Where a body's point goes when rounding, or another pair's state, would have it leave the body.
+// Corrects a body's point where rounding, or the state of another pair, would move it out of the
+// body.
 #include "core/active_set/active_feature.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +19,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   const ConvexBody body = cube();
   ActiveFeature side(body, nullptr);
   side.place_inside(Vec3::Zero());
-  // On the plane of the facet that is said to block, a metre beside it.
+  // The point lies on the plane of the facet that is said to block, one metre beside the facet.
   advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
   ASSERT_EQ(side.feature(), FeatureKind::kFacet);
   EXPECT_EQ(side.facet().normal, Vec3::UnitY());

@@ -1,7 +1,7 @@
 // The alpha step: how far a point may move before a facet blocks it.
 //
-// Oracle: the ratio test over all half-spaces of the body (§3.3.1.3). The code looks at a feature's
-// own boundary alone, which has to come to the same.
+// Oracle: the ratio test over all half-spaces of the body (§3.3.1.3). The code examines only the
+// boundary of the current feature, which must give the same result.
 #include "core/active_set/alpha_step_length.hpp"
 
 #include <gtest/gtest.h>
@@ -94,7 +94,7 @@ TEST(AlphaStep, TakesTheMoveInFrameAAndTheBoundaryInTheBodysOwn) {
   EXPECT_EQ(step.blocking, facet_towards(body, Vec3::UnitX()));
 }
 
-// A move within the affine hull of the feature: others change nothing there.
+// The component of a move within the affine hull of the feature.
 Vec3 within_hull(const ActiveFeature& s, const Vec3& move) {
   if (s.feature() == FeatureKind::kInside) return move;
   if (s.feature() == FeatureKind::kFacet) {
@@ -103,8 +103,8 @@ Vec3 within_hull(const ActiveFeature& s, const Vec3& move) {
   return move.dot(s.edge().direction) * s.edge().direction;
 }
 
-// The largest part of the move, up to all of it, that leaves no half-space. Those that hold the
-// feature in their plane neither block nor are told from rounding.
+// The largest fraction of the move, at most one, that stays within all half-spaces. Half-spaces
+// whose plane contains the feature are left out: they do not block, and rounding hides them.
 double largest_part(const ActiveFeature& s, const Vec3& move) {
   double part = 1.0;
   for (const Facet& facet : s.body().facets) {

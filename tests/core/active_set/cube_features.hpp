@@ -1,4 +1,5 @@
-// The features of test::cube() by where they lie, and a body of a query that stands on one of them.
+// The features of test::cube() by their positions, and a body of a query with such a feature
+// active.
 #pragma once
 
 #include <stdexcept>
@@ -7,7 +8,7 @@
 
 namespace clearance::test {
 
-// The one whose outward normal this is.
+// The facet with this outward normal.
 [[nodiscard]] inline std::int32_t facet_towards(const ConvexBody& body, const Vec3& normal) {
   for (std::size_t i = 0; i < body.facets.size(); ++i) {
     if (body.facets[i].normal == normal) return static_cast<std::int32_t>(i);
@@ -15,7 +16,7 @@ namespace clearance::test {
   throw std::logic_error("no facet with this normal");
 }
 
-// The one around whose middle this point is.
+// The edge with this midpoint.
 [[nodiscard]] inline std::int32_t edge_around(const ConvexBody& body, const Vec3& middle) {
   for (std::size_t i = 0; i < body.edges.size(); ++i) {
     const Edge& edge = body.edges[i];
@@ -33,7 +34,7 @@ namespace clearance::test {
   throw std::logic_error("no vertex at this point");
 }
 
-// A body whose point is `own`, on the feature of that kind and index.
+// A body whose point in its local frame is `own`, on the feature of this kind and index.
 [[nodiscard]] inline ActiveFeature active(const ConvexBody& body, const RelativePose* pose,
                                           FeatureKind kind, std::int32_t index, const Vec3& own) {
   ActiveFeature side(body, pose);
@@ -41,8 +42,8 @@ namespace clearance::test {
   return side;
 }
 
-// A body's feature of that kind, number `which` of them or of those that repeat, at a point inside
-// of it.
+// A body's feature of this kind, at a point inside the feature. `which` is the index, modulo the
+// number of such features.
 [[nodiscard]] inline ActiveFeature active(const ConvexBody& body, const RelativePose* pose,
                                           FeatureKind kind, int which) {
   const auto index = [&](const auto& all) {

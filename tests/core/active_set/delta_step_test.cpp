@@ -1,7 +1,7 @@
-// The ten cases of Table 3.1, on unit cubes whose features have simple coordinates; and the laws of
-// all of them, on random polytopes.
+// The ten cases of Table 3.1 on unit cubes, whose features have simple coordinates. Further tests
+// check laws of all cases on random polytopes.
 //
-// A is test::cube() at the origin. B is another one, of which the pose moves every feature.
+// A is test::cube() at the origin. B is another such cube, whose pose moves every feature.
 #include "core/active_set/delta_step.hpp"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ void expect_near(const Vec3& found, const Vec3& wanted) {
 
 class DeltaStep : public testing::Test {
  protected:
-  // Frame A from frame B.
+  // Sets frame A from frame B.
   void place(const Pose& pose_of_b) { pose_ = relative_pose(Pose{}, pose_of_b); }
 
   [[nodiscard]] ActiveFeature vertex_of_a(const Vec3& position) const {
@@ -107,7 +107,7 @@ TEST_F(DeltaStep, GoesToTheCommonPerpendicularOfTwoCrossingEdges) {
   expect_near(d.b, {2.5, 0.5, 0.5});
 }
 
-// §3.4.2.1: many pairs are closest, and the smallest move is chosen.
+// §3.4.2.1: many pairs are closest, and the step chooses the one with the smallest move.
 TEST_F(DeltaStep, MovesTheTwoPointsHalfwayEachAlongParallelEdges) {
   place(at(3, 0, 0));
   const Delta d = delta(edge_of_a({0.5, 0.5, 0}, {0.5, 0.5, -0.25}),
@@ -118,7 +118,7 @@ TEST_F(DeltaStep, MovesTheTwoPointsHalfwayEachAlongParallelEdges) {
 
 TEST_F(DeltaStep, GoesToWhereTheLineOfAnEdgeMeetsThePlaneOfAFacet) {
   place({{3, 0, 0}, turned(Vec3::UnitZ(), std::atan2(3.0, 4.0))});
-  // A's edge lies along x; B's facet has the normal (-0.8, -0.6, 0) and holds (2.6, -0.3, 0).
+  // A's edge lies along x. B's facet has the normal (-0.8, -0.6, 0) and contains (2.6, -0.3, 0).
   const Delta d =
       delta(edge_of_a({0, 0.5, 0.5}, {0.1, 0.5, 0.5}), facet_of_b({-1, 0, 0}, {-0.5, 0.2, 0.3}));
   expect_near(d.a, {2.0, 0.5, 0.5});
@@ -140,7 +140,7 @@ TEST_F(DeltaStep, MeetsAtTheFootOnTheLineOfAnEdgeWhereTheOtherBodyHasNoActiveFac
   expect_near(d.b, {0.5, 0.5, 0.3});
 }
 
-// Both points go to the line in which the planes meet; there, halfway between their feet.
+// Both points move to the intersection line of the planes, halfway between their feet.
 TEST_F(DeltaStep, GoesToTheLineInWhichTwoPlanesMeet) {
   place(at(3, 0, 2));
   // A's plane is z = 0.5, B's is x = 2.5.
@@ -172,7 +172,7 @@ TEST_F(DeltaStep, MeetsHalfwayWhereNeitherBodyHasAnActiveFacet) {
   expect_near(d.b, {1.6, 0.0, 0.2});
 }
 
-// Directions that span the affine hull of a feature, in frame A.
+// Directions in frame A that span the affine hull of a feature.
 std::vector<Vec3> directions_within(const ActiveFeature& s) {
   switch (s.feature()) {
     case FeatureKind::kVertex:
@@ -188,14 +188,14 @@ std::vector<Vec3> directions_within(const ActiveFeature& s) {
   }
 }
 
-// What of a move leads off the affine hull.
+// The length of a move's component normal to the affine hull.
 double off_the_hull(const ActiveFeature& s, Vec3 move) {
   for (const Vec3& direction : directions_within(s)) move -= move.dot(direction) * direction;
   return move.norm();
 }
 
-// The KKT conditions of two affine hulls: the points lie on them, and what is between them is at
-// right angles to both. The angles of these pairs leave 1e-8 of a metre to rounding.
+// The KKT conditions of two affine hulls: the points lie on them, and the vector between the points
+// is normal to both. For the angles of these pairs, rounding accounts for up to 1e-8 m.
 TEST_F(DeltaStep, EndsOnBothHullsAtRightAnglesToThem) {
   Random random(29);
   for (int k = 0; k < 400; ++k) {
@@ -227,7 +227,7 @@ TEST_F(DeltaStep, IsItsOwnMirrorImageWhereTheBodiesChangePlaces) {
     const RelativePose pose = relative_pose(Pose{}, random.pose(3.0));
     for (const FeatureKind first : kKinds) {
       for (const FeatureKind second : kKinds) {
-        if (first == second) continue;  // then the order decides the roundings
+        if (first == second) continue;  // the roundings then depend on the order
         const ActiveFeature p = active(body, nullptr, first, random.integer(0, 99));
         const ActiveFeature q = active(body, &pose, second, random.integer(0, 99));
         const Delta d = delta(p, q), mirrored = delta(q, p);

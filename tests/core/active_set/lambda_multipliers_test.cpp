@@ -1,5 +1,4 @@
-// The lambda step: the release that brings a body closer fastest, and what it proves where none
-// does.
+// The lambda step: the release that brings a body closer fastest, and the proof if no release does.
 #include "core/active_set/lambda_multipliers.hpp"
 
 #include <gtest/gtest.h>
@@ -44,10 +43,11 @@ TEST(Lambda, OfAFacetIsTheDerivativeAgainstItsNormal) {
   EXPECT_EQ(ahead.derivative, -3.0);
 }
 
-// (3.4.24): of the two facets that meet in an edge the one along which the body comes closer.
+// (3.4.24): of the two facets that meet in an edge, the step keeps the one along which the body
+// comes closer.
 TEST(Lambda, OfAnEdgeKeepsTheFacetAlongWhichTheBodyComesCloser) {
   const ConvexBody body = cube();
-  // Between the facets towards +x and +y.
+  // The edge between the facets towards +x and +y.
   const ActiveFeature side = active(body, nullptr, FeatureKind::kEdge,
                                     edge_around(body, {0.5, 0.5, 0.0}), {0.5, 0.5, 0.0});
   const Lambda along_x = lambda(side, {1.0, -2.0, 5.0});
@@ -60,7 +60,7 @@ TEST(Lambda, OfAnEdgeKeepsTheFacetAlongWhichTheBodyComesCloser) {
   EXPECT_EQ(lambda(side, {1.0, 2.0, 0.0}).derivative, -1.0);
 }
 
-// (3.4.25), over all edges of the vertex.
+// (3.4.25), evaluated over all edges of the vertex.
 TEST(Lambda, OfAVertexKeepsTheSteepestEdge) {
   const ConvexBody body = cube();
   const Vec3 corner(0.5, 0.5, 0.5);
@@ -92,8 +92,8 @@ TEST(Lambda, OfBodiesWithoutFacetsReleasesNothingAtTheirLastFeature) {
   }
 }
 
-// A small step along the feature that remains gains what the derivative says: the definition of a
-// directional derivative, with the other point far away.
+// A small step along the remaining feature gains what the derivative predicts. This is the
+// definition of a directional derivative, with the other point far away.
 TEST(Lambda, IsTheGainPerMetreOfTheReleaseThatItNames) {
   Random random(32);
   for (int k = 0; k < 500; ++k) {
@@ -119,8 +119,8 @@ TEST(Lambda, IsTheGainPerMetreOfTheReleaseThatItNames) {
   }
 }
 
-// Why a negative derivative ends the iteration: nothing of the body lies farther along the
-// direction than the feature does.
+// A negative derivative ends the iteration, because no point of the body lies farther along the
+// direction than the feature.
 TEST(Lambda, ThatIsNegativeProvesTheFeatureToBeTheSupportAlongTheDirection) {
   Random random(33);
   int proved = 0;

@@ -1,4 +1,4 @@
-// The batch against single queries: nothing but speed may differ, at any vector width.
+// The batch compared with single queries: at any vector width, the two may differ only in speed.
 #include "core/batch.hpp"
 
 #include <gtest/gtest.h>
@@ -29,11 +29,11 @@ std::string text(const DistanceResult& r) {
   return out.str();
 }
 
-// Bodies on their way, and which pairs are watched.
+// Bodies in motion, and the pairs that are watched.
 struct Motion {
   std::vector<ConvexBody> bodies;
   std::vector<BodyPair> pairs;
-  std::vector<std::vector<Pose>> poses;  // [step][body]
+  std::vector<std::vector<Pose>> poses;  // indexed by [step][body]
 
   [[nodiscard]] std::vector<const ConvexBody*> shapes() const {
     std::vector<const ConvexBody*> all;
@@ -51,7 +51,7 @@ struct Difference {
   std::size_t answers = 0, single_queries = 0;
 };
 
-// Follows a motion with a batch and with a tracked query a pair; all answers must have the same
+// Follows a motion with a batch and with a tracked query per pair. All answers must have the same
 // bits.
 Difference follow(const Motion& motion, const std::string& what) {
   const auto shapes = motion.shapes();
@@ -83,8 +83,8 @@ Pose moved(const Pose& pose, Random& random, double step, double angle) {
   return {pose.position + random.in_box(step), (turn * pose.orientation).normalized()};
 }
 
-// Bodies of every kind, some of them along the axes or along each other for a while; now and then
-// one jumps.
+// Bodies of every kind. Some of them are parallel to the axes or to each other for a while, and
+// occasionally one jumps.
 Motion crowd(std::uint64_t seed) {
   Random random(seed);
   Motion motion;
@@ -112,7 +112,7 @@ Motion crowd(std::uint64_t seed) {
       }
     }
     motion.poses.push_back(poses);
-    // For a few rounds something is nowhere.
+    // For a few rounds one body has no valid position.
     if (step % 8 >= 5) {
       motion.poses.back()[3].position.setConstant(std::numeric_limits<double>::quiet_NaN());
     }
@@ -125,13 +125,13 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesInACrowd) {
     const OnlyWith only(target);
     for (std::uint64_t seed = 0; seed < 3; ++seed) {
       const Difference seen = follow(crowd(seed), "crowd " + std::to_string(seed));
-      // What is claimed here is about vectors, so most answers must have come from them.
+      // The claim concerns vector code, so most answers must come from it.
       EXPECT_LT(2 * seen.single_queries, seen.answers) << DistanceBatch::instruction_set();
     }
   }
 }
 
-// All motions of one family at once, each with a pair of its own.
+// All motions of one family at once, each with its own pair of bodies.
 Motion motions_of(const hard::MotionFamily& family) {
   Motion motion;
   for (std::uint64_t seed = 0; seed < 11; ++seed) {
@@ -183,7 +183,7 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOnHardCases) {
   }
 }
 
-// A radius of zero adds nothing: not to a zero's sign either.
+// A radius of zero must not change anything, not even a zero's sign.
 TEST(DistanceBatch, KeepsTheSignsOfZeros) {
   Motion motion;
   motion.bodies.push_back(test::made({{}, {Vec3(-1.0, -0.0, -0.0), Vec3::UnitX()}, 0.0}));
@@ -196,8 +196,8 @@ TEST(DistanceBatch, KeepsTheSignsOfZeros) {
   }
 }
 
-// Boxes two apart, turned so that the given feature of each is closest: 0 a corner, 1 an edge, 2 a
-// face.
+// Boxes at a distance of two, rotated so that the given feature of each is closest (0: vertex, 1:
+// edge, 2: face).
 Pose turned_to(int feature, double x) {
   const Vec3 closest[] = {{1.0, 1.0, 1.0}, {1.0, 1.0, 0.02}, {1.0, 0.03, 0.02}};
   const Vec3 to = x < 0.0 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
@@ -206,7 +206,7 @@ Pose turned_to(int feature, double x) {
   return {Vec3(x, 0.0, 0.0), about * turn};
 }
 
-// All pairs leave the blocks of one kind for those of another, again and again.
+// All pairs move from the blocks of one kind of features to those of another, repeatedly.
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesWhenAllFeaturesChangeAtOnce) {
   Motion motion;
   for (std::uint32_t i = 0; i < 150; ++i) {
@@ -245,8 +245,9 @@ TEST(DistanceBatch, AsksNoSingleQueryWhileFeaturesStay) {
   }
 }
 
-// A cube on edge over another one's face and over a floor, all of them turned anyhow: tilted by
-// rounding, and as far as the sides of the face are concerned, one way and the other.
+// A cube stands on edge above another cube's face and above a floor, all of them rotated
+// arbitrarily. Rounding tilts the edge against the face, in either direction as seen from the sides
+// of the face.
 TEST(DistanceBatch, JudgesEdgesThatSlideOverFacesInLanes) {
   Motion motion;
   motion.bodies = {test::cube(), test::cube(), test::half_space(Vec3::UnitX(), -1.0)};
@@ -267,7 +268,7 @@ TEST(DistanceBatch, JudgesEdgesThatSlideOverFacesInLanes) {
   }
 }
 
-// Closest by corner and edge in turn; then still.
+// The closest features are vertex and edge alternately; then the pair rests.
 TEST(DistanceBatch, AsksARestlessPairSinglyUntilItKeepsItsFeatures) {
   const ConvexBody cube = test::cube();
   const ConvexBody* const bodies[] = {&cube, &cube};
@@ -302,10 +303,10 @@ TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
   }
 }
 
-// From far away rounding puts witness points off their facets, and the way back to a facet from
-// there is rounded as well: 1e-8 m beside boxes that have come back.
+// For distant bodies, rounding moves witness points off their facets, and the projection back to
+// the facet is rounded as well. The error is 1e-8 m when the boxes have returned.
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOfWhatComesBackFromFarAway) {
-  Mat3 turn;  // thrice a rotation, exactly
+  Mat3 turn;  // exactly three times a rotation
   turn << 2.0, -1.0, 2.0, 2.0, 2.0, -1.0, -1.0, 2.0, 2.0;
   Motion motion;
   for (std::uint32_t i = 0; i < 2; ++i) {
@@ -355,7 +356,7 @@ TEST(DistanceBatch, OfNoPairsGivesNoResults) {
   EXPECT_TRUE(batch.evaluate({}).empty());
 }
 
-// Sanitizer builds leave some instruction sets out (core/CMakeLists.txt).
+// Sanitizer builds omit some instruction sets (core/CMakeLists.txt).
 TEST(DistanceBatch, RunsOneLaneAndWiderOnesHere) {
   std::set<std::string> names;
   for (const std::int64_t target : vector_widths()) {

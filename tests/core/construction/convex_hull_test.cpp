@@ -18,7 +18,8 @@ std::vector<Integer4> homogeneous(const std::vector<Vec3>& points) {
   return result;
 }
 
-// Every point is below every face; every vertex is a point of the face; edges pair up; Euler.
+// Every point is below every face, and every vertex of a face is a point. Edges come in pairs, and
+// Euler's formula holds.
 void expect_hull(const std::vector<Integer4>& points) {
   const PointSet set(points);
   const std::vector<HullFace> faces = hull_faces(set, convex_hull(set));
@@ -44,7 +45,7 @@ void expect_hull(const std::vector<Integer4>& points) {
                  other.neighbor[j] == static_cast<int>(f));
       }
       EXPECT_TRUE(found) << "the neighbour does not share the edge";
-      // Strictly below the neighbour: coplanar faces were merged.
+      // Some vertex is strictly below the neighbouring face: coplanar faces have been merged.
       EXPECT_TRUE(std::any_of(face.vertex.begin(), face.vertex.end(), [&](int vertex) {
         return sgn(dot(other.plane, points[static_cast<std::size_t>(vertex)])) < 0;
       }));

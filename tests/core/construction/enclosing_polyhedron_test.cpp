@@ -21,8 +21,8 @@ using test::boxes_apart;
 using test::Group;
 using test::random_group;
 
-// How far a model extends beyond its only body: the distance from a body is convex, so a vertex is
-// the farthest point.
+// The largest distance of the model's points from the only body in it. The distance from a body is
+// convex, so its maximum is at a vertex.
 double excess(const ConvexBody& model, const Group& group) {
   const ConvexBody probe = test::made(point(Vec3::Zero(), 0.0));
   const PlacedShape& body = group.placed.front();
@@ -41,7 +41,7 @@ TEST(EnclosingPolyhedron, HoldsEveryPointOfTheBodiesExactly) {
     const auto around = enclosing_polyhedron(group.placed);
     ASSERT_TRUE(around) << "round " << round;
     for (const Facet& facet : around->facets) {
-      // Beyond the facet, and what rounding may have moved it, there is nothing of the bodies.
+      // No part of the bodies lies outside the facet by more than its rounding error.
       const double moved = around->position_error + 0x1p-50 * around->bounding_radius;
       const Body beyond{.rows = {{-facet.normal, -(facet.offset + moved)}}, .points = {}};
       for (std::size_t i = 0; i < group.bodies.size(); ++i) {
@@ -72,7 +72,7 @@ TEST(EnclosingPolyhedron, OfABodyWithFewFacetsIsThatBody) {
   group.add(hard::box({0.3, 0.2, 0.1}), {Vec3(1, 2, 3), Eigen::Quaterniond(0.8, 0.2, 0.4, 0.4)});
   const auto around = enclosing_polyhedron(group.placed);
   ASSERT_TRUE(around);
-  EXPECT_LT(excess(*around, group), 2e-3 * 4.0);  // the tolerance, of 4 m
+  EXPECT_LT(excess(*around, group), 2e-3 * 4.0);  // the tolerance, relative to 4 m
   const auto tight = enclosing_polyhedron(group.placed, {.facets = 32, .tolerance = 1e-12});
   ASSERT_TRUE(tight);
   EXPECT_LT(excess(*tight, group), 1e-11);

@@ -102,7 +102,8 @@ TEST(ExactShapes, ClustersNearOnePointKeepTheirExactHull) {
   for (int round = 0; round < 20; ++round) {
     std::vector<Vec3> points;
     for (int i = 0; i < 12; ++i) {
-      // Within 1e-10 of (1, 1, 1): determinants in doubles have hardly a correct digit.
+      // All points are within 1e-10 of (1, 1, 1): determinants in doubles have hardly a correct
+      // digit.
       points.push_back(Vec3::Ones() + 0x1p-36 * Vec3(random.integer(-4, 4), random.integer(-4, 4),
                                                      random.integer(-4, 4)));
     }
@@ -148,8 +149,8 @@ TEST(ExactShapes, ScalingRepeatingAndReorderingRowsChangesNothing) {
 }
 
 TEST(ExactShapes, ShortEdgesKeepAccurateDirections) {
-  // Four planes almost through (1, 1, 1): the top edge is 2^-56 long, below the spacing of doubles
-  // at its ends, and runs along x all the same.
+  // Four planes almost through (1, 1, 1). The top edge is 2^-56 long, below the spacing of doubles
+  // at its ends, and must still run along x.
   const std::vector<HalfSpace> rows = {
       {{0, 1, 1}, 2}, {{0, -1, 1}, 0}, {{1, 0, 1}, 2}, {{-1, 0, 1}, 0x1p-56}, {{0, 0, -1}, 1}};
   const ConvexBody body = made(polyhedron_from_halfspaces(rows));

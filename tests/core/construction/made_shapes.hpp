@@ -1,5 +1,5 @@
-// Shapes that are refused, or made, and held against an exact enumeration of all triples of rows
-// or points.
+// Shapes that are made or refused, compared with an exact enumeration of all triples of rows or
+// points.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -39,10 +39,11 @@ inline bool points_along(const Vec3& direction, const oracle::IntegerVec& ray, b
 
 using oracle::Rational;
 
-// x |x| grows with x and turns square roots into fractions.
+// The function x |x| increases with x, and turns square roots into fractions.
 inline Rational signed_square(const Rational& x) { return x * abs(x); }
 
-// Is the square root with the sign of `square` within `error` of `rounded`?
+// Returns true if the square root of |square|, with the sign of `square`, is within `error` of
+// `rounded`.
 inline bool is_root_within(double rounded, double error, const Rational& square) {
   return signed_square(Rational(rounded) - Rational(error)) <= square &&
          square <= signed_square(Rational(rounded) + Rational(error));
@@ -54,7 +55,7 @@ inline Rational squared_distance(const oracle::RationalVec& a, const oracle::Rat
   return sum;
 }
 
-// position_error bounds what rounding did to anchors, offsets and edge ends.
+// position_error bounds the rounding of vertices, offsets and edge ends.
 inline void expect_error_is_bounded(const ConvexBody& body, const oracle::Enumeration& truth) {
   const Rational allowed = Rational(body.position_error) * Rational(body.position_error);
   std::vector<oracle::RationalVec> exact;
@@ -84,7 +85,7 @@ inline void expect_error_is_bounded(const ConvexBody& body, const oracle::Enumer
   }
 }
 
-// Same vertices (each rounded once), same rays, as many facets.
+// The body has the same vertices (each rounded once), the same rays and the same number of facets.
 inline void expect_as_enumerated(const ConvexBody& body, std::span<const HalfSpace> rows) {
   const oracle::Enumeration truth = oracle::enumerate(rows);
   EXPECT_EQ(body.vertices.size(), truth.vertices.size());

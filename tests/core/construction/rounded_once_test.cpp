@@ -57,7 +57,7 @@ TEST(ExactRounding, QuotientByARootIsTheNearestDouble) {
     const Integer square = abs(random_integer(random, 300)) + 1;
     const double value = nearest_over_root(numerator, square).value;
     EXPECT_EQ(nearest_over_root(-numerator, square).value, -value);
-    // Squares of the midpoints to the neighbours bracket numerator^2 / square.
+    // The squares of the midpoints to the neighbouring doubles enclose numerator^2 / square.
     const mpq_class low = (mpq_class(value) + mpq_class(std::nextafter(value, 0.0))) / 2;
     const mpq_class high = (mpq_class(value) + mpq_class(std::nextafter(value, HUGE_VAL))) / 2;
     mpq_class exact(numerator * numerator, square);
@@ -78,7 +78,7 @@ TEST(ExactRounding, UnitVectorsAreWithinAnUlpOfTheirDirection) {
                         random_integer(random, bits)};
     if (is_zero(v)) continue;
     const Vec3 u = unit(v);
-    // |u x v| <= 2^-53 |v| and |u| within 2^-53 of 1, as rationals.
+    // u x v| <= 2^-53 |v| and |u| is within 2^-53 of 1, evaluated in rationals.
     mpq_class squared_error = 0, squared_length = 0, squared_unit = 0;
     for (int i = 0; i < 3; ++i) {
       const int j = (i + 1) % 3;

@@ -134,7 +134,7 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
   EXPECT_THAT(refusal(prism(triangle, 1, 1)), HasSubstr("low end"));
 }
 
-// Middles are quotients of moments, products of four lengths.
+// The centre is a quotient of moments, which are products of four lengths.
 TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
   Random random(1);
   for (int i = 0; i < 20; ++i) {

@@ -11,7 +11,7 @@
 namespace clearance::exact {
 namespace {
 
-// Sign of n.x - d at a homogeneous point.
+// The sign of n.x - d at a homogeneous point.
 int height(const HalfSpace& row, const Integer4& point) {
   mpq_class sum = -mpq_class(row.offset) * mpq_class(point[3]);
   for (int i = 0; i < 3; ++i)
@@ -25,7 +25,8 @@ std::vector<HalfSpace> chosen(const std::vector<HalfSpace>& rows, const std::vec
   return result;
 }
 
-// A point is strictly inside every row; a proof still holds on its own and needs each of its rows.
+// An interior point is strictly inside every row. A proof of an empty interior must hold with its
+// rows alone, and must need each of them.
 void expect_right(const std::vector<HalfSpace>& rows, int& inside, int& none) {
   const auto answer = interior_point(rows);
   if (const Integer4* point = std::get_if<Integer4>(&answer)) {

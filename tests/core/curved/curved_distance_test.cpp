@@ -1,6 +1,6 @@
-// Distances of curved bodies against closed forms, against published figures and against the
-// polyhedral query, which proves its answers by other means; and curved bodies where users meet
-// them: states, options, batches, the models around bodies.
+// Distances of curved bodies compared with closed forms, with published figures, and with the
+// polyhedral query, which proves its answers differently. Other tests cover the interfaces that
+// users meet: states, options, batches and models around bodies.
 #include "core/curved/curved_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -40,7 +40,7 @@ Pose turned_at(double x, double y, double z, const Vec3& axis, double angle) {
   return {{x, y, z}, test::turned(axis, angle)};
 }
 
-// The bounds hold the exact answer and are as near to each other as promised.
+// The bounds contain the exact answer and are as close to each other as promised.
 void expect_answer(const DistanceResult& r, double exact, double size, double rounding = 0.0) {
   EXPECT_LE(r.lower, exact + rounding);
   EXPECT_GE(r.upper, exact - rounding);
@@ -49,7 +49,7 @@ void expect_answer(const DistanceResult& r, double exact, double size, double ro
 }
 
 TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
-  // (5.2.2) gives the points to 1e-11; the distance is 1.29549481993874080913966969921.
+  // (5.2.2) gives the points to 1e-11. The distance is 1.29549481993874080913966969921.
   const ConvexBody a = made(ellipsoid({1, 2, 5})), b = made(ellipsoid({5, 2, 1}));
   const DistanceResult r = answer(a, b, at(0, 0, 0), at(4, 4, 4));
   expect_answer(r, 1.29549481993874080914, 10.0 + 6.9);
@@ -73,10 +73,12 @@ TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
 
 TEST(CurvedDistance, OfCylindersIsThatOfCapsSidesAndRims) {
   const ConvexBody a = made(cylinder(1.0, 2.0)), b = made(cylinder(0.5, 1.0));
-  expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);     // coaxial
-  expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);  // caps half over each other
-  expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);   // side by side
-  expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0, 15.0);  // rim to rim, 3 and 4
+  expect_answer(answer(a, b, at(0, 0, 0), at(0, 0, 4)), 1.0, 8.0);  // coaxial
+  // half of each cap over the other
+  expect_answer(answer(a, b, at(0, 0, 0), at(1.25, 0, 4)), 1.0, 8.0);
+  expect_answer(answer(a, b, at(0, 0, 0), at(3, 0, 0.5)), 1.5, 8.0);  // side by side
+  // rim to rim, offsets 3 m and 4 m
+  expect_answer(answer(a, b, at(0, 0, 0), at(4.5, 0, 7)), 5.0, 15.0);
   const Pose crossed = turned_at(3, 0, 0, Vec3::UnitX(), kHalfTurn / 2);
   expect_answer(answer(a, b, at(0, 0, 0), crossed), 1.5, 8.0, 1e-16);
 }
@@ -85,7 +87,7 @@ TEST(CurvedDistance, OfConesIsThatOfApexBaseAndSide) {
   const ConvexBody cone_a = made(cone(1.0, 1.0)), sphere = made(ellipsoid({1, 1, 1}));
   expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, 4)), 2.0, 8.0);
   expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(0, 0, -4)), 2.0, 8.0);
-  // The side leads from (1, -1) to (0, 1); its outward normal is (2, 1) / sqrt 5.
+  // The side runs from (1, -1) to (0, 1). Its outward normal is (2, 1) / sqrt 5.
   const double side = (2.0 * 3.0 + 1.0 * 1.5 - 1.0) / std::sqrt(5.0) - 1.0;
   expect_answer(answer(cone_a, sphere, at(0, 0, 0), at(3, 0, 1.5)), side, 8.0);
 }
@@ -118,7 +120,7 @@ TEST(CurvedDistance, OfDiscsAndNeedlesIsRightAlongTheirAxes) {
 
 TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
   const ConvexBody a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
-  // Sideways, 1.5 - 1 = 0.5 is shorter than lengthwise, 5.
+  // The sideways translation, 1.5 - 1 = 0.5, is shorter than the lengthwise one, 5.
   expect_answer(answer(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);
   const DistanceResult r = answer(a, b, at(0, 0, 0), at(0, 0, 4.75));
   expect_answer(r, -0.25, 10.0);
@@ -172,7 +174,7 @@ TEST(CurvedDistance, OfABadPoseIsUnknown) {
   EXPECT_EQ(r.upper, kInfinity);
 }
 
-// One of every kind.
+// One body of every kind.
 std::vector<ConvexBody> every_kind() {
   const std::array<Vec3, 5> hull{Vec3(0, 0, 0.4), Vec3(0.3, 0, 0), Vec3(-0.2, 0.3, 0),
                                  Vec3(-0.2, -0.3, 0), Vec3(0, 0, -0.3)};
@@ -295,7 +297,7 @@ TEST(CurvedBodies, AreNotAskedHowDeepTheyOverlapUnlessSomebodyAsks) {
   EXPECT_LE(s.lower, r.upper);
 }
 
-// Against a box that is as long as doubles allow to be sure of.
+// The unbounded bodies are compared with a box that is as long as doubles safely allow.
 TEST(CurvedBodies, MeetUnboundedBodies) {
   const std::array<HalfSpace, 2> wedge_rows{HalfSpace{{1, 0, 0}, 0}, HalfSpace{{0, 1, 0}, 0}};
   const std::array<HalfSpace, 2> slab_rows{HalfSpace{{0, 0, 1}, 1}, HalfSpace{{0, 0, -1}, 1}};
@@ -311,12 +313,12 @@ TEST(CurvedBodies, MeetUnboundedBodies) {
     EXPECT_GE(r.upper, exact - 1e-15);
     EXPECT_NE(r.status, DistanceStatus::kIterationLimit);
   };
-  expect(cold(wedge, ball, at(4, 3, 7)), 4.0);   // edge
-  expect(cold(wedge, ball, at(-4, 3, 7)), 2.0);  // side
+  expect(cold(wedge, ball, at(4, 3, 7)), 4.0);   // edge is closest
+  expect(cold(wedge, ball, at(-4, 3, 7)), 2.0);  // side is closest
   expect(cold(wedge, ball, at(-5, 0.5, -7)), -0.5);
   expect(cold(slab, ball, at(5, 6, 4)), 2.0);
   expect(cold(slab, ball, at(5, 6, 0.5)), -1.5);
-  expect(cold(corner, ball, at(0, 0, 5)), 4.0);  // apex
+  expect(cold(corner, ball, at(0, 0, 5)), 4.0);  // apex is closest
   expect(cold(ball, slab, at(5, 6, 4)), 2.0);
   const ConvexBody rod = made(cylinder(0.5, 2.0));
   expect(cold(wedge, rod, at(4, 3, 0)), 4.5);

@@ -1,5 +1,5 @@
-// Curved bodies of every hard family. Oracle: 50 digits and the ellipsoid method, of
-// tests/shared/curved_oracle.hpp; and laws between answers.
+// Curved bodies of every hard family. Oracle: the ellipsoid method in 50 digits
+// (tests/shared/curved_oracle.hpp). Laws relate the answers to each other.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -111,8 +111,8 @@ TEST_P(CurvedFamilies, TouchWhenMovedByTheDistance) {
   for_each(kLawfulCases, [](const AskedCase& e, Random&) {
     RelativePose pose = relative_pose(e.asked.pose_a, e.asked.pose_b);
     const DistanceResult r = test::cold(e.a, e.b, pose);
-    // Closest points come to lie in one another. Overlapping bodies move apart, along a direction
-    // that proves that they are.
+    // The translation makes the closest points coincide. Overlapping bodies are separated along a
+    // direction that proves the separation.
     pose.translation -= r.lower > 0.0 ? Vec3(r.point_on_b - r.point_on_a) : r.distance * r.normal;
     const DistanceResult s = test::cold(e.a, e.b, pose);
     EXPECT_GE(s.upper, -1e-13 * e.size());
@@ -135,8 +135,8 @@ TEST_P(CurvedFamilies, AreNearerByARadiusAroundOne) {
   });
 }
 
-// Of a body around a point of it, as it shrinks to the point: never nearer than the whole body, and
-// in the end as far as the point.
+// A body shrinks to one of its points. Its distance never falls below that of the whole body, and
+// finally equals that of the point.
 TEST_P(CurvedFamilies, AreAsFarAsAPointInTheEndWhenTheyShrinkToIt) {
   for_each(kLawfulCases / 4, [](const AskedCase& e, Random&) {
     if (!e.asked.b.points.empty()) return;
@@ -151,7 +151,8 @@ TEST_P(CurvedFamilies, AreAsFarAsAPointInTheEndWhenTheyShrinkToIt) {
         disc = {scale * disc.height, scale * disc.radius};
       }
       small.b.radius *= scale;
-      // Around the origin, which is within the body: of it, the shrunk one is a part.
+      // The body shrinks around its origin, which lies inside it. The smaller body is therefore a
+      // part of the larger one.
       const AskedCase shrunk(small);
       const DistanceResult s = shrunk.cold();
       EXPECT_GE(s.upper, before);

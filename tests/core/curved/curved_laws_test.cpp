@@ -1,4 +1,4 @@
-// What must hold between answers about curved bodies, whatever they are.
+// Laws that must hold between answers about any curved bodies.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +26,7 @@ struct Example {
   }
 };
 
-// Lengths times `scale`.
-// Curved, or a box.
+// A random curved body or box, with all lengths multiplied by `scale`.
 ConvexBody body_of(Random& random, double scale) {
   const auto length = [&] { return scale * random.log_uniform(0.05, 1.0); };
   const double x = length(), y = length(), z = length();

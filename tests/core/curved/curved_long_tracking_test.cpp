@@ -1,5 +1,5 @@
-// One tracking state of curved bodies carried through a million steps. Oracle: 50 digits, every so
-// often.
+// One tracking state of curved bodies, carried through a million steps. Oracle: 50 digits, at
+// regular intervals.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -29,14 +29,15 @@ oracle::CurvedBody long_cone(double low, double high) {
   return body;
 }
 
-// Around A in a spiral, B turning, from 0.7 m to 2 m from middle to middle.
+// B moves around A in a spiral and rotates. The distance between the centres is 0.7 m to 2 m.
 std::pair<Pose, Pose> spiral(double t) {
   const double far = 1.35 + 0.65 * std::cos(0.0171 * t);
   const Vec3 way(std::cos(t), std::sin(t) * std::cos(0.37 * t), std::sin(t) * std::sin(0.37 * t));
   return {Pose{}, {far * way, test::turned({0.6, 0.0, 0.8}, 1.22 * t)}};
 }
 
-// Caps 1 mm to 0.4 m apart, as parallel as quaternions can say; both tumble together.
+// Two caps at a distance of 1 mm to 0.4 m, as parallel as quaternions can represent. Both bodies
+// tumble together.
 std::pair<Pose, Pose> sliding_caps(double t) {
   const Eigen::Quaterniond world = test::turned({1.0, 2.0, 0.5}, 0.11 * t);
   const Vec3 over(0.3 * std::sin(0.7 * t), 0.2 * std::sin(1.1 * t),

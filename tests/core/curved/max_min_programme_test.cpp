@@ -1,5 +1,5 @@
-// The max-min programme of a step. Oracles: the equations of Karush, Kuhn and Tucker solved for
-// every subset of the functions; and that no other displacement is better.
+// The max-min programme of a step. Oracles: the Karush-Kuhn-Tucker equations solved for every
+// subset of the functions, and a check that no other displacement is better.
 #include "core/curved/max_min_programme.hpp"
 
 #include <gtest/gtest.h>
@@ -23,8 +23,9 @@ double least_at(const Functions& f, std::size_t count, const PlaneMatrix& q, con
   return least;
 }
 
-// Of a subset: Q s = sum w_i slope_i, sum w_i = 1, and value_i + slope_i.s is one number. The least
-// of the functions there, if no weight is negative.
+// Solves the equations of a subset: Q s = sum w_i slope_i, sum w_i = 1, and value_i + slope_i.s
+// equal for all i. The result is the least of all functions at s, provided that no weight is
+// negative.
 double best_of_subset(const Functions& f, const std::vector<std::size_t>& subset, std::size_t count,
                       const PlaneMatrix& q) {
   const auto n = static_cast<Eigen::Index>(subset.size());

@@ -1,10 +1,11 @@
-// kUlpsOfA, kUlpsOfB and kUlpsOfOffset against the worst that all roundings of a curved query can
-// do at once.
+// kUlpsOfA, kUlpsOfB and kUlpsOfOffset compared with the worst combined effect of all roundings of
+// a curved query.
 //
-// Oracle: the straight-line code of the certificate of Newton's method, and of the bounds of the
-// search, in numbers that count their roundings (tests/core/model/counted.hpp). The doubles of the
-// former are those of the query, so it is the same code. A random walk uphill looks for the worst
-// poses. The pose's own errors are counted in tests/core/model.
+// Oracle: the straight-line code of the certificate of Newton's method and of the bounds of the
+// search, in numbers that count their roundings (tests/core/model/counted.hpp). In the certificate,
+// the resulting doubles equal those of the query, which shows that the code is the same. A random
+// hill climb searches for the worst poses. The errors of the pose itself are counted in
+// tests/core/model.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -44,7 +45,7 @@ Counted dot(const Counted3& a, const Counted3& b) {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 Counted norm(const Counted3& a) { return sqrt(dot(a, a)); }
-// The matrix's own error is counted elsewhere.
+// The error of the matrix is counted elsewhere.
 Counted3 product(const Mat3& r, const Counted3& v) {
   Counted3 out;
   for (int i = 0; i < 3; ++i) {
@@ -62,7 +63,7 @@ struct Query {
   RelativePose pose;
 };
 
-// One round part, of the greatest support value along m.
+// One smooth part: the one with the greatest support value along m.
 struct CountedSupport {
   Counted value;
   Counted3 point;
@@ -83,8 +84,8 @@ CountedSupport support(const ConvexBody& body, const Counted3& m) {
   return {value(*farthest), out / length + counted(Vec3(0, 0, farthest->height))};
 }
 
-// In units of 2^-53 m. A bound for the unit direction is the value divided by the length of n,
-// which has 2.5 roundings.
+// Error bounds in units of 2^-53 m. The bound for the unit direction is the value divided by the
+// length of n, which has 2.5 roundings.
 struct Worst {
   double lower, upper;
 };
@@ -93,7 +94,8 @@ double worst_lower(const Counted& value) { return value.worst() + 2.5 * std::abs
 Counted3 forgotten(const Counted3& p) {
   return {p[0].forgotten(), p[1].forgotten(), p[2].forgotten()};
 }
-// How far a support point along m may be outside its body. Along the surface it may be anywhere.
+// The distance by which a support point along m may lie outside its body. An error along the
+// surface does no harm.
 double outside(const Counted3& p, const Counted3& m) {
   const auto term = [&](std::size_t i) { return plain_scaled(p[i], m[i].value()); };
   return plain_sum(plain_sum(term(0), term(1)), term(2)).worst();
@@ -106,7 +108,7 @@ double worst_upper(const Query& q, const Counted3& a, const Counted3& n, const C
   return outside(a, n) + outside(b, m) + norm(placed(q, forgotten(b)) - forgotten(a)).worst();
 }
 
-// certify() of newton-inl.hpp.
+// Counts certify() of newton-inl.hpp.
 Worst certified(const Query& q, const Vec3& normal) {
   const Counted3 n = counted(normal), m = -product(q.pose.rotation.transpose(), n);
   const CountedSupport a = support(q.a, n), b = support(q.b, m);
@@ -118,8 +120,8 @@ double certified_distance(const Query& q, const Vec3& normal) {
   return norm(placed(q, support(q.b, m).point) - support(q.a, n).point).value();
 }
 
-// CurvedPair::support() and add_points(). Of a cone, whose clamp and scaling have fewer roundings
-// than the scaling of an ellipsoid, the support point is counted as it is.
+// Counts CurvedPair::support() and add_points(). For a cone, clamp and scaling have fewer roundings
+// than the scaling of an ellipsoid, so its support point is counted as it is.
 Counted3 pulled_inside(const ConvexBody& body, const Counted3& p) {
   if (has_caps(body)) return p;
   return forgotten(p) / norm(forgotten(p) / counted(body.curved.semi_axes));
@@ -172,7 +174,7 @@ TEST(CurvedRoundingCountsOfNewton, AreOfTheOperationsOfItsCertificate) {
   EXPECT_GT(certified_ones, 200);
 }
 
-// How much of the promised error the worst roundings use.
+// The fraction of the promised error that the worst roundings use.
 double used(const Kind& kind, const Genes& g) {
   const Query q = query_of(kind, g);
   const Vec3 n = Vec3(g[14], g[15], g[13] + 0.01).normalized();

@@ -1,5 +1,5 @@
-// What every body says of itself, along and close to fifteen axes. Oracle: central differences of
-// the support value and of the support point.
+// Laws of every body's support function, along and close to fifteen axes. Oracle: central
+// differences of the support value and of the support point.
 //
 // The axes are those of two boxes: three of the body's frame, three of a rotated frame, and the
 // nine cross products.
@@ -40,7 +40,7 @@ std::vector<Vec3> fifteen_axes() {
   return axes;
 }
 
-// Each axis and its opposite, tilted by epsilon to either side of two tangents.
+// Visits each axis and its opposite, tilted by epsilon to either side along two tangents.
 template <class Claim>
 void along_all_axes(double epsilon, const Claim& claim) {
   for (const Vec3& axis : fifteen_axes()) {

@@ -1,4 +1,4 @@
-// The depth where symmetry gives it many deepest directions, against closed forms.
+// The depth of pairs whose symmetry gives many deepest directions, compared with closed forms.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using test::at;
 using test::made;
 
-// Certified from both sides to 1e-13 of the size.
+// The depth is certified from both sides to 1e-13 of the size.
 void expect_depth(const ConvexBody& a, const ConvexBody& b, const Pose& pose, double depth,
                   double slack = 0.0) {
   const DistanceResult r = test::cold(a, b, relative_pose(at(0, 0, 0), pose));
@@ -28,8 +28,8 @@ void expect_depth(const ConvexBody& a, const ConvexBody& b, const Pose& pose, do
   EXPECT_LE(r.upper - r.lower, 1e-13 * size);
 }
 
-// Coaxial solids of revolution are as deep as the polygon of their sections' sums is wide: along a
-// normal of one of their sides.
+// The depth of coaxial solids of revolution is that of their sections. It is the smallest
+// translation along the axis or along a normal of one of the sections' sides.
 double coaxial_depth(const Vec2 (&a)[2], const Vec2 (&b)[2], double apart) {
   const auto reach = [](const Vec2(&s)[2], double x, double y) {
     return std::max(s[0].x() * x + s[0].y() * y, s[1].x() * x + s[1].y() * y);
@@ -73,7 +73,8 @@ TEST(SymmetricDepth, OfABallOnTheAxisOfASolidOfRevolutionIsKnown) {
   const ConvexBody ball = made(ellipsoid({0.5, 0.5, 0.5}));
   expect_depth(ball, made(cylinder(1.0, 2.0)), at(0, 0, 0), 1.5);
   expect_depth(made(cylinder(1.0, 2.0)), ball, at(0, 0, 0.75), 1.5);
-  // A point of the axis is sqrt(1 - z^2 / 8) from the spheroid: of its section, by hand.
+  // The distance of a point on the axis from the spheroid is sqrt(1 - z^2 / 8), derived by hand
+  // from its section.
   expect_depth(ball, made(ellipsoid({1, 1, 3})), at(0, 0, 0.5), 0.5 + std::sqrt(1.0 - 0.25 / 8.0),
                1e-15);
   expect_depth(ball, ball, at(0.25, 0, 0), 0.75);

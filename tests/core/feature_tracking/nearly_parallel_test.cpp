@@ -1,5 +1,5 @@
-// Unbounded bodies whose rays, facets or edges are level against the other body: what rounding
-// leaves open there must not cost more than rounding.
+// Unbounded bodies with rays, facets or edges level with the other body. Rounding that remains
+// undecided there must change the answer by no more than rounding.
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -18,7 +18,7 @@ using oracle::Body;
 
 Pose at(const Vec3& position) { return {position, Eigen::Quaterniond::Identity()}; }
 
-// From whatever features a query begins at.
+// The answers are right for all initial features.
 void expect_right(const Body& a, const Body& b, const Pose& a_at, const Pose& b_at,
                   const std::string& what) {
   DistanceJudge judge(a, b);
@@ -30,7 +30,7 @@ void expect_right(const Body& a, const Body& b, const Vec3& a_at, const Vec3& b_
   expect_right(a, b, at(a_at), at(b_at), what);
 }
 
-// The rays to both sides of its ridge all but cancel; along its ridge it is level.
+// The rays on both sides of the ridge almost cancel. The ridge itself is level.
 TEST(NearlyParallel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
   const Body cube = hard::box(Vec3(1.0, 1.0, 1.0));
   for (const double slope : {0.1, 0.03, 0.01, 1e-3, 1e-4, 1e-5}) {
@@ -39,13 +39,13 @@ TEST(NearlyParallel, GablesOfAnySlopeAreAsFarFromACubeAboveThem) {
     const std::string what = "slope " + std::to_string(slope);
     expect_right(gable, cube, Vec3::Zero(), {-3.0, 0.5, 4.0}, what);
     expect_right(gable, cube, Vec3::Zero(), {-3.0, 1.0, 4.0}, what);
-    const Body whole{{gable.rows[0], gable.rows[1]}, {}};  // its ridge a line
+    const Body whole{{gable.rows[0], gable.rows[1]}, {}};  // its ridge is a line
     expect_right(whole, cube, Vec3::Zero(), {-3.0, 0.5, 4.0}, what + ", a line");
     expect_right(cube, whole, {-3.0, 1.0, 4.0}, Vec3::Zero(), what + ", a line, as B");
   }
 }
 
-// However thin: the point that they make is no more than rounding from their hull.
+// However thin the simplex is, its weighted point lies within rounding of the hull.
 TEST(NearlyParallel, WeightsOfASimplexAddUpToOne) {
   Random random(7);
   int inside = 0;

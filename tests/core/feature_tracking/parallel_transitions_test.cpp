@@ -1,4 +1,4 @@
-// Level features: whole faces or edges are closest. Oracle: the exact distance, and closed forms.
+// Level features: whole faces or edges are closest. Oracles: the exact distance and closed forms.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -22,10 +22,10 @@ constexpr std::uint64_t kSeeds = 40;
 // B above A, which is a box, and moving along it.
 struct ParallelPair {
   const char* name;
-  FeatureKind kind_a, kind_b;  // of what is closest
+  FeatureKind kind_a, kind_b;  // kinds of the closest features
   Vec3 half_b{0.5, 0.4, 0.3};
-  Quat turn = Quat::Identity();  // of B as seen from A
-  Vec3 offset{0.0, 0.0, 2.0};    // of B's centre, in A
+  Quat turn = Quat::Identity();  // rotation of B in frame A
+  Vec3 offset{0.0, 0.0, 2.0};    // position of B's centre in frame A
   Vec3 half_a{0.7, 0.6, 0.5};
 
   [[nodiscard]] DistanceJudge judge() const { return {hard::box(half_a), hard::box(half_b)}; }
@@ -64,7 +64,7 @@ const ParallelPair kPairs[] = {
     {"flush boxes of one size", FeatureKind::kFacet, FeatureKind::kFacet, {0.7, 0.6, 0.5}},
 };
 
-// Both turned anywhere, B after what rounding leaves of a tilt.
+// Both bodies rotated arbitrarily, B after an additional tilt of the order of rounding.
 std::pair<Pose, Pose> anywhere(const ParallelPair& pair, Random& random, double tilt) {
   const Quat world = random.rotation();
   const Vec3 origin = random.in_box(3.0);
@@ -94,7 +94,7 @@ TEST(ParallelTransitions, SettlesWhatItWasLastTimeInOneStep) {
 TEST(ParallelTransitions, BoundsHoldAtEveryTilt) {
   for (const ParallelPair& pair : kPairs) {
     DistanceJudge judge = pair.judge();
-    TrackingState state;  // of the tilt before, which is another's
+    TrackingState state;  // left by the previous tilt, a different pose
     for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
       Random random(seed);
       const double tilt = seed % 4 == 0 ? 0.0 : random.log_uniform(1e-17, 1e-9);
@@ -122,7 +122,8 @@ TEST(ParallelTransitions, HasTheSameBitsAtEveryVectorWidth) {
   }
 }
 
-// From beside the other to beyond it: over its face, along its edge, past its corner.
+// The motions lead from one side of the other body to the opposite side: over its face, along its
+// edge, past its vertex.
 TEST(ParallelTransitions, WitnessesMoveNoFasterThanTheBodies) {
   for (const ParallelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
@@ -146,7 +147,7 @@ TEST(ParallelTransitions, WitnessesMoveNoFasterThanTheBodies) {
   }
 }
 
-// But for an ulp or two of coordinates of a few metres a query.
+// The points may move by an ulp or two of coordinates of a few metres per query.
 TEST(ParallelTransitions, StandsStillWhileTheBodiesDo) {
   for (const ParallelPair& pair : kPairs) {
     const DistanceJudge judge = pair.judge();
@@ -159,8 +160,8 @@ TEST(ParallelTransitions, StandsStillWhileTheBodiesDo) {
   }
 }
 
-// Halfway between points of bodies of 1e84 m rounding left a point half a metre inside a box, and
-// the bounds of boxes face to face were 0.5 m too high.
+// Halfway between points of bodies of 1e84 m, rounding once left a point half a metre inside a box.
+// The bounds for boxes face to face were then 0.5 m too high.
 TEST(ParallelTransitions, HoldsWithTheStateOfAPairThatIsFarLarger) {
   DistanceJudge judge(hard::box({1.0, 0.5, 0.25}), hard::box({1.0, 0.5, 0.25}));
   const Pose beside{{0.0, -1.1, -0.14}, Quat::Identity()};

@@ -1,5 +1,5 @@
-// Corners and edges so sharp that a point which is off their sides by no more than rounding may be
-// past them by anything.
+// Corners and edges so sharp that a point may be outside their sides by no more than rounding, and
+// yet be any distance past them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,9 +15,9 @@
 namespace clearance {
 namespace {
 
-// The answers that every state there is leads to.
+// Checks the answers from every possible initial state.
 TEST(SharpCorners, AreHeldToWhateverFeaturesAQueryBeginsAt) {
-  std::vector<std::uint64_t> seeds{319};  // past the edge, and inside to rounding
+  std::vector<std::uint64_t> seeds{319};  // this one is past the edge, and inside within rounding
   for (std::uint64_t seed = 1; seed <= 40; ++seed) seeds.push_back(seed);
   for (const std::uint64_t seed : seeds) {
     Random random(seed);
@@ -28,7 +28,7 @@ TEST(SharpCorners, AreHeldToWhateverFeaturesAQueryBeginsAt) {
   }
 }
 
-// A wedge 2e-12 rad wide, 1 m beside the origin.
+// A wedge of 2e-12 rad, 1 m beside the origin.
 TEST(SharpCorners, OfAFacetEndItBelowATipThatPasses) {
   const ConvexBody wedge = test::made(oracle::Body{{{{0.0, 1.0, -1e-12}, 1.0},
                                                     {{0.0, -1.0, -1e-12}, -1.0},
@@ -50,7 +50,8 @@ TEST(SharpCorners, OfAFacetEndItBelowATipThatPasses) {
 }
 
 TEST(SharpCorners, LimitTheirFacets) {
-  // The sharp corners of a facet: none of a square's, one of a wedge's end, two of a thin rhomb's.
+  // The number of sharp corners of a facet: none for a square, one for a wedge's end, two for a
+  // thin rhombus.
   const auto most = [](const ConvexBody& body) {
     std::int32_t out = 0;
     for (const Facet& facet : body.facets) out = std::max(out, facet.limits - facet.sides);

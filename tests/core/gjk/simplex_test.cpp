@@ -1,6 +1,6 @@
-// The simplex of GJK, in doubles and in twice their precision. Oracles: closed forms, and the
-// condition that decides it: v is the point of a convex set closest to the origin where v.(p - v)
-// >= 0 for all of its points p.
+// The simplex of GJK, in doubles and in double-double. Oracles: closed forms and the optimality
+// condition. The point v of a convex set is closest to the origin where v.(p - v) >= 0 for all
+// points p of the set.
 #include "core/gjk/simplex.hpp"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,8 @@ TYPED_TEST(ClosestToOrigin, IsFoundOnDegenerateSimplicesToo) {
 }
 
 TEST(ClosestToOriginInTwiceThePrecision, KeepsDigitsThatDoublesLose) {
-  // The triangle is 1e-9 wide and passes the origin at 1e-12: in doubles, squares of 1e-9 lose it.
+  // The triangle is 1e-9 wide and passes the origin at 1e-12. In doubles, squares of 1e-9 lose that
+  // distance.
   const Vec3 a(-1.0, 1e-12, 0.0), b(1.0, 1e-12, 1e-9), c(1.0, 1e-12, -1e-9);
   const auto found = ClosestToOrigin<DoubleDouble>::of({a, b, c}, 3);
   EXPECT_NEAR(rounded(found.point).y(), 1e-12, 1e-27);

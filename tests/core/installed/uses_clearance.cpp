@@ -1,5 +1,6 @@
-// The two ways in of README, "The core as a library"; ends with 0 where both say what closed forms
-// say. Built with several switches, under which Eigen lays its types out differently.
+// Uses both entry points of the README's section "The core as a library". It exits with 0 if both
+// agree with closed forms. It is built with several switches under which Eigen lays out its types
+// differently.
 #include <core/batch.hpp>
 #include <core/distance.hpp>
 #include <core/shapes.hpp>
@@ -10,8 +11,8 @@
 
 using clearance::Pose;
 
-// Of two unit cubes whose centres are 2.5 m apart, alone and in a batch; off `expected` by
-// rounding.
+// Checks two unit cubes with centres at a distance of 2.5 m, alone and in a batch. The answers may
+// differ from `expected` by rounding.
 bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
   const auto cube = std::get<clearance::ConvexBody>(clearance::box({0.5, 0.5, 0.5}));
   clearance::TrackingState state;
@@ -29,7 +30,7 @@ bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
          expected - 1e-12 <= alone.upper && together == alone.distance;
 }
 
-// The library reads what is made here, and the other way round.
+// The library reads shapes that are made here, and vice versa.
 bool shares_shapes() {
   const std::vector<clearance::Vec2> base = {{0, 0}, {1, 0}, {0, 1}};
   const auto made = clearance::prism(base, 0.0, 2.0);

@@ -1,8 +1,8 @@
-// Doubles that keep book of their roundings: what a result may be off by, to first order, if all
-// the roundings that it is made of are as bad as they can be at once.
+// Doubles that keep a record of their roundings. They give the error of a result to first order, if
+// all roundings are as bad as possible at the same time.
 //
-// Every operation is noted with its partial derivatives; going back from the result gives what a
-// rounding anywhere does to it (reverse differentiation).
+// Every operation is recorded with its partial derivatives. Going back from the result gives the
+// effect of each rounding (reverse differentiation).
 #pragma once
 
 #include <array>
@@ -20,10 +20,10 @@ class Counted {
   static void forget_all() { nodes().clear(); }
   [[nodiscard]] double value() const { return value_; }
 
-  // The same number, of which no error is to be counted.
+  // The same number with its errors no longer counted.
   [[nodiscard]] Counted forgotten() const { return value_; }
 
-  // In units of 2^-53, absolute.
+  // The worst absolute error, in units of 2^-53.
   [[nodiscard]] double worst() const {
     if (node_ == kConstant) return 0.0;
     std::vector<double> weight(node_ + 1, 0.0);
@@ -60,7 +60,7 @@ class Counted {
     const double root = std::sqrt(a.value_);
     return {root, {{{a.node_, 0.5 / root}, {kConstant, 0.0}}}};
   }
-  // Exactly.
+  // A scaling that is exact.
   friend Counted plain_scaled(const Counted& a, double by) {
     return {by * a.value_, {{{a.node_, by}, {kConstant, 0.0}}}, 0.0};
   }
@@ -84,7 +84,8 @@ class Counted {
     static std::vector<Node> all;
     return all;
   }
-  // A rounding is at most half an ulp: of a value from 2^k to 2^(k+1), 2^k.
+  // The largest rounding error, half an ulp, in units of 2^-53. It is 2^k for a value from 2^k to
+  // 2^(k+1).
   static double half_ulp(double value) {
     return value == 0.0 ? 0.0 : std::ldexp(1.0, std::ilogb(value));
   }

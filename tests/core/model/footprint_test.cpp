@@ -1,4 +1,4 @@
-// What a body is said to take, against what a copy of it asks the allocator for.
+// The declared memory use of a body, compared with what a copy of it requests from the allocator.
 #include "core/query_tables.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ namespace {
 using test::half_space;
 using test::made;
 
-// operator new hands out whole multiples of this.
+// operator new returns whole multiples of this size.
 constexpr std::uint64_t kGrain = alignof(std::max_align_t);
 
 void expect_counted(const ConvexBody& body, const std::string& what) {

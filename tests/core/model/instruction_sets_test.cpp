@@ -1,4 +1,5 @@
-// One library for every x86-64 machine: what needs more than the baseline is picked when it runs.
+// One library serves every x86-64 machine: code that needs more than the baseline is selected at
+// run time.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -13,7 +14,7 @@ namespace {
 
 #ifdef __x86_64__
 
-// Functions of the library, by their mangled names, that have instructions of AVX or later.
+// The library's functions, by their mangled names, that contain instructions of AVX or later.
 std::set<std::string> functions_beyond_the_baseline(std::istream& disassembly) {
   std::set<std::string> found;
   std::string line, function;

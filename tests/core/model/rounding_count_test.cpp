@@ -1,8 +1,9 @@
-// Precision::error_bound against the worst that all roundings of a query can do at once.
+// Precision::error_bound compared with the worst combined effect of all roundings of a query.
 //
-// Oracle: the walk's straight-line code once more, in numbers that keep book of their roundings
-// (tests/core/model/counted.hpp); its doubles have to be the walk's, so it is the same code. The
-// poses where the roundings are worst are looked for by a random walk uphill.
+// Oracle: the straight-line code of feature tracking, repeated in numbers that record their
+// roundings (tests/core/model/counted.hpp). The resulting doubles must equal those of feature
+// tracking, which shows that the code is the same. A random hill climb searches for the poses with
+// the worst roundings.
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -47,7 +48,7 @@ struct CountedQuaternion {
   CountedQuaternion(const Counted3& vector, const Counted& scalar) : v(vector), w(scalar) {}
 };
 
-// conj(a) b, as relative() of core/model/relative_pose-inl.hpp.
+// conj(a) b, like relative() of core/model/relative_pose-inl.hpp.
 CountedQuaternion relative(const CountedQuaternion& a, const CountedQuaternion& b) {
   const auto& [ax, ay, az] = a.v;
   const auto& [bx, by, bz] = b.v;
@@ -99,21 +100,22 @@ struct CountedPlace {
   }
 };
 
-// A pair of features that are closest, each with the ball around its body's origin that holds it.
+// A pair of closest features, each with the radius of a ball around its body's origin that contains
+// it.
 struct Pair {
   ConvexBody a, b;
   Pose pose_a, pose_b;
   double reach_a, reach_b;
 };
 
-// What makes a pair: two rotations, two witness points, the way between them, two edges.
+// The parameters of a pair: two rotations, two witness points, the vector between them, two edges.
 using Genes = std::array<double, 26>;
 
 struct Made {
   Pose pose_a, pose_b;
-  Vec3 on_a, on_b, n, own_n;  // witness points and normal; the latter in frame A and in frame B
-  Vec3 edge_a, edge_b;        // at right angles to it, each in its own frame
-  double from_a, from_b;      // where the edges begin
+  Vec3 on_a, on_b, n, own_n;  // witness points and normal, the latter in frame A and in frame B
+  Vec3 edge_a, edge_b;        // normal to it, each in its own frame
+  double from_a, from_b;      // starts of the edges
 };
 
 Made made_of(const Genes& g) {
@@ -210,7 +212,7 @@ constexpr Kind kKinds[] = {
                    0,
                    0};
      },
-     // The upper bound: the points' places along the edges may be any.
+     // The upper bound. The points may be anywhere along the edges.
      [](const Pair& p, const CountedPlace& at) {
        const Counted3 e = along(p.a), f = at.direction(along(p.b)),
                       start_b = at.point(start_of(p.b));
@@ -220,9 +222,9 @@ constexpr Kind kKinds[] = {
        return norm((start_b + t.forgotten() * f) - (start_of(p.a) + s.forgotten() * e));
      }}};
 
-// The lower bound across edges, up to the far ends of both as seen from their starts: along n as it
-// is, and what the tilts that are taken off may hide of an edge's own, an ulp and a half of their
-// products and one of the edge.
+// The lower bound across two edges, evaluated up to the far ends of both, relative to their starts.
+// It counts the roundings along n as it is. It also counts what the subtracted tilts may hide: 1.5
+// ulps of their products, and one ulp of the edge.
 Counted lower_across(const Pair& p, const CountedPlace& at) {
   const Counted3 e = along(p.a), f = at.direction(along(p.b)), start_b = at.point(start_of(p.b));
   Counted3 n = cross(e, f);
@@ -255,7 +257,7 @@ struct Evaluated {
       const double lengths = pair.a.edges[0].end + pair.b.edges[0].end;
       by_roundings = std::max(by_roundings, lower_across(pair, at).worst() + 2.5 * lengths);
     }
-    // As precision(), for bodies that reach no farther than these.
+    // The error bound of precision(), for bodies whose bounding radii are these.
     const double o = (pair.pose_b.position - pair.pose_a.position).norm();
     const double a = reach_a(), b = reach_b();
     const double turned = std::min(b, a + o + kStretched * apart.value());
@@ -300,7 +302,7 @@ TEST_P(RoundingCounts, CoverAllRoundingsAtOnceWhereTheyAreWorst) {
   Random random(2);
   const auto used = [&](const Genes& g) {
     const Worst w = Evaluated{GetParam(), GetParam().pair(made_of(g))}.worst();
-    if (!std::isfinite(w.by_roundings)) return 0.0;  // no direction between them
+    if (!std::isfinite(w.by_roundings)) return 0.0;  // the direction between them is undefined
     EXPECT_LE(w.by_roundings, w.error_bound);
     return w.by_roundings / w.error_bound;
   };
@@ -311,7 +313,7 @@ TEST_P(RoundingCounts, CoverAllRoundingsAtOnceWhereTheyAreWorst) {
     best.resize(count);
   };
   const auto try_this = [&](const Genes& g) {
-    // Segments that are points, and edges that hardly cross, are no such pairs.
+    // Segments that degenerate to points, and edges that hardly cross, are left out.
     if (std::abs(g[21]) < 1e-6 || std::abs(g[22]) < 1e-6) return;
     best.emplace_back(used(g), g);
   };
@@ -332,7 +334,7 @@ TEST_P(RoundingCounts, CoverAllRoundingsAtOnceWhereTheyAreWorst) {
   RecordProperty("used", std::to_string(best[0].first));
 }
 
-// The bounds that kMatrixError is made of, in ulps.
+// The bounds that kMatrixError consists of, in ulps.
 double matrix_bound(const Eigen::Quaterniond& q) {
   const Vec3 x = q.vec();
   const Mat3 r = rotation_matrix(q);

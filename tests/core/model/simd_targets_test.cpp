@@ -1,4 +1,4 @@
-// One query, whatever it is asked from and with: the same bits.
+// A query must return the same bits from every caller and with every instruction set.
 #include "tests/shared/vector_widths.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ struct Walk {
   std::string name;
 };
 
-// Hard motions, and hard cases as motions of one step.
+// Hard motions, and hard cases treated as motions of one step.
 template <class Visit>
 void for_each_walk(const Visit& visit) {
   for (std::uint64_t seed = kFirstSeed; seed < kFirstSeed + kWidthSeeds; ++seed) {

@@ -1,4 +1,4 @@
-// How far a body reaches: what is found by climbing, against all its vertices.
+// The support value of a body: the result of hill climbing compared with all vertices.
 #include "core/model/support_function.hpp"
 
 #include <gtest/gtest.h>
@@ -10,8 +10,8 @@
 namespace clearance {
 namespace {
 
-// Along a facet's normal all its vertices are level to rounding, and only one of them is the
-// farthest: a bound that took another one would be too low.
+// Along a facet's normal, all vertices of the facet are level within rounding, and only one is the
+// support point. A bound from another vertex would be too low.
 TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) {
   Random random(1);
   for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {

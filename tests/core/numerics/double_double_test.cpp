@@ -1,8 +1,8 @@
 // Oracle: exact rational arithmetic (GMP). u is 2^-53.
 //
 // Bounds: Joldes, Muller, Popescu, "Tight and rigorous error bounds for basic building blocks of
-// double-word arithmetic" (2017): a sum is off by 3 u^2, a product by 5 u^2, a quotient by 10 u^2,
-// a root by 25/8 u^2; each rounded up to a power of two here.
+// double-word arithmetic" (2017). The relative errors are at most 3 u^2 (sum), 5 u^2 (product), 10
+// u^2 (quotient) and 25/8 u^2 (root). Each is rounded up to a power of two here.
 #include "core/numerics/double_double.hpp"
 
 #include <gmpxx.h>
@@ -24,13 +24,13 @@ mpq_class two_to(int exponent) {
                       : mpq_class(one << static_cast<mp_bitcnt_t>(exponent));
 }
 
-// Is `found` within 2^-bits of the truth, relative to it?
+// Returns true if `found` differs from the truth by a relative error of at most 2^-bits.
 bool good_to(int bits, const mpq_class& found, const mpq_class& truth) {
   const mpq_class error = found - truth;
   return abs(error) <= two_to(-bits) * abs(truth);
 }
 
-// Two doubles whose sum rounds to the first of them, over twenty orders of magnitude.
+// Two doubles whose sum rounds to the first of them, with magnitudes over twenty orders.
 DoubleDouble any(Random& random) {
   const double high = random.sign() * random.log_uniform(1e-10, 1e10);
   return exact::ordered_sum(high, high * random.uniform(-0x1p-54, 0x1p-54));
@@ -51,7 +51,7 @@ TEST(DoubleDouble, SumsAndProductsOfDoublesAreExact) {
     EXPECT_EQ(exact_value(exact::ordered_sum(larger, smaller)), sum) << k;
     const DoubleDouble halves = exact::split(a);
     EXPECT_EQ(exact_value(halves), mpq_class(a)) << k;
-    // Each half has so few bits that products of two are exact.
+    // Each half has so few bits that the product of two halves is exact.
     const mpq_class high = halves.high;
     EXPECT_EQ(mpq_class(halves.high * halves.high), mpq_class(high * high)) << k;
   }
@@ -75,7 +75,7 @@ TEST(DoubleDouble, ProductsQuotientsAndRootsAreGoodTo102Bits) {
     const DoubleDouble a = any(random), b = any(random);
     EXPECT_TRUE(good_to(103, exact_value(a * b), exact_value(a) * exact_value(b))) << k;
     EXPECT_TRUE(good_to(102, exact_value(a / b), exact_value(a) / exact_value(b))) << k;
-    // The square of a root that is off by e is off by 2 e.
+    // If a root has the relative error e, its square has the relative error 2 e.
     const DoubleDouble positive = a.high < 0.0 ? -a : a, root = sqrt(positive);
     EXPECT_TRUE(good_to(102, exact_value(root) * exact_value(root), exact_value(positive))) << k;
     EXPECT_TRUE(is_normalised(a * b) && is_normalised(a / b) && is_normalised(root)) << k;

@@ -1,4 +1,4 @@
-// The oracle of curved bodies against what is known without it.
+// The oracle of curved bodies compared with independent results.
 #include "tests/shared/curved_oracle.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// The oracle itself: closed forms, bodies of every kind, and that rows and corners give the same
-// answer.
+// The oracle itself: closed forms, bodies of every kind, and the same answers from rows and from
+// vertices.
 #include "tests/shared/exact_oracle.hpp"
 
 #include <gtest/gtest.h>
@@ -42,9 +42,10 @@ TEST(ExactOracle, GivesTheClosedFormsOfCubes) {
 TEST(ExactOracle, TakesAQuaternionAsItsExactDirection) {
   const Body cube = hard::box(Vec3::Constant(0.5));
   const Body point{{}, {Vec3::Zero()}, 0.0};
-  // By atan(3/4) * 2 about z: (4, 0, 0, 3) / 5 is exact, whatever its length.
+  // A rotation by atan(3/4) * 2 about z. (4, 0, 0, 3) / 5 is exact, whatever the length of the
+  // quaternion.
   const Pose turned{{0, 0, 0}, {4, 0, 0, 3}};
-  // The cube's face x = 0.5 faces (7, 24) / 25 now.
+  // The cube's face x = 0.5 now has the normal (7, 24) / 25.
   EXPECT_EQ(exact_distance(cube, turned, point, at(7, 24, 0)).squared, 24.5 * 24.5);
 }
 
@@ -76,7 +77,7 @@ TEST(ExactOracle, KnowsUnboundedBodies) {
   EXPECT_EQ(exact_distance(floor, at(0, 0, 0), cube, at(1e6, 0, 2)).squared, 2.25);
   EXPECT_EQ(exact_distance(bar, at(0, 0, 0), cube, at(4, 0, 1e9)).squared, 6.25);
   EXPECT_TRUE(exact_distance(bar, at(0, 0, 0), floor, at(9, 9, -1e9)).cores_meet());
-  // Planes that are parallel but for the last bit do meet.
+  // Planes that are parallel except for the last bit do meet.
   Body tilted = ceiling;
   tilted.rows[0].normal.x() = 0x1p-52;
   EXPECT_TRUE(exact_distance(floor, at(0, 0, 0), tilted, at(0, 0, 0)).cores_meet());
@@ -103,7 +104,7 @@ TEST(ExactOracle, RowsAndCornersOfTheSameBodyGiveTheSameNumber) {
   }
 }
 
-// The same body with its axis along x: no features that are plain.
+// The same body with its axis along x, which makes its features not plain.
 Body lying(Body body) {
   for (HalfSpace& row : body.rows)
     row.normal = Vec3(row.normal.z(), row.normal.x(), row.normal.y());
@@ -111,7 +112,8 @@ Body lying(Body body) {
   return body;
 }
 
-// Six corners of a ring and two tips, or twice the ring: as points, and the prism by its sides.
+// Six vertices of a ring and two tips, and the ring at two heights, both as points; and the prism
+// by its sides.
 std::array<Body, 3> plain_bodies(Random& random) {
   std::array<Body, 3> out;
   auto& [lens, prism, by_rows] = out;
@@ -132,8 +134,9 @@ std::array<Body, 3> plain_bodies(Random& random) {
 
 TEST(ExactOracle, KnowsPrismsAndLensesByTheirOutlineAsByAllThatThereMayBe) {
   Random random(5);
-  const Eigen::Quaterniond upright(1, -1, -1, -1);  // takes x to z
-  const auto turn = [&] {                           // of small integers, so that products are exact
+  const Eigen::Quaterniond upright(1, -1, -1, -1);  // maps x to z
+  // with small integers, so that products are exact
+  const auto turn = [&] {
     const int x = random.integer(-9, 9), y = random.integer(-9, 9), z = random.integer(-9, 9);
     return Eigen::Quaterniond(1, x, y, z);
   };

@@ -1,6 +1,6 @@
-// Depths of bodies of many corners that lie deep in each other, where thousands of ways out are
-// nearly as short as the shortest. Oracle: every facet's normal and every pair of edges, with every
-// corner, in plain doubles.
+// Depths of bodies with many vertices that lie deep in each other. Thousands of directions need
+// translations almost as short as the shortest. Oracle: every facet's normal and every pair of
+// edges, evaluated at every vertex in plain doubles.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 using test::cold;
 using test::made;
 
-// How far B must go along n to come clear of A; corners in one frame.
+// The translation of B along n after which it is clear of A. The vertices are in one frame.
 double way_out(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Vec3& n) {
   double top = -kInfinity, bottom = kInfinity;
   for (const Vec3& p : a) top = std::max(top, p.dot(n));
@@ -56,8 +56,8 @@ struct TurnedPair {
   ConvexBody a, b;
 };
 
-// Balls of facets and of corners, of one size and one small in the other; hulls of scattered
-// points, which are no balls; and one of few corners against one of many.
+// Balls of facets and balls of vertices, of equal size or with a small one inside the other. The
+// other pairs are hulls of scattered points, and a body with few vertices against one with many.
 std::vector<TurnedPair> pairs_of_many_corners(Random& random) {
   const ConvexBody ball = made(hard::facet_ball(6)), dual = made(hard::dual_ball(6));
   const ConvexBody small = made(hard::scaled(hard::facet_ball(6), 0.4));
@@ -110,9 +110,9 @@ TEST(DeepOverlap, OfBodiesOfThousandsOfFacetsIsThatOfTheSwappedPair) {
   }
 }
 
-// A plate all but flat, and a pillar that stands through its plane.
+// An almost flat plate, and a pillar that stands through its plane.
 struct PlateAndPillar {
-  int rim;  // corners
+  int rim;  // number of vertices
   ConvexBody plate, pillar;
 
   PlateAndPillar(int corners_of_rim, int sides, double thickness) : rim(corners_of_rim) {
@@ -127,14 +127,14 @@ struct PlateAndPillar {
     }
     pillar = made(polyhedron_from_vertices(corners));
   }
-  // On so few digits that opposite facets of the plate have the same ones.
+  // The coordinates have so few digits that opposite facets of the plate have the same ones.
   static Vec3 on_circle(double part) {
     const double angle = 2.0 * std::numbers::pi * part;
     return {0x1p-20 * std::round(0x1p20 * std::cos(angle)),
             0x1p-20 * std::round(0x1p20 * std::sin(angle)), 0.0};
   }
   [[nodiscard]] Vec3 of_rim(int i) const { return on_circle((i + 0.5) / rim); }
-  // The shortest way for the pillar past an edge of the rim.
+  // The shortest translation that moves the pillar past an edge of the rim.
   [[nodiscard]] double way_past_the_rim(const RelativePose& pose) const {
     std::vector<Vec3> placed;
     for (const Vec3& p : pillar.anchors) placed.push_back(pose.rotation * p + pose.translation);
@@ -147,9 +147,9 @@ struct PlateAndPillar {
   }
 };
 
-// The pillar's middle may be outside both facets at an edge of the rim by less than rounding can
-// tell, and yet far beyond the edge: of plates of 1e-16 m and less depths were up to 6 mm too
-// large.
+// At an edge of the rim, rounding cannot always tell that the pillar's centre is outside both
+// facets, although it is far outside the edge. For plates of 1e-16 m and less, depths were once up
+// to 6 mm too large.
 TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   Random random(2);
   for (int k = 0; k < 32; ++k) {
@@ -164,7 +164,7 @@ TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
   }
 }
 
-// Two unit directions less than half a turn apart, points, and a ball.
+// Two unit directions at an angle of less than half a turn, points, and a ball.
 struct ArcCase {
   Vec3 l, r, first, last, middle;
   double radius;

@@ -1,4 +1,4 @@
-// How deep bodies overlap that are too large for the exact oracle of depths.
+// The overlap depth of bodies that are too large for the exact oracle of depths.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -17,7 +17,7 @@ namespace {
 using test::cold;
 using test::made;
 
-// What 1e-14 is promised of, with A at the origin.
+// The size that the promised 1e-14 is relative to, with A at the origin.
 double size_of(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
   return a.bounding_radius + a.radius + b.bounding_radius + b.radius + pose_b.position.norm();
 }
@@ -33,7 +33,7 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
   }
 }
 
-// How far B must go along n, of any length, to come clear of A.
+// The translation of B along n, of any length, after which it is clear of A.
 double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b, const Vec3& n) {
   long double reach_a = -kInfinity, reach_b = -kInfinity;
   const auto along = [&](const Vec3& p) {
@@ -47,8 +47,8 @@ double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_
   return static_cast<double>((reach_a + reach_b) / std::sqrt(along(n)));
 }
 
-// The difference body's facets stand across a facet of one of them or an edge of each; any other
-// direction only takes longer.
+// Each facet of the difference body is normal to a facet normal of one body's facet, or to an edge
+// of each body. Any other direction needs a longer translation.
 double shortest_way_out(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
   const Eigen::Quaterniond turn = pose_b.orientation.normalized();
   double least = kInfinity;
@@ -87,8 +87,8 @@ ConvexBody cylinder(int sides) {
   return made(prism(base, -3.0, 3.0));
 }
 
-// Each quarter of the way around its axis meets more corners than an arc was looked at in: the
-// bounds were 8e-5 of the size apart.
+// Each quarter circle around the capsule's axis meets more vertices than the search examined per
+// arc. The bounds once differed by 8e-5 of the size.
 TEST(Penetration, OfACapsuleInACylinderOfManySidesIsFoundToRoundingToo) {
   constexpr int kSides = 9000;
   const ConvexBody b = cylinder(kSides);
@@ -98,7 +98,8 @@ TEST(Penetration, OfACapsuleInACylinderOfManySidesIsFoundToRoundingToo) {
   EXPECT_LE(r.upper - r.lower, 1e-14 * size_of(capsule, b, Pose{}));
 }
 
-// Its shortest way out is along x, where both reach farthest at an edge along z.
+// The shortest separating translation is along x, where both bodies have an edge along z as their
+// support feature.
 TEST(Penetration, OfABoxInACylinderOfManySidesIsHowFarTheyReachAlongAnAxis) {
   const ConvexBody a = made(box({0.1, 0.1, 0.5})), b = cylinder(9000);
   const DistanceResult r = cold(a, b, Pose{});

@@ -36,7 +36,7 @@ void expect_depth(const DistanceResult& r, double depth, double size = 1.0) {
   EXPECT_LT((r.point_on_b - r.point_on_a - r.distance * r.normal).norm(), 1e-14 * size);
 }
 
-// Bodies that share some of their inside, from the same families as the hard cases.
+// Bodies whose interiors intersect, from the families of the hard cases.
 struct Overlap {
   Body a, b;
   Pose pose_a, pose_b;
@@ -89,7 +89,7 @@ TEST(Penetration, OfCubesIsTheShortestWayOutOfAFace) {
 }
 
 TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
-  // Two bars of square section, lying on an edge each and crossing at right angles.
+  // Two bars of square section. Each lies on an edge, and they cross at right angles.
   const ConvexBody bar = made(hard::box({0.5, 0.5, 10.0}));
   const double quarter = std::numbers::pi / 4;
   const Pose along_x{{0, 0, 0},
@@ -109,7 +109,7 @@ TEST(Penetration, OfCrossingEdgesIsAcrossBoth) {
 }
 
 TEST(Penetration, KeepsItsDirectionWhereOthersAreAsDeep) {
-  // Concentric balls of 64 facets: one way is as deep as the other, to the last bit.
+  // Concentric balls of 64 facets: several directions have the same depth to the last bit.
   for (const std::uint64_t seed : {1900004, 25000004}) {
     Random random(seed);
     const hard::HardCase c = hard::nested(random);
@@ -147,7 +147,7 @@ TEST(Penetration, OfTwoUnboundedBodiesIsUnknown) {
   for (const double radius : {0.0, 0.25}) {
     floor.radius = radius;
     const DistanceResult r = cold(floor, wall, at(0, 0, 0));
-    // Around polyhedra that share a point, any radius is a certain penetration.
+    // If two polyhedra share a point, any positive radius makes the penetration certain.
     EXPECT_EQ(r.status,
               radius > 0.0 ? DistanceStatus::kOverlapping : DistanceStatus::kIterationLimit);
     EXPECT_EQ(r.lower, -kInfinity);
@@ -272,7 +272,7 @@ TEST(Penetration, WhereNobodyAsksForTheDepthTheBoundsHoldAndApartNothingChanges)
     const ConvexBody a = made(small_body(random)), b = made(small_body(random));
     const RelativePose pose = relative_pose(Pose{}, {random.in_box(1.0), random.rotation()});
     const DistanceResult whole = cold(a, b, pose);
-    // Nor is what a query with the depth has left in the state taken for more than a hint.
+    // A state that a query with the depth has left is also no more than a hint.
     for (const bool tracked : {false, true}) {
       TrackingState state;
       if (tracked) (void)distance(a, b, pose, state);

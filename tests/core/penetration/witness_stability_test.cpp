@@ -1,9 +1,9 @@
-// Witness points from tick to tick where whole faces are closest: how far they move, held against
-// how far the bodies move.
+// Witness points from tick to tick where whole faces are closest: their motion is compared with the
+// motion of the bodies.
 //
-// Where two faces are level as far as doubles can tell, all their points are closest and a steady
-// choice exists. Where they are tilted by more, only an edge or a corner is closest, and the other
-// one as soon as the tilt turns over: one jump then is the truth.
+// If two faces are level as far as doubles can tell, all their points are closest, and a steady
+// choice exists. If the tilt is larger, only an edge or a vertex is closest. It changes to the
+// opposite one as soon as the tilt changes its sign, so one jump is then correct.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,12 +23,12 @@ using Quat = Eigen::Quaterniond;
 using test::turned;
 
 constexpr int kSteps = 600;
-constexpr double kSwings = 40.0;  // radians of tilting back and forth, either side of the middle
+constexpr double kSwings = 40.0;  // frequency of the tilting, in rad per unit of t
 
 struct FacingPair {
   const char* name;
   Body a, b;
-  double level;  // m: between the centres where the faces touch
+  double level;  // distance of the centres at which the faces touch, m
 };
 
 Body hexagonal_prism() {
@@ -51,7 +51,7 @@ std::vector<FacingPair> facing_pairs() {
           {"links", hard::link(6, 1.0, 0.1), hard::link(6, 0.7, 0.1), 0.1}};
 }
 
-// Where the upper body is at t in [-1, 1], tilted by at most `tilt`; the lower one lies at the
+// The pose of the upper body at t in [-1, 1], tilted by at most `tilt`. The lower body lies at the
 // origin.
 struct Swing {
   const char* name;
@@ -84,7 +84,7 @@ std::vector<Swing> motions() {
 }
 
 struct Moved {
-  double witness = 0.0, bodies = 0.0;  // m, in the world, in one step
+  double witness = 0.0, bodies = 0.0;  // movement in one step, m, in the world
 };
 
 std::vector<Moved> run(const FacingPair& pair, const Swing& motion, double tilt,
@@ -140,7 +140,7 @@ TEST(Witnesses, OfParallelFacesMoveNoFasterThanTheBodies) {
                });
 }
 
-// sin(40 t) is zero 25 times; while a body spins, another corner may become the lowest.
+// sin(40 t) has 25 zeros. While a body spins, another vertex may become the lowest one.
 void expect_jumps(const std::vector<double>& tilts, int most_a_turn) {
   constexpr int kTurns = 25, kOfSpinning = 2;
   for_each_run(tilts,
@@ -155,13 +155,13 @@ void expect_jumps(const std::vector<double>& tilts, int most_a_turn) {
 
 TEST(Witnesses, OfTiltedFacesJumpOnceWhenTheTiltTurnsOver) { expect_jumps({1e-11, 1e-9, 1e-7}, 1); }
 
-// Rounding decides there which of the steps of a turn are level.
+// At these tilts, rounding decides which steps of a turn are level.
 TEST(Witnesses, OfFacesAtTheBrinkOfParallelJumpAtMostThriceATurnOnAverage) {
   expect_jumps({7e-16, 1e-15, 2e-15, 5e-15, 1e-14, 1e-13, 1e-12}, 3);
 }
 
-// Bars that lie on an edge and cross in the middle: as deep upwards as downwards, across two pairs
-// of edges each, and rounding says which is less.
+// Bars that lie on an edge and cross in the middle. The depth is the same upwards and downwards,
+// across two pairs of edges each, and rounding decides which is smaller.
 TEST(Witnesses, OfBarsThatCrossInTheMiddleMoveNoFasterThanTheBars) {
   const Body bar =
       hard::rotated(hard::box({1.0, 0.1, 0.1}), turned(Vec3::UnitX(), std::numbers::pi / 4));
@@ -188,7 +188,8 @@ TEST(Witnesses, OfBarsThatCrossInTheMiddleMoveNoFasterThanTheBars) {
         const DistanceResult r = judge.ask({Vec3::Zero(), world}, now, state);
         EXPECT_EQ(r.status, DistanceStatus::kOverlapping);
         if (k > 0) {
-          // The points of crossing edges run along both, by as much over the sine of their angle.
+          // The witness points of crossing edges move along both edges, by the movement divided by
+          // the sine of their angle.
           const double moved = (now.position - before.position).norm() +
                                reach * now.orientation.angularDistance(before.orientation);
           EXPECT_LE((r.point_on_a - last.point_on_a).norm(), 3.0 * moved + 1e-12) << "step " << k;

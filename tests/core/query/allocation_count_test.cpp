@@ -1,4 +1,4 @@
-// The count that the tests for "allocates nothing" go by.
+// Tests the counter that the tests of "allocates nothing" rely on.
 #include "tests/shared/allocation_count.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 namespace clearance {
 namespace {
 
-// Where the compiler cannot see that nobody reads it.
+// A place where the compiler cannot see that the pointer is never read.
 void* volatile last = nullptr;
 
 template <class Allocate>

@@ -1,4 +1,4 @@
-// distance() against the exact truth, on every family of hard cases and motions.
+// Compares distance() with the exact truth, on every family of hard cases and motions.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -44,7 +44,7 @@ TEST_P(DistanceOfPairs, HoldsAgainstTheExactTruth) {
 INSTANTIATE_TEST_SUITE_P(Hard, DistanceOfPairs, testing::ValuesIn(hard::case_families()),
                          [](const auto& test) { return std::string(test.param.name); });
 
-// Cases that were wrong once.
+// Cases whose answers were once wrong.
 struct OnceWrong {
   const char* family;
   std::uint64_t seed;
@@ -92,7 +92,7 @@ constexpr OnceWrong kOnceWrong[] = {
     {"dust", 20095500003, "the same, 1 + 1e-9: by the robust path"},
 };
 
-// Cold and tracked.
+// Checks the answers of a cold and a tracked query.
 void expect_holds(const OnceWrong& once, const oracle::Body& a, const Pose& pose_a,
                   const oracle::Body& b, const Pose& pose_b) {
   DistanceJudge judge(a, b);
@@ -115,8 +115,8 @@ TEST(Distance, HoldsOnCasesThatWereWrongOnce) {
   }
 }
 
-// Across edges at 1e-10 rad no direction was tried, and that between the points left the bounds
-// 1.04e-14 of the size apart.
+// No direction across edges was tried at 1e-10 rad, and the direction between the points left the
+// bounds 1.04e-14 of the size apart.
 TEST(Distance, OfSegmentsThatAllButCoincideIsBoundedToRounding) {
   const oracle::Body a{{},
                        {{-0.56576604662083629, 0.12651541366186986, -1.039743676360132},
@@ -149,8 +149,8 @@ std::vector<Vec3> prism(int sides, double turned, double half_height) {
   return out;
 }
 
-// Of edges that all but align the direction across both is known less well than that from point to
-// point, and does not go before it: the points were 0.4 m beside the normal.
+// For almost parallel edges, the direction across both is less accurate than the one from point to
+// point, and must not be preferred to it. The points were once 0.4 m beside the normal.
 TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
   DistanceJudge judge({{}, prism(61, 0.0, 1.25), 0.0}, {{}, prism(8, 0.034, 1e-12), 0.0});
   const Pose pose_a{{0.3, 4.29e9, 0.0}, Eigen::Quaterniond::Identity()};
@@ -161,8 +161,8 @@ TEST(Distance, OfAFoilFarAwayHasItsNormalAlongItsPoints) {
   EXPECT_TRUE(faults.empty()) << joined(faults);
 }
 
-// What taking the radius off its bounds rounds was not counted in how far they may be apart: 98
-// ulps, of 97.6 that are promised.
+// The rounding of the subtraction of the radius was not counted in the promised gap of the bounds.
+// The gap was 98 ulps, with 97.6 promised.
 TEST(Distance, OfASphereInTheMiddleOfABodyIsBoundedToRounding) {
   DistanceJudge judge({{}, {Vec3::Zero()}, 0.006242449012769245}, hard::facet_ball(6));
   const Pose pose_b{Vec3(3.1709858964243656e-12, -1.9753015121804393e-13, 8.056155278403053e-13),
@@ -174,8 +174,9 @@ TEST(Distance, OfASphereInTheMiddleOfABodyIsBoundedToRounding) {
   EXPECT_TRUE(faults.empty()) << joined(faults);
 }
 
-// A move through the inside ended on the plane of a facet that is level with another to rounding, a
-// metre beside it: the next one left the body, and the upper bound was 1.7e-5 m too low.
+// A step through the interior ended on the plane of a facet that is level with another within
+// rounding, one metre beside it. The next step left the body, and the upper bound was 1.7e-5 m too
+// low.
 TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
   const hard::HardCase c = hard::case_of("twisted_images", 201700000);
   DistanceJudge judge(c.a, c.b);
@@ -194,8 +195,8 @@ TEST(Distance, FromInsideIsOnTheFacetUnderThePoint) {
 }
 
 TEST(Distance, HoldsWithTheStateOfAPairThatLayFarAway) {
-  // On a wedge without end, 1e17 m out, rounding took the point 23 m off its facet: the box was
-  // said to touch it.
+  // On an unbounded wedge, at 1e17 m, rounding moved the point 23 m off its facet. The box was then
+  // said to touch the wedge.
   const hard::HardCase c = hard::case_of("without_end", 141500011);
   DistanceJudge judge(c.a, c.b);
   const auto truth = judge.truth(c.pose_a, c.pose_b);

@@ -1,4 +1,4 @@
-// What must hold between answers, whatever the bodies: laws that need no oracle to be checked.
+// Laws that must hold between answers for any bodies, and that need no oracle.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -24,7 +24,7 @@ struct Example {
   ConvexBody a, b;
 
   [[nodiscard]] RelativePose pose() const { return relative_pose(c.pose_a, c.pose_b); }
-  // What rounding errors are relative to (see DistanceJudge::size).
+  // The size that rounding errors are relative to (see DistanceJudge::size).
   [[nodiscard]] double size(const DistanceResult& r) const {
     return a.bounding_radius + a.radius + b.bounding_radius + b.radius +
            (c.pose_a.position - c.pose_b.position).norm() + std::abs(r.upper);
@@ -44,7 +44,7 @@ void for_each_example(const std::function<void(const Example&, Random&)>& visit)
   }
 }
 
-// Both enclose the same number.
+// Both intervals contain the same true value.
 void expect_same_truth(const DistanceResult& r, const DistanceResult& s, const std::string& what) {
   EXPECT_LE(r.lower, s.upper) << what;
   EXPECT_LE(s.lower, r.upper) << what;
@@ -96,7 +96,7 @@ TEST(Distance, LeavesTheWitnessPointsInTheStateEachInItsBodysOwnFrame) {
 }
 
 TEST(Distance, OfABodyFarAwayStillHasAWitnessPointOnTheOtherOneToItsOwnRounding) {
-  // A unit cube at the world's origin, the other one 1 km away.
+  // A unit cube at the world's origin, and another one 1 km away.
   const ConvexBody cube = test::cube();
   Random random(1);
   for (int k = 0; k < 100; ++k) {
@@ -129,7 +129,7 @@ TEST(Distance, BoundsHoldEvenWhenTheStateIsNonsense) {
     for (int k = 0; k < 10; ++k) {
       TrackingState state = test::nonsense_state(e.a, e.b, random);
       const DistanceResult s = distance(e.a, e.b, e.pose(), state);
-      // -infinity: two unbounded bodies that no translation parts.
+      // The value -infinity: two unbounded bodies that no translation separates.
       const bool no_way_out = s.lower == -kInfinity && !e.a.bounded() && !e.b.bounded();
       EXPECT_TRUE(no_way_out || (std::isfinite(s.distance) && std::isfinite(s.lower))) << e.name;
       EXPECT_TRUE(s.distance <= s.upper && s.normal.allFinite()) << e.name;
@@ -140,19 +140,20 @@ TEST(Distance, BoundsHoldEvenWhenTheStateIsNonsense) {
 
 TEST(Distance, ScalesExactlyWithPowersOfTwo) {
   for_each_example([](const Example& e, Random& random) {
-    // Where a query starts on an unbounded body is a fixed length from its boundary.
+    // On an unbounded body, a query starts at a fixed distance from the boundary, which does not
+    // scale.
     if (!e.a.bounded() || !e.b.bounded()) return;
     const double factor = std::ldexp(1.0, random.integer(-30, 30));
     const ShapeResult scaled_a = model(hard::scaled(e.c.a, factor)),
                       scaled_b = model(hard::scaled(e.c.b, factor));
-    if (scaled_a.index() != 0 || scaled_b.index() != 0) return;  // too thin, or too large
+    if (scaled_a.index() != 0 || scaled_b.index() != 0) return;  // too thin or too large
     const auto &a = std::get<0>(scaled_a), &b = std::get<0>(scaled_b);
     Pose pose_a = e.c.pose_a, pose_b = e.c.pose_b;
     pose_a.position *= factor;
     pose_b.position *= factor;
     const DistanceResult r = cold(e.a, e.b, e.pose());
     const DistanceResult s = cold(a, b, relative_pose(pose_a, pose_b));
-    if (s.status == DistanceStatus::kBadPose) return;  // too far apart
+    if (s.status == DistanceStatus::kBadPose) return;  // too far away
     EXPECT_EQ(s.distance, factor * r.distance) << e.name;
     EXPECT_EQ(s.lower, factor * r.lower) << e.name;
     EXPECT_EQ(s.upper, factor * r.upper) << e.name;

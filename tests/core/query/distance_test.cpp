@@ -24,21 +24,21 @@ using test::half_space;
 using test::made;
 using test::turned;
 
-// Roundings of numbers of about one.
+// The rounding error of numbers of about one.
 constexpr double kRounding = 1e-14;
 
 ConvexBody ball(double radius) { return made(point(Vec3::Zero(), radius)); }
 ConvexBody capsule(double half_length, double radius) {
   return made(segment({0, 0, -half_length}, {0, 0, half_length}, radius));
 }
-// Along z; each side's normal . x = 0.5.
+// A prism along z whose sides satisfy normal . x = 0.5.
 ConvexBody unbounded_prism(std::initializer_list<Vec3> normals) {
   std::vector<HalfSpace> rows;
   for (const Vec3& n : normals) rows.push_back({n, 0.5});
   return made(polyhedron_from_halfspaces(rows));
 }
 
-// `size`: of the largest number involved, which rounding is relative to.
+// `size` is the largest number involved, which rounding is relative to.
 void expect_distance(const DistanceResult& r, double truth, double size = 1.0) {
   EXPECT_NEAR(r.distance, truth, kRounding * size);
   EXPECT_LE(r.lower, truth);
@@ -68,7 +68,8 @@ TEST(Distance, OfCubesEdgeToEdgeAndCornerToCornerIsTheDiagonal) {
 }
 
 TEST(Distance, OfCrossingEdgesIsAlongTheirCommonNormal) {
-  // Both cubes turned by 45 degrees: edges along y and x face each other on the z axis.
+  // Both cubes are rotated by 45 degrees: an edge along y and an edge along x face each other on
+  // the z axis.
   const double half_diagonal = std::numbers::sqrt2 / 2;
   TrackingState state;
   const Pose pose_a = Pose{{0, 0, 0}, turned(Vec3::UnitY(), std::numbers::pi / 4)};
@@ -143,7 +144,7 @@ TEST(Distance, OfTwoUnboundedBodiesIsBoundedFromBelowWhereRoundingCanTell) {
   expect_distance(cold(floor, corner, upside_down), 2.0, 20);
   expect_distance(cold(corner, floor, upside_down), 2.0, 20);
   expect_distance(cold(corner, corner, upside_down), std::sqrt(4.3125), 30);
-  // The last bit of tilt would make them meet, far away.
+  // A tilt by the last bit would make the planes meet, but far away.
   for (const double tilt : {0.0, 0x1p-52}) {
     const DistanceResult parallel = cold(floor, half_space({tilt, 0, -1}, -2.0), at(0, 0, 0));
     EXPECT_EQ(parallel.lower, -kInfinity);
@@ -194,7 +195,7 @@ TEST(Distance, HoldsWhereSquaresUnderflow) {
   }
 }
 
-// Of all kinds of features at once, and what they leave behind.
+// Starts from all kinds of features, and checks the answers and the states that they leave.
 void expect_unknown(const ConvexBody& a, const ConvexBody& b, const Pose& pose) {
   static const ConvexBody sound = cube();
   for (std::uint8_t kinds = 0; kinds < 18; ++kinds) {

@@ -1,4 +1,5 @@
-// One tracking state carried through a million steps. Oracle: the exact distance, every so often.
+// One tracking state carried through a million steps. Oracle: the exact distance, at regular
+// intervals.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -20,8 +21,8 @@ struct PairOfPoses {
   Pose a, b;
 };
 
-// Around A in a spiral that closes after some thousand turns, B turning: as near as `near`, where
-// the bodies overlap.
+// B rotates and moves around A in a spiral that closes after several thousand turns. At the closest
+// approach `near`, the bodies overlap.
 PairOfPoses around(double t, double near, double far) {
   const Vec3 way(std::cos(t), std::sin(t) * std::cos(0.37 * t), std::sin(t) * std::sin(0.37 * t));
   const double distance = near + (far - near) * (0.5 + 0.5 * std::cos(0.0171 * t));
@@ -29,8 +30,8 @@ PairOfPoses around(double t, double near, double far) {
   return {{}, {distance * way, turn}};
 }
 
-// Boxes 0.6 m high, one above the other, as level as quaternions can say: B slides and turns over
-// A, from 1 mm to 0.8 m above it, and both tumble together.
+// Boxes 0.6 m high, one above the other, as level as quaternions can represent. B slides and
+// rotates above A, at 1 mm to 0.8 m, and both tumble together.
 PairOfPoses level(double t) {
   const Quat world = test::turned(Vec3(1.0, 2.0, 0.5 * std::sin(0.03 * t)), 0.11 * t);
   const Vec3 over(0.5 * std::sin(0.7 * t), 0.4 * std::sin(1.1 * t),
@@ -53,7 +54,7 @@ const LongRun kRuns[] = {
     {"LevelBoxes", hard::box({0.5, 0.4, 0.3}), level},
 };
 
-// A converged answer is within 1e-14 of both radii and the way from one origin to the other.
+// A converged answer is within 1e-14 of the scale: both radii and the distance of the origins.
 void expect_as_promised(const DistanceResult& r, const oracle::ExactDistance& truth, double scale) {
   if (r.status != DistanceStatus::kConverged) return;
   const double off =

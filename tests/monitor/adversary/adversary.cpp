@@ -15,7 +15,7 @@ void turn(Random& random, double angle, Pose& pose) {
   pose.orientation.normalize();
 }
 
-// At a millisecond a tick every point of a body of a metre keeps well below 3 m/s.
+// At one millisecond per tick, every point of a body of one metre stays well below 3 m/s.
 void crawl(Random& random, Pose& pose) {
   pose.position += random.in_box(0.0005);
   turn(random, 0.0005, pose);
@@ -27,7 +27,7 @@ void crowd(Random& random, int tick, Pose& pose) {
   turn(random, 0.01, pose);
 }
 
-// Turns around at the walls of the room.
+// The object reverses at the walls of the room.
 void fly(Random& random, double room, Vec3& velocity, Pose& pose) {
   for (int i = 0; i < 3; ++i) {
     if (std::abs(pose.position[i] + velocity[i]) > 1.5 * room) velocity[i] *= -1.0;
@@ -74,7 +74,7 @@ const Report& Adversary::tick(Monitor& monitor) {
     if (is_silent(object)) continue;
     object.sent = object.pose;
     PoseSample told = sample(i, object.pose, now_ns_);
-    // Robots round their quaternions.
+    // Robots send rounded quaternions.
     told.world_from_object.orientation.coeffs() *= random_.uniform(0.9995, 1.0005);
     samples.push_back(told);
   }

@@ -1,7 +1,8 @@
-// Somebody who moves the objects of a cell so as to make the tick report something false.
+// Moves the objects of a cell with the aim that the tick reports something false.
 //
-// The adversary knows where every object is, what the monitor has been told of it, and therefore
-// what the monitor's bounds are about: the poses in use, and of late objects the true ones.
+// The adversary knows the true pose of every object and what the monitor has been told of it. It
+// therefore knows what the monitor's bounds refer to: the poses in use, and the true poses of late
+// objects.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +16,13 @@
 namespace clearance::test {
 
 enum class Style {
-  kCrawl,     // every point keeps well below 3 m/s
-  kJitter,    // nanometres
-  kSpin,      // large turns about the objects' origins
-  kTeleport,  // jumps, now and then
+  kCrawl,     // every point stays well below 3 m/s
+  kJitter,    // motion of nanometres
+  kSpin,      // large rotations about the objects' origins
+  kTeleport,  // occasional jumps
   kDart,      // rest, then jumps of decimetres for a few ticks
-  kBullets,   // through everything at up to 0.3 m a tick, tumbling, and back
-  kCrowd,     // all gather around one wandering point
+  kBullets,   // through everything and back at up to 0.3 m per tick, while tumbling
+  kCrowd,     // all objects gather around one wandering point
   kAway,      // jumps of 30 km and back, farther than displacements are added up
   kLate,      // crawls; single objects fall silent for up to 80 ticks
   kAllLate,   // crawls; all objects fall silent together
@@ -29,36 +30,36 @@ enum class Style {
 };
 std::ostream& operator<<(std::ostream& out, Style style);
 
-// Whether objects of this style may be late.
+// Returns true if objects of this style may be late.
 [[nodiscard]] bool falls_silent(Style style);
 
 class Adversary {
  public:
-  // `room`: objects start within this of the origin along each axis, m.
+  // `room`: the largest initial coordinate of an object along each axis, m.
   Adversary(const Scene& scene, Style style, double room, std::uint64_t seed);
 
-  // Moves everything, tells the monitor, and returns its report.
+  // Moves all objects, sends their poses to the monitor, and returns its report.
   const Report& tick(Monitor& monitor);
 
-  // What the monitor's bounds of this tick are about.
+  // The pose that the monitor's bounds of this tick refer to.
   [[nodiscard]] const Pose& now(std::uint32_t object) const { return objects_[object].now; }
-  // At `s` of the way since the last tick.
+  // The pose at the fraction `s` of the interval since the last tick.
   [[nodiscard]] Pose since(std::uint32_t object, double s) const {
     return between(objects_[object].before, objects_[object].now, s);
   }
-  // Both objects of the pair were known at the last tick and are in this one, so that swept bounds
-  // say something about the time between.
+  // Returns true if both objects of the pair were known in the last tick and are known in this one.
+  // Only then do swept bounds cover the time between.
   [[nodiscard]] bool was_known(std::uint32_t pair) const;
-  // Any instant between two ticks, in [0, 1].
+  // A random instant between two ticks, in [0, 1].
   [[nodiscard]] double any_instant() { return random_.uniform(0.0, 1.0); }
 
  private:
   struct Told {
-    Pose pose;         // where the object is
-    Pose sent;         // as the monitor was told last
-    Pose now, before;  // what the monitor's bounds are about, in this tick and the last
-    Vec3 velocity;     // m a tick, of bullets
-    int silence = 0;   // ticks
+    Pose pose;         // true pose of the object
+    Pose sent;         // pose last sent to the monitor
+    Pose now, before;  // poses that the monitor's bounds refer to, in this tick and the last
+    Vec3 velocity;     // of bullets, m per tick
+    int silence = 0;   // remaining silence, ticks
     bool known = false, known_before = false;
   };
 

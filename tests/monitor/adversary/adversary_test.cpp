@@ -1,8 +1,8 @@
-// The whole tick against oracles, on cells that somebody moves who means harm.
+// The whole tick compared with oracles, on cells whose objects an adversary moves.
 //
-// Oracles: the closed form for capsules and spheres in long double; for polyhedra the core, asked
-// cold about every pair in every tick and at instants between. Longer runs:
-// CLEARANCE_TICKS=25000 monitor_tests --gtest_filter='*Adversaries*' is millions of ticks.
+// Oracles: for capsules and spheres, the closed form in long double. For polyhedra, cold queries of
+// the core about every pair, in every tick and at instants between. Longer runs of millions of
+// ticks: CLEARANCE_TICKS=25000 monitor_tests --gtest_filter='*Adversaries*'.
 #include "tests/monitor/adversary/adversary.hpp"
 
 #include <gtest/gtest.h>
@@ -27,8 +27,8 @@ struct DrivenCell {
   Scene (*make)(Random&);
   const test::Oracle* oracle;
   double room;          // m
-  std::uint32_t ample;  // queries: a budget that covers whatever may be asked in a tick
-  int ticks;            // of a usual run
+  std::uint32_t ample;  // a budget that covers all queries of any tick
+  int ticks;            // length of a usual run
 };
 std::ostream& operator<<(std::ostream& out, const DrivenCell& cell) { return out << cell.name; }
 

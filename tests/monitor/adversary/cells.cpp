@@ -5,7 +5,7 @@
 namespace clearance::test {
 namespace {
 
-// With more than 64 facets it gets a bounding hull.
+// A part with more than 64 facets gets a bounding hull.
 Part hull(Random& random, int points, double size, const Pose& offset) {
   std::vector<Vec3> vertices;
   for (int i = 0; i < points; ++i) vertices.push_back(random.in_box(size));

@@ -6,13 +6,13 @@
 
 namespace clearance::test {
 
-// Long thin bodies, one of them in two pieces and off its own origin, among fixed ones.
+// Long thin bodies among fixed ones. One of them has two parts and lies off its own origin.
 [[nodiscard]] Scene thin_bodies(Random& random);
 
-// Capsules and spheres, most of them moving, half of those with a stated speed; two zones.
+// Capsules and spheres, most of them moving, half of those with a stated speed, and two zones.
 [[nodiscard]] Scene capsules(Random& random);
 
-// Needles, plates, hulls, a pebble and a body in two pieces, a floor; two zones.
+// Needles, plates, hulls, a small ball, a body of two parts, a floor and two zones.
 [[nodiscard]] Scene polyhedra(Random& random);
 
 }  // namespace clearance::test

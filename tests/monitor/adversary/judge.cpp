@@ -7,10 +7,10 @@
 namespace clearance::test {
 namespace {
 
-constexpr int kInstants = 3;      // tried between two ticks, for every pair
-constexpr int kSettled = 30;      // ticks after which every pair has been met
+constexpr int kInstants = 3;      // instants tried between two ticks, for every pair
+constexpr int kSettled = 30;      // ticks after which every pair has been evaluated
 constexpr double kPoses = 1e-11;  // rounding of interpolated poses, m
-constexpr double kFar = 1e-8;     // of poses 30 km away, m
+constexpr double kFar = 1e-8;     // rounding of poses 30 km away, m
 
 }  // namespace
 
@@ -98,7 +98,8 @@ void Judge::judge_age(std::uint32_t pair, const PairReport& report, std::uint64_
   if (scene_.objects[a].parts.size() == 1 && scene_.objects[b].parts.size() == 1) {
     EXPECT_LE(report.refresh_age_cycles, cycle - report.evaluated_cycle);
   }
-  // Each has its turn in time whatever else is urgent, if the budget covers the turns at all.
+  // If the budget covers the refreshes at all, each pair is refreshed in time, whatever else is
+  // urgent.
   if (scene_.budget > 0 && share_.queries() <= scene_.budget && known_for_[pair] > share_.ticks) {
     EXPECT_LE(report.refresh_age_cycles, share_.ticks);
   }
@@ -122,7 +123,7 @@ void Judge::judge_minimum(const Report& report) const {
   EXPECT_EQ(report.stale + report.unknown, 0u);
   EXPECT_LE(report.minimum.lower, least + rounding);
   EXPECT_GE(report.minimum.upper, least - rounding);
-  // Rounding decides between pairs that are as near as it is wide.
+  // Between pairs whose distances differ by less than the rounding, rounding decides.
   EXPECT_LE(now_[report.minimum.pair] - least, rounding_);
 }
 
@@ -157,7 +158,7 @@ void Judge::judge_turns(const Report& report) const {
   }
   if (!ample_ || tick_ <= kSettled) return;
   EXPECT_LE(report.oldest_evaluation_cycles, 16u) << "16 pairs a tick have their turn";
-  // 30 km away, the core's rounding is wider than what tells two pairs apart.
+  // At 30 km the core's rounding error exceeds the difference between two pairs.
   EXPECT_TRUE(report.minimum_certified || (style_ == Style::kAway && oracle_.rounding > 0.0));
 }
 

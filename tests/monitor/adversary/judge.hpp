@@ -1,5 +1,5 @@
-// Holds every figure of a report against an oracle: bounds now and since the last tick, counts,
-// ages, the minimum, zones.
+// Compares every figure of a report with an oracle: bounds now and since the last tick, counts,
+// ages, the minimum and zones.
 #pragma once
 
 #include <vector>
@@ -13,13 +13,14 @@ namespace clearance::test {
 
 class Judge {
  public:
-  // `budget_is_ample`: it covers whatever may be asked in a tick.
+  // `budget_is_ample`: the budget covers all queries of any tick.
   Judge(const Scene& scene, const Oracle& oracle, Style style, bool budget_is_ample);
 
-  // One tick; fails the running test where the report is false. Tells whether it did.
+  // Checks one tick. If the report is false, the running test fails and the function returns false.
   [[nodiscard]] bool accepts(const Report& report, const Monitor& monitor, Adversary& adversary);
 
-  // Zones that were entered for caution only, in ticks, from the thirtieth on.
+  // The number of zone states, counted per tick from the thirtieth on, that are active only as a
+  // precaution.
   [[nodiscard]] int uncertain_zones() const { return uncertain_zones_; }
 
  private:
@@ -38,13 +39,15 @@ class Judge {
   const Style style_;
   const bool ample_;
   const RefreshShare share_;
-  const long double rounding_;  // of poses and of the oracle, m
+  const long double rounding_;  // rounding of poses and of the oracle, m
   int tick_ = -1;
-  // By pair, m: in this tick, and at the least of the instants tried since the last one.
+  // Distances by pair, m: in this tick, and the least at the tried instants since the last tick.
   std::vector<long double> now_, since_;
-  std::vector<std::uint64_t> known_for_;    // by pair: ticks in a row
-  std::array<std::uint32_t, 4> counted_{};  // evaluated, carried, stale, unknown
-  std::uint64_t stalest_ = 0;               // ticks
+  // by pair: number of consecutive ticks in which it was known
+  std::vector<std::uint64_t> known_for_;
+  // numbers of evaluated, carried, stale and unknown pairs
+  std::array<std::uint32_t, 4> counted_{};
+  std::uint64_t stalest_ = 0;  // ticks
   int uncertain_zones_ = 0;
 };
 

@@ -1,4 +1,4 @@
-// What finds the true distance of two objects, for the judge of a tick.
+// Computes the true distance of two objects, for the judge of a tick.
 #pragma once
 
 #include "tests/monitor/fresh_distance.hpp"
@@ -9,14 +9,14 @@ namespace clearance::test {
 struct Oracle {
   long double (*distance)(const Object& a, const Pose& world_from_a, const Object& b,
                           const Pose& world_from_b);
-  double rounding;  // of the oracle itself, m, for objects within metres of the origin
+  double rounding;  // rounding error of the oracle, m, for objects within metres of the origin
 };
 
-// The closed form for spheres and capsules in long double; it shares nothing with the core.
+// The closed form for spheres and capsules in long double. It shares nothing with the core.
 inline constexpr Oracle kClosedForm{true_distance, 0.0};
 
-// The core itself, asked cold about every pair of parts; it knows nothing of broad phase, schedule,
-// displacements and swept bounds.
+// Cold queries of the core about every pair of parts. They do not depend on broad phase, schedule,
+// displacements or swept bounds.
 inline constexpr Oracle kBruteForce{
     [](const Object& a, const Pose& world_from_a, const Object& b, const Pose& world_from_b) {
       return static_cast<long double>(fresh_distance(a, world_from_a, b, world_from_b).upper);

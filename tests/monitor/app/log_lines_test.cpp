@@ -1,4 +1,4 @@
-// The wording of every log line of the daemon stands in tests/monitor/messages.golden.
+// The wording of every log line of the daemon is kept in tests/monitor/messages.golden.
 #include "monitor/app/log_lines.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,8 @@ std::string content(const std::string& file) {
   return text.str();
 }
 
-// "A" for the first argument if it is a text, 2 if it is a count, 2.5 if it is a length or a rate.
+// An example argument: "A" for a first argument that is a text, 2 for a count, 2.5 for a length or
+// a rate.
 template <class Argument>
 Argument sample(std::size_t place) {
   static constexpr std::string_view kNames = "ABCDEFGH";

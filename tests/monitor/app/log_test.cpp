@@ -1,4 +1,4 @@
-// Nothing that logs or prints waits for whoever reads it.
+// No function that logs or prints waits for its reader.
 #include "monitor/app/log.hpp"
 
 #include <gmock/gmock.h>
@@ -16,16 +16,17 @@
 namespace clearance {
 namespace {
 
-// A text that spdlog does not know when it is compiled.
+// Logs a text that spdlog does not know at compile time.
 void log(const std::string& text) { spdlog::info("{}", text); }
 
-// Ends the process, as a death test must: 0 when `is_so`, else what is wrong.
+// Ends the process, as a death test must: with 0 if `is_so`, otherwise with a description of the
+// fault.
 void end_with(bool is_so, const std::string& otherwise, int errors) {
   if (!is_so) dprintf(errors, "%s", otherwise.c_str());
   std::exit(is_so ? 0 : 1);
 }
 
-// Lines that say a number, and how many others are said to be missing.
+// Counts lines that contain a number, and the number of lines reported as missing.
 struct Counted {
   std::uint64_t here = 0, left_out = 0;
   bool in_order = true;

@@ -1,4 +1,4 @@
-// What every program does with the signals that stop it.
+// The reaction of every program to the signals that stop it.
 #include "monitor/app/program.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// What a bag says of a cell's robots and objects, and what it does not.
+// The statements of a bag about a cell's robots and objects, and the limits of such statements.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -150,7 +150,7 @@ TEST_F(BagLogTest, TransformsMoveTheObjectsOfTheirNames) {
   EXPECT_THAT(log.notes, IsEmpty());
 }
 
-// The robot's root link is where the cell has it; another root is taken to be the world.
+// The robot's root link is where the cell places it. Any other root frame is taken as the world.
 TEST_F(BagLogTest, FramesHangOnTheRobotsRootOrOnAWorldOfAnotherName) {
   scene = scara_cell(", base: {pose: {xyz: [0, 0, 3]}}");
   const ReadLog on_robot = read({transforms(kT, kT, {{"foot", "cart", {1, 0, 0}}})});
@@ -161,7 +161,7 @@ TEST_F(BagLogTest, FramesHangOnTheRobotsRootOrOnAWorldOfAnotherName) {
   EXPECT_THAT(on_map.notes, Contains(HasSubstr("frame 'map' is taken to be the cell's world")));
 }
 
-// The same keys of the cell as live.
+// The cell's keys are the same as for live inputs.
 TEST_F(BagLogTest, FramesThatTheCellNamesMoveObjectsAndBases) {
   write_text(folder / "scara.urdf", kScaraUrdf);
   cell = read_good(
@@ -228,7 +228,7 @@ TEST_F(BagLogTest, JointsThatNobodySendsMayBeGiven) {
   EXPECT_THAT(wrong.error, HasSubstr("no joint 'pusch' moves in this cell; did you mean 'push'?"));
 }
 
-// Numbers of any size, times of any kind.
+// Messages with numbers of any size and times of any kind.
 TEST_F(BagLogTest, HostileMessagesAreSurvived) {
   std::mt19937_64 random(8);
   const std::vector<RosMessage> sound = {

@@ -1,4 +1,5 @@
-// Bags in whichever way rosbag2 keeps them: the same messages come out; what is none says so.
+// Bags in every storage format of rosbag2 give the same messages. A file that is no bag gives an
+// error.
 #include "monitor/bags/bag.hpp"
 
 #include <gmock/gmock.h>
@@ -60,7 +61,7 @@ void expect_same(const std::vector<RosMessage>& expected, const std::vector<RosM
   }
 }
 
-// Half of the messages in each of two files.
+// Writes half of the messages into each of two files.
 void write_halves(const std::filesystem::path& folder, const std::string& extension) {
   const std::vector<RosMessage> all = some_messages();
   const std::vector<RosMessage> halves[2] = {{all.begin(), all.begin() + 30},
@@ -92,7 +93,7 @@ TEST(Bag, FolderIsReadInTheOrderThatItsMetadataSay) {
   const ScratchFolder folder;
   std::filesystem::create_directory(folder / "bag");
   write_halves(folder / "bag", ".db3");
-  // Humble wrote the names like that, others with the folder in front.
+  // Humble wrote the names in this form; other releases put the folder in front.
   write_text(folder / "bag/metadata.yaml",
              "rosbag2_bagfile_information:\n  version: 5\n  storage_identifier: sqlite3\n"
              "  relative_file_paths:\n    - bag/bag_10.db3\n    - bag_9.db3\n");
@@ -154,7 +155,7 @@ TEST(Bag, IsNotTouched) {
                              std::filesystem::directory_iterator{}));
 }
 
-// What is no bag, and what each says.
+// Files that are no bags, and the error of each.
 TEST(Bag, WhatIsNoneSaysWhyAndWhatIsExpected) {
   const ScratchFolder folder;
   const auto error_of = [&](const std::string& name) {
@@ -197,7 +198,7 @@ TEST(Bag, MessageOfNoTopicIsDamage) {
   EXPECT_THAT(read.error, HasSubstr("message 11 is of topic 99, which it does not have"));
 }
 
-// Whatever is in the file, reading it ends, and without a fault that a sanitizer would see.
+// Whatever the file contains, reading it ends, without a fault that a sanitizer would report.
 TEST(Bag, NoGarbageIsFollowed) {
   const ScratchFolder folder;
   write_sqlite_bag(folder / "a.db3", some_messages());

@@ -1,4 +1,4 @@
-// Bags as rosbag2 writes them: messages of ROS 2 in an MCAP file, or in an SQLite file made with
+// Bags in rosbag2's formats: messages of ROS 2 in an MCAP file, or in an SQLite file made with
 // SQLite's own library.
 #pragma once
 
@@ -16,7 +16,7 @@
 
 namespace clearance::test {
 
-// CDR, little-endian, as its rules say: each number aligned to its size, counted from behind the
+// Little-endian CDR by its rules: each number is aligned to its size, counted from the end of the
 // header.
 class RosCdr {
  public:

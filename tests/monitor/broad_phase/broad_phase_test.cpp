@@ -1,4 +1,4 @@
-// What the broad phase leaves out; that no bound of what it leaves out is false is held by
+// The pairs that the broad phase leaves out. The truth of their bounds is tested in
 // tests/monitor/adversary.
 #include "monitor/broad_phase/broad_phase.hpp"
 

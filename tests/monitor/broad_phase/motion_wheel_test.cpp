@@ -13,7 +13,7 @@ TEST(MotionWheels, NoTimerIsLateAndNoneMoreThanAQuarterEarly) {
   constexpr std::uint32_t kPairs = 500;
   Random random(81);
   MotionWheels wheels(2, kPairs);
-  std::vector<double> since(kPairs), due(kPairs);  // m, of displacement of object 1
+  std::vector<double> since(kPairs), due(kPairs);  // displacement of object 1, m
   double accumulated = 0.0;
   std::vector<std::uint32_t> pairs;
   const auto set = [&](std::uint32_t pair) {

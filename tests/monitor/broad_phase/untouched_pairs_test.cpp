@@ -1,4 +1,5 @@
-// Bounds of the pairs that a tick does not update; and the check of the invariant can fail.
+// Bounds of the pairs that a tick does not update, and a proof that the check of the invariant can
+// fail.
 #include "monitor/broad_phase/untouched_pairs.hpp"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// The client library over real DDS, the daemon's side played by this test.
+// The client library over real DDS. The test plays the daemon.
 #include "monitor/client/client.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using test::eventually;
 
 constexpr milliseconds kPatience(20'000);
 
-// Writes what a daemon writes.
+// Writes the topics that a daemon writes.
 class Daemon {
  public:
   explicit Daemon(const DdsOptions& dds)
@@ -37,7 +37,7 @@ class Daemon {
     check_dds(dds_write(distances_, &report), "writing");
   }
 
-  // Hand (of two parts) and table, one pair, one joint.
+  // Announces a hand (of two parts) and a table, one pair, and one joint.
   void announce() {
     Sample<clearance_msg_Catalogue> catalogue;
     catalogue->scene = dds_string_dup("cell");
@@ -203,7 +203,7 @@ TEST(Client, MayLiveInAParticipantOfTheProgramsOwn) {
   const DdsOptions dds = test::own_dds();
   Daemon daemon(dds);
   daemon.announce();
-  // Another participant in this process's domain, as a program with DDS of its own has one.
+  // Another participant in this process's domain, like that of a program that uses DDS itself.
   const dds_entity_t own = check_dds(dds_create_participant(dds.domain, nullptr, nullptr), "own");
   {
     client::Connection connection(own, dds.partition);

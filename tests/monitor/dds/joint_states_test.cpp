@@ -1,4 +1,4 @@
-// The topic of joint states as the tick thread sees it, through real DDS on loopback.
+// The topic of joint states as the tick thread reads it, through real DDS on loopback.
 #include <gtest/gtest.h>
 
 #include "monitor/dds/pose_reader.hpp"
@@ -21,7 +21,7 @@ class JointStatesReader : public testing::Test {
     const Sample<clearance_msg_JointStates> sample = make_joint_states(batch, scene);
     ASSERT_EQ(dds_write(joints, &*sample), DDS_RETCODE_OK);
   }
-  // The pose of the object that no joint moves.
+  // Sends the pose of the object that no joint moves.
   void send_pose(const char* source) const {
     PoseBatch batch{SourceName(source), 1, scene.revision, {}};
     batch.samples.push_back(test::sample(1, test::at(0, 0, 1), test::kStart));
@@ -67,7 +67,8 @@ TEST_F(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
   EXPECT_EQ(inputs.tallies().size(), 2u);
 }
 
-// One name is one writer's, of either topic: batches are found again by name and number.
+// A source name belongs to one writer across both topics, because batches are identified by name
+// and number.
 TEST_F(JointStatesReader, ANameThatSendsPosesCannotSendJointsAsWell) {
   PoseBatch batch{SourceName("arm"), 1, 0, {}};
   batch.joints.push_back(test::joint(0, 0.1, test::kStart));

@@ -1,4 +1,5 @@
-// A daemon and programs of another version on one network: each is told, and none gets garbage.
+// A daemon and programs of another version on one network: each side logs it, and none receives
+// garbage.
 #include <gtest/gtest.h>
 #include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
@@ -18,7 +19,7 @@
 namespace clearance::test {
 namespace {
 
-// A generated type under the name of ours, as a build with another IDL has it.
+// A generated type under the name of this build's type, as a build with another IDL has it.
 class TypeOf {
  public:
   TypeOf(const dds_topic_descriptor_t& layout, const char* name) {
@@ -37,7 +38,7 @@ const TypeOf kOlderZone(other_msg_OlderZoneState_desc, "clearance::msg::ZoneStat
 const TypeOf kNewerZone(other_msg_NewerZoneState_desc, "clearance::msg::ZoneState");
 const TypeOf kNewerBatch(other_msg_NewerPoseBatch_desc, "clearance::msg::PoseBatch");
 
-// Endpoints with types of another version, in a participant like any other program's.
+// Endpoints with types of another version, in a participant like that of any other program.
 class Stranger {
  public:
   explicit Stranger(const DdsOptions& dds) : participant_(dds) {
@@ -96,7 +97,7 @@ class Logged : public spdlog::sinks::base_sink<std::mutex> {
   std::string text_;
 };
 
-// The default logger, replaced for a while.
+// Replaces the default logger temporarily.
 class LoggedTo {
  public:
   explicit LoggedTo(const std::shared_ptr<Logged>& sink) : before_(spdlog::default_logger()) {
@@ -180,7 +181,7 @@ TEST(OtherVersion, AClientOfThisOneSaysWhyItHearsNothingOfAnother) {
   client::Connection connection(dds);
   client::Reports reports(connection);
   EXPECT_EQ("", reports.refusal());
-  // Any other type without a key, by the name of the reports'.
+  // Any other type without a key, under the name of the reports' type.
   const TypeOf type(other_msg_OlderSeparation_desc, "clearance::msg::Distances");
   daemon.writer(type, "clearance/distances");
   ASSERT_TRUE(eventually([&] { return !reports.refusal().empty(); }));

@@ -1,4 +1,4 @@
-// The poses topic as the tick thread sees it, through real DDS on loopback.
+// The poses topic as the tick thread reads it, through real DDS on loopback.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -45,7 +45,7 @@ class Sender {
   Sample<clearance_msg_PoseBatch> sample_;
 };
 
-// The numbers of the next `count` batches.
+// Returns the numbers of the next `count` batches.
 std::vector<std::uint64_t> take(PoseReader& poses, std::size_t count) {
   std::vector<std::uint64_t> numbers;
   EXPECT_TRUE(test::eventually([&] {
@@ -146,7 +146,7 @@ TEST(PoseReader, KeepsSourcesApartAndRefusesOneTooMany) {
   EXPECT_EQ(port.poses.next(), nullptr);
 }
 
-// What health says of one cause, of all objects and sources.
+// The health topic's count for one cause, summed over all objects and sources.
 std::uint64_t refused(const Port& port, std::string_view cause) {
   const auto health = make_health(port.scene, LoopStatistics(port.scene), port.poses, 0);
   std::uint64_t count = 0;
@@ -209,13 +209,14 @@ TEST(PoseReader, StoresNoMoreThanSixteenNamesOfAWriterAndStillHearsOthers) {
 constexpr const char* kDomain = "CLEARANCE_TEST_DOMAIN";
 constexpr const char* kPartition = "CLEARANCE_TEST_PARTITION";
 
-// Not a test of its own: the process that the one below starts. Sends samples that end after their
-// key, under the poses' topic and type names.
+// This is not a separate test: it runs in the process that the test below starts. It sends samples
+// that end after their key, under the topic and type names of the poses.
 TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
   const char* domain = std::getenv(kDomain);
   if (domain == nullptr) GTEST_SKIP() << "started by another test only";
   const Cell cell{two_movers()};
-  // The type's operations up to its key, and the end: Cyclone's descriptors are lists of these.
+  // The type's operations up to its key, followed by the end marker. Cyclone's descriptors are
+  // lists of these.
   std::vector<std::uint32_t> operations;
   const std::uint32_t* original = clearance_msg_PoseBatch_desc.m_ops;
   while (operations.size() < 3) operations.push_back(*original++);

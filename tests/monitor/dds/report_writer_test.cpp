@@ -1,4 +1,4 @@
-// What the daemon publishes, through real DDS on loopback.
+// The daemon's publications, through real DDS on loopback.
 #include "monitor/dds/report_writer.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ Scene watched_cell() {
   return scene;
 }
 
-// The topic that has this type.
+// The topic with this type.
 template <class T>
 TopicKind kind_of() {
   const auto of_type = [](const Topic& each) { return each.type == &topic_descriptor<T>(); };
@@ -33,7 +33,7 @@ class Reader {
   Reader(Participant& participant, const Cell& cell)
       : reader_(participant.reader(kind_of<T>(), cell.topics.*topic(kind_of<T>()).name)) {}
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
-  // The next sample, or null when none comes.
+  // Returns the next sample, or null if none arrives.
   const T* next() {
     void* pointer = &*sample_;
     dds_sample_info_t info;
@@ -47,7 +47,7 @@ class Reader {
   Sample<T> sample_;
 };
 
-// The publishing side without a tick loop: the test is the tick thread.
+// The publishing side without a tick loop: the test acts as the tick thread.
 struct Publisher {
   Cell cell{watched_cell()};
   Scene& scene = cell.scene;
@@ -81,7 +81,7 @@ TEST(ReportWriter, PublishesEveryTickAsItWas) {
   Participant client(publisher.dds);
   Reader<clearance_msg_Distances> reader(client, publisher.cell);
   ASSERT_TRUE(test::eventually([&] { return test::matched_writers(reader.handle()) == 1; }));
-  // A writer that does not know of the reader yet would send it nothing.
+  // A writer that has not discovered the reader yet would send it nothing.
   ASSERT_TRUE(test::eventually([&] { return publisher.reports->distance_readers() == 1; }));
   for (std::uint64_t i = 1; i <= 5; ++i) {
     const Report& report = publisher.tick(0.1 * static_cast<double>(i));
@@ -106,7 +106,7 @@ TEST(ReportWriter, TellsALateClientNamesAndZones) {
   Reader<clearance_msg_ZoneState> early(client, publisher.cell);
   publisher.tick(0.0);
   publisher.tick(0.6);  // 0.2 m away: inside the zone
-  // Both reports are only queued so far: the client is late when they have been published.
+  // Both reports are only queued so far. The client arrives after they have been published.
   const clearance_msg_ZoneState* seen = early.next();
   while (seen != nullptr && !seen->active) seen = early.next();
   ASSERT_NE(seen, nullptr);
@@ -139,7 +139,7 @@ TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
   publisher.tick(0.6);
   expect_next(true, 3);
   publisher.tick(0.55);
-  publisher.tick(0.0);  // within the zone when it left 0.55, so since the last tick
+  publisher.tick(0.0);  // within the zone when it left 0.55 m, and therefore since the last tick
   publisher.tick(0.0);
   expect_next(false, 6);
 }

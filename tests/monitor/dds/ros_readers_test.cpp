@@ -1,5 +1,5 @@
-// Joint states and transforms of ROS 2 as the tick thread gets them, through DDS on loopback. What
-// becomes of their bytes is tested without DDS, in intake/.
+// Joint states and transforms of ROS 2 as the tick thread receives them, through DDS on loopback.
+// The interpretation of their bytes is tested without DDS in intake/.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@ namespace {
 
 using testing::HasSubstr;
 
-// The positions that a batch carries, by the names of the cell.
+// The positions in a batch, by the names of the cell.
 using Positions = std::map<std::string, double>;
 
 class RosReadersTest : public testing::Test {
  protected:
-  // The next batch that comes.
+  // Waits for the next batch.
   PoseBatch next() {
     PoseBatch batch;
     EXPECT_TRUE(test::eventually([&] {
@@ -122,8 +122,8 @@ TEST_F(RosReadersTest, EndpointsCarryTheHashOfTheirType) {
             "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;");
 }
 
-// A publisher of tf_static that was there before the daemon is heard as well, and again and again:
-// what never changes must not grow late.
+// A publisher of tf_static that started before the daemon is heard as well. Its transforms are
+// repeated, because a value that never changes must not become late.
 TEST(RosReaders, TransformsComeFromBothTopicsWhicheverWasThereFirst) {
   Cell cell{test::cell_of({test::moving("cart", {test::ball(0.1)})})};
   cell.scene.objects[0].frame = "cart_link";

@@ -1,5 +1,5 @@
-// What the hulls are is held in tests/core/construction/enclosing_polyhedron_test.cpp; here: who
-// gets one.
+// The hulls themselves are tested in tests/core/construction/enclosing_polyhedron_test.cpp. These
+// tests check which parts get one.
 #include "monitor/geometry/bounding_hull.hpp"
 
 #include <gtest/gtest.h>

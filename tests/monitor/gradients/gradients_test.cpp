@@ -1,5 +1,5 @@
-// Gradients of distances by joint positions. Oracles: closed forms for an arm of two links and
-// spheres, and central differences of the monitor's own distances for joints of every type.
+// Gradients of distances with respect to joint positions. Oracles: closed forms for an arm of two
+// links and spheres; central differences of the monitor's own distances for joints of every type.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ using test::write_text;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-// A scara with the cart among its pairs. Objects: wall, cart, foot, upper, lower, finger.
+// A SCARA robot with the cart among its pairs. Objects: wall, cart, foot, upper, lower, finger.
 Scene scara_and_cart() {
   const ScratchFolder folder;
   write_text(folder / "scara.urdf", test::kScaraUrdf);
@@ -61,7 +61,8 @@ struct Row {
   double drift = 0.0;
 };
 
-// Of the pair between these objects; without joints where it has no gradient.
+// The gradient of the pair between these objects. The row has no joints if the pair has no
+// gradient.
 Row row_between(const Scene& scene, const Report& report, const std::string& a,
                 const std::string& b) {
   const GradientRows rows = gradient_rows(scene);
@@ -80,7 +81,7 @@ Row row_between(const Scene& scene, const Report& report, const std::string& a,
   return {};
 }
 
-// Also where the spheres overlap: then of the depth, by the normal.
+// This also holds if the spheres overlap: the gradient is then that of the depth, along the normal.
 TEST(Gradients, OfTwoLinksAndSpheresAreTheClosedForm) {
   const Scene cell = scara_and_cart();
   Random random(5);
@@ -102,7 +103,7 @@ TEST(Gradients, OfTwoLinksAndSpheresAreTheClosedForm) {
     const Report& report =
         monitor.tick(std::array{cart_at(tip + way, cart_velocity, kStart)}, samples, kStart);
     const Row row = row_between(cell, report, "cart", "finger");
-    // The tip moves with: both angles turn it, the finger slides it out.
+    // The tip moves with all joints: both angles rotate it, and the finger's slide extends it.
     const Vec3 by_elbow((1.0 + s) * -std::sin(a + b), (1.0 + s) * std::cos(a + b), 0.0);
     const Vec3 by_shoulder = by_elbow + Vec3(-std::sin(a), std::cos(a), 0.0);
     const Vec3 by_push(std::cos(a + b), std::sin(a + b), 0.0);
@@ -166,7 +167,7 @@ TEST(Gradients, CostATickNoAllocationAndAreTheSameBitsAgain) {
   }
 }
 
-// Every type of joint, mimicry, robots on a moving object and on another robot's link.
+// All types of joints, mimic joints, and robots on a moving object and on another robot's link.
 const char* const kEveryJoint = R"(<robot name="every">
   <link name="stand"/>
   <link name="platform"><collision><geometry><box size="0.3 0.2 0.1"/></geometry></collision></link>
@@ -214,7 +215,7 @@ std::vector<double> random_positions(Random& random, const Scene& scene) {
   return positions;
 }
 
-// All published pairs of a monitor that knows nothing else.
+// Evaluates all published pairs with a new monitor.
 const Report& tick_at(const std::vector<double>& positions, const Vec3& cart, Monitor& monitor) {
   std::vector<JointSample> samples;
   for (std::uint32_t i = 0; i < positions.size(); ++i) {
@@ -223,7 +224,8 @@ const Report& tick_at(const std::vector<double>& positions, const Vec3& cart, Mo
   return monitor.tick(std::array{cart_at(cart, Vec3::Zero(), kStart)}, samples, kStart);
 }
 
-// Where the slopes to both sides disagree a feature changes in between, or parts do: no gradient.
+// If the one-sided slopes differ, the closest feature or part changes in between, and no gradient
+// is expected.
 TEST(Gradients, AreTheCentralDifferencesOfOurDistancesForJointsOfEveryType) {
   const ScratchFolder folder;
   write_text(folder / "every.urdf", kEveryJoint);
@@ -259,7 +261,7 @@ TEST(Gradients, AreTheCentralDifferencesOfOurDistancesForJointsOfEveryType) {
       for (std::uint32_t e = row.first; e < row.end; ++e) {
         rates[rows.variables[e]] = here.gradients.rates[e];
       }
-      // Also those that are not in the row: they change nothing.
+      // Joints that are not in the row change nothing, and are therefore included.
       for (std::size_t v = 0; v < rates.size(); ++v) {
         if (!smooth[v][row.published]) {
           ++kinks;

@@ -14,15 +14,15 @@ constexpr std::int64_t kMs = test::kTick;
 constexpr std::int64_t kConfirmedMs = SourceClock::kConfirmedAfterNs / kMs;
 constexpr SourceClock::Limits kLimits{.future_ns = 5 * kMs, .age_ns = 20 * kMs};
 
-// A source and the machine that hears it. Times are in ms since the start, as by a clock that
-// nobody steps.
+// A source and the machine that receives its poses. Times are in ms since the start, by a clock
+// that is never stepped.
 class StampStream {
  public:
-  // What their clocks are ahead of that from now on, ms.
+  // Sets the offset of their clocks from that clock from now on, ms.
   void set_machine(std::int64_t ahead_ms) { machine_ms_ = ahead_ms; }
   void set_source(std::int64_t ahead_ms) { source_ms_ = ahead_ms; }
   void set_both(std::int64_t ahead_ms) { machine_ms_ = source_ms_ = ahead_ms; }
-  // How old a pose seems, ms; negative: from the future.
+  // The apparent age of a pose, ms; negative if it appears to be from the future.
   std::int64_t age_ms(std::int64_t made_ms, std::int64_t comes_ms) {
     const TickTime time(kStart + comes_ms * kMs, machine_ms_ * kMs);
     const std::int64_t stamp = kStart + (made_ms + source_ms_) * kMs;
@@ -57,8 +57,7 @@ TEST(SourceClock, ProgramOfThisMachineIsFollowedHalfASecondAfterAStepAndNeverToo
   }
 }
 
-// A step ahead by little more than what a stamp may be ahead: some poses are on time by both
-// clocks.
+// A step ahead by slightly more than a stamp may be ahead. Some poses are on time by either clock.
 TEST(SourceClock, ProgramOfThisMachineIsFollowedAfterAStepThatOnlySomeStampsShow) {
   StampStream stream;
   stream.set_both(10);
@@ -99,8 +98,8 @@ TEST(SourceClock, SourceWhoseOwnClockIsSteppedIsLateOrFromTheFuture) {
   for (std::int64_t ms = 3000; ms < 6000; ++ms) ASSERT_EQ(stream.age_ms(ms, ms + 1), -999);
 }
 
-// A source on another machine whose clock is stepped by about as much as this one's, and whose
-// poses are then held up: among those that come at once some seem to be on time.
+// A source on another machine, whose clock is stepped by about as much as this one's. Its poses are
+// then delayed, and among those that arrive at once some appear to be on time.
 TEST(SourceClock, PosesHeldUpByTheDifferenceOfTwoStepsAreNotTakenForNew) {
   StampStream stream;
   EXPECT_EQ(stream.age_ms(0, 1), 1);

@@ -1,5 +1,5 @@
-// What README shows under "In your tests": the hand comes as near as 0.3 m, so 0.25 m hold and 0.35
-// m do not.
+// The example in the README under "In your tests". The hand comes as near as 0.3 m, so an
+// expectation of 0.25 m holds and one of 0.35 m does not.
 #include <config/cell/cell_file.hpp>
 #include <monitor/replay/offline_replay.hpp>
 

@@ -1,5 +1,5 @@
-// An intake that is told messages, and what it makes of them. No DDS: messages are bytes, writers
-// are numbers, and time is what a test says.
+// An intake that receives messages, and the batches that it makes of them. No DDS is used: messages
+// are bytes, writers are numbers, and the test sets the time.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace clearance::test {
 
 class Heard {
  public:
-  // The cell must outlive this.
+  // The cell must outlive this object.
   explicit Heard(const Cell& cell, IntakeOptions options = {})
       : intake(cell, std::move(options), [this](PoseBatch& batch) {
           if (!has_room) return false;
@@ -22,8 +22,8 @@ class Heard {
           return true;
         }) {}
 
-  // Sent at the message's log_ns by this writer. False: the topic is not wanted, or the bytes do
-  // not decode.
+  // Sends the message at its log_ns from this writer. Returns false if the topic is not wanted or
+  // the bytes cannot be decoded.
   bool take(const RosMessage& message, std::uint64_t writer = 1) {
     const auto topic = intake.topic({message.topic, message.type});
     if (!topic) {
@@ -36,7 +36,7 @@ class Heard {
     keep_news();
     return decodes;
   }
-  // As after a burst of messages.
+  // Settles the intake, as after a burst of messages.
   void settle() {
     intake.settle(now);
     keep_news();
@@ -45,9 +45,9 @@ class Heard {
     now.realtime_ns += ns;
     now.monotonic_ns += ns;
   }
-  // The batches since the last call.
+  // Returns the batches since the last call.
   std::vector<PoseBatch> all() { return std::exchange(batches, {}); }
-  // The only batch since the last call.
+  // Returns the only batch since the last call.
   PoseBatch one() {
     const std::vector<PoseBatch> came = all();
     EXPECT_EQ(came.size(), 1u);

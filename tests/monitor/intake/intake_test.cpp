@@ -1,4 +1,4 @@
-// What comes in by our own topics, who is admitted, and what is told of it.
+// Inputs on this project's own topics: which sources are admitted, and what is reported about them.
 #include "monitor/intake/intake.hpp"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 class IntakeTest : public testing::Test {
  protected:
-  // One message of our own topic with this many poses.
+  // Sends one message on this project's own topic, with this many poses.
   bool take(std::uint64_t number, std::uint64_t writer = 1, std::size_t poses = 1,
             std::string_view source = "arm", std::uint64_t revision = 0) {
     PoseBatch batch{SourceName(source), number, revision, {}};
@@ -111,7 +111,7 @@ TEST_F(IntakeTest, TellsOnceOfAnInputThatComesTooSeldomForItsAgeLimit) {
   EXPECT_EQ(news[0].cause, News::Cause::kSlowInput);
 }
 
-// Joints of a robot by our own topic.
+// Joints of a robot on this project's own topic.
 TEST(IntakeOfJoints, FindsJointsByTheirNames) {
   const Cell cell{scara_cell()};
   Heard heard(cell);

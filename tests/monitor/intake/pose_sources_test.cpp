@@ -1,4 +1,4 @@
-// Whose a source name is, and who has a place: without DDS.
+// The owner of each source name, and the sources that have a slot. No DDS is used.
 #include "monitor/intake/pose_sources.hpp"
 
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@ using Admitted = Admission::News;
 
 constexpr std::int64_t kBegin = 1'000'000'000'000, kSecond = 1'000'000'000, kOneMs = 1'000'000;
 
-// A batch of three poses, taken in if it is admitted.
+// Sends a batch of three poses. It is taken in if it is admitted.
 Admission send(PoseSources& sources, const std::string& name, std::uint64_t writer,
                std::int64_t at_ns, std::uint64_t number = 1) {
   const Admission admission = sources.admit(SourceName(name), writer, 3, kBegin + at_ns);
@@ -69,7 +69,7 @@ TEST(PoseSources, CountGapsButNeitherARestartNorANewNumberingAsLoss) {
   EXPECT_EQ(sources.tallies()[0].lost, 3u) << "6, 7 and 8";
 }
 
-// As many sources as there are places, each of a writer of its own.
+// Fills all slots with sources, each from a different writer.
 PoseSources all_places_taken() {
   PoseSources sources;
   for (std::uint64_t i = 1; i <= kMaxSources; ++i)

@@ -1,4 +1,4 @@
-// What real joint states of ROS 2 are like, and what becomes of their bytes.
+// Realistic joint states of ROS 2, and the interpretation of their bytes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace clearance::test {
 namespace {
 
-// The positions that a batch carries, by the names of the cell.
+// The positions in a batch, by the names of the cell.
 using Positions = std::map<std::string, double>;
 
 class RosJointStatesTest : public testing::Test {
@@ -27,7 +27,7 @@ class RosJointStatesTest : public testing::Test {
         folder / "cell.yaml");
   }
 
-  // Sent and stamped now.
+  // Sends the state, stamped with the current time.
   bool take(const JointStateText& state, const std::string& topic = "/joint_states",
             std::uint64_t writer = 1) {
     return heard.take(joint_state(now(), now(), state, topic), writer);
@@ -61,7 +61,7 @@ TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHav
 TEST_F(RosJointStatesTest, OfANamespaceThatARobotNamesNeedNoPrefix) {
   take({{"shoulder", "left_elbow", "right_elbow"}, {0.1, 0.2, 0.3}}, "/left/joint_states");
   EXPECT_EQ(positions(heard.one()), (Positions{{"left_shoulder", 0.1}, {"left_elbow", 0.2}}));
-  // And only there: names of another topic are those of the other robots.
+  // The names count only on this topic. On another topic they belong to the other robots.
   take({{"left_shoulder", "shoulder", "right_shoulder"}, {0.4, 0.5, 0.6}}, "/cell/joint_states");
   EXPECT_EQ(positions(heard.one()), (Positions{{"right_shoulder", 0.6}}));
 }
@@ -78,7 +78,7 @@ TEST_F(RosJointStatesTest, OfSeveralWritersOfATopicHaveNamesOfTheirOwn) {
   EXPECT_EQ(heard.intake.joint_states().writers(), 2u);
   heard.intake.keep({7});
   EXPECT_EQ(heard.intake.joint_states().writers(), 1u);
-  // One that is started again gets the name of the one before.
+  // A publisher that is restarted gets the source name of its predecessor.
   take({{"right_push"}, {0.1}}, "/joint_states", 9);
   take({{"right_shoulder"}, {0.1}}, "/joint_states", 7);
   const std::vector<PoseBatch> batches = heard.all();
@@ -103,7 +103,7 @@ TEST_F(RosJointStatesTest, WithoutPositionsSayNothingAndWithTooFewAreRefusedByTh
   EXPECT_FALSE(batch.joints[0].has_velocity) << "one velocity of two joints is nobody's";
 }
 
-// A stamp of 0 is none, and some robots ask for the time of sending.
+// A stamp of 0 means that there is none. Some robots ask to use the time of sending instead.
 TEST_F(RosJointStatesTest, AreStampedWhenTheySayOrWhenTheyWereSent) {
   heard.take(joint_state(now(), now() - 5'000'000, {{"shoulder"}, {0.1}}, "/left/joint_states"));
   EXPECT_EQ(heard.one().joints.at(0).stamp_ns, now() - 5'000'000);
@@ -113,7 +113,8 @@ TEST_F(RosJointStatesTest, AreStampedWhenTheySayOrWhenTheyWereSent) {
   EXPECT_EQ(heard.one().joints.at(0).stamp_ns, now());
 }
 
-// As of a simulation: used live, where a person is told once; out of a log, replaced and counted.
+// Stamps of a simulation's clock, for example. Live, they are used and the user is told once. In a
+// log, they are replaced and counted.
 TEST_F(RosJointStatesTest, OfAnotherClockAreToldOnceLiveAndReplacedOutOfALog) {
   Heard log(cell, {.is_log = true});
   const RosMessage simulated =

@@ -1,4 +1,4 @@
-// Transforms of ROS 2, in bytes, as poses of what follows frames.
+// Transforms of ROS 2, given as bytes, become poses of the objects that follow frames.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,13 +10,13 @@
 namespace clearance::test {
 namespace {
 
-constexpr double kHalf = 0.70710678118654757;  // of sqrt(2)
+constexpr double kHalf = 0.70710678118654757;  // half of sqrt(2)
 constexpr std::int64_t kMs = 1'000'000;
 constexpr const char* kStatic = "/tf_static";
 
 class RosTransformsTest : public testing::Test {
  protected:
-  // A cart and a tool that follow frames, and a robot whose base does.
+  // A cart and a tool that follow frames, and a robot whose base follows one.
   static Cell framed_cell(const std::string& ros) {
     const ScratchFolder folder;
     write_text(folder / "scara.urdf", kScaraUrdf);
@@ -39,18 +39,18 @@ class RosTransformsTest : public testing::Test {
                const std::string& topic = "/tf", std::uint64_t writer = 1) {
     EXPECT_TRUE(heard.take(transforms(now(), stamp_ns, frames, topic), writer));
   }
-  // Stamped now, a millisecond after what was sent before.
+  // Sends frames stamped with the current time, one millisecond after the previous message.
   void send(const std::vector<FrameText>& frames, const std::string& topic = "/tf",
             std::uint64_t writer = 1) {
     heard.pass(kMs);
     send_at(now(), frames, topic, writer);
   }
-  // The batches that follow from what was sent.
+  // Returns the batches that result from the messages sent so far.
   std::vector<PoseBatch> settled() {
     heard.settle();
     return heard.all();
   }
-  // The place of an object in the only batch that follows.
+  // The position of an object in the only resulting batch.
   Vec3 place_of(std::uint32_t object) {
     const std::vector<PoseBatch> batches = settled();
     EXPECT_EQ(batches.size(), 1u);
@@ -83,7 +83,7 @@ TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   // 3 m along odom's x, which is the map's y.
   EXPECT_NEAR((sample.world_from_object.position - Vec3(1, 5, 1)).norm(), 0.0, 1e-12);
   EXPECT_FALSE(sample.has_twist);
-  // What leaves the oldest stamp as it is says nothing new.
+  // A transform that does not change the oldest stamp brings no new information.
   send_at(now() - 1 * kMs, {{"odom", "cart", {4, 0, 0}}});
   EXPECT_TRUE(settled().empty());
   send_at(now(), {{"map", "odom", {1, 2, 0}}});
@@ -94,7 +94,7 @@ TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(5, 2, 1));
 }
 
-// What never changes is true whenever somebody looks, and is said again before it is late.
+// A static transform is valid at any time. It is repeated before it becomes late.
 TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
   send({{"map", "cart_link", {0.5, 0, 0}}}, kStatic);
   EXPECT_EQ(heard.intake.patience_ns(), 20 * kMs);
@@ -115,17 +115,17 @@ TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTheFirstOnes) {
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
   EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
   EXPECT_EQ(heard.told(News::Cause::kFrameOfTwo), 1u);
-  // The first one is silent for a second.
+  // The first publisher is silent for a second.
   heard.pass(RosTransforms::kFrameHeldNs);
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
   EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
-  // The second one has left.
+  // The second publisher has left.
   heard.intake.keep({1});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
   EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
 }
 
-// Nobody says a static transform twice: no silence gives the frame up.
+// A static transform is not sent twice, so no silence makes its frame expire.
 TEST_F(RosTransformsTest, OfTfStaticBelongToTheirPublisherUntilThatOneLeaves) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, kStatic, 1);
@@ -137,7 +137,7 @@ TEST_F(RosTransformsTest, OfTfStaticBelongToTheirPublisherUntilThatOneLeaves) {
   EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
 }
 
-// A pose that is none leaves the frame where it was; so do frames without names.
+// An invalid pose leaves the frame where it was. Frames without names are also refused.
 TEST_F(RosTransformsTest, ThatAreNoPosesAreRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   send({{"map", "cart_link", {8, 0, 0}}});
@@ -157,12 +157,12 @@ TEST_F(RosTransformsTest, ThatGoRoundInACircleSayNothingUntilTheyDoNot) {
   ASSERT_EQ(batches.size(), 1u);
   ASSERT_EQ(batches[0].samples.size(), 1u);
   EXPECT_EQ(batches[0].samples[0].object, 1u);
-  // It is hung up elsewhere.
+  // The frame gets another parent.
   send({{"map", "b", {1, 0, 0}}});
   EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
 }
 
-// A tool that a gripper takes from a rack.
+// A gripper takes a tool from a rack.
 TEST_F(RosTransformsTest, OfAFrameWithAnotherParentAreUsedAtOnce) {
   send({{"map", "rack", {1, 0, 0}}, {"map", "hand", {0, 1, 0}}, {"rack", "tool0"}});
   EXPECT_EQ(place_of(1), Vec3(1, 0, 0));
@@ -176,7 +176,7 @@ TEST_F(RosTransformsTest, WithoutAStampHoldWhenTheyWereSent) {
   EXPECT_EQ(settled().at(0).samples.at(0).stamp_ns, now());
 }
 
-// Seven positions of the joint that carries the robot; q and -q are one orientation.
+// The joint that carries the robot has seven positions. q and -q are the same orientation.
 TEST_F(RosTransformsTest, CarryTheBaseOfARobot) {
   send({{"map", "mir/top", {1, 2, 3}, {0, 0, kHalf, kHalf}}});
   const PoseBatch batch = settled().at(0);
@@ -209,8 +209,8 @@ TEST_F(RosTransformsTest, ThatAreMissingAreToldAfterFiveSeconds) {
   EXPECT_EQ(heard.told(News::Cause::kFrameMissing), 1u) << "the tool, which leads elsewhere";
 }
 
-// A log says with every message where all followers are, in any namespace, and of objects without
-// a frame that of their name.
+// A log gives the poses of all followers with every message, in any namespace. Objects without a
+// configured frame follow the frame of their own name.
 TEST_F(RosTransformsTest, OutOfALogSayWithEveryMessageWhereAllFollowersAre) {
   Heard log(cell, {.is_log = true});
   log.take(transforms(now(), now(), {{"map", "cart_link", {1, 0, 0}}}, "/r2/tf_static"), 0);
@@ -223,7 +223,7 @@ TEST_F(RosTransformsTest, OutOfALogSayWithEveryMessageWhereAllFollowersAre) {
   EXPECT_EQ(both.samples[1].stamp_ns, now() + 2) << "the stamp is of another clock";
 }
 
-// The cell's world is a frame of the tree, not its root.
+// The cell's world is a frame of the tree, but not its root.
 class RosTransformsToAWorld : public RosTransformsTest {
  protected:
   RosTransformsToAWorld() : RosTransformsTest("ros2: {world_frame: cell, stamps: sent}\n") {}
@@ -240,7 +240,8 @@ TEST_F(RosTransformsToAWorld, EndThereAndOthersAreNotUsed) {
   EXPECT_EQ(batch.samples[0].stamp_ns, now()) << "stamps: sent";
 }
 
-// A robot in the world says where its links are: what hangs on one begins there.
+// A robot with a known base pose defines the frames of its links. Transforms below a link start
+// there.
 TEST(RosTransformsOfLinks, BeginWhereTheCellHasTheRobot) {
   const ScratchFolder folder;
   write_text(folder / "scara.urdf", kScaraUrdf);

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kMillisecond = 1'000'000;
 
-// How often poses at this interval are found too slow, of 100.
+// The number of poses, of 100 at this interval, that are found too slow.
 int found(std::int64_t interval_ns) {
   SlowIntervals slow({20 * kMillisecond});
   int times = 0;

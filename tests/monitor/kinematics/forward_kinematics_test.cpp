@@ -1,5 +1,5 @@
-// Oracle: products of 4 x 4 matrices of long doubles, made of the numbers that a URDF gives. Twists
-// are held against differences of it.
+// Oracle: products of 4 x 4 matrices of long doubles, made of the numbers in a URDF. Twists are
+// compared with its differences.
 #include "monitor/kinematics/forward_kinematics.hpp"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ LongFrame operator*(const LongFrame& a, const LongFrame& b) {
   return {a.rotation * b.rotation, a.place(b.position)};
 }
 
-// Rodrigues.
+// Rodrigues' rotation formula.
 LongMat3 about(const Vec3& axis, Long angle) {
   const LongVec3 n = axis.cast<Long>().normalized();
   LongMat3 cross;
@@ -39,14 +39,14 @@ LongMat3 about(const Vec3& axis, Long angle) {
   return LongMat3::Identity() + std::sin(angle) * cross + (1 - std::cos(angle)) * (cross * cross);
 }
 
-// A robot, and what its URDF would say.
+// A robot, and the numbers that its URDF would contain.
 struct Written {
   Robot robot;
-  std::vector<UrdfOrigin> origins;  // of the joints
+  std::vector<UrdfOrigin> origins;  // origins of the joints
   std::vector<JointVariable> variables;
 };
 
-// Trees of joints of all types; some mimic one before them.
+// Trees of joints of all types. Some joints mimic an earlier one.
 Written random_robot(Random& random, int joints, JointType only = JointType::kFixed) {
   Written written;
   written.robot.links.resize(1);
@@ -86,7 +86,7 @@ Written random_robot(Random& random, int joints, JointType only = JointType::kFi
   return written;
 }
 
-// Where all are seen, on time, and move.
+// Random states in which all variables are known, on time and moving.
 std::vector<TrackedVariable> random_positions(Random& random, const Written& written) {
   std::vector<TrackedVariable> states(written.variables.size());
   for (TrackedVariable& state : states) {
@@ -104,7 +104,7 @@ std::vector<TrackedVariable> random_positions(Random& random, const Written& wri
   return states;
 }
 
-// Every link in the world, `later` seconds after the positions.
+// The exact pose of every link in the world, `later` seconds after the positions.
 std::vector<LongFrame> exactly(const Written& written, const std::vector<TrackedVariable>& states,
                                Long later = 0) {
   const Pose& base = written.robot.base.base_from_root;
@@ -148,7 +148,7 @@ std::vector<LongFrame> exactly(const Written& written, const std::vector<Tracked
   return links;
 }
 
-// How far apart a point of the link is in two placings.
+// The distance between the positions of a link's point in two poses.
 Long apart(const LongFrame& a, const LongFrame& b, const Vec3& point) {
   const LongVec3 exact = point.cast<Long>();
   return (a.place(exact) - b.place(exact)).norm();
@@ -181,7 +181,7 @@ TEST(ForwardKinematics, PlacesEveryLinkWithinItsError) {
       widest = std::max(widest, bound);
     }
   }
-  EXPECT_LT(widest, 1e-11);  // m, of 12 joints that slide by metres
+  EXPECT_LT(widest, 1e-11);  // m, for 12 joints that slide by metres
   EXPECT_LT(worst, 1e-13L);
 }
 
@@ -287,7 +287,7 @@ TEST(ForwardKinematics, ALateJointMakesWhatItCarriesLateAndItsVelocityUnknown) {
     EXPECT_FALSE(links[link].velocity_known);
     EXPECT_EQ(links[link].twist.linear, Vec3::Zero());
   }
-  // However far it has turned, what it carries is on a circle about it.
+  // However far the joint has rotated, the link that it carries moves on a circle about its axis.
   EXPECT_NEAR(links[2].may_have_moved(0.5), 1.0, 1e-12);
 }
 

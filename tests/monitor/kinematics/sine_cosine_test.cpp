@@ -40,7 +40,7 @@ TEST(SineCosine, ErrorIsWithinItsBoundWhereQuadrantsMeet) {
   }
 }
 
-// These bits are those of every machine.
+// These bits are the same on every machine.
 TEST(SineCosine, IsTheSameEverywhere) {
   EXPECT_EQ(sine_cosine(0.0).sine, 0.0);
   EXPECT_EQ(sine_cosine(0.0).cosine, 1.0);

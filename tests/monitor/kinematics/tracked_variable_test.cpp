@@ -13,7 +13,7 @@ constexpr std::int64_t kMs = 1'000'000;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
-// A joint of 2 rad/s between -1 and 1 rad, late after 20 ms.
+// A joint with 2 rad/s between -1 and 1 rad, late after 20 ms.
 class Variable : public testing::Test {
  protected:
   Variable() {
@@ -30,7 +30,7 @@ class Variable : public testing::Test {
     return sample;
   }
 
-  // A tick at the sample's stamp, or later.
+  // Takes a sample in a tick at its stamp, or later.
   std::optional<Reject> take(const JointSample& sample, std::int64_t after_ns = 0) {
     const std::int64_t now = sample.stamp_ns + after_ns;
     const auto cause = clearance::take(joint_, sample, sample.stamp_ns,
@@ -63,13 +63,13 @@ TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
   sample.velocity = -0.5;
   EXPECT_EQ(take(sample), std::nullopt);
   EXPECT_EQ(state_.velocity, -0.5);
-  // A driver that measures none fills in NaN.
+  // A driver that measures no velocity sends NaN.
   sample = at(4 * kMs, 0.003);
   sample.has_velocity = true;
   sample.velocity = kNotANumber;
   EXPECT_EQ(take(sample), std::nullopt);
   EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
-  // Over a long gap a difference says nothing about now.
+  // After a long gap, a difference of positions says nothing about the present velocity.
   EXPECT_EQ(take(at(100 * kMs, 0.1)), std::nullopt);
   EXPECT_FALSE(state_.velocity_known);
 }
@@ -105,7 +105,7 @@ TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
   EXPECT_NEAR(state_.may_have_moved, 0.5, 1e-12);
 }
 
-// Which of two positions that exclude each other is wrong, nobody can tell: only the limits hold.
+// If two positions exclude each other, it is unknown which one is wrong, so only the limits hold.
 TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnown) {
   EXPECT_EQ(take(at(0, 0.8)), std::nullopt);
   EXPECT_EQ(take(at(10 * kMs, 0.0)), Reject::kTooFast);
@@ -113,12 +113,12 @@ TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnow
   EXPECT_TRUE(state_.input.contradicted);
   EXPECT_EQ(state_.position, 0.8);
   EXPECT_NEAR(state_.may_have_moved, 1.8, 1e-12);
-  // Until one agrees again and an age limit has passed.
+  // This lasts until a position agrees again and an age limit has passed.
   EXPECT_EQ(take(at(11 * kMs, 0.79)), std::nullopt);
   EXPECT_TRUE(state_.input.contradicted);
   EXPECT_EQ(take(at(31 * kMs, 0.79)), std::nullopt);
   EXPECT_FALSE(state_.input.late);
-  // Where they stay there, they are taken when the joint can have got there.
+  // If the positions persist, they are accepted once the joint can have reached them.
   EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
   EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
   joint_.upper = kUnlimited;
@@ -126,7 +126,7 @@ TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnow
   EXPECT_EQ(state_.may_have_moved, kUnlimited);
 }
 
-// Velocity limits of many descriptions are wrong.
+// Many robot descriptions state wrong velocity limits.
 TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
   JointSample fast = at(0, 0.0);
   fast.has_velocity = true;

@@ -47,7 +47,7 @@ TEST(Histogram, PercentilesAreNeverBelowTheTruthAndAtMostOneBinAbove) {
 TEST(Histogram, KeepsTheMaximumOfWhatIsLongerThanItsLastBin) {
   Histogram histogram;
   histogram.add(1'000'000'000'000);
-  histogram.add(-5);  // a clock that was set back
+  histogram.add(-5);  // from a clock that was set back
   EXPECT_EQ(histogram.count(), 2u);
   EXPECT_EQ(histogram.max_ns(), 1'000'000'000'000);
   EXPECT_EQ(histogram.percentile_ns(0.5), 0);

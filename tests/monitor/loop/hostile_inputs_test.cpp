@@ -1,6 +1,6 @@
-// Clocks that are stepped, poses that are lost, held up, sent by several sources and now and then
-// wild, against the true motion: no bound of a report is false, and no zone left, beyond what the
-// poses of the last age limit allow.
+// Inputs with stepped clocks, and with lost, delayed and occasionally wild poses from several
+// sources, compared with the true motion. No bound of a report is false and no zone is left
+// wrongly, except for what the poses of the last age limit allow.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,12 +17,13 @@ namespace {
 using test::kStart;
 using test::kTick;
 constexpr std::int64_t kOneSecond = 1000 * kTick;
-constexpr std::int64_t kTicksASeed = 25'000;  // of 40 seeds
+constexpr std::int64_t kTicksASeed = 25'000;  // per seed, of 40 seeds
 constexpr double kRadius = 0.05;
-// Without steps, losses and delays, so that every source is heard by a clock that is right.
+// An initial time without steps, losses and delays, so that every source is first heard with a
+// correct clock.
 constexpr std::int64_t kCalm = kOneSecond / 5;
 
-// Up to 1.9 m/s, and metres from where it was a second ago.
+// The objects move at up to 1.9 m/s, and are metres away from where they were a second ago.
 Vec3 true_position(std::uint32_t object, std::int64_t at_ns) {
   const double t = 1e-9 * static_cast<double>(at_ns);
   const double side = object == 0 ? -2.5 : 2.5;
@@ -30,28 +31,28 @@ Vec3 true_position(std::uint32_t object, std::int64_t at_ns) {
           0.3 * std::sin(0.9 * t)};
 }
 
-// A program that sends the true pose of one object, on this machine or another.
+// A program that sends the true pose of one object, from this machine or another.
 struct TrueSource {
   std::string name;
   std::uint32_t object;
   bool elsewhere;
   std::uint64_t sequence = 0;
-  std::int64_t sends_next = 0, comes_last = 0;     // ns of true time
-  std::int64_t clock_ahead = 0;                    // of its own machine, where that is another
-  std::int64_t lost_until = 0, held_up_until = 0;  // ns of true time
-  std::int64_t lies_until = 0;                     // ns of true time
-  Vec3 lie = Vec3::Zero();                         // by which its poses are off until then, m
-  bool lied = false;  // the last of its poses that came was off, in place or time
+  std::int64_t sends_next = 0, comes_last = 0;     // true time, ns
+  std::int64_t clock_ahead = 0;                    // of its own machine, if that is another one
+  std::int64_t lost_until = 0, held_up_until = 0;  // true time, ns
+  std::int64_t lies_until = 0;                     // true time, ns
+  Vec3 lie = Vec3::Zero();                         // error of its poses until then, m
+  bool lied = false;  // its last received pose was wrong, in position or time
 };
 
 struct BatchUnderWay {
   std::int64_t comes = 0;
   PoseBatch batch;
   bool lies = false;
-  std::int64_t made = 0, clock_ahead = 0;  // the latter of another machine's
+  std::int64_t made = 0, clock_ahead = 0;  // the latter applies to another machine
 };
 
-// All that stands around the loop. True time is what the steady clock shows.
+// The environment of the loop. True time is the time of the steady clock.
 class HostileWorld final : public Clock, public PoseSource, public ReportSink {
  public:
   HostileWorld(const Scene& scene, std::uint32_t seed) : scene_(scene), random_(seed) {
@@ -63,7 +64,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
   std::int64_t steady_ns() noexcept override { return now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
     while (now_ < monotonic_ns) live_through_a_moment();
-    if (now_ > kCalm && below(500) == 0) now_ += below(5 * kTick);  // held up
+    if (now_ > kCalm && below(500) == 0) now_ += below(5 * kTick);  // the tick is delayed
   }
 
   const PoseBatch* next() noexcept override {
@@ -98,7 +99,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     }
   }
 
-  // Each about once in so many quarters of a millisecond.
+  // Each disturbance occurs about once in the given number of quarter milliseconds.
   void disturb() {
     if (below(40'000) == 0) wall_ahead_ += step();
     if (below(40'000) == 0) wall_ahead_ = 0;
@@ -119,7 +120,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     return static_cast<std::int64_t>(random_.next() % static_cast<std::uint64_t>(end));
   }
 
-  // From a millisecond to an hour, either way.
+  // A step from a millisecond to an hour, in either direction.
   std::int64_t step() {
     const double size = std::pow(10.0, 6.0 + 6.5 * random_.unit());
     return static_cast<std::int64_t>(below(2) == 0 ? size : -size);
@@ -134,7 +135,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     const Vec3 off = lies ? source.lie : Vec3::Zero();
     PoseSample sample = test::sample(source.object, Pose{true_position(source.object, now_) + off},
                                      kStart + now_ + ahead);
-    // In the order of sending, as DDS delivers one writer's samples.
+    // Batches arrive in the order of sending, as DDS delivers one writer's samples.
     source.comes_last = std::max(
         {source.comes_last, source.held_up_until, now_ + below(now_ > kCalm ? 3 * kTick : kTick)});
     queue.push_back({source.comes_last,
@@ -169,7 +170,8 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     }
   }
 
-  // Of a machine whose clock is ahead: too late by as much, so that nothing shows it.
+  // The batch is from a machine whose clock is ahead, and is late by about as much, so its stamp
+  // does not show the delay.
   bool is_dated_well_by_chance(const BatchUnderWay& batch) const {
     return batch.clock_ahead > 0 && batch.made + batch.clock_ahead <= now_ + scene_.future_limit_ns;
   }
@@ -181,7 +183,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
              std::to_string(report.clock_offset_ns);
   }
 
-  // By the last that came from one of its sources: nothing has contradicted that yet.
+  // The last pose from one of the sources was wrong, and nothing has contradicted it yet.
   bool is_told_a_lie(const ObjectPair& pair) const {
     return std::ranges::any_of(sources_, [&](const TrueSource& source) {
       return source.lied && (source.object == pair.first || source.object == pair.second);
@@ -197,7 +199,8 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     return body.fixed ? body.world_from_object.position : true_position(object, now_);
   }
 
-  // How far both objects go in the age limit, and in what stamps may be ahead, m.
+  // The distance that both objects can move within the age limit and the tolerance of future
+  // stamps, m.
   double allowed(const ObjectPair& pair) const {
     double distance = 0.0;
     for (const std::uint32_t object : {pair.first, pair.second}) {

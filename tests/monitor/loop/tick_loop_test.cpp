@@ -16,7 +16,7 @@ namespace {
 using test::kStart;
 using test::kTick;
 
-// Time passes only in sleep_until and where a test says that work takes long.
+// Time advances only in sleep_until and where a test states that work takes long.
 class TurnedClock final : public Clock {
  public:
   std::int64_t realtime_ns() noexcept override { return kStart + now_; }
@@ -121,7 +121,7 @@ TEST(TickLoop, TakesJointsInBesidePoses) {
   loop.poses.add("arm", 2, test::joints(0.1, 0.2, 0.1, kStart));
   loop.poses.add("cart", 1, 1);
   loop.run({.max_ticks = 2, .max_samples = 5});
-  // The second batch no longer fits into the first tick, and so what follows it waits as well.
+  // The second batch does not fit into the first tick, so the following ones wait as well.
   EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{1, 3}));
   for (const std::uint32_t link : {3, 4, 5}) EXPECT_GE(loop.statistics.ages[link].age_ns, 0);
   EXPECT_TRUE(loop.statistics.minimum.known);
@@ -237,7 +237,7 @@ TEST(TickLoop, StopsWhenTold) {
   EXPECT_EQ(loop.clock.sleeps(), 0);
 }
 
-// A sink that only counts what a tick allocates.
+// A sink that only counts the allocations of a tick.
 class CountingSink final : public ReportSink {
  public:
   void input(const PoseBatch&) noexcept override {}
@@ -254,7 +254,7 @@ class CountingSink final : public ReportSink {
 
 TEST(TickLoop, AllocatesNothingOnceItRuns) {
   Loop loop;
-  loop.scene.rate_hz = 10.0;  // statistics are handed over on the way
+  loop.scene.rate_hz = 10.0;  // so that statistics are handed over during the run
   for (std::uint64_t i = 1; i <= 300; ++i) loop.poses.add("arm", i, 3);
   CountingSink sink;
   TickLoop ticking(loop.scene, loop.poses, {&sink}, loop.clock,

@@ -1,4 +1,4 @@
-// Chunks that others compressed: what comes out, and what hostile ones do.
+// Chunks that other programs compressed: their content, and the handling of hostile ones.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <lz4frame.h>
@@ -18,7 +18,7 @@ using testing::HasSubstr;
 
 using Bytes = std::vector<std::byte>;
 
-// Text that compresses, longer than a block of either library.
+// Compressible text, longer than a block of either library.
 Bytes some_bytes(std::size_t size) {
   Bytes bytes(size);
   std::mt19937_64 random(5);
@@ -71,7 +71,7 @@ TEST(Compression, WhatIsCutOffGivesItsBeginning) {
   }
 }
 
-// A megabyte of zeros in some dozens of bytes: what is asked for is the limit.
+// A megabyte of zeros is compressed into a few dozen bytes. The requested size is the limit.
 TEST(Compression, NeverGivesMoreThanIsAskedFor) {
   const Bytes zeros(1'000'000);
   for (const McapCompression how : kBoth) {
@@ -98,7 +98,7 @@ TEST(Compression, GarbageGivesSomethingOrNothingAndEnds) {
   }
 }
 
-// One chunk with one message in it, as its parts say.
+// One chunk that contains one message, built from these parts.
 struct Chunk {
   std::string compression;
   Bytes stored;
@@ -162,7 +162,7 @@ TEST(CompressedChunk, IsReadWhicheverWayItIsCompressed) {
     const Outcome outcome =
         outcome_of({std::string(name(how)), compressed(how, records), records.size()});
     EXPECT_EQ(1, outcome.messages);
-    EXPECT_THAT(outcome.error, HasSubstr("cut off"));  // there is nothing behind the chunk
+    EXPECT_THAT(outcome.error, HasSubstr("cut off"));  // nothing follows the chunk
   }
 }
 

@@ -59,7 +59,7 @@ ReadBack read_bytes(const std::string& bytes, const McapWindow& window = {}) {
   return read_back(reader);
 }
 
-// Two topics, `count` messages 10 ns apart, some with equal times, in chunks of 50 ns.
+// Writes two topics and `count` messages 10 ns apart, some with equal times, in chunks of 50 ns.
 void write_small(const std::filesystem::path& file, int count,
                  McapCompression compression = McapCompression::kStored) {
   McapWriter writer(file, {.chunk_span_ns = 50, .compression = compression});
@@ -75,7 +75,7 @@ void write_small(const std::filesystem::path& file, int count,
   EXPECT_TRUE(writer.close()) << writer.error();
 }
 
-// In `part` are only messages of `all`, in their order.
+// Returns true if `part` contains only messages of `all`, in their order.
 bool is_subsequence(const std::vector<Seen>& part, const std::vector<Seen>& all) {
   std::size_t at = 0;
   for (const Seen& message : part) {
@@ -85,7 +85,7 @@ bool is_subsequence(const std::vector<Seen>& part, const std::vector<Seen>& all)
   return true;
 }
 
-// With chunks as they are and compressed.
+// Parameter: uncompressed and compressed chunks.
 class McapOf : public testing::TestWithParam<McapCompression> {};
 INSTANTIATE_TEST_SUITE_P(Mcap, McapOf,
                          testing::Values(McapCompression::kStored, McapCompression::kZstd),
@@ -143,7 +143,8 @@ TEST_P(McapOf, WindowGivesTheSameMessagesWithAndWithoutAnIndex) {
   const ScratchFolder folder;
   write_small(folder / "a.mcap", 100, GetParam());
   const std::string whole = read_text(folder / "a.mcap");
-  write_text(folder / "cut.mcap", whole.substr(0, whole.size() - 8));  // no closing magic: no index
+  // no closing magic and therefore no index
+  write_text(folder / "cut.mcap", whole.substr(0, whole.size() - 8));
   for (std::uint64_t start = 990; start < 1520; start += 17) {
     const McapWindow window{start, start + 60};
     const ReadBack indexed = read_back(folder / "a.mcap", window);
@@ -202,8 +203,8 @@ TEST(Mcap, CutOffFileNamesItsEndAndHowMuchWasRead) {
   EXPECT_THAT(back.error, HasSubstr(std::to_string(back.messages.size()) + " messages were read"));
 }
 
-// Oracle: the file before the flip. A flip may hide messages, never alter one, and never goes
-// unnoticed, wherever it is.
+// Oracle: the file before the flip. A flipped bit may hide messages. It never alters one, and is
+// always noticed, wherever it is.
 TEST_P(McapOf, NoFlippedBitGoesUnnoticed) {
   const ScratchFolder folder;
   write_small(folder / "a.mcap", 30, GetParam());
@@ -217,7 +218,7 @@ TEST_P(McapOf, NoFlippedBitGoesUnnoticed) {
     const ReadBack back = read_bytes(bytes);
     EXPECT_TRUE(is_subsequence(back.messages, all)) << "byte " << at;
     EXPECT_FALSE(back.error.empty()) << "byte " << at;
-    read_bytes(bytes, {.start_ns = 1050, .end_ns = 1100});  // must only survive
+    read_bytes(bytes, {.start_ns = 1050, .end_ns = 1100});  // only needs to survive
   }
 }
 
@@ -248,7 +249,7 @@ TEST_P(McapOf, NoGarbageIsFollowed) {
   }
 }
 
-// A file as McapBytes writes it, record by record.
+// A file that McapBytes writes record by record.
 class HandMade {
  public:
   HandMade() {

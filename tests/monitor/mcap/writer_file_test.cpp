@@ -1,4 +1,5 @@
-// What the writer of MCAP does when its file cannot be had, is full, or is changed by others.
+// The MCAP writer's behaviour if its file cannot be created, is full, or is changed by another
+// program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -24,7 +25,7 @@ TEST(McapWriterFile, KeepsAnExistingFileWhenTold) {
   EXPECT_EQ("precious", read_text(folder / "a.mcap"));
 }
 
-// A limit on the size of files stands in for a disk that is full.
+// A limit on the size of files simulates a full disk.
 TEST(McapWriterFile, SaysThatNothingMoreCanBeWritten) {
   const ScratchFolder folder;
   rlimit before{};

@@ -34,7 +34,7 @@ TEST(ClosingSpeed, TimeToContactCountsOnlyWhatApproaches) {
   EXPECT_TRUE(std::isnan(time_to_contact(0.3, kNan)));
 }
 
-// Oracle: the distance itself, a moment before and after, by closed form.
+// Oracle: the distance shortly before and after, by closed form.
 TEST(ClosingSpeed, ReportedSpeedIsTheRateAtWhichTheDistanceFalls) {
   Random random(21);
   const Scene scene = test::cell_of({

@@ -28,7 +28,8 @@ TEST(Displacement, NoPointMovesFartherThanTheBound) {
       const Vec3 point = random.in_box(2.0);
       const test::LongVec exact = point.cast<long double>();
       const long double moved = (test::exactly(after, exact) - test::exactly(before, exact)).norm();
-      const double reach = static_cast<double>(exact.norm());  // rounds either way: see the slack
+      // rounds in either direction; the factor below accounts for it
+      const double reach = static_cast<double>(exact.norm());
       ASSERT_LE(moved, moved_at_most(motion, reach * (1.0 + 1e-15))) << "case " << i;
     }
   }

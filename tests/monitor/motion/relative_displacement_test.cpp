@@ -1,5 +1,4 @@
-// Oracle: points of one object as seen from the other's frame, at many instants of the interpolated
-// motion.
+// Oracle: points of one object in the other's frame, at many instants of the interpolated motion.
 #include "monitor/motion/relative_displacement.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +14,7 @@ namespace {
 using test::kStart;
 using test::kTick;
 
-// As a tick leaves it that took it from one pose to another.
+// The state after a tick that moved the object from one pose to another.
 TrackedObject gone(const Pose& from, const Pose& to, double reach) {
   const Object object = test::moving("gone", {test::ball(0.1)});
   TrackedObject state;
@@ -37,7 +36,7 @@ Pose after(const Pose& pose, const Vec3& shift, const Vec3& turn) {
   return next;
 }
 
-// How far a point of `of` goes in the frame of `seen_from`, over all small steps.
+// The length of the path of a point of `of` in the frame of `seen_from`, summed over small steps.
 double length_of_way(const Pose& from, const Pose& to, const Pose& frame_from, const Pose& frame_to,
                      const Vec3& point) {
   constexpr int kSteps = 50;
@@ -61,7 +60,7 @@ TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const double reach_a = random.uniform(0.05, 2.0), reach_b = random.uniform(0.05, 2.0);
     const double scale = std::pow(10.0, random.uniform(-6.0, 0.0));
     const Pose a = random.pose(3.0), b = random.pose(3.0);
-    // Often nearly the same turn and shift: what cancels must not cancel too much.
+    // Rotations and translations are often nearly equal. They must cancel, but not too much.
     const Vec3 turn = scale * random.in_box(0.5), shift = scale * random.in_box(1.0);
     const double differ = i % 3 == 0 ? 1.0 : i % 3 == 1 ? 1e-4 : 0.0;
     const Pose a_to = after(a, shift, turn);
@@ -82,7 +81,7 @@ TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
   EXPECT_GT(tighter, 1500);
 }
 
-// A link turns by 1 mrad about an axis 0.8 m away: both go 0.8 to 1 mm.
+// A link rotates by 1 mrad about an axis 0.8 m away: both objects move by 0.8 to 1 mm.
 TEST(RelativeDisplacement, WhatRidesOnTheSameLinkHardlyComesNearer) {
   Pose link, turned;
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3(1, 2, 2).normalized());
@@ -113,7 +112,8 @@ TEST(RelativeDisplacement, TellsNothingOfMoreThanARadian) {
   EXPECT_EQ(relative_displacement(both.body_motion(), both.body_motion()), kInfinity);
 }
 
-// Two balls on one arm that swings at 2 m/s, 20 mm apart: neither comes nearer between two ticks.
+// Two balls at a distance of 20 mm on one arm that swings at 2 m/s: they do not approach each other
+// between two ticks.
 TEST(RelativeDisplacement, IsWhatAPublishedPairIsReportedBy) {
   Scene scene = test::cell_of(
       {test::moving("hand", {test::ball(0.05)}), test::moving("tool", {test::ball(0.05)})});

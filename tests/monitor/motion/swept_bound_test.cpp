@@ -1,8 +1,7 @@
-// What both ends of a tick's way tell of what lies between, against the interpolated motion in
-// small steps.
+// The bounds between two ticks that the poses at both ends give, compared with the interpolated
+// motion in small steps.
 //
-// Oracle: queries of the core, cold, at many instants; positions and orientations interpolated by
-// Eigen.
+// Oracle: cold queries of the core at many instants. Eigen interpolates positions and orientations.
 #include "monitor/motion/swept_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +33,7 @@ class Watched {
     const std::array samples{test::sample(0, a, now_ns_), test::sample(1, b, now_ns_)};
     return monitor_->tick(samples, now_ns_).pairs[0];
   }
-  // At `s` of the way to where they are, from where they were one tick before.
+  // The true distance at the fraction `s` between the poses of the last tick and the present ones.
   [[nodiscard]] double truth(double s) const {
     return test::fresh_distance(scene_.objects[0], test::between(from_[0], to_[0], s),
                                 scene_.objects[1], test::between(from_[1], to_[1], s))
@@ -57,7 +56,7 @@ Object any_body(Random& random, int kind) {
                                 test::capsule(0.5, 0.02, random.pose(0.2))});
 }
 
-// Keeps to a velocity, so that many ticks in a row see a near miss from all sides.
+// The velocity is constant, so that many consecutive ticks see a near miss from all sides.
 struct Flight {
   Pose pose;
   Vec3 step, turn;
@@ -95,7 +94,8 @@ TEST(SweptBound, NoInstantOfTheWayIsNearerThanReported) {
   EXPECT_GT(close, ways / 2) << "of " << ways << ": mostly hardly less than the nearer end";
 }
 
-// 5 cm apart at 2 m/s and 2 rad/s: their displacement alone would leave a millimetre open.
+// A distance of 5 cm at 2 m/s and 2 rad/s. The displacement alone would leave a millimetre
+// undecided.
 TEST(SweptBound, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) {
   Watched pair(test::moving("a", {test::block({0.1, 0.1, 0.1})}),
                test::moving("b", {test::block({0.2, 0.2, 0.1})}));

@@ -1,4 +1,5 @@
-// What poses do to a tick: unknown, late, refused, repeated; and how fast things move by them.
+// The effects of poses on a tick: unknown, late, refused and repeated ones, and the speeds that
+// they imply.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -121,7 +122,7 @@ TEST(MonitorInputs, LatePosesWithoutAStatedSpeedAreUnknownUntilTheNextPose) {
   EXPECT_TRUE(back.minimum_certified);
 }
 
-// Oracle: anywhere the object can be by then, given its speed.
+// Oracle: all positions that the object can have reached at its speed.
 TEST(MonitorInputs, StaleBoundsHoldWhereverTheObjectWentSince) {
   Random random(52);
   Scene scene = test::cell_of({test::moving("a", {test::capsule(1.0, 0.02)}),
@@ -159,7 +160,7 @@ TEST(MonitorInputs, RefusedSamplesAreCountedByCauseAndNeverUsed) {
       test::sample(0, stretched, kStart),
       test::sample(0, test::at(0.5, 0, 0), kStart - 1),
       test::sample(0, test::at(0.5, 0, 0), kStart + 100 * kTick),
-      test::sample(1, test::at(0.5, 0, 0), kStart),   // fixed
+      test::sample(1, test::at(0.5, 0, 0), kStart),   // a fixed object
       test::sample(99, test::at(0.5, 0, 0), kStart),  // no such object
   };
   const Report& report = monitor.tick(samples, kStart + kTick);
@@ -178,7 +179,7 @@ TEST(MonitorInputs, RefusedSamplesAreCountedByCauseAndNeverUsed) {
   EXPECT_EQ(next.rejected[static_cast<std::size_t>(Reject::kWrongRevision)], 2u);
 }
 
-// Nobody can say how much time has passed.
+// The elapsed time is unknown.
 TEST(MonitorInputs, AfterATimeThatGoesBackwardsEveryPoseIsLateUntilTheNextOne) {
   const Scene scene = two_balls();
   Monitor monitor(scene);

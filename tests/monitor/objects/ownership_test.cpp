@@ -1,4 +1,4 @@
-// Who may say where an object is, through the tick.
+// Which sources may send an object's pose, tested through the tick.
 #include <gtest/gtest.h>
 
 #include "monitor/inputs/source_numbers.hpp"

@@ -1,4 +1,4 @@
-// Poses that contradict the cell or themselves, through the tick.
+// Poses that contradict the cell or themselves, tested through the tick.
 #include "monitor/objects/plausibility.hpp"
 
 #include <gtest/gtest.h>
@@ -129,7 +129,7 @@ TEST(Plausibility, LeapBeyondAnyCellIsRefusedWithoutAStatedSpeed) {
   }
 }
 
-// A corner at 1 m from the axis moves by 2 m.
+// A vertex at 1 m from the axis moves by 2 m.
 TEST(Plausibility, TurnIsJudgedByTheBodysOwnPoints) {
   Scene scene = test::cell_of({test::moving("bar", {test::block(Vec3(1, 0.1, 0.1))}),
                                test::fixed("b", {test::ball(0.1)}, test::at(3, 0, 0))});
@@ -173,8 +173,8 @@ TEST(Plausibility, PoseThatStaysWhileItsTwistSaysThatItMovesIsFrozen) {
   EXPECT_GE(rejected(monitor, Reject::kFrozen), 1u);
 }
 
-// A pose that stays behind for good, bit for bit or but for its last digit, of an object that goes
-// on, at times slowly, with a twist in every sample or only in some.
+// The reported pose stops for good, bit for bit or except for its last digit, while the object
+// moves on, at times slowly. A twist comes with every sample or only with some.
 TEST(Plausibility, PoseThatStaysBehindIsNeverKnownAgain) {
   const Scene scene = balls_of_speed(2.0);
   for (const double speed : {0.2, 0.5, 1.0}) {
@@ -196,7 +196,8 @@ TEST(Plausibility, PoseThatStaysBehindIsNeverKnownAgain) {
   }
 }
 
-// What asks for less time does not shorten what another asked for.
+// A contradiction that requires a shorter time does not shorten the time that an earlier one
+// requires.
 TEST(Plausibility, WildTwistDoesNotMakeAnotherContradictionEndSooner) {
   const Scene scene = balls_of_speed(2.0);
   Monitor monitor(scene);
@@ -213,7 +214,8 @@ TEST(Plausibility, WildTwistDoesNotMakeAnotherContradictionEndSooner) {
   EXPECT_TRUE(found_out);
 }
 
-// Turns back and forth with 20 m/s^2, and its twists come a whole age limit late.
+// The object moves back and forth with 20 m/s^2 at the turning points. Its twists are delayed by a
+// whole age limit.
 TEST(Plausibility, TwistOfAnAgeLimitAgoIsTakenWhenTheObjectTurnsBack) {
   const double speed = 1.0, turning_s = 2.0 * speed / 20.0, straight_s = 0.2;
   const auto velocity = [&](double t) {
@@ -264,7 +266,7 @@ TEST(Plausibility, HalfSpaceIsJudgedByItsFrame) {
   EXPECT_EQ(rejected(monitor, Reject::kTooFast), 1u);
 }
 
-// Goes round a circle of 0.1 m at 1 m/s, turned by what the object turns about its own z axis.
+// Moves at 1 m/s on a circle of 0.1 m, rotated by the object's rotation about its own z axis.
 PoseSample on_circle(std::int64_t stamp_ns) {
   const double angle = 10.0 * 1e-9 * static_cast<double>(stamp_ns - kStart);
   PoseSample sample = with_twist(test::at(0.1 * std::cos(angle), 0.1 * std::sin(angle), 0),
@@ -282,7 +284,7 @@ Scene bar_of_speed(double max_speed) {
   return scene;
 }
 
-// The first tick of `count` after which the object is unknown, else `count`.
+// The first tick of `count` after which the object is unknown; `count` if there is none.
 int ticks_until_unknown(const Scene& scene, int count, auto&& sample_at) {
   Monitor monitor(scene);
   for (int tick = 0; tick < count; ++tick) {
@@ -326,7 +328,7 @@ TEST(Plausibility, TwistThatLeadsElsewhereThanThePosesIsFoundOut) {
   EXPECT_LT(ticks_until_unknown(scene, 1000, in_its_own_frame), 250);
 }
 
-// A wrong twist keeps the object unknown; once it is right, 51 age limits have to agree.
+// A wrong twist keeps the object unknown. Once it is right, it must agree for 51 age limits.
 TEST(Plausibility, ObjectIsUnknownWhileItsTwistLeadsElsewhere) {
   const Scene scene = balls_of_speed(2.0);
   Monitor monitor(scene);
@@ -357,7 +359,7 @@ TEST(Plausibility, ObjectThatMayJumpIsTakenAsItComes) {
   EXPECT_NEAR(report.pairs[0].distance, 0.3, 1e-9);
 }
 
-// Encoders repeat themselves at rest, and a measured speed is noise then.
+// At rest, encoders repeat their values, and a measured speed is noise.
 TEST(Plausibility, ObjectAtRestIsNotFrozen) {
   for (const double speed : {0.25, 2.0}) {
     const Scene scene = balls_of_speed(speed);

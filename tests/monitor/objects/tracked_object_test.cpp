@@ -27,7 +27,7 @@ Object late_after(std::int64_t limit_ns, double max_speed) {
 
 const Object kInTime = late_after(20 * kTick, kInfinity);
 
-// With stamps in the tick's time.
+// Judges the sample, whose stamps are in the tick's time.
 std::optional<Reject> judged(const PoseSample& sample, const Object& object, TrackedObject& state,
                              std::int64_t now_ns = kStart) {
   return take(object, sample, sample.stamp_ns, {now_ns, kFutureLimit}, state);
@@ -55,7 +55,7 @@ TEST(TrackedObject, RefusesEveryNonFiniteFigure) {
       sample.twist = {};
       sample.twist.angular[i] = bad;
       EXPECT_EQ(judged(sample), Reject::kNonFinite);
-      sample.has_twist = false;  // then it is not read
+      sample.has_twist = false;  // the twist is then not read
       EXPECT_EQ(judged(sample), std::nullopt);
     }
   }
@@ -107,13 +107,14 @@ TEST(TrackedObject, TwistIsThatOfTheLastTwoPosesUnlessGiven) {
   next.stamp_ns += 4 * kTick;
   next.world_from_object.position += Vec3(0.004, 0, 0);
   next.world_from_object.orientation = Eigen::AngleAxisd(0.002, Vec3::UnitY());
-  next.world_from_object.orientation.coeffs() *= -1.0;  // the same, the short way round
+  // the same orientation with the opposite sign
+  next.world_from_object.orientation.coeffs() *= -1.0;
   take(next, state);
   EXPECT_TRUE(state.velocity_known());
   EXPECT_NEAR((state.twist.linear - Vec3(1, 0, 0)).norm(), 0.0, 1e-9);
   EXPECT_NEAR((state.twist.angular - Vec3(0, 0.5, 0)).norm(), 0.0, 1e-9);
 
-  take(next, state);  // again, with the same stamp: nothing new about its speed
+  take(next, state);  // repeated with the same stamp: no new information about its speed
   EXPECT_NEAR(state.twist.linear.x(), 1.0, 1e-9);
 
   next.has_twist = true;
@@ -144,7 +145,8 @@ TEST(TrackedObject, VelocityIsUnknownAfterAGapAndWhileLateUnlessSent) {
   EXPECT_FALSE(after(50 * kTick, false));
 }
 
-// 30 ms apart, where poses of 20 ms are late: known for the time in which they are not.
+// Poses come every 30 ms and are late after 20 ms. The velocity is known while the pose is not
+// late.
 TEST(TrackedObject, VelocityOfASourceSlowerThanTheAgeLimitIsKnownWhileItsPoseIsNotLate) {
   TrackedObject state;
   PoseSample next = good();

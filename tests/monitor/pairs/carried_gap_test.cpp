@@ -1,4 +1,5 @@
-// What a separating direction tells after both parts have moved, against a fresh query.
+// The bound that a separating direction gives after both parts have moved, compared with a new
+// query.
 #include "monitor/pairs/carried_gap.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,7 @@
 namespace clearance {
 namespace {
 
-// Two parts that have been asked how far apart they are, and move on.
+// Two parts whose distance has been queried once, and which then move.
 class AskedOnce {
  public:
   AskedOnce(Part a, Part b, const Pose& pose_a, const Pose& pose_b)

@@ -1,5 +1,5 @@
-// Oracles: the exact distance of all parts (tests/shared/exact_oracle.hpp); of whole runs, the same
-// monitor that evaluates every pair in every tick.
+// Oracles: the exact distance of all parts (tests/shared/exact_oracle.hpp); for whole runs, the
+// same monitor with every pair evaluated in every tick.
 #include "monitor/pairs/hull_bound.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 
 using oracle::Body;
 
-// Two objects of some parts each, for the core and for the oracle.
+// Two objects of several parts each, for the core and for the oracle.
 struct TwoObjects {
   Scene scene;
   std::vector<std::vector<Body>> bodies{2};
@@ -44,7 +44,8 @@ struct TwoObjects {
                      random.chance(0.3) ? Eigen::Quaterniond::Identity() : random.rotation()};
     scene.objects[object].parts.push_back({"part", test::made(body), place});
   }
-  // Over all parts, for poses whose products are exact: without turns of the objects.
+  // The exact distance over all parts. The objects are not rotated, so that the products of poses
+  // are exact.
   [[nodiscard]] double exact_distance(const Vec3& a, const Vec3& b) const {
     double least = kInfinity;
     for (std::size_t p = 0; p < bodies[0].size(); ++p) {
@@ -80,7 +81,8 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
     const double lower = hulls.lower(0, TickView{objects, parts, 1, table}, budget);
     EXPECT_EQ(budget.left(), 9u);
     const double truth = two.exact_distance(objects[0].pose.position, objects[1].pose.position);
-    EXPECT_LE(lower, truth + 1e-14) << "round " << round;  // adding positions rounds in the oracle
+    // the addition of positions rounds in the oracle
+    EXPECT_LE(lower, truth + 1e-14) << "round " << round;
     apart += lower > 0.0;
   }
   EXPECT_GT(apart, 30);
@@ -107,7 +109,7 @@ TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   EXPECT_TRUE(hulls.possible(table.entries[4])) << "one row, but of many facets";
 }
 
-// Time runs fast, so that pairs wake and fall asleep all the time.
+// Time passes fast, so that pairs become awake and asleep continually.
 TEST(HullBound, HidesNoPairThatMattersFromTheTick) {
   const auto read = parse_cell(warehouse_cell({.objects = 120, .seed = 3}), "warehouse.yaml");
   const Cell& cell = std::get<Cell>(read);

@@ -1,4 +1,4 @@
-// How Cyclone is configured.
+// The configuration of Cyclone.
 #include "monitor/participant/participant.hpp"
 
 #include <gmock/gmock.h>

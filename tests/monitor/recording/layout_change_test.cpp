@@ -1,4 +1,4 @@
-// Messages of other builds in the layout of this one, against bytes that Cyclone encodes.
+// Messages of other builds in the layout of this one, compared with bytes that Cyclone encodes.
 #include "monitor/recording/layout_change.hpp"
 
 #include <gmock/gmock.h>
@@ -29,8 +29,8 @@ std::vector<std::byte> encoded(const Sample& sample, const dds_topic_descriptor_
   return {cdr.begin(), cdr.end()};
 }
 
-// The IDL that a recording of the other build has: other_version.idl with the structs of one
-// version only, by the names that ours have.
+// The IDL in a recording of the other build: other_version.idl with the structs of one version
+// only, under the names of this build's structs.
 std::string idl_of(const std::string& version) {
   std::string text =
       read_text(std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/wire/other_version.idl");
@@ -148,7 +148,7 @@ TEST(LayoutChange, RefusesAnIdlThatItDoesNotUnderstand) {
 
 class OtherBuild : public OfflineReplayTest {
  protected:
-  // Writes the run again with zones of another version; `schema`: the text of their types.
+  // Writes the run again with zones of another version. `schema` is the text of their types.
   template <class Other>
   void rewrite_zones(const std::string& schema, const dds_topic_descriptor_t& type,
                      const std::function<Other(const clearance_msg_ZoneState&)>& converted) {
@@ -226,7 +226,7 @@ TEST_F(OtherBuild, RecordingOfATypeThatCannotBeReadIsRefusedWithItsBuild) {
                               "here")));
 }
 
-// The recording of the first layout: whatever fields come later, it stays readable.
+// A recording in the first layout. It must stay readable, whatever fields are added later.
 TEST(FirstLayout, IsReadableForEver) {
   const std::filesystem::path file =
       std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/recording/first_layout.mcap";

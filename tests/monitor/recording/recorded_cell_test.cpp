@@ -1,4 +1,5 @@
-// A recording keeps what its cell was read from: read again where none of the files is left.
+// A recording keeps the files that its cell was read from, and can be read when none of them exists
+// any more.
 #include "monitor/recording/recorded_cell.hpp"
 
 #include <gmock/gmock.h>
@@ -24,8 +25,8 @@ using testing::HasSubstr;
 const char* const kTetrahedron =
     "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n";
 
-// A cell of every kind of file: a mesh beside and one above it, a robot whose URDF is named by an
-// absolute path, whose mesh is in a package, and a planning scene.
+// A cell with every kind of file: one mesh in its directory and one above it, a planning scene, and
+// a robot. An absolute path names the robot's URDF, and its mesh is in a package.
 class RecordedCell : public testing::Test {
  protected:
   RecordedCell() {
@@ -67,7 +68,7 @@ class RecordedCell : public testing::Test {
     std::ofstream(folder / name) << text;
   }
 
-  // What became of a recording with these options, where its files are no longer.
+  // The cell of a recording with these options, read where its files no longer exist.
   CellResult recorded(const RecordingOptions& options) {
     Recorder recorder(run, cell, 1000, options);
     without_files = recorder.without_files();
@@ -142,7 +143,7 @@ TEST_F(RecordedCell, IsInEveryFileOfSeveral) {
   }
 }
 
-// A recording is not trusted: what it keeps goes into a directory of its own, or nowhere.
+// A recording is not trusted: its files are written into a private directory or not at all.
 TEST_F(RecordedCell, IsRefusedWhereAFileWouldStandElsewhere) {
   for (const std::string name : {"/../../escaped", "escaped", "/tmp/../../escaped", "/"}) {
     {

@@ -104,7 +104,7 @@ TEST(Recorder, ExistingFileIsKept) {
   EXPECT_EQ("precious", read_text(folder / "a.mcap"));
 }
 
-// Ours begin with a capital letter, those of IDL do not.
+// Types of this project begin with a capital letter, those of IDL do not.
 std::set<std::string> types_of_members(const std::string& idl) {
   std::set<std::string> types;
   for (const std::string before : {"sequence<", "\n  "}) {
@@ -125,7 +125,7 @@ TEST(TopicSchema, IsSelfContainedIdlOfItsTypeAndWhatThatNeeds) {
     EXPECT_THAT(schema.text, HasSubstr("struct " + type + " {"));
     EXPECT_THAT(schema.text, testing::Not(HasSubstr("//")));
     EXPECT_THAT(schema.text, testing::Not(HasSubstr("#")));
-    // Every type of ours that a member has is defined in the text.
+    // The text defines each of this project's types that a member has.
     for (const std::string& member : types_of_members(schema.text)) {
       EXPECT_THAT(schema.text, HasSubstr("struct " + member + " {")) << type;
     }

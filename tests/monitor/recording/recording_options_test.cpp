@@ -1,4 +1,4 @@
-// Recordings that are compressed, thinned, rolled over: what is left still replays.
+// Compressed, thinned and rolled-over recordings still replay.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -53,8 +53,8 @@ TEST_F(RecordingOptionsTest, EveryTenthReportKeepsItsPairsAndAllTicksCompareToTh
   EXPECT_EQ(400u, same.compared);
 }
 
-// Without pairs a report still differs where its minimum does; and one that lost its pairs though
-// the recording keeps all of them differs, too.
+// Without pairs, a report still differs if its minimum does. A report that lost its pairs also
+// differs, if the recording keeps all pairs.
 TEST_F(RecordingOptionsTest, ThinnedReportsAreComparedAllTheSame) {
   record({.pairs_every = 10});
   std::vector<Kept> messages = messages_of(run);
@@ -102,7 +102,7 @@ TEST_F(RecordingOptionsTest, FilesFollowEachOtherAndReplayAsOne) {
       replay({.compare = Comparison::kBits, .continued_in = {files.begin() + 1, files.end()}});
   EXPECT_TRUE(whole.ok()) << whole.text();
   EXPECT_EQ(400u, whole.compared);
-  // Each for itself: names, zones, and bounds that can be compared.
+  // Each file can be compared alone: names, zones and bounds.
   const OfflineReplay third = replay_offline(cell, files[2], {.compare = Comparison::kBounds});
   EXPECT_TRUE(third.ok()) << third.text();
   EXPECT_GE(third.compared, 95u);

@@ -1,5 +1,5 @@
-// Offline replays of bags and joint logs: the same ticks as of joint states that are sent to us, at
-// the rate of the daemon, twice to the same bytes.
+// Offline replays of bags and joint logs. They give the same ticks as joint states sent to the
+// daemon, at the daemon's rate, and two replays give the same bytes.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,11 +22,11 @@ using testing::Contains;
 using testing::HasSubstr;
 
 constexpr std::int64_t kMs = 1'000'000;
-constexpr double kWall = 5.0;  // m, in x
+constexpr double kWall = 5.0;  // x coordinate, m
 
 double shoulder_at(double seconds) { return std::sin(seconds); }
 
-// Joint states each `period_ms`, the arm's and the finger's apart; the cart by /tf.
+// Joint states every `period_ms`, those of the arm and of the finger separately; the cart by /tf.
 std::vector<RosMessage> motion(int count, int period_ms) {
   std::vector<RosMessage> messages;
   for (int i = 0; i < count; ++i) {
@@ -80,7 +80,7 @@ TEST_F(BagReplay, TicksAtTheCellsRateAlsoBetweenMessages) {
     last_ns = tick.report.now_ns;
   });
   EXPECT_TRUE(done.ok()) << done.text();
-  EXPECT_EQ(1002u, ticks);  // the last message is 2 us behind a tick
+  EXPECT_EQ(1002u, ticks);  // the last message is 2 us after a tick
   EXPECT_EQ(3u * 101, done.batches);
   EXPECT_EQ(kStart, done.first_ns);
 }
@@ -97,7 +97,7 @@ TEST_F(BagReplay, DistancesAreThoseOfTheJointsInTheBag) {
   int checked = 0;
   const std::uint32_t pair = pair_of("upper", "wall");
   replay("bag.mcap", {.tick_hz = 200.0}, [&](const ReplayedTick& tick) {
-    if (tick.report.now_ns > kStart + 199 * 5 * kMs) return;  // behind the last angle
+    if (tick.report.now_ns > kStart + 199 * 5 * kMs) return;  // after the last angle
     const PairReport upper = tick.monitor.pair(pair);
     const double angle = shoulder_at(1e-9 * static_cast<double>(tick.report.now_ns - kStart));
     const double reach = 0.9 * std::cos(angle) + 0.05 * std::abs(std::sin(angle));
@@ -108,10 +108,12 @@ TEST_F(BagReplay, DistancesAreThoseOfTheJointsInTheBag) {
   EXPECT_GT(checked, 150);
 }
 
-// As live: joints that come every 100 ms are late after 30 ms, and a regression test says so.
+// Joints that come every 100 ms are late after 30 ms, as in live operation, and a regression test
+// shows it.
 TEST_F(BagReplay, StalenessShowsBetweenMessagesAsItDoesLive) {
   std::vector<RosMessage> messages = motion(30, 100);
-  for (RosMessage& message : messages) message.log_ns -= message.log_ns % kMs;  // all at once
+  // all at the same time
+  for (RosMessage& message : messages) message.log_ns -= message.log_ns % kMs;
   write_mcap_bag(folder / "bag.mcap", messages);
   const std::uint32_t pair = pair_of("upper", "wall");
   int stale = 0, fresh = 0;

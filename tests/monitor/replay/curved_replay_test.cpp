@@ -23,8 +23,8 @@ Cell round_arm() {
       read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells/round_arm.yaml"));
 }
 
-// Records ticks of the cell's own motion, as the daemon does, from `start_s` on. Returns the least
-// distance that was reported.
+// Records ticks of the cell's own motion from `start_s` on, as the daemon does. Returns the least
+// reported distance.
 double record(const Cell& cell, const std::filesystem::path& file, double start_s, int ticks) {
   Monitor monitor(cell.scene);
   Recorder recorder(file, cell, kStart);
@@ -53,7 +53,7 @@ double record(const Cell& cell, const std::filesystem::path& file, double start_
 TEST(CurvedReplay, GivesTheRecordedReportsBitForBitAndMeetsExpectations) {
   const test::ScratchFolder folder;
   const Cell cell = round_arm();
-  // Around where the tool comes nearest to the table.
+  // The run covers the time at which the tool is nearest to the table.
   const double least = record(cell, folder / "run.mcap", 0.05, 400);
   EXPECT_GT(least, 0.02);
   const OfflineReplay same =

@@ -1,6 +1,6 @@
-// Every field that is published, altered alone, is named by the comparison: message by message, and
-// in a recording that is replayed. The recording was made by the first build whose layout has to
-// stay readable; it holds joints, a person, a zone with `separation`, and gradients.
+// The comparison must name every published field that is altered alone: message by message, and in
+// a recording that is replayed. The recording was made by the first build whose layout must stay
+// readable. It contains joints, a person, a zone with `separation`, and gradients.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -22,13 +22,14 @@ using testing::HasSubstr;
 const std::filesystem::path kRecording =
     std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/recording/first_layout.mcap";
 
-// Changes the `wanted`-th number of a message, from 0, and says which that was. Of lists, the first
-// element stands for all. What no tick determines is passed over unless it is asked for.
+// Changes the number of index `wanted` in a message, counted from 0, and returns its name. The
+// first element of a list stands for all. Fields that no tick determines are skipped unless they
+// are requested.
 struct Alter {
   std::size_t wanted = 0;
   bool delivery = false;
   std::size_t seen = 0;
-  std::string name = {};  // empty: the message has no such number
+  std::string name = {};  // empty: the message has no number of this index
   bool inside = false;    // a struct or list within the message
 
   template <class Value>
@@ -73,7 +74,7 @@ struct Alter {
   }
 };
 
-// Messages of the recording, with one altered.
+// The messages of the recording, one of them altered.
 class EveryField : public testing::Test {
  protected:
   void SetUp() override {
@@ -85,14 +86,14 @@ class EveryField : public testing::Test {
     messages_ = messages_of(kRecording);
   }
 
-  // The `number`-th message of this kind, from 0.
+  // The place of the message of index `number` of this kind, counted from 0.
   std::size_t place_of(TopicKind kind, int number) const {
     std::size_t place = 0;
     while (messages_.at(place).kind != kind || number-- > 0) ++place;
     return place;
   }
 
-  // Alters each field of a message in turn, and hands out the altered message and the field's name.
+  // Alters each field of a message in turn, and passes on the altered message and the field's name.
   template <class Message>
   void for_each_alteration(std::size_t place,
                            const std::function<void(const Kept&, const std::string& name)>& judge) {
@@ -128,7 +129,8 @@ class EveryField : public testing::Test {
     }
   }
 
-  // `identity`: fields that say which tick or zone a message is of; without them, others are told.
+  // `identity` lists the fields that identify a message's tick or zone. If one of them is altered,
+  // the comparison reports other messages.
   template <class Message>
   void expect_named_by_a_replay(TopicKind kind, int number, const std::set<std::string>& identity) {
     const std::size_t place = place_of(kind, number);
@@ -162,7 +164,7 @@ TEST_F(EveryField, OfARecordingIsNamedByItsReplay) {
       replay_offline(cell_, folder_ / "same.mcap", {.compare = Comparison::kBits});
   ASSERT_TRUE(same.ok()) << same.text();
   EXPECT_EQ(45u, same.compared);
-  // What a tick is told: a replay of other times is another run.
+  // These fields are inputs of a tick: a replay with other times is another run.
   expect_named_by_a_replay<clearance_msg_Distances>(TopicKind::kDistances, 30,
                                                     {"cycle", "now_ns", "clock_offset_ns"});
   expect_named_by_a_replay<clearance_msg_ZoneState>(TopicKind::kZones, 1,

@@ -1,4 +1,4 @@
-// Expectations of a user's test about a replay: a minimum distance, and zones that stay inactive.
+// Expectations in a user's test of a replay: a minimum distance, and zones that stay inactive.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +25,8 @@ TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBrok
   EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
 }
 
-// The hand goes to and fro past the box, 1.2 m a tick; y: how far it keeps from the box's middle.
+// The hand moves back and forth past the box at 1.2 m per tick. `y` is its distance from the centre
+// of the box.
 void record_darts(const Cell& cell, const std::filesystem::path& file, double y) {
   Monitor monitor(cell.scene);
   Recorder recorder(file, cell, kStart);
@@ -52,7 +53,7 @@ TEST_F(ReplayExpectations, WhatPassesThroughBetweenTwoTicksBreaksTheExpectedMini
               HasSubstr("apart between this tick and the last, at least 0.2 m expected"));
 }
 
-// 0.45 m at the nearest; the displacement of the hand alone would decide nothing.
+// The least distance is 0.45 m. The displacement of the hand alone would decide nothing.
 TEST_F(ReplayExpectations, WhatPassesByBetweenTwoTicksIsLookedAtCloserBeforeItIsJudged) {
   record_darts(cell, run, 0.6);
   const OfflineReplay near = replay({.compare = Comparison::kBits, .expect_min_distance = 0.44});

@@ -1,4 +1,4 @@
-// Joint states: on the wire, in a recording, and in its replay.
+// Joint states on the wire, in a recording, and in its replay.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -71,12 +71,13 @@ TEST(JointStates, NamesOfNoUseAreLeftOutAndUnknownOnesAreOfNoVariable) {
   EXPECT_EQ(out.joints[1].variable, 0u);
   EXPECT_TRUE(std::isnan(out.joints[1].position));
   EXPECT_EQ(out.joints[2].variable, JointNames::kUnknown);
-  // As it is recorded.
+  // The batch as it is recorded.
   const PoseBatch again = through_the_wire(out, scene);
   EXPECT_EQ(again.joints[2].variable, JointNames::kUnknown);
 }
 
-// The arm and its finger come from two drivers, with now and then an unknown name and a bad number.
+// The arm and its finger are sent by two drivers, occasionally with an unknown name or an invalid
+// number.
 void record_joints(const Cell& cell, const std::filesystem::path& file) {
   const Scene& scene = cell.scene;
   Monitor monitor(scene);

@@ -24,13 +24,13 @@ class OfflineReplayTest : public testing::Test {
   OfflineReplay replay(const OfflineReplayOptions& options = {}) {
     return replay_offline(cell, run, options);
   }
-  // Writes the run again with its messages changed as a whole.
+  // Writes the run again after a change of the whole list of messages.
   void rewrite(const std::function<void(std::vector<Kept>&)>& change) {
     std::vector<Kept> messages = messages_of(run);
     change(messages);
     write_messages(run, messages);
   }
-  // The place of the report of a tick, from 1.
+  // The place of a tick's report. Ticks count from 1.
   static std::size_t report_of(const std::vector<Kept>& messages, int tick) {
     std::size_t place = 0;
     for (; place < messages.size(); ++place) {

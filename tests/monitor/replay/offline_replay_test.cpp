@@ -90,7 +90,7 @@ TEST_F(OfflineReplayTest, AZoneThatDiffersNamesTheBuildsToo) {
               HasSubstr("recorded by another build (0.0.1)"));
 }
 
-// The hand is a person's, the tool a robot's.
+// The hand belongs to a person, the tool to a robot.
 void separate(Scene& scene) {
   Zone& zone = scene.zones[0];
   zone.pairs = {0};
@@ -105,7 +105,7 @@ TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffe
   EXPECT_EQ("", replay({.compare = Comparison::kBits}).text());
   std::vector<Kept> messages = messages_of(run);
   EXPECT_EQ(200, std::ranges::count(messages, TopicKind::kSeparation, &Kept::kind));
-  // In front of the report of tick 5.
+  // The message before the report of tick 5.
   Kept& separation = messages[report_of(messages, 5) - 1];
   ASSERT_EQ(separation.kind, TopicKind::kSeparation);
   separation = altered<clearance_msg_Separation>(separation, [](clearance_msg_Separation& content) {
@@ -118,7 +118,7 @@ TEST_F(OfflineReplayTest, GivesSeparationsAgainToTheBitAndNamesTheFirstThatDiffe
             HasSubstr("differs in separation.pairs[0] (zone 'stop', hand - tool).scaling: ")));
 }
 
-// Recorded over DDS, a topic may come after another.
+// In a recording over DDS, topics may be out of order.
 TEST_F(OfflineReplayTest, FindsASeparationBehindItsReport) {
   separate(scene);
   record_run(cell, run);

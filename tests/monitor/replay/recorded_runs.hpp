@@ -14,7 +14,7 @@
 
 namespace clearance::test {
 
-// A hand and a tool that move, a box that does not; the zone 'stop' on all pairs.
+// A moving hand, a moving tool and a fixed box. The zone 'stop' covers all pairs.
 inline Scene bench_cell() {
   Scene scene = cell_of({moving("hand", {ball(0.05)}), moving("tool", {capsule(0.2, 0.02)}),
                          fixed("box", {block(Vec3(0.1, 0.1, 0.1))}, at(0, 0, 0))});
@@ -27,7 +27,7 @@ inline Scene bench_cell() {
   return scene;
 }
 
-// The hand comes down to `nearest` m above the box in the middle of the run and goes up again.
+// The hand descends to `nearest` m above the box in the middle of the run and then rises.
 inline Pose hand_at(int tick, int ticks, double nearest) {
   const double far = std::abs(tick - ticks / 2) / (0.5 * ticks);
   return at(0.0, 0.0, 0.1 + 0.05 + nearest + 0.4 * far);
@@ -35,11 +35,12 @@ inline Pose hand_at(int tick, int ticks, double nearest) {
 
 struct Run {
   int ticks = 200;
-  double nearest = 0.08;  // m, hand to box
+  double nearest = 0.08;  // distance of hand and box, m
   std::uint64_t seed = 1;
 };
 
-// Source 'arm' sends the hand, 'cell' the tool; each has none, one or two batches a tick.
+// Source 'arm' sends the hand and source 'cell' the tool. Each sends zero, one or two batches per
+// tick.
 inline void record_run(const Cell& cell, const std::filesystem::path& file, const Run& run = {},
                        const RecordingOptions& options = {.overwrite = false}) {
   Monitor monitor(cell.scene);
@@ -88,7 +89,7 @@ inline std::vector<Kept> messages_of(const std::filesystem::path& file) {
   return all;
 }
 
-// The message with its content changed.
+// Returns the message with its content changed.
 template <class T>
 Kept altered(const Kept& message, const std::function<void(T&)>& change) {
   Sample<T> sample;
@@ -106,8 +107,8 @@ Sample<T> decoded(const Kept& message) {
   return sample;
 }
 
-// `build`: the one that is said to have made the reports; empty: none is named. The first
-// message is then a catalogue.
+// `build` names the build that made the reports; if it is empty, none is named. The first message
+// is then a catalogue.
 inline void write_messages(const std::filesystem::path& file, const std::vector<Kept>& messages,
                            const std::string& build = {}) {
   RecordingWriter writer(file, Topics{});

@@ -20,7 +20,7 @@ constexpr const char* kHeights[kTicks] = {"0.45", "0.35", "0.25", "0.15", "0.05"
 
 class Reference : public testing::Test {
  protected:
-  // The hand is 0.3, 0.2, 0.1, 0 and -0.1 m above the box; the tool stays away.
+  // The hand is 0.3, 0.2, 0.1, 0 and -0.1 m above the box. The tool stays away.
   Reference() {
     std::string log = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
     for (int tick = 0; tick < kTicks; ++tick) {
@@ -79,7 +79,7 @@ TEST_F(Reference, ThatIsMissedNamesTickPairAndFigures) {
   EXPECT_NEAR(0.002, replay.reference->largest, 1e-12);
 }
 
-// Without a tolerance, bounds are held to the digits.
+// Without a tolerance, bounds are checked to the digits given.
 TEST_F(Reference, IsWithinTheBoundsWhenItsDigitsAllowIt) {
   const auto outside = [this](int tick, const std::string& distance) {
     return held_against(row(tick, "hand,box", distance), std::nullopt).reference->outside;
@@ -117,7 +117,7 @@ TEST_F(Reference, OfOtherPairsAndTimesIsToldAndNothingToCompareIsAFailure) {
 }
 
 TEST_F(Reference, IsNotMetByADistanceOfAnotherTick) {
-  scene.budget = 1;  // of three part pairs
+  scene.budget = 1;  // the cell has three part pairs
   const OfflineReplay replay =
       held_against(row(1, "hand,tool", "0.9") + row(2, "hand,tool", "0.9"));
   ASSERT_FALSE(replay.ok());

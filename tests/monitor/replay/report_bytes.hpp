@@ -1,4 +1,5 @@
-// What a report says, as bytes: equal when it is the same to the bit.
+// The content of a report as bytes, which are equal if and only if the reports are equal to the
+// bit.
 #pragma once
 
 #include <cstring>

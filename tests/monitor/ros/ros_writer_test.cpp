@@ -1,4 +1,4 @@
-// What a cell tells ROS 2, through real DDS on loopback. The test is the tick thread.
+// The outputs of a cell for ROS 2, through real DDS on loopback. The test acts as the tick thread.
 #include "monitor/ros/ros_writer.hpp"
 
 #include <gmock/gmock.h>
@@ -17,7 +17,7 @@ using test::eventually;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
 using Float64 = std_msgs_msg_dds__Float64_;
 
-// A ball that comes to a post at x = 1; all four outputs.
+// A ball that approaches a post at x = 1, with all four outputs.
 Cell told_cell() {
   Cell cell;
   Scene& scene = cell.scene;
@@ -38,7 +38,7 @@ class RosReader {
   RosReader(Participant& participant, const RosType& type, const std::string& topic)
       : reader_(participant.ros_reader(type, topic)) {}
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
-  // Takes the next one, if there is one.
+  // Takes the next message if there is one.
   bool take() {
     void* pointer = &*sample_;
     dds_sample_info_t info;
@@ -77,7 +77,7 @@ class RosWriterTest : public testing::Test {
   std::int64_t now = test::kStart;
 };
 
-// 0.8 m between the surfaces at x = 0; the zone begins at 0.3 m.
+// At x = 0 the distance of the surfaces is 0.8 m. The zone begins at 0.3 m.
 TEST_F(RosWriterTest, NumbersAreTheLeastLowerBoundAndTheScalingOfTheZones) {
   RosReader<Float64> minimum(client, kRosFloat64, "rt/told/clearance/minimum_distance");
   RosReader<Float64> scaling(client, kRosFloat64, "rt/told/clearance/speed_scaling");
@@ -153,7 +153,7 @@ TEST_F(RosWriterTest, DiagnosticsSayWhatIsLateAndWhichZoneIsActive) {
   EXPECT_TRUE(says("zone zone", DiagnosticLevel::kOk, 1'000'000, 0.0));
 }
 
-// Reliable and volatile, and it never takes: what is written goes on for others.
+// The reader is reliable and volatile and never takes a sample. Writing continues for the others.
 TEST_F(RosWriterTest, AReaderThatStandsStillDelaysNothing) {
   const dds_entity_t stopped = client.ros_reader(kRosMarkers, "rt/told/clearance/markers");
   const dds_entity_t other = client.ros_reader(kRosFloat64, "rt/told/clearance/minimum_distance");

@@ -10,8 +10,9 @@
 namespace clearance {
 namespace {
 
-// The oracle takes the text by its word: pairs in a ring, whose turn comes only when all of its
-// queries are left, and nobody may wait longer than the ticks that were promised.
+// The oracle follows the specification literally. Pairs form a ring, and a pair is refreshed only
+// when the budget for all of its queries is left. No pair may wait longer than the promised number
+// of ticks.
 TEST(RefreshBudget, LetsEveryPairBeRefreshedInTimeFromNoMoreThanIsKept) {
   Random random(31);
   for (int run = 0; run < 200; ++run) {
@@ -53,7 +54,7 @@ TEST(RefreshBudget, KeepsNothingForPairsThatTheBudgetDoesNotCover) {
   }
 }
 
-// One of 25 pairs is due every 400 ticks: what is urgent hardly notices.
+// One of 25 pairs is due every 400 ticks, which hardly affects urgent pairs.
 TEST(RefreshBudget, KeepsAQueryOnlyWhenOneIsDue) {
   RefreshBudget pace({.part_pairs = 24, .most = 1}, 10'000, true);
   std::vector<std::uint32_t> kept;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kNoIndex = RefreshQueue::kNoIndex;
 
-// Four objects, six pairs: 01 02 03 12 13 23.
+// Four objects with six pairs: 01 02 03 12 13 23.
 class RefreshQueueTest : public testing::Test {
  protected:
   RefreshQueueTest() {
@@ -31,7 +31,8 @@ class RefreshQueueTest : public testing::Test {
     queue.move_to_back(pair);
   }
   void set_aside(std::uint32_t pair, std::uint32_t object) { queue.set_aside(pair, object, table); }
-  // The pairs in the order in which they come to the head; each is refreshed in a tick of its own.
+  // Returns the pairs in the order in which they reach the head. Each is refreshed in a separate
+  // tick.
   std::vector<std::uint32_t> order() {
     std::vector<std::uint32_t> pairs;
     for (std::uint64_t cycle = 100; table.refreshed_cycle[queue.stalest()] < 100; ++cycle) {

@@ -1,5 +1,5 @@
-// Whose turn it is when the budget does not cover everything: refreshing, what is urgent, what is
-// published.
+// The order of evaluation if the budget does not cover all pairs: refreshes, urgent pairs,
+// published pairs.
 #include "monitor/schedule/scheduler.hpp"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@ namespace {
 using test::kStart;
 using test::kTick;
 
-// A row of balls 10 m apart, the first two near each other: nobody else can be close.
+// A row of balls 10 m apart, of which only the first two are close to each other.
 Scene far_apart(std::uint32_t count) {
   std::vector<Object> objects{test::moving("mover", {test::ball(0.1)})};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -23,7 +23,7 @@ Scene far_apart(std::uint32_t count) {
   return test::cell_of(std::move(objects));
 }
 
-// Side by side, so long that the balls around them say nothing.
+// Bodies side by side that are so long that their bounding balls prove nothing.
 Scene side_by_side(std::uint32_t count) {
   std::vector<Object> objects{test::moving("mover", {test::capsule(100.0, 0.01)})};
   for (std::uint32_t i = 0; i < count; ++i) {
@@ -33,7 +33,7 @@ Scene side_by_side(std::uint32_t count) {
   return test::cell_of(std::move(objects));
 }
 
-// Tick number t, with the first object there.
+// Runs tick number t with the first object at this pose.
 const Report& tick_with_first_at(const Pose& pose, int t, Monitor& monitor) {
   const PoseSample sample = test::sample(0, pose, kStart + t * kTick);
   return monitor.tick(std::span(&sample, 1), sample.stamp_ns);
@@ -92,7 +92,7 @@ TEST(Scheduler, FarPairsAreRefreshedByTheirSpheresWithoutAQuery) {
   EXPECT_EQ(monitor.pair(150).evaluated_cycle, 0u);
 }
 
-// Nobody states a speed, so that an object that falls silent is unknown.
+// No speed is stated, so that a silent object becomes unknown.
 TEST(Scheduler, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
   std::vector<Object> objects;
   for (int i = 0; i < 40; ++i) {
@@ -136,11 +136,11 @@ TEST(Scheduler, FirstBinsAreEvaluatedEveryTick) {
   Scene scene = far_apart(20);
   scene.objects.push_back(test::fixed("near", {test::ball(0.1)}, test::at(11.0, 0.41, 0)));
   scene.pairs.push_back({0, 21, false});
-  scene.objects[0].max_speed = 2.0;  // 2 mm a tick
+  scene.objects[0].max_speed = 2.0;  // 2 mm per tick
   scene.budget = 2;
   Monitor monitor(scene);
-  // Between the two: 5 mm from the second post, which is the minimum, and 5 ticks from the near
-  // one.
+  // The object is between the two posts: 5 mm from the second post, which is the minimum, and 5
+  // ticks from the near one.
   for (int t = 0; t < 30; ++t) {
     const Report& report = tick_with_first_at(test::at(11.0, 0.205 - 0.005, 0), t, monitor);
     EXPECT_EQ(report.minimum.pair, 1u);
@@ -151,7 +151,7 @@ TEST(Scheduler, FirstBinsAreEvaluatedEveryTick) {
 
 TEST(Scheduler, WhatIsNotProvedOutsideAZoneComesBeforeTheRest) {
   Scene scene = far_apart(20);
-  scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within it
+  scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within the zone
   scene.budget = 4;
   Monitor monitor(scene);
   for (int t = 0; t < 50; ++t) {
@@ -182,7 +182,8 @@ TEST(Scheduler, PublishedPairsBeyondTheBudgetDoNotStarveTheRest) {
   EXPECT_LE(oldest, 7u);
 }
 
-// A hundred published pairs are due to the last in every tick, and what is awake takes the rest.
+// A hundred published pairs are due in every tick, and pairs that are awake take the rest of the
+// budget.
 TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirRefresh) {
   Scene scene = side_by_side(150);
   for (std::size_t p = 0; p < 100; ++p) scene.pairs[p].publish = true;
@@ -202,7 +203,7 @@ TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirRefresh) {
 TEST(Scheduler, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
   Scene scene = far_apart(20);
   for (std::size_t p = 10; p < 14; ++p) scene.pairs[p].publish = true;
-  scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within it
+  scene.zones = {test::zone_over(scene, 25.0, 25.0)};  // the first three posts are within the zone
   scene.budget = 6;
   Monitor monitor(scene);
   for (int t = 0; t < 30; ++t) {

@@ -1,4 +1,4 @@
-// What the scheduler chooses to evaluate.
+// The pairs that the scheduler chooses to evaluate.
 #include "monitor/schedule/scheduler.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +51,7 @@ TEST(Scheduler, LeavesAloneWhatNobodyAsksForAndCannotBeTheMinimum) {
 TEST(Scheduler, ProvesTheMinimumOnAFractionOfTheBudget) {
   Random random(43);
   Scene scene = test::thin_bodies(random);
-  scene.budget = 12;  // of 70 part pairs
+  scene.budget = 12;  // for 70 part pairs
   Monitor monitor(scene);
   test::Adversary motion(scene, test::Style::kCrawl, 3.0, 44);
   int proved = 0;
@@ -59,7 +59,7 @@ TEST(Scheduler, ProvesTheMinimumOnAFractionOfTheBudget) {
   EXPECT_GE(proved, 480);
 }
 
-// The boxes of these two corners are nearer to each other than the corners.
+// The boxes around these two corner-shaped objects are nearer to each other than the objects.
 TEST(Scheduler, BoundsHoldBeforeAnythingIsEvaluated) {
   const auto corner = [](double size) {
     const std::array<Vec3, 4> points{Vec3::Zero(), size * Vec3::UnitX(), size * Vec3::UnitY(),
@@ -100,7 +100,7 @@ TEST(Scheduler, PartsThatCannotBeTheClosestAreNotEvaluatedAndThePairIsDecidedAll
     EXPECT_EQ(report.minimum.status, PairStatus::kConverged);
     EXPECT_EQ(report.minimum.part_a, 0u);
   }
-  // Turned about, the far end comes near.
+  // After the rotation the far end is near.
   Pose turned = test::at(0, 3, 0);
   turned.orientation = Eigen::AngleAxisd(M_PI, Vec3::UnitZ());
   const PoseSample sample = test::sample(0, turned, kStart + 5 * kTick);

@@ -1,4 +1,5 @@
-// S_p against how a person walks and a robot brakes, in long double; and its laws.
+// S_p compared with the motion of a walking person and a braking robot in long double, and its
+// laws.
 #include "monitor/separation/protective_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -10,7 +11,8 @@
 namespace clearance {
 namespace {
 
-// A robot that brakes with this deceleration, m/s2, stopped from this speed in a trial, m/s.
+// A robot that brakes with this deceleration, m/s2. In a trial it was stopped from the speed
+// `tried_at`, m/s.
 Separation braking(double deceleration, double tried_at, double reaction_s) {
   Separation terms;
   terms.reaction_time_ns = std::llround(reaction_s * 1e9);
@@ -20,8 +22,8 @@ Separation braking(double deceleration, double tried_at, double reaction_s) {
   return terms;
 }
 
-// What both cover until the robot stands, from the equations of motion. The person goes on all the
-// time, the robot gains speed until it brakes.
+// The distance that both cover until the robot stands, from the equations of motion. The person
+// moves all the time; the robot accelerates until it brakes.
 long double covered(long double human_speed, long double human_acceleration, long double speed,
                     long double gain, long double reaction, long double deceleration) {
   const long double braked_from = speed + gain * reaction;
@@ -50,7 +52,7 @@ TEST(ProtectiveDistance, IsWhatPersonAndRobotCoverUntilItStands) {
         others + covered(approach.human_speed, approach.human_acceleration, approach.robot_speed,
                          terms.robot_acceleration, reaction, deceleration));
     const ProtectiveDistance found = protective_distance(terms, approach, approach.robot_speed);
-    // Stopping times are whole ns.
+    // Stopping times are rounded to whole ns.
     EXPECT_NEAR(found.sum, expected, 1e-6 * expected);
     EXPECT_GE(found.sum, found.human + found.robot + found.stopping);
   }
@@ -65,7 +67,7 @@ TEST(ProtectiveDistance, CountsInWhatBothHaveCoveredSinceTheirPoses) {
   EXPECT_NEAR(
       protective_distance(terms, before, 1.0).sum - protective_distance(terms, now, 1.0).sum,
       1.6 * 0.01 + 1.0 * 0.02, 1e-12);
-  // That has happened: a robot that is slower from now on has covered it all the same.
+  // This distance has already been covered: a robot that is slower from now on does not reduce it.
   EXPECT_NEAR(protective_distance(terms, before, 0.0).robot, 1.0 * 0.02, 1e-12);
 }
 
@@ -126,7 +128,7 @@ TEST(LargestSpeed, LeavesEnoughAndNotMuchMore) {
         protective_distance(terms, approach, 0.0).sum + random.log_uniform(1e-9, 10.0);
     const double speed = largest_speed(terms, approach, distance);
     if (speed == 0.0) {
-      // No more than what rounding took.
+      // The difference is no more than rounding.
       EXPECT_GT(protective_distance(terms, approach, 1e-4).sum, distance);
       continue;
     }
@@ -138,7 +140,7 @@ TEST(LargestSpeed, LeavesEnoughAndNotMuchMore) {
   EXPECT_GT(some, 19'000);
 }
 
-// Whatever is worse never allows more speed.
+// A worse term never allows a higher speed.
 TEST(LargestSpeed, NeverGrowsWithATermThatGrows) {
   Random random(13);
   for (int i = 0; i < 2000; ++i) {

@@ -1,4 +1,4 @@
-// Zones with `separation` in the tick: two balls, of which one is a person and one a robot.
+// Zones with `separation` in the tick: two balls, one of them a person and the other a robot.
 #include "monitor/separation/separations.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kHumanRadius = 0.2, kRobotRadius = 0.1;
 
-// 0.1 s to react, 4 m/s2 to stop with, tried at 1 m/s.
+// A reaction time of 0.1 s, and a deceleration of 4 m/s2, measured at 1 m/s.
 Separation usual_terms() {
   Separation terms;
   terms.reaction_time_ns = 100'000'000;
@@ -25,7 +25,7 @@ Separation usual_terms() {
   return terms;
 }
 
-// A person (0) and a robot (1) of 2 m/s at most; the person stands first in the pair.
+// A person (0) and a robot (1) with at most 2 m/s. The person is the first object of the pair.
 struct Meeting {
   explicit Meeting(Separation terms = usual_terms(), double robot_max_speed = 2.0) {
     Object robot = test::moving("robot", {test::ball(kRobotRadius)});
@@ -38,7 +38,7 @@ struct Meeting {
   }
   void begin() { monitor.emplace(scene); }
 
-  // The person at x along the line from the robot at the origin; each with a velocity along it.
+  // The person is at x on a line from the robot at the origin. Both velocities are along that line.
   const PairSeparation& tick(double human_x, double human_speed, double robot_speed,
                              std::int64_t human_age_ns = 0, std::int64_t robot_age_ns = 0) {
     if (!monitor) begin();
@@ -53,7 +53,7 @@ struct Meeting {
     const PoseSample both[] = {human, robot};
     return (report = &monitor->tick(both, now))->separated_pairs[0];
   }
-  // Nothing comes for so long.
+  // No input arrives for this time.
   const PairSeparation& wait(std::int64_t ns) {
     return (report = &monitor->tick({}, now += ns))->separated_pairs[0];
   }
@@ -128,7 +128,7 @@ TEST(Separation, OfARobotThatTurnsCountsItsFastestPoint) {
   Meeting meeting;
   meeting.robot_turn = {0, 0, 3.0};
   EXPECT_NEAR(meeting.tick(2.0, 0.0, 0.5).robot_speed, 0.5 + 3.0 * kRobotRadius, 1e-12);
-  // About the line to the person nothing comes nearer.
+  // The robot rotates about the line to the person, so it does not approach.
   meeting.robot_turn = {3.0, 0, 0};
   EXPECT_NEAR(meeting.tick(2.0, 0.0, 0.5).robot_speed, 0.5, 1e-12);
 }
@@ -169,7 +169,7 @@ TEST(Separation, WithAMeasuredPersonUsesHisSpeedAndThatHeMayBeginToRun) {
   EXPECT_NEAR(meeting.tick(2.0, -0.5, 0.0).human_term, 0.5 * 0.1 + 0.5 * 0.01, 1e-12);
   EXPECT_EQ(meeting.tick(2.0, 0.5, 0.0).human_speed, 0.0);
   EXPECT_EQ(meeting.report->separated_pairs[0].validity, SeparationValidity::kMeasured);
-  // Late: again as if nobody had measured him.
+  // The pose is late, which is treated as if the person had not been measured.
   meeting.scene.objects[0].max_speed = 3.0;
   EXPECT_EQ(meeting.wait(25'000'000).human_speed, 1.6);
 }
@@ -218,7 +218,7 @@ TEST(Separation, IsUnknownWhereNothingBoundsTheSpeedOfALateRobot) {
   expect_unknown(*meeting.report);
 }
 
-// The pose is known, the velocity is not: of a first pose without a twist.
+// The pose is known, but the velocity is not: it is a first pose without a twist.
 TEST(Separation, OfAnUnknownSpeedHasTheOneThatTheZoneStatesOrIsUnknown) {
   for (const double stated : {0.25, kInfinity}) {
     Separation terms = usual_terms();
@@ -242,7 +242,7 @@ TEST(Separation, OfAZoneIsTheLeastOfItsPairs) {
                                test::moving("far", {test::ball(0.1)}),
                                test::moving("robot", {test::ball(0.1)})});
   for (ObjectPair& pair : scene.pairs) pair.publish = true;
-  Zone zone{"people", "people", "robot", 0.1, 0.2, {1, 2}};  // near - robot, far - robot
+  Zone zone{"people", "people", "robot", 0.1, 0.2, {1, 2}};  // pairs near - robot, far - robot
   zone.separation = usual_terms();
   zone.separation->human_is_first = {1, 1};
   scene.zones = {zone};
@@ -265,7 +265,7 @@ TEST(Separation, OfAZoneIsTheLeastOfItsPairs) {
   EXPECT_EQ(report.separated_zones[0].speed_limit, report.separated_pairs[0].speed_limit);
 }
 
-// A person and a robot of two parts that turn and fly anyhow.
+// A person and a robot of two parts, with arbitrary rotations and translations.
 class Dance {
  public:
   explicit Dance(std::uint64_t seed) : random_(seed) {

@@ -1,7 +1,6 @@
-// What is told of the time between two ticks, against the interpolated motion in small steps.
+// The bounds for the time between two ticks, compared with the interpolated motion in small steps.
 //
-// Oracle: queries of the core, cold, at many instants; positions and orientations interpolated by
-// Eigen.
+// Oracle: cold queries of the core at many instants. Eigen interpolates positions and orientations.
 #include "monitor/swept/swept_search.hpp"
 
 #include <gtest/gtest.h>
@@ -20,7 +19,7 @@ struct Motion2 {
   std::array<Pose, 2> from, to;
 };
 
-// Two objects of one part each, and their way from one tick to the next.
+// Two objects of one part each, and their motion from one tick to the next.
 class TwoOnTheirWay {
  public:
   TwoOnTheirWay(Part a, Part b, const Motion2& motion)
@@ -183,7 +182,7 @@ TEST(SweptSearch, WithoutQueriesNothingIsTold) {
   EXPECT_EQ(pair.queries(), 0u);
 }
 
-// A plate and what flies past it, one zone.
+// A plate, an object that flies past it, and one zone.
 class FlyBy : public testing::Test {
  protected:
   explicit FlyBy(std::uint32_t budget = 100) {
@@ -225,7 +224,7 @@ TEST_F(FlyBy, AZoneIsEnteredByWhatFliesThroughBetweenTwoTicks) {
 TEST_F(FlyBy, AZoneIsNotEnteredByWhatFliesPastOutside) {
   Monitor monitor(scene_);
   tick(monitor, test::at(0.3, 1.0, 0.0));
-  const Report& report = tick(monitor, test::at(1.0, 0.3, 0.0));  // 0.1 m from the corner
+  const Report& report = tick(monitor, test::at(1.0, 0.3, 0.0));  // 0.1 m from the vertex
   EXPECT_FALSE(report.zones[0].active);
   EXPECT_TRUE(report.zones[0].certified);
   EXPECT_GE(report.zones[0].swept_clearance, 0.05);

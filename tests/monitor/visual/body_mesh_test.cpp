@@ -1,4 +1,5 @@
-// Meshes against what they are of: every vertex on the surface, closed, turned outward.
+// Meshes compared with their bodies: every vertex is on the surface, and the mesh is closed and
+// oriented outwards.
 #include "monitor/visual/body_mesh.hpp"
 
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ namespace {
 
 ConvexBody made(const ShapeResult& shape) { return std::get<ConvexBody>(shape); }
 
-// What the triangles enclose, by tetrahedra to the origin.
+// The enclosed volume, summed over tetrahedra from the triangles to the origin.
 double volume(const BodyMesh& mesh) {
   double sum = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -26,7 +27,8 @@ double volume(const BodyMesh& mesh) {
   return sum / 6.0;
 }
 
-// Every edge between two points is passed once in each direction: no hole, nothing turned over.
+// Returns true if every edge between two points is used once in each direction: no hole, and no
+// inverted triangle.
 bool is_closed(const BodyMesh& mesh) {
   const auto key = [&](std::uint32_t i) {
     const Vec3& p = mesh.positions[i];
@@ -37,7 +39,7 @@ bool is_closed(const BodyMesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (int i = 0; i < 3; ++i) {
       const auto from = key(triangle[i]), to = key(triangle[(i + 1) % 3]);
-      if (from == to) continue;  // a side of no length, as at a pole
+      if (from == to) continue;  // a side of zero length, as at a pole
       ++passed[{from, to}];
       --passed[{to, from}];
     }
@@ -60,11 +62,11 @@ TEST(BodyMesh, OfARoundedBoxLiesOnItsSurface) {
   for (const Vec3& p : mesh.positions) {
     EXPECT_NEAR((p.cwiseAbs() - half).cwiseMax(0.0).norm(), 0.25, 1e-12);
   }
-  // Steiner's formula: the box, its faces, a cylinder along all edges together, a sphere.
+  // Steiner's formula: the box, its faces, a cylinder along all edges together, and a sphere.
   const double r = 0.25, exact = 6.0 + 22.0 * r + std::numbers::pi * r * r * (1.0 + 2.0 + 3.0) +
                                  4.0 / 3.0 * std::numbers::pi * r * r * r;
   EXPECT_NEAR(volume(mesh), exact, 0.01 * exact);
-  EXPECT_LT(volume(mesh), exact);  // chords are inside
+  EXPECT_LT(volume(mesh), exact);  // chords lie inside the body
 }
 
 TEST(BodyMesh, OfACapsuleAndASphereLiesOnThem) {
@@ -93,7 +95,7 @@ TEST(BodyMesh, OfCoarserStepsHasFewerTrianglesAndLiesOnTheBodyAsWell) {
   for (const Vec3& p : coarse.positions) EXPECT_NEAR((p - centre).norm(), 0.2, 1e-12);
 }
 
-// Chords cut off less than a hundredth.
+// The chords cut off less than one per cent.
 TEST(BodyMesh, OfCurvedBodiesIsClosedAndOfTheirVolume) {
   constexpr double kPi = std::numbers::pi;
   const std::pair<ShapeResult, double> cases[] = {

@@ -1,4 +1,4 @@
-// Poses and joints belong to the report that used them, whichever reports a viewer looks at.
+// Poses and joints belong to the report that used them, whichever reports a viewer receives.
 #include "monitor/visual/object_poses.hpp"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ namespace {
 
 using Numbers = ObjectPoses::Numbers;
 
-// A report that used batches of the source "arm" up to this one; 0: none in its tick.
+// A report that used the batches of the source "arm" up to this number; 0: none in its tick.
 Sample<clearance_msg_Distances> report_of(const Scene& scene, std::uint64_t number,
                                           std::int64_t newest_ns) {
   Sample<clearance_msg_Distances> wire = make_distances(scene);
@@ -28,7 +28,7 @@ Sample<clearance_msg_Distances> report_of(const Scene& scene, std::uint64_t numb
 
 class ObjectPosesTest : public testing::Test {
  protected:
-  // One batch: the hand at this height, with this stamp.
+  // One batch with the hand at this height and with this stamp.
   void take(std::uint64_t number, double height, std::int64_t stamp_ns,
             std::string_view source = "arm") {
     PoseBatch batch{SourceName(source), number, scene.revision, {}};
@@ -62,7 +62,8 @@ TEST_F(ObjectPosesTest, LaterBatchesWaitForTheirReport) {
   EXPECT_DOUBLE_EQ(height(), 0.5);
 }
 
-// A viewer looks at 60 reports a second: that of the tick that used a batch may not be among them.
+// A viewer receives 60 reports per second. The report of the tick that used a batch may not be
+// among them.
 TEST_F(ObjectPosesTest, AReportThatNamesNoSourceSaysByItsNewestPoseWhatWasUsed) {
   take(1, 0.1, 1000);
   take(2, 0.2, 2000);
@@ -88,7 +89,7 @@ TEST_F(ObjectPosesTest, WhatTheDaemonRefusesIsNotShown) {
   EXPECT_DOUBLE_EQ(height(), 0.1);
 }
 
-// A daemon that has ended reports nothing, while the robot goes on sending.
+// A daemon that has ended reports nothing, while the robot continues to send.
 TEST_F(ObjectPosesTest, OfMoreThanCanWaitTheNewestAreKept) {
   for (std::uint64_t i = 1; i <= 70'000; ++i) {
     take(i, 1e-5 * static_cast<double>(i), static_cast<std::int64_t>(i));
@@ -110,7 +111,7 @@ class JointPosesTest : public testing::Test {
   void take(double shoulder, std::uint64_t number, std::int64_t stamp_ns) {
     poses.take(batch_of(shoulder, number, stamp_ns), Numbers::kOfSender);
   }
-  // By its name: of the finger, two metres and a tenth from the foot when the elbow is straight.
+  // The pose of the finger, which is 2.1 m from the foot when the elbow is straight.
   [[nodiscard]] const Pose* finger() const { return poses.pose(5); }
 
   Scene scene = scara_cell();
@@ -141,7 +142,7 @@ TEST_F(JointPosesTest, LaterJointsWaitForTheirReport) {
   EXPECT_NEAR(finger()->position.y(), 2.1 * std::sin(0.301), 1e-12);
 }
 
-// Of a topic of ROS 2: the numbers that a viewer gives its messages are not the daemon's.
+// Joints on a topic of ROS 2: the viewer numbers its messages differently from the daemon.
 TEST_F(JointPosesTest, JointsFromElsewhereAreUsedByTheirStamps) {
   poses.take(batch_of(0.3, 1, kStart + kTick), Numbers::kUnnumbered);
   poses.use(*report_of(scene, 900, kStart));

@@ -1,5 +1,5 @@
-// The lists of fields against the IDL, and a report with a number of its own in every field against
-// what comes over the wire.
+// The lists of fields compared with the IDL. A report with a different number in every field is
+// compared with its copy over the wire.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,8 +18,8 @@
 namespace clearance::test {
 namespace {
 
-// Gives every field a number of its own. Flags have two values only: a second report with other
-// numbers has the others.
+// Gives every field a different number. Flags have only two values: a second report with other
+// numbers has the opposite ones.
 struct Numbered {
   std::uint64_t& next;
 
@@ -55,7 +55,7 @@ Report numbered_report(const Scene& scene, std::uint64_t first) {
   return report;
 }
 
-// Holds a field of the report against the message's.
+// Compares a field of the report with that of the message.
 struct ExpectSame {
   std::string of = {};
 
@@ -86,7 +86,7 @@ Sample<Message> through_the_wire(const Message& message) {
   return came;
 }
 
-// A cell of links with a zone that has `separation`, everything published.
+// A cell of links and a zone with `separation`, in which everything is published.
 Scene published_cell() {
   Scene scene = scara_cell();
   scene.gradients = true;
@@ -184,8 +184,9 @@ TYPED_TEST(ListOf, NamesEveryFieldThatTheIdlHasOnce) {
   EXPECT_THAT(listed, testing::UnorderedElementsAreArray(defined));
 }
 
-// The bytes of one field, found by its name in the IDL: an IDL that has only that field left.
-// `around`: what the field's struct stands in, and where the value then begins.
+// The bytes of one field, found by its name in the IDL: the IDL is reduced to that field. `around`
+// is the IDL of the structs that contain the field's struct. `begin` is the offset at which the
+// value then begins.
 std::vector<std::byte> bytes_by_name(std::span<const std::byte> cdr, const std::string& record,
                                      const IdlField& field, const std::string& around,
                                      std::string_view top, std::size_t begin) {
@@ -200,7 +201,7 @@ std::vector<std::byte> bytes_by_name(std::span<const std::byte> cdr, const std::
           all.begin() + 4 + static_cast<std::ptrdiff_t>(begin + field.type.size)};
 }
 
-// Every number of `record` that the list calls by a name is the one that the IDL calls so.
+// Every number of `record` that the list names must be the one of that name in the IDL.
 template <class Record>
 void expect_names_of_the_idl(const Record& record, std::span<const std::byte> cdr,
                              const std::string& around, std::string_view top, bool in_sequence) {

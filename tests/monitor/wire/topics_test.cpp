@@ -16,7 +16,7 @@ std::string trimmed(const std::string& text) {
                                     : text.substr(begin, text.find_last_not_of(" `") - begin + 1);
 }
 
-// The rows of idl/README.md's table of topics, cell by cell.
+// The rows of the table of topics in idl/README.md, cell by cell.
 std::vector<std::vector<std::string>> documented() {
   std::ifstream page(CLEARANCE_SOURCE "/idl/README.md");
   std::vector<std::vector<std::string>> rows;
@@ -39,7 +39,7 @@ std::vector<std::string> row_of(const Topic& topic) {
   return {Topics{}.*topic.name,
           type.substr(type.rfind(':') + 1),
           key_of(*topic.type),
-          "",  // when it is written is a matter of the program
+          "",  // the program decides when it is written
           "reliable",
           latched ? "transient-local" : "volatile",
           "keep-last " + std::to_string(topic.writer_depth)};

@@ -1,4 +1,4 @@
-// Random samples of the topic types, for tests of what carries them.
+// Random samples of the topic types, for tests of everything that transports them.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace clearance::test {
 
-// Any bit pattern of a double may be on the wire, NaN and infinity too.
+// The wire may carry any bit pattern of a double, including NaN and infinity.
 inline double any_double(std::mt19937_64& random) {
   const std::uint64_t kind = random() % 16;
   if (kind == 0) return std::numeric_limits<double>::quiet_NaN();

@@ -24,7 +24,7 @@ std::vector<std::byte> encoded(const Sample<T>& sample) {
   return copy(encoder.encode(*sample));
 }
 
-// A participant that hears nothing but itself.
+// A participant that receives only its own messages.
 class OwnDomain {
  public:
   OwnDomain() {
@@ -39,7 +39,7 @@ class OwnDomain {
   dds_entity_t domain_ = 0;
 };
 
-// The bytes that dds_takecdr gives for a sample written through Cyclone.
+// The bytes that dds_takecdr returns for a sample written through Cyclone.
 template <class T>
 std::vector<std::byte> through_dds(dds_entity_t participant, const Sample<T>& sample) {
   dds_qos_t* qos = dds_create_qos();
@@ -288,7 +288,7 @@ TEST(Convert, PosesComeBackBitForBit) {
   EXPECT_EQ(41u, received.sequence_number);
   EXPECT_EQ(42u, received.scene_revision);
   ASSERT_EQ(sent.samples.size(), received.samples.size());
-  const auto same = [](const auto& a, const auto& b) {  // NaN is itself here
+  const auto same = [](const auto& a, const auto& b) {  // NaN equals itself here
     return std::memcmp(a.data(), b.data(), sizeof(double) * static_cast<std::size_t>(a.size())) ==
            0;
   };

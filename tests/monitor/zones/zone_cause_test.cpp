@@ -1,4 +1,4 @@
-// Why a zone is active, as the monitor says it.
+// The cause that the monitor states for an active zone.
 #include <gtest/gtest.h>
 
 #include "tests/monitor/small_cells.hpp"
@@ -6,7 +6,7 @@
 namespace clearance {
 namespace {
 
-// A ball (0) that goes at 1 m/s at most around a post (1); the zone ends at 0.3 m.
+// A ball (0) that moves at 1 m/s at most around a post (1). The zone ends at 0.3 m.
 struct BallAndPost {
   explicit BallAndPost(double max_speed = 1.0, bool may_jump = true) {
     Object ball = test::moving("ball", {test::ball(0.1)});
@@ -16,7 +16,7 @@ struct BallAndPost {
     scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
     monitor.emplace(scene);
   }
-  // A tick this long after the last one, with a pose of that time or none.
+  // Runs a tick this long after the last one, with a pose of that time or none.
   const ZoneReport& tick(std::optional<double> x, std::int64_t after_ns = test::kTick) {
     now += after_ns;
     std::vector<PoseSample> samples;
@@ -50,7 +50,7 @@ TEST(ZoneCause, IsALateObjectThatMayHaveComeNearUnseen) {
   BallAndPost cell;
   cell.tick(0.6);
   expect(cell.tick(0.6), ZoneCause::kInactive, 0);
-  // 0.4 m apart; after 150 ms without a pose perhaps only 0.25 m.
+  // The distance is 0.4 m. After 150 ms without a pose it may be only 0.25 m.
   expect(cell.tick(std::nullopt, 150 * test::kTick), ZoneCause::kLate, 1);
 }
 
@@ -65,7 +65,8 @@ TEST(ZoneCause, IsAnObjectWhosePosesContradictEachOther) {
   BallAndPost cell(1.0, false);
   cell.tick(0.6);
   expect(cell.tick(0.6), ZoneCause::kInactive, 0);
-  // 50 m in 150 ms are refused; where it is, only 1 m/s since the pose before that says.
+  // A jump of 50 m in 150 ms is refused. The position is then bounded only by 1 m/s since the pose
+  // before it.
   expect(cell.tick(50.0, 150 * test::kTick), ZoneCause::kContradicted, 1);
 }
 

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kMargins = 0.03;
 
-// Two pairs, margins 0.01 + 0.02 each; enter below 0.1, leave above 0.15.
+// Two pairs with margins of 0.01 + 0.02 each. The zone is entered below 0.1 and left above 0.15.
 class ZoneHysteresisTest : public testing::Test {
  protected:
   ZoneHysteresisTest() {
@@ -20,7 +20,7 @@ class ZoneHysteresisTest : public testing::Test {
     zone_ = test::zone_over(scene_, 0.1, 0.15);
   }
 
-  // One tick in which the two pairs have these clearances; lower bounds are 0.03 more.
+  // One tick in which the two pairs have these clearances. The lower bounds are 0.03 larger.
   const ZoneReport& tick(double first, double second, PairStatus status = PairStatus::kConverged) {
     ZoneHysteresis update(zone_, report_);
     return tick({.status = status, .lower = first + 0.03, .swept_lower = first + 0.03},

@@ -7,7 +7,7 @@
 namespace clearance {
 namespace {
 
-// Three balls, pairs 01 02 12, margins 0.01 each.
+// Three balls with the pairs 01 02 12 and margins of 0.01 each.
 Scene three_balls() {
   std::vector<Object> balls(3, test::moving("ball", {test::ball(0.1)}));
   for (Object& ball : balls) ball.margin = 0.01;

@@ -36,7 +36,7 @@ TEST(CertifiedError, CountsPointsBetweenTwoBodies) {
   const auto around = enclosing_polyhedron(group.placed);
   ASSERT_TRUE(around);
   const double found = certified_error(*around, Pose{}, group.placed);
-  EXPECT_GE(found, 1.0);  // halfway between
+  EXPECT_GE(found, 1.0);  // halfway between the two
   EXPECT_LE(found, 1.0 / 0.98);
 }
 
@@ -84,7 +84,8 @@ TEST(CertifiedError, OfABallIsExactForOneBody) {
   EXPECT_NEAR(error_of_ball(Vec3(0, 0, 1.25), 2.5, group), 3.5, 1e-12);
 }
 
-// The oracle is the support function of a polyhedron around curved bodies, sampled on its surface.
+// The oracle is the support function of a polyhedron around curved bodies, whose vertices are
+// sampled on their surface.
 TEST(CertifiedError, HoldsForCurvedBodies) {
   const ConvexBody bodies[] = {test::made(ellipsoid({0.5, 0.3, 0.2})),
                                test::made(cylinder(0.3, 0.4)),
@@ -109,14 +110,15 @@ TEST(CertifiedError, HoldsForCurvedBodies) {
   }
 }
 
-// An ellipsoid and a cylinder around a box, shifted: the error is measured in the model's pose.
+// A translated ellipsoid and a translated cylinder around a box: the error is measured in the
+// model's pose.
 TEST(CertifiedError, FollowsThePoseOfACurvedModel) {
   Group group;
   group.add(hard::box({0.1, 0.1, 0.1}), {});
   const Pose shifted{.position = Vec3(0.0, 0.0, 0.2)};
   const double of_ellipsoid =
       certified_error(test::made(ellipsoid({0.5, 0.5, 1.0})), shifted, group.placed);
-  EXPECT_GE(of_ellipsoid, 1.1);  // the top, at 1.2, is above the box's at 0.1
+  EXPECT_GE(of_ellipsoid, 1.1);  // the model's top, at 1.2, is above the box's at 0.1
   EXPECT_LE(of_ellipsoid, 1.1 * 1.011);
   const double of_cylinder =
       certified_error(test::made(cylinder(0.05, 1.0)), shifted, group.placed);

@@ -1,5 +1,5 @@
-// Models around a body: that they hold it, checked in 50 digits; that their errors are bounds,
-// checked by samples; and laws.
+// Models around a body: containment is checked in 50 digits, error bounds by samples, and laws in
+// addition.
 #include "tools/scene/fitting/enclosing_models.hpp"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 using oracle::Real;
 using test::made;
 
-// Round, long, thin, or with a corner that sticks out.
+// A round body, a long one, a thin one, or one with a protruding vertex.
 ConvexBody some_body(int seed, double scale = 1.0, const Pose& pose = Pose{}) {
   Random random(static_cast<std::uint64_t>(seed) + 700);
   std::vector<Vec3> points;
@@ -35,7 +35,7 @@ ConvexBody some_body(int seed, double scale = 1.0, const Pose& pose = Pose{}) {
   return made(polyhedron_from_vertices(points));
 }
 
-// `p` in the frame of `pose`, in 50 digits.
+// The point `p` in the frame of `pose`, in 50 digits.
 std::array<Real, 3> seen_from(const Pose& pose, const Vec3& p) {
   const Eigen::Quaterniond& q = pose.orientation;
   const Real w(q.w()), x(q.x()), y(q.y()), z(q.z());
@@ -54,7 +54,7 @@ std::array<Real, 3> seen_from(const Pose& pose, const Vec3& p) {
   return own;
 }
 
-// The vertex lies in the model, by the definition of its shape.
+// Returns true if the vertex lies in the model, by the definition of the model's shape.
 bool holds(const EnclosingModel& model, const Vec3& vertex) {
   const std::array<Real, 3> x = seen_from(model.frame_from_shape, vertex);
   const CurvedShape& shape = model.shape.curved;
@@ -78,7 +78,8 @@ bool holds(const EnclosingModel& model, const Vec3& vertex) {
       return along <= Real(f.offset) + Real(1e-15);
     });
   }
-  // Sphere, capsule and boxes: a ball around each point of a box around the origin.
+  // Spheres, capsules and boxes are all a box around the origin with a ball around each of its
+  // points.
   Vec3 half = Vec3::Zero();
   for (const Vec3& p : model.shape.anchors) half = half.cwiseMax(p);
   Real past = 0;
@@ -89,7 +90,7 @@ bool holds(const EnclosingModel& model, const Vec3& vertex) {
   return past <= radius * radius;
 }
 
-// A point of the model's surface.
+// A random point of the model's surface.
 Vec3 sample(const EnclosingModel& model, Random& random) {
   const Vec3 n = random.direction();
   Vec3 p = Vec3::Zero();
@@ -130,7 +131,7 @@ TEST(EnclosingModels, ReachNoFartherThanTheirErrorsSay) {
         farthest = std::max(farthest, test::cold(body, at_origin, at).lower);
       }
       EXPECT_LE(farthest, model.error) << seed << " " << name(model.kind);
-      // And not by much less: samples come near the farthest point.
+      // The error is not much too large either: samples come close to the farthest point.
       EXPECT_GE(farthest, 0.8 * model.error) << seed << " " << name(model.kind);
     }
   }
@@ -148,15 +149,16 @@ TEST(EnclosingModels, ScaleWithTheBody) {
   }
 }
 
-// The search is for the least volume. It may end in another of several nearly as small, whose
-// errors differ by more than the volumes do.
+// The search minimises the volume. It may end in another of several volumes that are nearly as
+// small, whose errors differ more than their volumes.
 TEST(EnclosingModels, AreAboutAsGoodWhereverTheBodyIs) {
   for (int seed = 0; seed < 4; ++seed) {
     Random random(static_cast<std::uint64_t>(seed));
     const auto models = enclosing_models(some_body(seed));
     const auto moved = enclosing_models(some_body(seed, 1.0, random.pose(0.5)));
     for (std::size_t i = 0; i < std::min(models.size(), moved.size()); ++i) {
-      if (models[i].kind == ModelKind::kPolyhedron) continue;  // chosen greedily: ties turn with it
+      // chosen greedily: ties depend on the rotation
+      if (models[i].kind == ModelKind::kPolyhedron) continue;
       EXPECT_NEAR(moved[i].error, models[i].error, 0.2 * models[i].error + 1e-9)
           << seed << " " << name(models[i].kind);
     }
@@ -167,7 +169,8 @@ TEST(EnclosingModels, OfABoxAreTheKnownOnes) {
   const ConvexBody body = made(box({0.5, 0.3, 0.2}));
   const EnclosingModel same = enclosing_box(body);
   EXPECT_LE(same.error, 1e-10);
-  // Löwner's ellipsoid of a box has its proportions: sqrt 3 times its half extents.
+  // The Löwner ellipsoid of a box has the box's proportions: its semi-axes are sqrt 3 times the
+  // half extents.
   std::multiset<double> axes;
   const EnclosingModel ellipsoid = enclosing_ellipsoid(body);
   for (int k = 0; k < 3; ++k) axes.insert(ellipsoid.shape.curved.semi_axes[k]);

@@ -1,5 +1,5 @@
-// Preloaded into a program under test: as long as the file that CLEARANCE_DISK_HANGS_IF names
-// exists, no write to an MCAP file returns, as with a disk that is away.
+// Preloaded into a program under test. While the file that CLEARANCE_DISK_HANGS_IF names exists, no
+// write to an MCAP file returns, as with an unreachable disk.
 #include <sys/syscall.h>
 #include <unistd.h>
 

@@ -1,5 +1,5 @@
-// Preloaded into a program under test: CLOCK_REALTIME is ahead by what stands in the file that
-// CLEARANCE_CLOCK_AHEAD names, eight bytes, ns; as if somebody had stepped this machine's clock.
+// Preloaded into a program under test. CLOCK_REALTIME is ahead by the number in the file that
+// CLEARANCE_CLOCK_AHEAD names (eight bytes, ns), as if this machine's clock had been stepped.
 #include <fcntl.h>
 #include <sys/mman.h>
 #include <sys/syscall.h>
