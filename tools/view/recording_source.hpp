@@ -1,8 +1,9 @@
 // A recording, played like a film. Every viewer of the server sees the same moment, and any of them
 // may move it by these parameters:
-//   playback.playing true or false playback.time s after the first report; after setting it, the
-//   last report up to that time is shown playback.rate multiples of the recorded speed, 0.01 to 100
-//   playback.step set only: so many reports on, negative: back
+//   playback.playing  true or false
+//   playback.time     s after the first report; shows the last report up to the time that is set
+//   playback.rate     multiples of the recorded speed, 0.01 to 100
+//   playback.step     set only: so many reports on, negative: back
 #pragma once
 
 #include <cstdint>
