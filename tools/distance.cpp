@@ -1,8 +1,8 @@
 // clearance-distance: the distances of the pairs in a file of cases, one JSON object a line in and
 // out.
 //
-// It is how anyone checks the core against anything: every figure the core gives is in the answer,
-// and doubles are printed so that they read back as the same doubles.
+// The program serves to check the core against other programs. The answer has every figure of the
+// core, and doubles are printed so that they read back as the same doubles.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>

@@ -1,6 +1,6 @@
 // clearance-robot: a simulated robot. At a fixed rate it publishes the poses of a cell's
-// `simulation:` section and the joints of its robots, through their ranges or along a log. On
-// request it measures the latency of the daemon's answer.
+// `simulation:` section and the joints of its robots. The joints move through their ranges or along
+// a log. On request it measures the latency of the daemon's answer.
 #include <fmt/format.h>
 
 #include <spdlog/spdlog.h>

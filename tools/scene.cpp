@@ -1,5 +1,5 @@
-// clearance-scene: writes cell files of a robot or of a generated warehouse, proposes which pairs
-// of a robot's links may touch, and reports or simplifies the models of objects.
+// clearance-scene writes cell files of a robot or of a generated warehouse. It also proposes the
+// pairs of a robot's links that may touch, and reports or simplifies the models of objects.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <string>

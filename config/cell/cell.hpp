@@ -1,7 +1,7 @@
-// All that a cell file says: the scene of the tick, and the settings of the programs around it.
+// The content of a cell file: the scene of the tick, and the settings of the programs around it.
 //
-// Nothing of the tick includes this header: it knows neither DDS nor ROS 2, nor the files of the
-// cell.
+// No code of the tick includes this header: the tick knows neither DDS nor ROS 2, nor the files of
+// the cell.
 #pragma once
 
 #include <cstdint>
@@ -33,8 +33,8 @@ struct Cell {
   std::vector<std::filesystem::path> files = {};
 };
 
-// Tells whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, empty for the
-// default partition, and without wildcards, which would join cells that are to be kept apart.
+// Tells whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, without
+// wildcards; empty is the default partition. Wildcards would join cells that must stay separate.
 [[nodiscard]] bool is_partition(const std::string& name) noexcept;
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
 // Parses the YAML into a tree that knows its lines, then reads it section by section into a Cell.
-// Each reader reports a mistake and goes on with a default, so that one run finds every mistake; a
+// Each reader reports a mistake and goes on with a default, so that one run finds every mistake. A
 // Cell is returned only if there was none.
 #include "config/cell/cell_file.hpp"
 
@@ -37,7 +37,7 @@ constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bi
 constexpr std::size_t kMaxDdsName = 255;  // bytes
 // The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
-// One tick at 1 kHz, and some days.
+// The range is from one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 // The sections of a cell, one function each.
@@ -173,8 +173,8 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
   map.refuse_unknown_keys();
 }
 
-// Reads objects, robots, then pairs, then zones: each list names entries of the one before, and is
-// checked as far as that could be read.
+// Reads objects and robots, then pairs, then zones. Each list names entries of the one before, and
+// is checked as far as that one could be read.
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
@@ -268,9 +268,9 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 
 }  // namespace
 
-// The revision covers the text and, through the readers, the bytes of every file that it names.
-// Where a mesh has to be split, which takes seconds, the cell is read twice: its mistakes come
-// first.
+// The revision covers the text and, through the readers, the bytes of every file that it names. If
+// a mesh has to be split, which takes seconds, the cell is read twice, so that its mistakes are
+// reported first.
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                       const CellOptions& options) {
   Diagnostics diagnostics(file.string());

@@ -17,10 +17,10 @@ namespace clearance {
 using CellResult = std::variant<Cell, std::vector<CellError>>;
 
 struct CellOptions {
-  // Gets lines, without their ends, for a person who waits: the mesh that is being split, and
-  // warnings. Empty: the lines are dropped.
+  // Called with lines, without their ends, for a person who waits: the mesh that is being split,
+  // and warnings. Empty: the lines are dropped.
   std::function<void(const std::string&)> tell = {};
-  // If not null: gets, for each object with meshes, by its name, the largest distance of the
+  // If not null: filled, for each object with meshes, by its name, with the largest distance of the
   // surface of its parts from the meshes, m.
   std::map<std::string, double>* mesh_errors = nullptr;
   // The text was made from a URDF: advice tells how to get a cell.
@@ -35,8 +35,7 @@ struct CellOptions {
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file,
                                    const CellOptions& options = {});
 
-// The same from text. `file` stands in messages, and its folder is that of mesh paths and kept
-// parts.
+// The same from text. Messages name `file`, and its folder is that of mesh paths and kept parts.
 [[nodiscard]] CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                                     const CellOptions& options = {});
 

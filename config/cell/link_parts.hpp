@@ -28,7 +28,7 @@ class LinkParts {
         diagnostics_(diagnostics) {}
 
   // Adds parts, named after their kind and place in the link, except those that were reported.
-  // Returns how far the parts of meshes reach beyond them, m.
+  // Returns the largest distance by which parts exceed their meshes, m.
   double add(const UrdfLink& link, Object& object);
 
  private:

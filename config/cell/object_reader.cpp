@@ -15,7 +15,8 @@ namespace clearance {
 namespace {
 
 constexpr std::size_t kMaxSourceName = 32;    // bytes; idl/clearance.idl
-constexpr std::size_t kMaxNamedSources = 15;  // 16 are heard: one place stays for any other
+constexpr std::size_t kMaxNamedSources = 15;  // at most 16 sources are accepted: one place stays
+                                              // for any other source
 
 // Reads the limits on poses that arrive. A value that cannot be read is reported and stays as it
 // is.
@@ -263,7 +264,7 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
   }
-  // A list that is too long is reported at the first object beyond the limit. No object is read:
+  // A list that is too long is reported at the first object over the limit. No object is read:
   // their shapes and pairs would take minutes and gigabytes for a cell that is refused.
   if (items.size() > kMaxObjects) {
     list.names_known = false;

@@ -50,7 +50,8 @@ inline constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
 // No two objects may have one name, links of robots included.
 void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics);
 
-// Objects and the joints of `robots`, which may be null, may not name more sources than are heard.
+// Objects and the joints of `robots`, which may be null, may not name more sources than are
+// accepted.
 void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVariable>& joints,
                              const YamlNode* robots, Diagnostics& diagnostics);
 

@@ -47,8 +47,9 @@ class PairReader {
   bool complete_ = true;
 };
 
-// Adds all pairs of one rule. A rule that cannot be read leaves the list incomplete: checks that
-// need a complete one are then left out, since their reports would follow from the first mistake.
+// Adds all pairs of one rule. A rule that cannot be read leaves the list incomplete. Checks that
+// need a complete list are then left out, since their reports would only follow from the first
+// mistake.
 void PairReader::read_rule(const YamlNode& node) {
   MapReader map(node, "a rule for pairs", diagnostics_);
   const auto between = group_index_.read_between(map);

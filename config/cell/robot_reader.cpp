@@ -48,7 +48,7 @@ class RobotReader {
         revision_(revision),
         objects_(objects) {}
 
-  // Returns false when its links are not known.
+  // Returns false when the robot's links are not known.
   bool read(const YamlNode& node, RobotList& list);
 
  private:
@@ -145,7 +145,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   return keys;
 }
 
-// Two links or joints of one name could not be told apart in poses and joint states.
+// Poses and joint states could not distinguish two links or joints of one name.
 bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& model) {
   const auto take = [&](std::set<std::string>& taken, const std::string& name, const char* what) {
     if (taken.insert(name).second) return true;

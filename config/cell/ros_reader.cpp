@@ -47,7 +47,7 @@ bool is_word(char c) noexcept {
 }  // namespace
 
 bool is_ros_topic(std::string_view name) noexcept {
-  // In DDS it begins with "rt", and discovery has room for 255 bytes.
+  // In DDS its name begins with "rt", and discovery carries at most 255 bytes.
   constexpr std::size_t kMostBytes = 253;
   if (name.size() < 2 || name.size() > kMostBytes || name.front() != '/' || name.back() == '/')
     return false;

@@ -1,5 +1,5 @@
-// The settings of a cell for ROS 2 beyond joint states: the topics that are written, and the frame
-// that is its world.
+// The settings of a cell for ROS 2, except those of joint states: the topics that are written, and
+// the frame that is its world.
 #pragma once
 
 #include <array>
@@ -40,8 +40,8 @@ struct RosSettings {
   [[nodiscard]] std::string world() const { return world_frame.empty() ? "world" : world_frame; }
 };
 
-// Tells whether `name` is a topic of ROS 2: "/" and names of letters, digits and "_" that begin
-// with no digit, with "/" between them.
+// Tells whether `name` is a topic of ROS 2: "/", then names with "/" between them. A name has
+// letters, digits and "_", and does not begin with a digit.
 [[nodiscard]] bool is_ros_topic(std::string_view name) noexcept;
 
 }  // namespace clearance

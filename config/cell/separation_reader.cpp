@@ -52,7 +52,7 @@ std::optional<std::size_t> SeparationReader::read_human_side(const Between& betw
   return std::nullopt;
 }
 
-// A person who stands may walk in the next second: the measured speed needs an acceleration.
+// A person who stands may walk in the next second, so the measured speed needs an acceleration.
 void SeparationReader::read_human(Separation& separation) {
   if (const YamlNode* speed = map_.optional("human_speed")) {
     separation.human_speed =

@@ -21,13 +21,13 @@ const std::array<std::string, 11> kShapeKinds = {
     "box",  "sphere",    "capsule",  "prism", "polyhedron",    "half_space",
     "mesh", "ellipsoid", "cylinder", "cone",  "truncated_cone"};
 
-// Zero would flatten the mesh; the largest is far beyond every conversion of units.
+// Zero would flatten the mesh. The largest factor is far above every conversion of units.
 constexpr Range kScales{.least = 0.0, .most = 1e9, .above_least = true};
 
 // More parts of a mesh take long to find, and each is a row of queries.
 constexpr std::int64_t kMostParts = 64;
 
-// Returns the conditions on a shape as a whole, beyond those on single numbers.
+// Returns the conditions on a shape as a whole, in addition to those on single numbers.
 std::string solid_needs(const std::string& kind) {
   if (kind == "capsule") return "two different ends (where they are one point, write a sphere)";
   if (kind == "prism") {
@@ -61,8 +61,8 @@ std::string name_of_part(const std::string& name, std::size_t i, std::size_t cou
 
 std::span<const std::string> ShapeReader::kinds() { return kShapeKinds; }
 
-// Exactly one shape key is required; of two, one would silently be left out. The core makes the
-// shape, and its reason for refusing one goes into the message.
+// Exactly one shape key is required, because one of two would silently be left out. The core makes
+// the shape, and its reason for refusing one goes into the message.
 std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) {
   NamedShape found{"", nullptr, {}, 0.0};
   for (const std::string& kind : kShapeKinds) {
@@ -137,7 +137,7 @@ std::optional<ShapeResult> ShapeReader::rounded(std::optional<double> rounding, 
   return body == nullptr ? std::move(made) : rounded_by(*rounding, std::move(*body));
 }
 
-// The file has whole edge lengths, the core half ones.
+// The file has whole edge lengths; the core has half edge lengths.
 std::optional<ShapeResult> ShapeReader::read_box(const YamlNode& node) const {
   MapReader map(node, "a box", quantities_.diagnostics());
   const YamlNode* size_node = map.required("size");
@@ -159,8 +159,8 @@ std::optional<ShapeResult> ShapeReader::read_ellipsoid(const YamlNode& node) con
   return axes ? std::optional(ellipsoid(*axes, *rounding)) : std::nullopt;
 }
 
-// The body is centred and lies along z. The file has the whole length, as URDF does, the core half
-// of it.
+// The body is centred and lies along z. The file has the whole length, as URDF does; the core has
+// half of it.
 std::optional<ShapeResult> ShapeReader::read_cylinder_or_cone(const std::string& kind,
                                                               const YamlNode& node) const {
   MapReader map(node, "a " + kind, quantities_.diagnostics());

@@ -19,7 +19,7 @@ struct NamedShape {
   std::string kind;  // the key: "box"
   const YamlNode* node;
   std::vector<ConvexBody> shapes;  // one, or the parts that contain a mesh
-  double mesh_error = 0.0;         // how far these reach beyond the mesh, m
+  double mesh_error = 0.0;         // the largest distance by which these exceed the mesh, m
 };
 
 // Reads `tolerance` and `max_parts` of a map; stated values replace those of `limits`.

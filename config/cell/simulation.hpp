@@ -67,8 +67,8 @@ struct PoseAt {
 };
 
 // Replaces `poses` by the pose of every object that the simulation moves, `t_s` seconds after its
-// start: chains in the order of the file, then movers. It is deterministic, and allocates only when
-// `poses` has to grow.
+// start. Chains come in the order of the file, then movers. The result is deterministic. Allocates
+// only when `poses` has to grow.
 void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& poses);
 
 }  // namespace clearance

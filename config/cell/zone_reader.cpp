@@ -1,5 +1,5 @@
 // Makes indices of watched pairs of the two groups of a zone. A pair that is neither watched nor
-// allowed to touch is a mistake, since the zone would never see it.
+// allowed to touch is a mistake, since it could never enter the zone.
 #include "config/cell/zone_reader.hpp"
 
 #include <fmt/format.h>

@@ -10,11 +10,11 @@
 namespace clearance {
 namespace {
 
-// A hull of up to so many facets stays as it is: it has the mesh's own vertices, and no error where
-// the mesh is convex.
+// A hull of up to this many facets stays as it is. It has the mesh's own vertices, and no error
+// where the mesh is convex.
 constexpr std::size_t kFacetsOfOne = 400;
-// The search aims below the tolerance, since it estimates the error; where that was not enough, it
-// aims lower again.
+// The search aims below the tolerance, since it estimates the error. If the certified error still
+// exceeds the tolerance, it aims lower again.
 constexpr double kAim = 0.85, kLowerAim = 0.9;
 constexpr int kAims = 3;
 

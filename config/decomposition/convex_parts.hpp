@@ -3,9 +3,9 @@
 // A mesh whose hull is within the tolerance stays one part. Any other is cut by planes, repeatedly,
 // where hulls hold most open space; pieces that fit together are joined again (K. Mamou, V-HACD; X.
 // Wei and others, "Approximate convex decomposition for 3D meshes with collision-aware concavity",
-// 2022). The search is approximate, but its result is not: every triangle is clipped by the planes
-// of its cell, which overlap, and each part is the exact hull of its points. The error is certified
-// afterwards (surface_error.hpp). The same mesh gives the same parts.
+// 2022). The search is approximate, but its result is certified. Every triangle is clipped by the
+// planes of its cell, and each part is the exact hull of its points. The cells overlap. The error
+// is certified afterwards (surface_error.hpp). The same mesh gives the same parts.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,5 @@
-// Cuts across one direction share their work: points are sorted into slabs, and the outlines of the
-// slabs before and after a cut are those of its two sides.
+// Cuts across one direction share their work. Points are sorted into slabs, and the outlines of the
+// slabs before and after a cut give those of its two sides.
 #include "config/decomposition/cuts.hpp"
 
 #include <Eigen/Eigenvalues>
@@ -131,8 +131,8 @@ std::optional<HalfSpace> best_cut(const Piece& piece, const std::vector<HalfSpac
       add_open(side, open, tolerance, spacing, candidates[i].open);
     }
   });
-  // Both sums count: no cut through a box of sheets makes the hulls smaller, but one that takes a
-  // finished side off is a gain as well.
+  // Both sums count. No cut through a box of sheets makes the hulls smaller, but a cut that
+  // separates a finished side is a gain as well.
   const auto best = std::ranges::min_element(candidates, {}, [](const Candidate& candidate) {
     return candidate.open.all + candidate.open.unfinished;
   });

@@ -1,4 +1,4 @@
-// Runs independent pieces of work on all processors.
+// Runs independent tasks on all processors.
 #pragma once
 
 #include <algorithm>

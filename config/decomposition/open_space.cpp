@@ -85,8 +85,8 @@ void OpenSpace::spread() {
   }
 }
 
-// Floods the cells where the ball's centre can be, then those that the ball covers around them, in
-// steps of a cell that do not cross the mesh.
+// Floods the cells where the ball's centre can be, then those that the ball covers around them.
+// Each step is one cell long and does not cross the mesh.
 void OpenSpace::flood(double ball) {
   std::vector<Index> reached = {Index::Zero()}, rim;
   open_[0] = true;

@@ -1,6 +1,6 @@
-// The space around a mesh, on a grid: the distance of its points from the mesh, and which of them a
-// ball from outside can reach. It is approximate: it guides the search for parts, and certifies
-// nothing.
+// The space around a mesh, on a grid: the distance of the grid's points from the mesh, and the
+// points that a ball from outside can touch. It is approximate: it guides the search for parts, and
+// certifies nothing.
 #pragma once
 
 #include <cstdint>
@@ -19,13 +19,14 @@ struct OpenPoint {
 
 class OpenSpace {
  public:
-  // A point is open if a ball of radius `ball` can reach it from outside without touching the mesh.
+  // A point is open if a ball of radius `ball` can move to it from outside without touching the
+  // mesh.
   OpenSpace(const TriangleMesh& mesh, double ball);
 
   [[nodiscard]] double spacing() const { return spacing_; }
   // Returns the open points of the grid at least this far from the mesh.
   [[nodiscard]] std::vector<OpenPoint> points(double least) const;
-  // Tells whether no ball reaches the point, which may be outside of the grid.
+  // Tells whether the point is closed to every such ball. The point may be outside the grid.
   [[nodiscard]] bool encloses(const Vec3& point) const;
 
  private:

@@ -17,7 +17,8 @@ namespace {
 // Shares of the tolerance.
 constexpr double kBall = 0.75;        // openings narrower than such a ball count as closed
 constexpr double kLeastOpen = 0.3;    // points nearer to the mesh are no error
-constexpr double kSimplified = 0.06;  // how far corners of fewer facets may stick out
+constexpr double kSimplified = 0.06;  // the largest distance by which vertices of a body with fewer
+                                      // facets may exceed it
 
 constexpr std::size_t kFacets = 96;  // of a part, at most
 constexpr std::size_t kPiecesAPart = 3;
@@ -32,7 +33,7 @@ std::vector<Vec3> vertices_of(const ConvexBody& body) {
   return vertices;
 }
 
-// Returns the corners of cubes of that half width around points that lie in one plane.
+// Returns the vertices of cubes of this half width around points that lie in one plane.
 std::vector<Vec3> thickened(const std::vector<Vec3>& points, double by) {
   std::vector<Vec3> corners;
   for (const Vec3& point : points) {
@@ -58,7 +59,7 @@ ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
   const PlacedShape placed{&hull, {}};
   const auto fewer = enclosing_polyhedron(
       {&placed, 1}, {.facets = kFacets, .tolerance = kSimplified * tolerance / size});
-  // Its corners are rounded once more than its planes: their hull is the body.
+  // Its vertices are rounded once more than its planes, so the body is the hull of the vertices.
   auto body = fewer ? body_of(vertices_of(*fewer)) : std::nullopt;
   if (body) return *std::move(body);
   hull.radius = 0.0;
@@ -105,8 +106,8 @@ Piece PartSearch::whole() const {
   return piece;
 }
 
-// Adds points where the mesh runs through a plane of the piece: they lie between points of the
-// mesh, and often are corners of the piece's hull.
+// Adds points where the mesh crosses a plane of the piece. They lie between points of the mesh, and
+// are often vertices of the piece's hull.
 void PartSearch::add_rim(const HalfSpace& plane, Piece& piece) const {
   const double near = 1e-6 * space_.spacing();
   const auto above = [&](const Vec3& point) { return plane.normal.dot(point) - plane.offset; };
@@ -156,7 +157,8 @@ void PartSearch::split(double aim) {
   }
 }
 
-// Returns the error of the hull of both; where that exceeds `enough`, some error above it.
+// Returns the error of the hull of both. If that exceeds `enough`, returns any error above
+// `enough`.
 double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) const {
   Outline outline = a.outline;
   outline.add(b.outline);
@@ -182,8 +184,8 @@ double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) co
 // Joins the two pieces whose common hull has the least error, repeatedly.
 void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
   constexpr double kUnknown = -1.0;
-  // Row i holds the errors of piece i with each earlier one; a row and a column go when two are
-  // joined.
+  // Row i holds the errors of piece i with each earlier one. A row and a column are removed when
+  // two are joined.
   std::vector<std::vector<double>> errors(pieces.size());
   for (std::size_t i = 0; i < pieces.size(); ++i) errors[i].assign(i, kUnknown);
   while (pieces.size() > 1) {
@@ -222,8 +224,8 @@ void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
   }
 }
 
-// Returns the corners of every triangle, clipped by the piece's cells, and those corners of the
-// cells that no triangle has. The part of the mesh in the cells lies in their hull.
+// Returns the vertices of every triangle, clipped by the piece's cells, and those vertices of the
+// cells that belong to no triangle. The part of the mesh in the cells lies in their hull.
 std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   const double overlap = kOverlap * limits_.tolerance;
   std::vector<Vec3> points;

@@ -16,8 +16,9 @@ class PartSearch {
  public:
   PartSearch(const TriangleMesh& mesh, const PartLimits& limits);
 
-  // Returns parts whose estimated error is at most `aim`, or the most parts that the limits allow.
-  // Together they hold every triangle. A lower aim continues with the pieces of the call before.
+  // Returns parts whose estimated error is at most `aim`, or as many parts as the limits allow.
+  // Together they hold every triangle. A call with a lower aim continues with the pieces of the
+  // call before.
   std::vector<ConvexBody> parts(double aim);
 
  private:
@@ -38,7 +39,7 @@ class PartSearch {
   std::vector<Piece> pieces_;     // before joining
 };
 
-// Returns a body that holds `hull` and reaches a small share of the tolerance beyond it.
+// Returns a body that holds `hull` and exceeds it by a small share of the tolerance.
 [[nodiscard]] ConvexBody with_fewer_facets(ConvexBody hull, double tolerance);
 
 }  // namespace clearance

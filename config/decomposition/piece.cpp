@@ -63,7 +63,7 @@ std::vector<Vec3> Outline::points() const {
   return points;
 }
 
-// A corner is where three planes meet and no other plane cuts it off.
+// A vertex is an intersection of three planes that no other plane cuts off.
 std::vector<Vec3> ConvexCell::corners_within(const OpenSpace& space, double margin) const {
   std::vector<Vec3> corners;
   const double slack = 1e-6 * space.spacing();

@@ -17,8 +17,8 @@ inline constexpr std::size_t kDirections = 160;
 // point, is surface of the union. A face along which a cut runs is thus in the cells on both sides.
 inline constexpr double kOverlap = 0.01;
 
-// The farthest point of a set in each of some directions: a sketch of the set's hull. The outline
-// of a union follows from the outlines of its sets.
+// The support point of a set in each of some directions, which approximates the set's hull. The
+// outline of a union follows from the outlines of its sets.
 class Outline {
  public:
   Outline();
@@ -35,22 +35,22 @@ class Outline {
 struct ConvexCell {
   std::vector<HalfSpace> planes;  // n.x <= d; those of the mesh's box first
 
-  // Returns those corners of the cell, widened by `margin`, that lie in space that the mesh
-  // encloses: no triangle has them.
+  // Returns those vertices of the cell, widened by `margin`, that lie in space which the mesh
+  // encloses. They belong to no triangle.
   [[nodiscard]] std::vector<Vec3> corners_within(const OpenSpace& space, double margin) const;
 };
 
 struct Piece {
   std::vector<ConvexCell> cells;  // several after joining
-  std::vector<Vec3> points;       // of the mesh and of enclosed corners
+  std::vector<Vec3> points;       // of the mesh, and enclosed vertices of the cell
   Outline outline;                // of the points
   std::vector<HalfSpace> hull;    // of the outline
   // The open points in the hull, or so near to it that a thin hull holds some.
   std::vector<OpenPoint> open;
   double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
 
-  // Completes the piece from its points and from the open points of the piece that it was cut from,
-  // in a grid of that spacing.
+  // Completes the piece from its points and from the open points of the piece that it was cut from.
+  // `spacing` is that of the grid.
   void finish(std::span<const OpenPoint> open_before, double spacing);
 };
 

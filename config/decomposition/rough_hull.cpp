@@ -8,8 +8,9 @@
 namespace clearance {
 namespace {
 
-// Points are moved by up to this share of the extent, so that no four lie in one plane, as they do
-// in drawn parts (Qhull's option QJ). For a link that is a few hundredths of a millimetre.
+// Points are moved by up to this share of the extent, so that no four lie in one plane, as they
+// often do in designed parts (Qhull's option QJ). For a link that is a few hundredths of a
+// millimetre.
 constexpr double kJoggle = 1e-4;
 constexpr double kFlat = 1e-12;  // of the extent: points nearer to a plane lie in it
 
@@ -23,7 +24,7 @@ double scattered(std::uint64_t number) {
 }
 
 struct Face {
-  std::array<std::size_t, 3> corners;  // counter-clockwise as seen from outside
+  std::array<std::size_t, 3> corners;  // counter-clockwise when viewed from outside
   HalfSpace plane;
 };
 
@@ -51,7 +52,7 @@ class RoughHull {
   }
 
  private:
-  // Returns the index of the point that is farthest by `distance`.
+  // Returns the index of the point with the largest `distance`.
   template <class Distance>
   std::size_t farthest(const Distance& distance) const {
     std::size_t best = 0;

@@ -9,12 +9,12 @@
 namespace clearance {
 namespace {
 
-// After so many pieces, a few seconds, the search ends with its present bound.
+// After this many triangles, which take a few seconds, the search ends with its present bound.
 constexpr std::size_t kMostPieces = 1'000'000;
 // Relative: more than the rounding of plane tests and distances.
 constexpr double kRounding = 1e-12;
 
-// A piece of a facet of a part.
+// A triangle within a facet of a part.
 struct Piece {
   double bound;  // of the distance from the mesh of its points on the union's surface, m
   std::size_t part;

@@ -1,4 +1,4 @@
-// Certifies how far convex parts reach beyond the mesh that they contain.
+// Certifies the largest distance by which convex parts exceed the mesh that they contain.
 #pragma once
 
 #include <span>
@@ -9,13 +9,13 @@
 namespace clearance {
 
 // Returns a bound, m: no point of the surface of the parts' union is farther from the mesh's
-// triangles. Faces inside another part are not surface. For a body that the mesh does not enclose,
-// the distance from the parts is therefore at most this much less than the distance from the mesh.
-// A cavity may be filled only where no opening is wider than twice the bound.
+// triangles. Faces inside another part are not surface. For a body outside the mesh, the distance
+// from the parts is therefore less than that from the mesh by at most the bound. A cavity may be
+// filled only where no opening is wider than twice the bound.
 //
 // The bound exceeds the true value by at most 2 % and 1e-6 of the size, unless that takes too long.
 // Facets are halved where the bound is largest. The distance from one triangle is convex, so on a
-// piece of a facet it is largest at a corner.
+// triangle within a facet it is largest at a vertex.
 [[nodiscard]] double surface_error(std::span<const ConvexBody> parts, const TriangleTree& tree);
 
 }  // namespace clearance

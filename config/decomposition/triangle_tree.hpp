@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-// Returns an upper bound of the distance to a triangle, up to rounding: the distance to its nearest
-// point, unless the triangle is all but flat.
+// Returns an upper bound of the distance to a triangle, up to rounding. It is the distance to the
+// triangle's nearest point, unless the triangle is nearly degenerate.
 [[nodiscard]] double distance_to(const Triangle& triangle, const Vec3& point);
 
 class TriangleTree {

@@ -58,7 +58,7 @@ void confine_child(const ChildLimits& limits) {
   for (const int crash : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGXCPU, SIGPIPE}) {
     std::signal(crash, SIG_DFL);
   }
-  // Messages of glibc and of libraries that give up are no messages of this program.
+  // Messages of glibc and of libraries that abort are not messages of this program.
   if (const int nowhere = open("/dev/null", O_RDWR); nowhere >= 0) {
     dup2(nowhere, STDOUT_FILENO);
     dup2(nowhere, STDERR_FILENO);

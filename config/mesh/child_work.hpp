@@ -1,4 +1,5 @@
-// Runs code that may crash, hang or eat memory on bytes of unknown origin, in a process of its own.
+// Runs code that may crash, hang or exhaust memory on bytes of unknown origin, in a process of its
+// own.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +10,7 @@ namespace clearance {
 
 // The limits at which the kernel or the parent ends the child.
 struct ChildLimits {
-  std::size_t memory = std::size_t{2} << 30;  // bytes beyond the parent's
+  std::size_t memory = std::size_t{2} << 30;  // bytes, in addition to the parent's
   unsigned cpu_s = 20;                        // processor time
   unsigned wall_s = 60;                       // the last resort, for a child that only waits
 };

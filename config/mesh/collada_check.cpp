@@ -48,7 +48,7 @@ std::uint64_t reach_of(const XMLElement& accessor) {
          std::max<std::uint64_t>(params, 1);
 }
 
-// Assimp never gets past a text that is no number there. Returns true for all other elements.
+// Assimp hangs on a text that is not a number there. Returns true for all other elements.
 bool is_list_of_indices(const XMLElement& element) {
   const std::string_view name = element.Name();
   const char* const text = element.GetText();

@@ -5,9 +5,9 @@
 
 namespace clearance {
 
-// Checks that every <accessor> stays inside its array, with offset + (count - 1) * stride + params
-// numbers, and that lists of indices hold whole numbers only. Returns the end of a sentence with
-// the line of the first that does not; empty: all do.
+// Checks that every <accessor> stays inside its array: it covers offset + (count - 1) * stride +
+// params numbers. Checks also that lists of indices hold whole numbers only. Returns the end of a
+// sentence with the line of the first fault; empty: there is none.
 [[nodiscard]] std::string fault_of_collada(const std::string& xml);
 
 }  // namespace clearance

@@ -96,7 +96,7 @@ std::string import_into_bytes(const std::string& bytes, const std::string& forma
   return said;
 }
 
-// Runs in the parent. A child that bytes led astray may answer anything.
+// Runs in the parent. A child that was corrupted by its input may answer anything.
 std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
   if (said.starts_with(kFault)) return MeshFault{excerpt(std::string_view(said).substr(1))};
   const MeshFault no_answer{"the library that reads it gave no answer"};

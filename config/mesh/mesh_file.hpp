@@ -10,11 +10,11 @@
 namespace clearance {
 
 // Returns every triangle of the mesh, once, and its vertices: at least one, and finite. The file's
-// scene graph places them, in the file's own unit (for DAE metres, as its <unit> says) and axes (a
-// DAE's up-axis is ignored, as in ROS). The caller knows how large a body may be. Polygons become
-// fans of triangles, which cover them. Coordinates have single precision, as assimp keeps them, and
-// their order depends on nothing else. `extension` is the path's, with or without the dot. Never
-// throws.
+// scene graph places them, in the file's own unit and axes. A DAE is converted to metres by its
+// <unit>, and its up-axis is ignored, as in ROS. The caller knows how large a body may be. Polygons
+// become fans of triangles, which cover them. Coordinates have single precision, as assimp keeps
+// them, and their order depends on nothing else. `extension` is the path's, with or without the
+// dot. Never throws.
 //
 // The file is read in a child process (config/mesh/child_work.hpp): bytes that crash assimp, or
 // that it never finishes, are a fault like any other.

@@ -28,7 +28,7 @@ struct BadMesh {
 // Assimp's floats, widened without rounding.
 Vec3 to_vec3(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-// Returns the position of corner `k` of a face.
+// Returns the position of vertex `k` of a face.
 Vec3 corner(const aiMesh& mesh, unsigned f, unsigned k, const aiMatrix4x4& placed) {
   const unsigned index = mesh.mFaces[f].mIndices[k];
   if (index >= mesh.mNumVertices || mesh.mVertices == nullptr) {
@@ -78,8 +78,8 @@ void keep_one_format(Assimp::Importer& importer, const std::string& format) {
   }
 }
 
-// Assimp takes an ASCII STL that is cut off for a smaller one. A binary one has the length that its
-// number of triangles says.
+// Assimp reads an ASCII STL that is cut off as if it were a smaller one. The length of a binary STL
+// follows from its number of triangles.
 void refuse_cut_off_stl(const std::string& bytes) {
   constexpr std::size_t kHeader = 80, kTriangle = 50;
   std::uint32_t triangles = 0;

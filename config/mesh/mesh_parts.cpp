@@ -16,10 +16,11 @@
 namespace clearance {
 namespace {
 
-// Raised when the same mesh would be split in another way: parts that are kept are then made anew.
+// A version number. It is raised when the same mesh would be split differently, so that kept parts
+// are made anew.
 constexpr int kMethod = 3;
 
-// A hull that took less time is not kept, but found anew at every start, s.
+// s. A hull that took less time is not kept, but computed anew at every start.
 constexpr double kWorthKeeping = 0.1;
 
 // Hashes all that decides on the parts: neither the mesh file's name nor the cell's is in it.
@@ -51,7 +52,8 @@ std::string_view bytes_of(const std::vector<Vec3>& vertices) {
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(Vec3)};
 }
 
-// Returns nothing where a part is no body: what was kept is not what was made.
+// Returns nothing where a part is no body, because then the file does not hold the parts that were
+// made.
 std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
   MeshParts bodies{{}, parts.error};
   for (const auto& vertices : parts.parts) {
@@ -85,8 +87,8 @@ std::filesystem::path MeshLibrary::path_of(const MeshUse& use) const {
   return path_in(revision_.root(), directory_, use.file);
 }
 
-// Each file is read once, however many parts use it, and its bytes go into the scene's revision:
-// two scenes with different meshes must not pass for one.
+// Each file is read once, however many parts use it. Its bytes go into the scene's revision, so
+// that two scenes with different meshes have different revisions.
 MeshLibrary::File& MeshLibrary::load(const std::filesystem::path& path) {
   const auto [entry, is_new] = files_.try_emplace(path.string());
   File& file = entry->second;

@@ -24,13 +24,14 @@ struct MeshUse {
   std::string file;  // relative to the cell's folder
   Vec3 scale = Vec3::Ones();
   LengthUnit unit = LengthUnit::kMetre;
-  // No vertex may be farther from the mesh's origin along an axis, m: a wrong number in a file, or
-  // another unit, would make a body so large that it contains the whole cell.
+  // No vertex may be farther from the mesh's origin along an axis, m. A wrong number in a file, or
+  // another unit, would make a body that contains the whole cell.
   double reach = 100.0;
   PartLimits limits = {};
 };
 
-// Bodies that certainly contain the mesh, and how far they reach beyond it, m (ConvexParts::error).
+// Bodies that certainly contain the mesh, and the largest distance by which they exceed it, m
+// (ConvexParts::error).
 struct MeshParts {
   std::vector<ConvexBody> shapes;
   double error = 0.0;
@@ -43,19 +44,20 @@ struct MeshRefusal {
   std::string reason;
 };
 
-// Where a person raises the limits of a mesh: in the cell, or, where a program was given a URDF, in
-// a cell that has to be written first.
+// The place where a person can raise the limits of a mesh: the cell. If a program was given a URDF,
+// a cell has to be written first.
 enum class Advice : std::uint8_t { kCell, kUrdf };
 
 // Files are read once, and parts of the same use are made once, as long as this lives.
 //
-// A cell is read twice where a mesh has to be split: first to find its mistakes, with a small body
-// in the place of each mesh whose parts are not kept yet, then with the parts.
+// A cell is read twice where a mesh has to be split. The first reading finds its mistakes, with a
+// small body in the place of each mesh whose parts are not kept yet. The second reading has the
+// parts.
 class MeshLibrary {
  public:
   // Mesh paths are relative to the folder of `cell`. The bytes of every mesh, and what it was split
-  // into, go into `revision` once. `tell` gets a line, without its end, when a mesh is being split,
-  // and when its parts are farther from it than the tolerance; it may be empty.
+  // into, go into `revision` once. `tell` gets a line, without its end, when a mesh is being split.
+  // It also gets one when the error of the parts exceeds the tolerance. It may be empty.
   MeshLibrary(const std::filesystem::path& cell, Revision& revision,
               std::function<void(const std::string&)> tell, Advice advice = Advice::kCell);
 

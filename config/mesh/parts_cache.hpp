@@ -18,8 +18,8 @@ namespace clearance {
 
 class PartsCache {
  public:
-  // `beside`: the folder of the cell, or of the URDF of a robot without one; nothing: there is
-  // none, as for the cell of a recording.
+  // `beside`: the folder of the cell, or of the URDF of a robot without a cell. It is not set if
+  // there is none, as for the cell of a recording.
   explicit PartsCache(const std::optional<std::filesystem::path>& beside);
 
   // `key`: the hash of all that decides on the parts.

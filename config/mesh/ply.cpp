@@ -153,7 +153,7 @@ std::uint64_t count_of(std::string_view text) {
   return count;
 }
 
-// Reads one line behind the first; returns false at the end of the header.
+// Reads one line after the first; returns false at the end of the header.
 bool read_header_line(const std::vector<std::string_view>& words, Header& header) {
   if (words.empty() || words[0] == "comment" || words[0] == "obj_info") return true;
   if (words[0] == "end_header" && words.size() == 1) return false;

@@ -1,5 +1,5 @@
-// Reads PLY, ASCII and binary. This is no work for assimp, which never finishes a file that is cut
-// off in its header, and takes one that is cut off behind it for whole.
+// Reads PLY, ASCII and binary. Assimp is not used here: it never finishes a file that is cut off in
+// its header, and reads one that is cut off later as if it were whole.
 #pragma once
 
 #include <string>
@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Returns the faces of three or more corners as fans of triangles, in the file's order. It reads
+// Returns the faces of three or more vertices as fans of triangles, in the file's order. It reads
 // the elements `vertex` (x, y, z) and `face` (vertex_indices or vertex_index), and skips others.
 // Every index and count is checked.
 [[nodiscard]] std::variant<std::vector<Triangle>, MeshFault> ply_triangles(

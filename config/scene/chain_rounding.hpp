@@ -1,4 +1,4 @@
-// Bounds how far a robot's links can be from the poses that forward kinematics computes in doubles.
+// Bounds the error of the poses of a robot's links that forward kinematics computes in doubles.
 #pragma once
 
 #include <vector>
@@ -16,8 +16,8 @@ inline constexpr double kJointError = 0x1p-46;
 // A position that is scaled and shifted (mimic) is within this, for each radian or metre.
 inline constexpr double kPositionError = 0x1p-51;
 
-// The bounds hold up to these limits: angles in rad; lengths in m, of joints without limits and of
-// the position of an object that carries a robot.
+// The bounds hold up to these limits. Angles are in rad. Lengths are in m; they limit joints
+// without limits and the position of an object that carries a robot.
 inline constexpr double kSureAngle = 1e3;
 inline constexpr double kSureWay = 1e2;
 

@@ -1,5 +1,5 @@
-// Part pairs are counted once, when a cell is loaded. Kept apart, published and other pairs each
-// have a share. Together they need less, since the largest pair counts once.
+// Part pairs are counted once, when a cell is loaded. If they are kept separate, published and
+// other pairs each have a share. Together they need less, since the largest pair counts once.
 #include "config/scene/refresh_share.hpp"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ void RefreshCost::add(std::uint64_t part_pairs_of_one) noexcept {
   most = std::max(most, part_pairs_of_one);
 }
 
-// Each tick takes an equal share of all part pairs, and the largest pair on top: a pair is
-// evaluated whole, so a tick may exceed its equal share by one pair.
+// Each tick takes an equal share of all part pairs, plus the largest pair. A pair is evaluated
+// whole, so a tick may exceed its equal share by one pair.
 std::uint64_t RefreshCost::queries(std::uint64_t ticks) const noexcept {
   return std::min(part_pairs, part_pairs / ticks + most);
 }

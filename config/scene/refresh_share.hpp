@@ -21,8 +21,8 @@ struct RefreshCost {
 // loaded.
 struct RefreshShare {
   std::uint64_t ticks = 1;  // every pair is refreshed within so many
-  // Published pairs are evaluated in every tick in which the budget lasts, apart from all others.
-  // If false, they are refreshed together with the others.
+  // Published pairs are evaluated separately from all others, in every tick whose budget lasts. If
+  // false, they are refreshed together with the others.
   bool published_every_tick = false;
   RefreshCost published;  // empty unless published_every_tick
   RefreshCost others;     // all other pairs
@@ -32,8 +32,8 @@ struct RefreshShare {
   }
 };
 
-// Published pairs stay apart if all their part pairs fit into the budget of one tick, unless only a
-// common round-robin fits. The caller compares queries() with Scene::budget.
+// Published pairs stay separate if all their part pairs fit into the budget of one tick, unless
+// only a common round-robin fits. The caller compares queries() with Scene::budget.
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
 
 // Tells whether a pair is published: it is then evaluated in every tick as long as the budget

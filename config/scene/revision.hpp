@@ -1,5 +1,5 @@
-// The files of a cell: their paths, and their 64-bit FNV-1a hash, by which two scenes are told
-// apart. The hash detects mistakes, not attacks.
+// The files of a cell: their paths, and their 64-bit FNV-1a hash, which distinguishes two scenes.
+// The hash detects mistakes, not attacks.
 #pragma once
 
 #include <algorithm>

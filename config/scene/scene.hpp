@@ -16,7 +16,7 @@
 
 namespace clearance {
 
-// One convex piece of an object, with its place in the object's frame.
+// One convex part of an object, with its pose in the object's frame.
 struct Part {
   std::string name;
   ConvexBody shape;

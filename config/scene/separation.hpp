@@ -1,5 +1,5 @@
 // Speed and separation monitoring of a zone: the terms of the protective separation distance of
-// ISO/TS 15066, 5.5.4, in the words of ISO 13855. monitor/separation/README.md has the formula.
+// ISO/TS 15066, 5.5.4, named as in ISO 13855. monitor/separation/README.md has the formula.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ namespace clearance {
 struct Separation {
   // m/s, towards the robot: the speed of a person whose speed is unknown (ISO 13855).
   double human_speed = 1.6;
-  // Whether the person's measured speed is used while it is known, with this acceleration, m/s2.
+  // If set, the person's measured speed is used while it is known, with this acceleration, m/s2.
   bool human_speed_is_measured = false;
   double human_acceleration = 0.0;
   // The robot's speed where it is not known, m/s; infinity: as Object::max_speed.
@@ -25,7 +25,8 @@ struct Separation {
   // The robot's speed at which T_s and B were measured, m/s. They then scale with its present
   // speed, as under a constant deceleration. 0: they hold at any speed.
   double stopping_speed = 0.0;
-  double intrusion_distance = 0.0;  // C, m: how far a part of the body can be in before it is seen
+  double intrusion_distance = 0.0;  // C, m: the depth to which a part of the body can intrude
+                                    // before it is detected
   double human_uncertainty = 0.0;   // Z_d, m
   double robot_uncertainty = 0.0;   // Z_r, m
   // For each pair of the zone, in its order: whether the first object is the human one.

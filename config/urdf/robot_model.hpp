@@ -18,8 +18,8 @@ struct RobotModel {
 };
 
 // Makes the tree; every name gets the prefix. It refuses, with the line of `urdf`: more than one
-// root; joints of unknown types, or without the elements of their type; axes of length zero; limits
-// in the wrong order; mimic joints that follow nothing or themselves.
+// root; joints of unknown types, or without the elements of their type. It also refuses axes of
+// length zero, limits in the wrong order, and mimic joints that follow nothing or themselves.
 [[nodiscard]] std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,
                                                                const std::filesystem::path& urdf,
                                                                const std::string& prefix);

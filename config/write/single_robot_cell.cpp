@@ -10,8 +10,8 @@
 namespace clearance {
 namespace {
 
-// Returns a name for the cell: that of the robot, or of the file where the URDF cannot be read,
-// which the reader of the cell reports.
+// Returns a name for the cell: that of the robot, or that of the file if the URDF cannot be read.
+// The reader of the cell reports that fault.
 std::string name_of(const std::filesystem::path& urdf) {
   const auto read = read_urdf(urdf);
   const auto* robot = std::get_if<UrdfRobot>(&read);

@@ -13,12 +13,12 @@ namespace clearance {
 struct SingleRobotOptions {
   std::filesystem::path urdf;
   std::filesystem::path srdf = {};  // empty: neighbours may touch
-  // As `packages:` of a robot in a cell.
+  // The same as `packages:` of a robot in a cell.
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
   double age_limit_ms = 20.0;  // of its joints
 };
 
-// Returns the text of the cell: the robot stands in the world, under its URDF's name, and every
+// Returns the text of the cell. The robot stands in the world, under its URDF's name, and every
 // pair of its links is watched and published. Paths are absolute.
 [[nodiscard]] std::string single_robot_cell(const SingleRobotOptions& options);
 

@@ -75,7 +75,7 @@ constexpr const char* kZones = R"(
 - {name: aisle, between: [vehicles, standing], enter_below: 0.25, leave_above: 0.3}
 - {name: stop, between: [arm, station], enter_below: 0.05, leave_above: 0.07})";
 
-// The objects that drive or walk in the aisles.
+// The vehicles and people in the aisles.
 enum class Kind : std::uint8_t { kForklift, kRobot, kPerson };
 
 // One kind of moving object.
@@ -206,7 +206,7 @@ class Warehouse {
     }
   }
 
-  // An arm on a pedestal beyond the end of the first aisle, and what it picks from.
+  // An arm on a pedestal behind the end of the first aisle, and the station that it picks from.
   void add_station() {
     const double x = aisle_length() + 2.5, y = row_y(0) + 0.5 * kAisle;
     const YAML::Node groups = list("standing", "station");
@@ -219,7 +219,7 @@ class Warehouse {
     for (std::uint32_t i = 0; i < kLinks; ++i) add_link(i);
   }
 
-  // Axes alternate between z and y, so that the arm reaches out of every plane; amplitudes are
+  // Axes alternate between z and y, so that the arm does not stay in one plane. Amplitudes are
   // small enough that it clears the station.
   void add_link(std::uint32_t i) {
     const std::string name = fmt::format("link{}", i);
@@ -245,7 +245,7 @@ class Warehouse {
     const std::uint32_t in_aisle = (count + aisles - 1) / aisles;
     const double stretch = aisle_length() / in_aisle;
     for (std::uint32_t i = 0; i < count; ++i) {
-      // Forklifts only where there is room for them.
+      // There are forklifts only where the aisle is long enough for them.
       const bool room = stretch > 3.6;
       const Kind kind = i % 4 == 1           ? Kind::kPerson
                         : i % 4 == 0 && room ? Kind::kForklift

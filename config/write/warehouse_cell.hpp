@@ -1,9 +1,9 @@
 // A generated warehouse: a cell of any size to try the monitor on.
 //
-// Rows of racks with pallets and boxes; in the aisles between them forklifts, mobile robots and
-// people, every twentieth object or so; a robot arm at the end of the first aisle. What moves is
-// watched against everything, 48,000 pairs of 1,000 objects. Nothing ever touches: whoever drives
-// has a stretch of an aisle to itself.
+// It has rows of racks with pallets and boxes, and a robot arm at the end of the first aisle.
+// Forklifts, mobile robots and people, about every twentieth object, move in the aisles. Every
+// moving object is watched against all others: 48,000 pairs for 1,000 objects. Nothing ever
+// touches, because each moving object has a stretch of an aisle to itself.
 #pragma once
 
 #include <cstdint>

@@ -25,7 +25,7 @@ std::vector<CellError> Diagnostics::sorted() const {
   std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
     return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
   });
-  // A mistake inside an anchor (&x) is met once for every alias of it.
+  // A mistake inside an anchor (&x) is found once for every alias of it.
   const auto end =
       std::unique(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
         return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);

@@ -14,7 +14,7 @@ struct CellArguments {
   SingleRobotOptions robot;
 
   // The ROS 2 topic with the robot's URDF, "/robot_description"; empty: not asked for. The program
-  // that asks for it sets robot.urdf.
+  // that gets the URDF from there sets robot.urdf.
   std::string description_topic;
 
   // Adds CELL, and --urdf with --srdf, --package and --age-limit-ms; one of CELL and --urdf is

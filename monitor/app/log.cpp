@@ -1,5 +1,5 @@
-// stderr, since stdout belongs to results. The log's thread may wait in write() for ever; the
-// program then ends without it, and the thread pool is left allocated for it.
+// The log goes to stderr, since stdout belongs to results. The log's thread may wait in write() for
+// ever. The program then ends without that thread and leaves its pool allocated.
 //
 // Logging takes spdlog's mutex for as long as it takes to move one line; the tick thread never
 // logs.
@@ -61,8 +61,8 @@ class Sink : public spdlog::sinks::sink {
   void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
 };
 
-// The far end of the queue: called by the log's thread only. spdlog's own sinks to stderr hold the
-// lock of the FILE while they write, for which print() and exit() would wait.
+// The far end of the queue. Only the log's thread calls it. spdlog's own sinks to stderr hold the
+// lock of the FILE while they write, and print() and exit() would wait for that lock.
 class StderrSink final : public Sink {
  public:
   explicit StderrSink(spdlog::details::thread_pool& queue)
@@ -115,7 +115,8 @@ class StderrSink final : public Sink {
 // The pool that a thread hanging in write() still uses when the program ends.
 std::shared_ptr<spdlog::details::thread_pool>* left_behind = nullptr;
 
-// The near end, which counts lines: spdlog does not tell whether all of them are written.
+// The near end of the queue. It counts lines, because spdlog does not tell whether all of them are
+// written.
 class QueueSink final : public Sink {
  public:
   explicit QueueSink(const std::string& name)
@@ -139,7 +140,8 @@ class QueueSink final : public Sink {
     ++posted_;
     logger_->log(message.time, message.source, message.level, message.payload);
   }
-  // Polls once a millisecond: it is called at the end of a program and before a message.
+  // Polls once a millisecond, which suffices: it is called only at the end of a program and before
+  // a message.
   bool drain() const {
     const auto end = std::chrono::steady_clock::now() + kLogPatience;
     const std::uint64_t posted = posted_;

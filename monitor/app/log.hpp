@@ -9,11 +9,10 @@ namespace clearance {
 
 // `level`: trace, debug, info, warn, error or off. `name` stands in every line after the time.
 //
-// A line waits in a bounded queue until the log's own thread has written it. When stderr takes
-// nothing (a full pipe, a stopped terminal), each new line displaces the oldest one in the queue,
-// and a line in their place says how many are missing. Each event is one line: its text is made
-// printable (config/text/printable.hpp). At its end, the program waits at most kLogPatience for the
-// queue.
+// A line waits in a bounded queue until the log's own thread has written it. While stderr takes
+// nothing (a full pipe, a stopped terminal), each new line displaces the oldest one in the queue. A
+// line in their place says how many are missing. Each event is one line: its text is made printable
+// (config/text/printable.hpp). At its end, the program waits at most kLogPatience for the queue.
 void start_log(const std::string& name, const std::string& level);
 
 inline constexpr std::chrono::milliseconds kLogPatience{200};

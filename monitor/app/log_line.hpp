@@ -29,7 +29,7 @@ template <class... Arguments>
   return fmt::format("{} [{}]", fmt::vformat(text, fmt::make_format_args(arguments...)), line.code);
 }
 
-// Logs it, if the level of the log takes it.
+// Logs this line unless its level is below that of the log.
 template <class... Arguments>
 void log_line(const LogLine<Arguments...>& line,
               const std::type_identity_t<Arguments>&... arguments) {

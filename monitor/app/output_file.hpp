@@ -16,9 +16,9 @@ namespace clearance {
 // exist. An empty name is no file.
 [[nodiscard]] bool can_create(const char* program, const std::filesystem::path& file, bool force);
 
-// Returns a name to write to for a program that must overwrite nothing and start all the same: the
-// file itself, or, if it exists without `force`, the first free one of NAME-2.EXT, NAME-3.EXT ...
-// Returns nothing and says so when the folder does not exist or the file is no regular one.
+// Returns a name to write to, for a program that must overwrite nothing and still start. This is
+// the file itself. If it exists without `force`, it is the first free one of NAME-2.EXT, NAME-3.EXT
+// ... Returns nothing and says so when the folder does not exist or the file is not a regular one.
 [[nodiscard]] std::optional<std::filesystem::path> free_name(const char* program,
                                                              const std::filesystem::path& file,
                                                              bool force);

@@ -1,4 +1,4 @@
-// Writes at most PIPE_BUF bytes at a time, which a pipe or terminal that is ready takes without
+// Writes at most PIPE_BUF bytes at a time: a pipe or terminal that is ready takes so many without
 // waiting.
 #include "monitor/app/print.hpp"
 

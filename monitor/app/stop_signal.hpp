@@ -1,4 +1,4 @@
-// Lets one place of the program wait for SIGINT and SIGTERM.
+// Collects SIGINT and SIGTERM, so that the program can wait for them in one place.
 #pragma once
 
 #include <csignal>
@@ -14,8 +14,9 @@ class StopSignal {
   StopSignal(const StopSignal&) = delete;
   StopSignal& operator=(const StopSignal&) = delete;
 
-  // For work that may stop anywhere: from now on a signal, even one that has already come, writes
-  // `last_words` to stderr and ends the program with `status`. `last_words` must stay valid.
+  // For work that may stop anywhere. After this call a signal writes `last_words` to stderr and
+  // ends the program with `status`. This includes a signal that has already come. `last_words` must
+  // stay valid.
   void end_with(int status, const char* last_words);
 
   // Waits for a signal up to the given time. Returns true when one has come, now or before.

@@ -9,8 +9,8 @@
 namespace clearance {
 namespace {
 
-// The rounding of a sum of a few lengths of a cell's size is far less, m; beyond 1e4 km from the
-// origin the rounding of the spheres themselves is larger.
+// m. The rounding of a sum of a few lengths of a cell's size is far less. Farther than 1e4 km from
+// the origin, the rounding of the spheres themselves is larger.
 constexpr double kSumError = 1e-9;
 constexpr double kSmoothing = 0.125;   // of the usual displacement: over eight ticks
 constexpr double kStandstill = 1e-12;  // m a tick: less counts as no motion
@@ -22,8 +22,9 @@ double share_of_a(double usual_a, double usual_b) noexcept {
   return sum > 0.0 ? std::clamp(usual_a / sum, kLeastShare, 1.0 - kLeastShare) : 0.5;
 }
 
-// How far the object may have been, at any instant since the last tick, from where it is now, m.
-// A discontinuity does not count here: it makes every zone of the object active by itself.
+// The largest distance, m, between the object's position now and its position at any instant since
+// the last tick. A discontinuity does not count here: it makes every zone of the object active by
+// itself.
 double displacement_since_last_tick(const TrackedObject& object) noexcept {
   return object.unseen_since + (object.discontinuous ? 0.0 : object.known_displacement());
 }
@@ -90,7 +91,7 @@ void BroadPhase::begin(const OpenTick& tick, std::span<const std::uint32_t> chan
     largest_advance_ = std::max(largest_advance_, rounded_up(by));
   }
   take_due(overdue_ ? busy_ : advanced_);
-  // To take in an arriving object costs as much as to meet a pair.
+  // An arriving object costs as much as a pair that is met for the first time.
   const std::size_t arrived = std::min(arrived_.size() - arrived_before, most_met_);
   meet_arrivals(most_met_ - arrived);
 }
@@ -144,8 +145,8 @@ void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
     return wheels_.take_due(object, most_activated_, activated_);
   });
-  // A timer that is left on its wheel became due in this tick, or its pair waits since an earlier
-  // one, so this tick's advances of both objects are all that W loses.
+  // A timer that is left on its wheel became due in this tick, or its pair has waited since an
+  // earlier one. So W loses no more than this tick's advances of both objects.
   const double overtaken = rounded_up(2.0 * largest_advance_);
   const double lower = overdue_ ? std::min(overdue_lower_, horizon_) : horizon_;
   if (!all) overdue_lower_ = rounded_down(lower - overtaken);
@@ -157,9 +158,9 @@ double BroadPhase::waiting_lower() const noexcept {
   return overdue_ ? overdue_lower_ : kInfinity;
 }
 
-// From this distance on, m, a pair is neither the minimum nor in a zone: max(H, Z + U). Z + U also
-// counts the displacement since the last tick, and each of the two has as much added as the pair
-// needs to be active well before it is urgent.
+// max(H, Z + U), m: at this distance or farther, a pair is neither the minimum nor in a zone. Z + U
+// also counts the displacement since the last tick. Both H and Z + U are raised by the margin that
+// makes the pair active well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const std::uint32_t a = object_a_[pair], b = object_b_[pair];
   const double urgent = urgent_[a] + urgent_[b];
@@ -235,7 +236,7 @@ DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 
-// Raising the horizon by d counts as if every object had moved by d.
+// The horizon is raised by d as if every object had moved by d.
 void BroadPhase::move_horizon(double to) noexcept {
   if (to > horizon_ && horizon_ > -kInfinity) {
     const double by = rounded_up(to - horizon_);

@@ -1,8 +1,9 @@
-// Which pairs can a tick leave alone, provably? README.md here has the proof and the reasons.
+// The broad phase decides which pairs a tick can provably leave alone. README.md here has the proof
+// and the reasons.
 //
 // A pair is culled while its lower bound L, less the displacement of its two objects since then, is
 // not below two levels. The first is the horizon H, which is no smaller than a certified minimum
-// over all pairs. The second is Z + U: the level that the pair's zones watch for, and the
+// over all pairs. The second is Z + U. Z is the level that the pair's zones watch for. U is the
 // unobserved motion of late objects, now and since the last tick. The pair has a timer on the
 // motion wheels of both objects, and the allowance s above those levels is divided between the two.
 // All other pairs are active: they are updated in every tick.
@@ -24,26 +25,27 @@ namespace clearance {
 class BroadPhase {
  public:
   // A pair is cheaper active when its allowance is less than kLeastAllowance, m, plus kLeastTicks
-  // ticks of both objects' usual displacement: it would be back within a few ticks.
+  // ticks of both objects' usual displacement. It would become active again within a few ticks.
   static constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
   static constexpr double kLeastTicks = 4.0;
 
-  // `urgent`: by object, m: a pair is active when its distance, to zero or to its zone level, is
-  // less than that of both its objects together. `left_out`: pairs that every tick updates anyway,
-  // in ascending order. `most_activated`: how many pairs a tick may activate, half of them by
-  // meeting for the first time. The others wait, and only waiting_lower() is known of them.
+  // `urgent`: by object, m. A pair is active when its distance, to zero or to its zone level, is
+  // less than the sum over its two objects. `left_out`: pairs that every tick updates anyway, in
+  // ascending order. `most_activated`: how many pairs a tick may activate, half of them by meeting
+  // for the first time. The others wait, and only waiting_lower() is known of them.
   BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, const ZoneLevels& zone_levels,
              std::vector<double> urgent, std::span<const std::uint32_t> left_out,
              std::size_t most_activated);
 
   // Takes in how the objects have moved. Afterwards activated() has the pairs whose allowance may
-  // be used up, whose objects are new, or whose objects have made a discontinuity; the bounds of
-  // the last ones are forgotten. The tick's objects stay where they are until the next tick.
-  // `changed`: at least the objects that have moved, or whose unobserved motion is not what it was.
+  // be used up, whose objects are new, or whose objects have made a discontinuity. The bounds of
+  // pairs with a discontinuity are forgotten. The tick's objects stay where they are until the next
+  // tick. `changed`: at least the objects that have moved, or whose unobserved motion is not what
+  // it was.
   void begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept;
 
-  // Before begin(): an object is not there any more. Forgets its pairs, and activates them when it
-  // is known again.
+  // To be called before begin() when an object is not there any more. Forgets its pairs, and
+  // activates them when it is known again.
   void forget_object(std::uint32_t object, PairTable& table) noexcept;
 
   // Pairs that are activated and not decided about, in this tick's order.
@@ -54,7 +56,7 @@ class BroadPhase {
   // the pair's levels, or no horizon has been set.
   bool cull(std::uint32_t pair, double lower) noexcept;
 
-  // Whether a pair with this lower bound, m, is neither the minimum nor in a zone now.
+  // Returns true when a pair with this lower bound, m, is neither the minimum nor in a zone now.
   [[nodiscard]] bool is_far(std::uint32_t pair, double lower) const noexcept;
 
   // Bounds of the pair's distance by its objects' bounding spheres, for the poses in use, m.
@@ -73,8 +75,8 @@ class BroadPhase {
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
   [[nodiscard]] const PairsByObject& by_object() const noexcept { return by_object_; }
 
-  // Whether the invariant holds for this pair, whose distance is at most `upper`, m: it is not
-  // culled, or it may be.
+  // Returns true when the invariant holds for this pair, whose distance is at most `upper`, m: it
+  // is not culled, or it may be.
   [[nodiscard]] bool may_be_culled(std::uint32_t pair, double upper) const noexcept;
   // Checks a few pairs, others in each tick, by the spheres around their objects.
   void check_some() noexcept;
@@ -96,7 +98,7 @@ class BroadPhase {
     bool fixed = false;
     bool forgotten = false;       // nothing is known of its pairs until it has a pose again
     bool idle = true;             // all its pairs are left out
-    double may_have_moved = 0.0;  // as of the last tick in which it was finite, m
+    double may_have_moved = 0.0;  // m; from the last tick in which it was finite
     Arrival arrival;
   };
 

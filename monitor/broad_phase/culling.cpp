@@ -9,15 +9,15 @@
 namespace clearance {
 namespace {
 
-// An activated pair costs up to one query's time where memory is far, and a pair that is met for
-// the first time up to two.
+// If its data are not in the cache, an activated pair costs up to one query's time. A pair that is
+// met for the first time costs up to two.
 constexpr std::size_t kActivatedPerQuery = 2;
 constexpr std::size_t kLeastActivated = 2'000;
-// The horizon follows a growing minimum by no more than this a tick while it is above it, m.
+// m. While the horizon is above a growing minimum, it follows by no more than this a tick.
 constexpr double kHorizonStep = 0.002;
 
-// Queries that prove pairs far must not starve pairs that are near, which get half of the budget;
-// nor the refreshes.
+// Queries that prove pairs far must starve neither the refreshes nor pairs that are near, which get
+// half of the budget.
 std::uint32_t least_left(std::uint32_t budget, const RefreshShare& share) noexcept {
   const std::uint64_t refreshes = share.queries() <= budget ? share.queries() : 0;
   return std::max((budget + 1) / 2, static_cast<std::uint32_t>(refreshes));
@@ -66,7 +66,7 @@ void Culling::follow(double minimum) noexcept {
   }
 }
 
-// The minimum of the pairs that are activated now is not above it.
+// The minimum over the pairs that are activated now is not above it.
 void Culling::set_first_horizon() noexcept {
   if (broad_phase_.horizon() > -kInfinity) return;
   double smallest_upper = kInfinity;
@@ -88,8 +88,8 @@ void Culling::raise_horizon(double minimum, double step, const OpenTick& tick,
   decide_activated(tick, budget);
 }
 
-// Whether a lower bound of a known pair is `enough`: the bounds of its models are tried from coarse
-// to fine, the parts excluded.
+// Returns true when a lower bound of a known pair is `enough`. Tries the bounds of its models from
+// coarse to fine, without the parts.
 template <class Enough>
 bool Culling::bound_by_models(std::uint32_t pair, std::uint32_t kept, const OpenTick& tick,
                               Budget& budget, const Enough& enough) noexcept {

@@ -1,8 +1,8 @@
-// Stage 'cull' of a tick: which pairs must be updated, and what holds of all others?
+// Stage 'cull' of a tick: decides which pairs must be updated, and bounds all others.
 //
 // Keeps the broad phase's decisions and its horizon. Updates the active pairs: their bounds are
 // carried to this tick. Bounds the pairs that have just become active by the models of their
-// objects, from coarse to fine; a pair that these prove far is culled again.
+// objects, from coarse to fine. A pair that these models prove far is culled again.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class Culling {
           const ZoneLevels& zone_levels, std::vector<double> urgent,
           std::span<const std::uint32_t> left_out, const RefreshShare& share);
 
-  // Between ticks: an object is not there any more.
+  // To be called between ticks when an object is not there any more.
   void forget_object(std::uint32_t object, PairTable& table) noexcept {
     broad_phase_.forget_object(object, table);
   }
@@ -42,7 +42,7 @@ class Culling {
   // Raises the horizon to just above `minimum`, by no more than `step`, m, and decides about the
   // pairs that this activates, as the stage does.
   void raise_horizon(double minimum, double step, const OpenTick& tick, Budget& budget) noexcept;
-  // How far the horizon is kept above the minimum, m.
+  // The height of the horizon above the minimum, m.
   static constexpr double kHeadroom = 0.02;
 
   // Carries a known pair's bounds to this tick.
@@ -56,7 +56,7 @@ class Culling {
 
   // The pairs whose bounds are of this tick, each once;
   [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept { return updated_; }
-  // and what holds of all other known pairs.
+  // and the bounds of all other known pairs.
   [[nodiscard]] UntouchedPairs untouched(const Displacements& displaced) const noexcept;
   // Pairs that are not culled and not left out: updated if they are known.
   [[nodiscard]] std::span<const std::uint32_t> active() const noexcept { return active_; }

@@ -2,13 +2,13 @@
 // side.
 //
 // A timer on an object's wheel is due before the object has moved farther than the timer was set
-// for; it may be due up to a quarter of that earlier. An object that stands still costs nothing.
-// One that moves costs as much as it has timers due.
+// for. It may be due up to a quarter of that displacement earlier. An object that stands still
+// costs nothing. One that moves costs as much as it has timers due.
 //
 // A wheel is a hierarchy of rings of eight buckets; a bucket of level l is 2^l units of
 // displacement wide. A timer is put into the level where its bucket is at least three and at most
-// seven ahead, and stays there. To examine a pair that is due early, and to set its timer again,
-// costs no more than to move the timer between levels.
+// seven ahead, and stays there. A pair that is due early is examined and its timer is set again.
+// This costs no more than moving the timer between levels would.
 #pragma once
 
 #include <array>
@@ -24,8 +24,8 @@ class MotionWheels {
 
   MotionWheels(std::size_t objects, std::size_t pairs);
 
-  // Timer `timer` (2 * pair + side, not set) is due by the time `object` has advanced by
-  // `displacement` more. False, and nothing is set, when the displacement is too small.
+  // Sets timer `timer` (2 * pair + side, not set yet) to be due by the time `object` has advanced
+  // by `displacement` more. Returns false and sets nothing when the displacement is too small.
   bool set(std::uint32_t timer, std::uint32_t object, double displacement) noexcept;
 
   // Cancels a timer, set or not.

@@ -1,11 +1,12 @@
-// What holds of every known pair whose bounds a tick did not update: the one place for it.
+// Bounds for every known pair that a tick did not update. No other file states them.
 //
 // After the broad phase every known pair is one of three:
 //   updated: its bounds are of this tick (Culling::updated());
 //   culled:  D >= H, and D - U >= Z, also at every instant since the last tick (README.md here);
-//   waiting: so much motion came in one tick that there was no time for the pair: only D >= W.
-// D is the pair's distance for the poses in use, H the horizon, Z the level that the pair's zones
-// watch for, U the unobserved motion of its objects, W the bound of all pairs that wait.
+//   waiting: only D >= W, because one tick had more motion than time for all pairs.
+// D is the pair's distance for the poses in use, and H is the horizon. Z is the level that the
+// pair's zones watch for, and U is the unobserved motion of its objects. W is the bound of all
+// pairs that wait.
 #pragma once
 
 #include <algorithm>

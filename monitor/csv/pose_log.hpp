@@ -25,7 +25,7 @@ class CsvPoseLog {
  public:
   explicit CsvPoseLog(const std::filesystem::path& file);
 
-  // False at the end, and at the first thing wrong: then error() reads "FILE:LINE: ...".
+  // False at the end and at the first mistake. After a mistake error() reads "FILE:LINE: ...".
   [[nodiscard]] bool next(CsvPose& pose);
   [[nodiscard]] const std::string& error() const noexcept { return table_.error(); }
   // "FILE:LINE: what", for what a caller finds wrong with the row just read.

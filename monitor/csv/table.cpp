@@ -44,7 +44,7 @@ std::string joined(std::span<const std::string_view> names) {
 
 }  // namespace
 
-// A line of usual length: of another file, more is not needed to see that it is no table.
+// The usual length of a line. A file that is no table shows it within that length.
 std::vector<std::string> csv_column_names(const std::filesystem::path& file) {
   constexpr std::size_t kLongestLine = 65536;
   std::vector<std::string> names;

@@ -23,8 +23,8 @@ class CsvTable {
   // its place in `columns` from here on; their text must outlive the table.
   CsvTable(const std::filesystem::path& file, std::span<const std::string_view> columns);
 
-  // The next row that is not blank. False at the end, and at the first thing wrong: then error()
-  // reads "FILE:LINE: ...".
+  // The next row that is not blank. False at the end and at the first mistake. After a mistake
+  // error() reads "FILE:LINE: ...".
   [[nodiscard]] bool next();
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   // "FILE:LINE: what", for what a caller finds wrong with the row just read.

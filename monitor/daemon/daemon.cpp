@@ -1,4 +1,4 @@
-// Creates the ports, the queues and the loop in the order of their dependencies, runs the loop in a
+// Creates the ports, the queues and the loop in the order of their dependencies. Runs the loop in a
 // thread of its own, and empties the queues after the last tick. Scheduling is set before the
 // threads that inherit it are created.
 #include "monitor/daemon/daemon.hpp"
@@ -15,7 +15,7 @@ namespace {
 
 // 64 ms of reports at 1 kHz; DDS writes seldom take longer.
 constexpr std::size_t kQueuedReports = 64;
-// Batches of full size that one tick takes in; more wait for the next tick.
+// The number of full-size batches that one tick takes in; more wait for the next tick.
 constexpr std::size_t kBatchesATick = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;

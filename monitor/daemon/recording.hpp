@@ -20,8 +20,8 @@ class RecordError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Batches and reports go into the file in the order in which the ticks used and made them, so that
-// an offline replay gives the same reports. A slow, full or missing disk never delays a tick or a
+// Batches and reports go into the file in the order in which the ticks used and made them. So an
+// offline replay gives the same reports. A slow, full or missing disk never delays a tick or a
 // report. Messages that find the queue full or the file failed are missing: they are counted, log
 // and health name them, and complete() is false.
 class Recording {

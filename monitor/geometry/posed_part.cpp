@@ -40,7 +40,8 @@ Sphere sphere_around(const ConvexBody& shape) noexcept {
   return sphere;
 }
 
-// The farthest point of a curved part from the origin of its object, the part's radius left out.
+// The largest distance of a point of a curved part from the origin of its object, without the
+// part's radius.
 double curved_radius_about_origin(const Part& part) noexcept {
   const Pose& pose = part.object_from_part;
   const Vec3 origin = -(rotation_matrix(pose.orientation).transpose() * pose.position);
@@ -48,7 +49,7 @@ double curved_radius_about_origin(const Part& part) noexcept {
   return farthest * (1.0 + kCurvedRounding) + kPlacingError * pose.position.norm();
 }
 
-// The farthest point of the part from the origin of its object.
+// The largest distance of a point of the part from the origin of its object.
 double radius_about_origin(const Part& part) noexcept {
   if (!part.shape.bounded()) return kInfinity;
   double farthest = part.shape.is_curved() ? curved_radius_about_origin(part) : 0.0;
@@ -65,8 +66,8 @@ double extent_of(const ConvexBody& shape) noexcept {
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
 }
 
-// turn * point + origin, one coordinate after the other: vector code would wait 7 ns for a rotation
-// and a position that are not in memory yet.
+// turn * point + origin, one coordinate after the other. Vector code would wait 7 ns, because the
+// rotation and the position have not left the store buffer yet.
 inline void put(const Mat3& turn, const Vec3& point, const Vec3& origin, Vec3& placed) noexcept {
   for (int i = 0; i < 3; ++i) {
     placed[i] =
@@ -119,9 +120,9 @@ void place_sphere(const Mat3& turn, PosedPart& part) noexcept {
   part.coordinates = sum_of_sizes(sphere.centre) + sum_of_sizes(position);
 }
 
-// How much the orientation error of `part` can change the distance of the two parts. To turn the
-// part about its origin is to turn the other one back about the same point, so the smaller arm
-// counts.
+// The largest change of the distance of the two parts by the orientation error of `part`. A
+// rotation of the part about its origin equals the opposite rotation of the other part about the
+// same point, so the smaller arm counts.
 double turning_error(const PosedPart& part, const PosedPart& other) noexcept {
   if (part.turn_error == 0.0) return 0.0;
   if (part.extent <= other.extent) return swept(part.turn_error, part.extent);

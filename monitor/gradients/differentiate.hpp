@@ -1,5 +1,5 @@
-// Stage 'differentiate' of a tick: how the distances of published pairs change with the positions
-// of joints.
+// Stage 'differentiate' of a tick: the derivatives of the distances of published pairs by the
+// positions of joints.
 //
 // A distance changes by n . (v_b - v_a), with the normal n from A to B and the velocities v of the
 // two witness points, each fixed to its object. If the closest points are unique, their motion on
@@ -7,9 +7,9 @@
 //
 //   d distance / d q = n . (J_b - J_a),   J dq: how q moves the object at its witness point.
 //
-// The same holds of a penetration depth along its normal. Where several pairs of points are closest
-// (parallel faces, two parts at once) the distance has no gradient. The result is then the one of
-// the points that were found: one of its generalised gradients.
+// The same holds for a penetration depth along its normal. The distance has no gradient where
+// several pairs of points are closest (parallel faces, two parts at once). The result is then that
+// of the points found, which is one of its generalised gradients.
 //
 // Measured with two arms of seven joints (config/cells/seven_joint_arms.yaml, `clearance-bench
 // --benchmark_filter=^robot/tick`): 15 us for 219 pairs with 1,430 entries. A scene that does not
@@ -45,7 +45,7 @@ class Differentiation {
     std::uint32_t robot, joint;
     std::uint32_t first_screw;
   };
-  // What one position of a joint adds to an entry.
+  // The contribution of one position of a joint to an entry.
   struct Term {
     std::uint32_t screw, entry;
     bool moves_b;

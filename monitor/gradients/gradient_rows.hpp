@@ -1,5 +1,5 @@
-// The layout of a report's gradients: which joint positions move one object of a published pair as
-// seen from the other. The scene determines it once for all ticks.
+// The layout of a report's gradients: the joint positions that move one object of a published pair
+// relative to the other. The scene determines it once for all ticks.
 #pragma once
 
 #include <cstdint>

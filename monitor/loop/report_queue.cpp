@@ -44,7 +44,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
   }
 }
 
-// This does not wake the consumer; the report that follows does.
+// Does not wake the consumer; the report that follows does.
 void ReportQueue::input(const PoseBatch& batch) noexcept {
   if (!keeps_inputs_) return;
   PoseBatch* slot = inputs_.back();

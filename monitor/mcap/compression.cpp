@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-// A size that a damaged file states is believed a piece at a time.
+// A damaged file may state any size, so memory grows block by block.
 constexpr std::size_t kPiece = std::size_t{1} << 22;
 
 // Reports of one cell resemble each other so much that higher levels gain little.

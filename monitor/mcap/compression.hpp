@@ -1,5 +1,5 @@
-// What a chunk of records may be compressed with: zstd or LZ4 frames, as the MCAP specification
-// names them. Both libraries check their own checksums, where the file has them.
+// Compression of chunks of records: zstd or LZ4 frames, as the MCAP specification names them. Both
+// libraries check their own checksums, where the file has them.
 #pragma once
 
 #include <cstddef>
@@ -17,13 +17,14 @@ enum class McapCompression : std::uint8_t { kStored, kZstd, kLz4 };
 [[nodiscard]] std::optional<McapCompression> mcap_compression(std::string_view name) noexcept;
 [[nodiscard]] std::string_view name(McapCompression compression) noexcept;
 
-// Decompresses bytes of any origin into `out`: at most `size` bytes, fewer where they end before or
-// make no sense.
+// Decompresses bytes of any origin into `out`: at most `size` bytes, fewer where they end early or
+// are not valid.
 void decompress(McapCompression compression, std::span<const std::byte> compressed,
                 std::size_t size, std::vector<std::byte>& out);
 
-// As one zstd frame that states its size: fast, a third to a tenth of the size of our reports. The
-// same bytes and library give the same frame. Empty when there is no memory for it.
+// Compresses into one zstd frame that states its size. This is fast, and shrinks our reports to
+// between a third and a tenth of their size. The same bytes and library give the same frame. Empty
+// when there is no memory for it.
 void compress_zstd(std::span<const std::byte> bytes, std::vector<std::byte>& out);
 
 }  // namespace clearance

@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-// Owns the file handle. Not for several threads at once, since it has one position.
+// Owns the file handle. Only one thread may use it at a time, since it has one position.
 class McapFile {
  public:
   // A file that cannot be opened, or is not a regular one, gives open() == false; errno says why.

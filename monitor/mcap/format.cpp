@@ -1,4 +1,4 @@
-// The only place that knows zlib, whose crc32_z takes lengths beyond 4 GiB.
+// The only file that includes zlib, whose crc32_z takes lengths over 4 GiB.
 #include "monitor/mcap/format.hpp"
 
 #include <zlib.h>

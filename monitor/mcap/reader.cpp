@@ -42,7 +42,7 @@ void McapReader::begin() {
   metadata_ = summary_->metadata;
 }
 
-// The three ways in which a file is not MCAP at all get messages of their own.
+// A file can fail in three ways to be MCAP at all, and each has its own message.
 bool McapReader::read_magic() {
   std::array<std::byte, kMcapMagic.size()> magic{};
   done_ = true;
@@ -68,7 +68,7 @@ bool McapReader::read_magic() {
   return true;
 }
 
-// By bytes, not by messages: their number is known only for a closed file.
+// Progress counts bytes, because the number of messages is known only for a closed file.
 double McapReader::progress() const noexcept {
   return file_.size() == 0 ? 1.0 : static_cast<double>(offset_) / static_cast<double>(file_.size());
 }
@@ -106,7 +106,7 @@ bool McapReader::next(McapMessage& message) {
 
 // Dispatches by kind. Definitions and messages may stand outside chunks as well.
 void McapReader::take(const Record& record, McapMessage& message, bool& found) {
-  // Behind the data stands the summary, which repeats definitions.
+  // The summary follows the data and repeats the definitions.
   if (data_ended_ && record.kind != McapKind::kFooter) return pass_over(record);
   // No writer does that; a flipped bit in an index does, and no checksum would tell in time.
   if (has_chunks_ && record.kind == McapKind::kMessage) {
@@ -174,7 +174,7 @@ void McapReader::open_chunk(const Record& record) {
   }
 }
 
-// All of it, or what there is of a chunk that is cut off.
+// The whole chunk, or the part that is there of one that is cut off.
 std::span<const std::byte> McapReader::decompressed(const Record& record, McapCompression how,
                                                     std::span<const std::byte> stored,
                                                     std::uint64_t size) {
@@ -201,7 +201,7 @@ void McapReader::take_from_chunk(McapMessage& message, bool& found) {
   McapFields fields(chunk_);
   const auto kind = static_cast<McapKind>(fields.get<std::uint8_t>());
   const auto body = fields.get_raw(fields.get<std::uint64_t>());
-  // Inside of compressed data there are no places that mean anything to a reader.
+  // A byte offset inside compressed data means nothing to a reader.
   const std::uint64_t offset = chunk_is_stored_ ? chunk_end_ - chunk_.size() : chunk_offset_;
   if (!fields.ok()) {
     if (chunk_cut_off_) return cut_off(file_.size());

@@ -1,8 +1,8 @@
-// Reads MCAP files of any origin and in any state: streamed from the front up to the end or the
-// damage, or, for a window of time, through the index.
+// Reads MCAP files of any origin and in any state. A file is streamed from the front up to the end
+// or the damage. For a window of time, it is read through the index.
 //
 // Chunks may be compressed by zstd or LZ4; others are refused by name. Padding and unknown records
-// are skipped. No length in the file is trusted beyond the file's size, nor beyond 1 GiB.
+// are skipped. A length in the file is trusted only up to the file's size and 1 GiB.
 #pragma once
 
 #include <cstddef>
@@ -48,8 +48,8 @@ struct McapWindow {  // log times, ns, both included
   std::uint64_t end_ns = std::numeric_limits<std::uint64_t>::max();
 };
 
-// Not for several threads at once. Exceptions come from memory allocation only; what is wrong with
-// a file is in error().
+// Only one thread may use it at a time. Exceptions come from memory allocation only; faults of the
+// file are in error().
 class McapReader {
  public:
   // Only messages inside the window are returned; when the file is indexed, only their chunks are
@@ -65,8 +65,8 @@ class McapReader {
 
   // A sentence with file, byte offset, reason and how much was read before; empty for a sound file.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  // The messages before the damage are sound and complete: the file was cut off or hit by an error,
-  // instead of being no MCAP file, or one that this reader does not take.
+  // True when the file was cut off or damaged: the messages before the damage are sound and
+  // complete. False when it is no MCAP file, or one that this reader does not take.
   [[nodiscard]] bool readable() const noexcept { return readable_; }
 
   // Nothing where the file was cut off or its end is damaged.

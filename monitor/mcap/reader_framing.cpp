@@ -32,7 +32,7 @@ bool McapReader::next_record(Record& record) {
     damage(offset_, "a record of kind 0, which does not exist");
     return false;
   }
-  // Up to here the checksum of the data section; DataEnd itself is not in it.
+  // The checksum of the data section ends here; DataEnd itself is not in it.
   if (record.kind != McapKind::kDataEnd) crc_ = mcap_crc(crc_, header);
   offset_ += header.size();
   return true;
@@ -58,7 +58,7 @@ bool McapReader::next_indexed_chunk(Record& record) {
   return false;
 }
 
-// No length is trusted beyond the file's size, nor beyond what fits into memory.
+// A length is trusted only up to the file's size and what fits into memory.
 bool McapReader::read_body(const Record& record) {
   if (record.length > file_.size() - offset_) {
     cut_off(record.offset);
@@ -78,11 +78,11 @@ bool McapReader::read_body(const Record& record) {
   return true;
 }
 
-// A record whose content does not matter; only its bytes, for the checksum.
+// Only the bytes of this record matter, for the checksum; its content does not.
 void McapReader::pass_over(const Record& record) {
   if (record.length > file_.size() - offset_) return cut_off(record.offset);
   std::uint64_t left = record.length;
-  // Attachments may be larger than memory, so they pass in pieces.
+  // Attachments may be larger than memory, so they are read block by block.
   std::array<std::byte, 65536> piece;
   while (left > 0) {
     const auto bytes = std::span(piece).first(

@@ -122,7 +122,7 @@ std::optional<McapSummary> read_mcap_summary(McapFile& file) {
   if (!footer) return std::nullopt;
   const std::uint64_t length = footer->offset - footer->summary_start;
   if (length > kLargestSummary) return std::nullopt;
-  // With the part of the footer that its checksum covers.
+  // Includes the part of the footer that the summary's checksum covers.
   std::vector<std::byte> bytes(static_cast<std::size_t>(length) + kMcapRecordHeader +
                                kMcapFooterBody - sizeof(std::uint32_t));
   if (!file.read(footer->summary_start, bytes)) return std::nullopt;

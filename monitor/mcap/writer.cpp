@@ -116,8 +116,8 @@ void McapWriter::fail(const std::string& what) {
   if (error_.empty()) error_ = what;
 }
 
-// Everything that reaches the file passes here, so that the checksum of the data section covers it.
-// After an error nothing more is written.
+// Everything that is written to the file passes through here, so that the checksum of the data
+// section covers it. After an error nothing more is written.
 void McapWriter::put_out(std::span<const std::byte> bytes) {
   crc_ = mcap_crc(crc_, bytes);
   check();
@@ -152,8 +152,8 @@ bool McapWriter::check() {
   return ok();
 }
 
-// Definitions stand in the chunk in front of the messages that use them, and again in the summary:
-// a file that was cut off before its end can still be read.
+// Definitions stand in the chunk in front of the messages that use them, and again in the summary.
+// So a file that was cut off can still be read.
 std::uint16_t McapWriter::add_channel(const McapSchema& schema, std::string_view topic,
                                       std::string_view encoding, const McapMap& metadata) {
   auto known = std::find(schemas_.begin(), schemas_.end(), schema);
@@ -344,7 +344,8 @@ void McapWriter::write_summary() {
   summary.put(offsets_start);
   summary.put(std::uint32_t{0});
   summary.end_record(footer);
-  // The checksum's place is known, but not in McapBytes: write up to it, then it.
+  // McapBytes cannot fill in the checksum, so everything in front of it is written first, then the
+  // checksum.
   const auto covered = summary.view().first(summary.size() - sizeof(std::uint32_t));
   const std::uint32_t crc = mcap_crc(0, covered);
   put_out(covered);

@@ -1,6 +1,5 @@
-// Writes MCAP files: chunks, compressed or not, with message indexes, a summary and checksums, so
-// that every reader can seek in them, and a file that a crash cut off loses no more than its last
-// chunk.
+// Writes MCAP files: chunks, compressed or not, with message indexes, a summary and checksums.
+// Every reader can seek in them, and a crash costs no more than the last chunk.
 #pragma once
 
 #include <cstddef>
@@ -42,7 +41,8 @@ class McapWriter {
   [[nodiscard]] bool ok() const noexcept { return error_.empty(); }
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] std::uint64_t messages() const noexcept { return statistics_.messages; }
-  // Of the file so far, with the chunk that is still in memory, before it is compressed.
+  // The size of the file so far, including the chunk that is still in memory, before that is
+  // compressed.
   [[nodiscard]] std::uint64_t bytes() const noexcept { return offset_ + chunk_.size(); }
 
   // Equal schemas are written once. Returns the channel's id, from 1.
@@ -63,9 +63,9 @@ class McapWriter {
   // Ends the chunk and hands it to the operating system.
   void flush();
 
-  // Whether the file is still there under its name with all that was handed over; when it is not
-  // (deleted, moved away, cut off by another program), that is the error. Also asked before and
-  // after everything that is written.
+  // Returns true while the file is still there under its name with all that was handed over. A file
+  // that was deleted, moved away or cut off by another program is an error. Every write also makes
+  // this check before and after it.
   bool check();
 
   // Writes the summary and closes the file; true when everything is in it.

@@ -12,7 +12,7 @@ class Budget {
  public:
   constexpr explicit Budget(std::uint32_t queries) noexcept : left_(queries) {}
 
-  // How many queries may be made now.
+  // The number of queries that may be made now.
   [[nodiscard]] constexpr std::uint32_t left() const noexcept { return left_; }
   // Counts queries that have been made.
   constexpr void spend(std::uint32_t queries = 1) noexcept {

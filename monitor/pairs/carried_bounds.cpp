@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-// How far an object has come between two readings. Equal readings mean that it has not moved.
+// The displacement of an object between two readings. Equal readings mean that it has not moved.
 double between(double before, double now) noexcept {
   return now == before ? 0.0 : rounded_up(now - before);
 }

@@ -1,20 +1,20 @@
-// What a separating direction still proves after both parts have moved.
+// Lower bound of a distance by a separating direction, after both parts have moved.
 //
-// Along a fixed unit direction n from A to B, the gap between two bodies, min over B of n.x less
-// max over A of n.x, bounds their distance from below wherever they are (weak duality, §3.2). If
-// the bodies translate, it changes by exactly n.(shift of B - shift of A). If one turns about the
-// centre of its sphere by an angle theta, it changes by at most 2 sin(theta / 2) times the sphere's
-// radius. So the gap of an evaluation, and the turning since then, bound the gap of now. Motion
-// across n costs nothing, and motion that separates the bodies along n gains.
+// Let n be a fixed unit direction from A to B. The gap of two bodies along n is min over B of n.x
+// less max over A of n.x. It bounds their distance from below wherever they are (weak duality,
+// §3.2). If the bodies translate, it changes by exactly n.(shift of B - shift of A). If one turns
+// about the centre of its sphere by an angle theta, the gap changes by at most 2 sin(theta / 2)
+// times the sphere's radius. So the gap of an evaluation, and the turning since then, bound the gap
+// of now. Motion across n costs nothing, and motion that separates the bodies along n gains.
 #pragma once
 
 #include "monitor/geometry/posed_part.hpp"
 
 namespace clearance {
 
-// To be kept from an evaluation that proved `lower` along `normal` (world, A to B) for the exact
-// poses of now: the gap less that of the spheres' centres, plus all turning so far, m. -infinity:
-// there is no direction, or it will prove nothing later.
+// The value to keep from an evaluation that proved `lower` along `normal` (world, A to B) for the
+// exact poses of now. It is the gap less that of the spheres' centres, plus all rotation so far, m.
+// -infinity: there is no direction, or it will prove nothing later.
 [[nodiscard]] double kept_gap(double lower, const Vec3& normal, const PosedPart& a,
                               const PosedPart& b) noexcept;
 

@@ -31,12 +31,12 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
 }
 
 // Writes a query's answer into the table. Returns a lower bound of the distance since the last
-// tick, from the directions of this evaluation and of one in the last tick; -infinity: they prove
+// tick, by the directions of this evaluation and of one in the last tick. -infinity: they prove
 // none.
 //
-// `point_on_b` is the witness point in B's local frame, without B's radius: through A's frame it
-// would be rounded by the distance between the two. `known`: bounds of the part pair before the
-// query.
+// `point_on_b` is the witness point in B's local frame, without B's radius. A point in A's frame
+// would have a rounding error that grows with the distance between the two. `known`: bounds of the
+// part pair before the query.
 inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
                            const DistanceBounds& known, std::uint32_t part_pair,
                            const PairMotion& motion, const OpenTick& tick) noexcept {
@@ -86,7 +86,7 @@ std::uint32_t likely_part_pair(std::uint32_t pair, const PairTable& table) noexc
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
-// What is known of a pair of several part pairs while these are brought up to date one by one.
+// The bounds of a pair of several part pairs while these are brought up to date one by one.
 struct PartPairs {
   double displacement;  // since they were last brought up to date, m
   bool is_new;          // that was in this tick, so nothing is known of the last one
@@ -166,7 +166,7 @@ DistanceBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
   return {rounded_down(found.lower - error), rounded_up(found.upper + error)};
 }
 
-// A converged answer is tight, so that carried bounds would add nothing to it.
+// Carried bounds would add nothing to the bounds of a converged answer.
 void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
             const OpenTick& tick) noexcept {
   PairTable& table = tick.table;

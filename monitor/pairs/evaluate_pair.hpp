@@ -1,4 +1,4 @@
-// Distance queries: they make a pair's true bounds tight.
+// Distance queries, which narrow a pair's bounds to rounding where the budget allows.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 [[nodiscard]] DistanceBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
                                              const PosedPart& b) noexcept;
 
-// Brings a pair up to date and evaluates it as far as the budget goes: first the part pair that may
-// be closest, then every other one that may be closer still. A part pair whose carried bounds prove
-// that it is not the closest is not queried: the pair's distance does not depend on it. Both
+// Brings a pair up to date and evaluates it as far as the budget goes. The part pair that may be
+// closest is first, then every other one that may be closer still. A part pair whose carried bounds
+// prove that it is not the closest is not queried: the pair's distance does not depend on it. Both
 // objects are known.
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept;
 

@@ -1,5 +1,5 @@
-// A lower bound of two objects' distance by their reduced models: one query instead of one for
-// every part of the one with every part of the other.
+// A lower bound of two objects' distance by their reduced models. One query replaces those of every
+// part of one object with every part of the other.
 //
 // Each query starts cold. It is made when a pair becomes active, and a tracking state would have to
 // be fetched from memory.
@@ -18,8 +18,8 @@ class HullBound {
  public:
   HullBound(const Scene& scene, const std::vector<PosedPart>& parts);
 
-  // Whether the models may save queries: one object has a hull, and the other a hull or only one
-  // part.
+  // Returns true when the models may save queries: one object has a hull, and the other has a hull
+  // or only one part.
   [[nodiscard]] bool possible(const PairEntry& pair) const noexcept;
 
   // A lower bound of the pair's distance for the poses in use, m; -infinity where the models

@@ -1,7 +1,7 @@
-// How many pairs are absent, known or stale, counted without visiting pairs.
+// The numbers of pairs that are absent, known or stale, counted without visiting pairs.
 //
-// The state of a pair follows from its two objects. So whenever an object's state changes, it is
-// enough to count with how many objects of that state it is paired: by a line of bits an object.
+// The state of a pair follows from its two objects. So when an object's state changes, it is enough
+// to count its partners in each state. Each object has a row of bits for that.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +25,7 @@ class KnownPairs {
   // Objects that are known as of the last update and were not before it.
   [[nodiscard]] std::span<const std::uint32_t> regained() const noexcept { return regained_; }
 
-  // As of the last update: no object is absent; ...
+  // After the last update: no object is absent; ...
   [[nodiscard]] std::uint64_t present() const noexcept { return present_.pairs; }
   // ... both objects' poses are known; ...
   [[nodiscard]] std::uint64_t known() const noexcept { return known_.pairs; }
@@ -45,7 +45,7 @@ class KnownPairs {
   bool set(std::size_t object, bool is_member, Kind& kind) noexcept;
 
   std::size_t words_;                      // of a line
-  std::vector<std::uint64_t> neighbours_;  // a line of bits an object: its partners in pairs
+  std::vector<std::uint64_t> neighbours_;  // one row of bits per object: its partners in pairs
   Kind present_, known_, fresh_;
   std::vector<std::uint32_t> regained_;
 };

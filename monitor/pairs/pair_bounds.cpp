@@ -12,10 +12,11 @@
 namespace clearance {
 namespace {
 
-// The relative motion of two objects is computed, which takes 25 ns, only where it may pay: their
-// displacement is more than this share of their distance, ...
+// The relative motion of two objects takes 25 ns, so it is computed only where it may pay. This
+// requires that their displacement is more than this share of their distance, ...
 constexpr double kSmallDisplacement = 1.0 / 64.0;
-// ... and the directions of two evaluations leave more than this share of the displacement open.
+// ... and that the directions of two evaluations leave more than this share of the displacement
+// open.
 constexpr double kSmallShare = 1.0 / 4096.0;
 
 PairStatus status_of(DistanceStatus status) noexcept {
@@ -34,7 +35,7 @@ PairStatus status_of(DistanceStatus status) noexcept {
   return PairStatus::kIterationLimit;
 }
 
-// The part pair with the smallest upper bound, evaluated ones before all others.
+// The part pair with the smallest upper bound; evaluated ones come before all others.
 std::uint32_t closest_part_pair(const PairEntry& entry, const PairTable& table) noexcept {
   std::uint32_t closest = entry.first_part_pair;
   for (std::uint32_t part_pair = closest + 1; part_pair < entry.end_part_pair; ++part_pair) {
@@ -85,9 +86,9 @@ PairStatus evaluated_status(const PairEntry& entry, std::uint32_t closest,
   return status;
 }
 
-// A lower bound of the distance since the last tick, of two objects that were known then and have
-// made no discontinuity since: from bounds `before` and `now`, and `along` the directions of two
-// evaluations, m.
+// A lower bound of the distance of two objects since the last tick, m. Both were known then and
+// have made no discontinuity since. It uses the bounds `before` and `now`, and `along`, which the
+// directions of two evaluations prove.
 double lower_between_ticks(const TrackedObject& a, const TrackedObject& b, double before,
                            double now, double along, SweptPrecision precision) noexcept {
   const double displacement = rounded_up(a.displacement + b.displacement);

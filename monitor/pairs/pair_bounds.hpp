@@ -19,10 +19,10 @@ struct PairBounds {
   std::uint64_t evaluated_cycle = 0;  // of that part pair; 0: no part pair was ever evaluated
 };
 
-// How closely the time since the last tick is examined.
+// The motion by which the time since the last tick is bounded.
 enum class SweptPrecision : std::uint8_t {
   kByDisplacement,          // by the displacement of each object
-  kByRelativeDisplacement,  // and by that of one object as seen from the other
+  kByRelativeDisplacement,  // and by that of one object relative to the other
 };
 
 // The bounds of any pair, whether it was brought up to date in this tick or not.

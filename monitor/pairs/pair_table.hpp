@@ -1,9 +1,9 @@
-// What ticks remember of every pair: bounds, the last evaluation, the last refresh.
+// The state of every pair from tick to tick: bounds, the last evaluation, the last refresh.
 //
 // An object pair owns consecutive part pairs, one for every part of the first object with every
 // part of the second. A part pair's bounds are true for the poses at which the pair was last
-// brought up to date. How far both objects have moved since then makes them true for the poses in
-// use (carried_bounds.hpp), so a pair that a tick does not touch costs nothing.
+// brought up to date. The displacement of both objects since then carries them to the poses in use
+// (carried_bounds.hpp). So a pair that a tick does not touch costs nothing.
 #pragma once
 
 #include <cstdint>
@@ -19,11 +19,11 @@ namespace clearance {
 // A figure that is not known.
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// Where two parts were found to be closest, in the world. NaN until evaluated.
+// The witness points of two parts, in the world. NaN until evaluated.
 struct ClosestPoints {
   double distance;  // m
-  // The distance along the normal at the exact poses of that tick is at least this, m; -infinity:
-  // the normal separated nothing.
+  // The distance along the normal at the exact poses of that tick is at least this, m. -infinity:
+  // the normal did not separate the parts.
   double lower;
   Vec3 witness_a, witness_b;
   Vec3 normal;
@@ -54,8 +54,8 @@ struct alignas(64) PairEntry {
 struct PairTable {
   std::vector<PairEntry> entries;  // as in Scene::pairs
 
-  // By pair. From the tick before its last evaluation up to that evaluation, the pair's distance
-  // was at least this, m, as the directions of two evaluations prove; -infinity: they do not.
+  // By pair, m: a lower bound of its distance from the tick before its last evaluation up to that
+  // evaluation. The directions of two evaluations prove it. -infinity: they prove none.
   std::vector<double> lower_between;
   // By pair. The tick in which its bound was last found afresh from poses: by an evaluation, or by
   // models of its objects that proved it far; 0: never.

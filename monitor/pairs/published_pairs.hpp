@@ -1,7 +1,7 @@
 // The pairs whose figures every report has, or all pairs where a scene evaluates all.
 //
-// They are evaluated in every tick whose budget covers them, in one straight loop: pairs of single
-// parts by vector code, many at once (core/batch.hpp), the others one by one.
+// They are evaluated in one straight loop in every tick whose budget covers them. Vector code takes
+// many pairs of single parts at once (core/batch.hpp); the others are taken one by one.
 #pragma once
 
 #include <cstdint>
@@ -20,7 +20,7 @@ class PublishedPairs {
                  bool every_tick);
 
   [[nodiscard]] std::span<const std::uint32_t> pairs() const noexcept { return pairs_; }
-  // How many queries they take at most.
+  // The largest number of queries that they take.
   [[nodiscard]] std::uint32_t part_pairs() const noexcept { return part_pairs_; }
   // All of them fit into the budget, so that they are never left to the broad phase.
   [[nodiscard]] bool every_tick() const noexcept { return every_tick_; }

@@ -1,4 +1,5 @@
-// What the stages of a tick read, and what those stages change that bring pairs up to date.
+// The state that the stages of a tick read, and the state that the stages which bring pairs up to
+// date change.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,8 @@
 
 namespace clearance {
 
-// What stages read: every object and part as placed in this tick, and what is known of every pair.
+// The state that stages read: every object and part as placed in this tick, and the bounds of every
+// pair.
 struct TickView {
   const std::vector<TrackedObject>& objects;
   const std::vector<PosedPart>& parts;

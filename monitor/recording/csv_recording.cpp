@@ -53,7 +53,8 @@ class Ids {
   std::map<std::string, std::uint32_t> ids_;
 };
 
-// Why the daemon would refuse this pose, as the end of a sentence; empty: it would not.
+// The reason why the daemon would refuse this pose, as the end of a sentence. Empty: it would
+// accept the pose.
 std::string fault_of(const Pose& pose) {
   const double farthest = pose.position.cwiseAbs().maxCoeff();
   if (!(farthest <= kLargestInSample)) {
@@ -68,7 +69,7 @@ std::string fault_of(const Pose& pose) {
   return "";
 }
 
-// Whether to stop in front of this row, from 0.
+// Returns true when the conversion must stop in front of this row; rows count from 0.
 bool stops_at(std::size_t row, const std::function<bool()>& stop) {
   constexpr std::size_t kRowsBetween = 1024;
   return stop && row % kRowsBetween == 0 && stop();
@@ -113,7 +114,8 @@ Cell cell_of(const std::filesystem::path& csv, const std::vector<std::string>& o
   return cell;
 }
 
-// The second pass: one batch a time, more when it has more poses than a batch can hold.
+// The second pass: one batch for each time, or several when there are more poses than a batch can
+// hold.
 class BatchWriter {
  public:
   BatchWriter(RecordingWriter& out, std::uint64_t scene_revision)
@@ -163,7 +165,7 @@ CsvRecordingResult record_csv(const std::filesystem::path& csv, const std::files
   const Cell& named = cell == nullptr ? made : *cell;
   RecordingWriter writer(out, named.topics, options);
   result.begun = writer.ok();
-  static_cast<void>(writer.attach(named));  // a replay says that it lacks them
+  static_cast<void>(writer.attach(named));  // a replay reports that they are missing
   writer.catalogue(*make_catalogue(named), result.first_ns);
   BatchWriter batches(writer, named.scene.revision);
   CsvPoseLog log(csv);

@@ -25,7 +25,8 @@ struct CsvRecordingResult {
 
 // `cell`: its ids are used, and every object of the log must be in it. Without one, ids are given
 // in the order of appearance and the recording names them. The log is checked whole before `out` is
-// written. `stop` is asked every 1,024 rows: true ends it, with an error that says how far it came.
+// written. `stop` is called every 1,024 rows. If it returns true, the conversion ends with an error
+// that names its progress.
 [[nodiscard]] CsvRecordingResult record_csv(const std::filesystem::path& csv,
                                             const std::filesystem::path& out, const Cell* cell,
                                             const RecordingOptions& options = {},

@@ -1,5 +1,6 @@
-// XCDR1 (DDS-XTypes 1.3, section 7.4.1): numbers are aligned to their size from behind the header;
-// strings and sequences begin with a length of 4 bytes; structs are their fields in a row.
+// XCDR1 (DDS-XTypes 1.3, section 7.4.1): numbers are aligned to their size, counted from the end of
+// the header. Strings and sequences begin with a length of 4 bytes. Structs are their fields in a
+// row.
 #include "monitor/recording/layout_change.hpp"
 
 #include <fmt/format.h>
@@ -73,7 +74,7 @@ class Input {
     std::uint32_t length = 0;
     const auto bytes = take(sizeof length, sizeof length);
     if (ok_) std::memcpy(&length, bytes.data(), sizeof length);
-    // Every element takes a byte or more, so that no length leads beyond the end step by step.
+    // Every element takes a byte or more, so a huge length soon meets the end of the bytes.
     ok_ = ok_ && length <= bytes_.size() - at_;
     return ok_ ? length : 0;
   }
@@ -131,7 +132,7 @@ class Output {
 
 void copy(const IdlType& recorded, const IdlType& ours, Input& in, Output& out);
 
-// Finds where each recorded field begins, then goes through ours.
+// Finds the start of each recorded field, then goes through the fields of this build.
 void copy(const IdlStruct& recorded, const IdlStruct& ours, Input& in, Output& out) {
   std::vector<std::size_t> begins;
   for (const IdlField& field : recorded.fields) {

@@ -1,8 +1,8 @@
-// Messages of an older or newer build, in the layout that this build has.
+// Converts messages of an older or newer build to the layout of this build.
 //
-// A recording carries the IDL of its messages. Where that differs from ours, fields are found again
-// by their names: what the recording lacks is filled in as not known, what this build does not know
-// is left out.
+// A recording carries the IDL of its messages. If that differs from the IDL of this build, fields
+// are matched by their names. Fields that the recording lacks are filled in as not known. Fields
+// that this build does not know are left out.
 #pragma once
 
 #include <cstddef>
@@ -21,9 +21,9 @@ class LayoutChange {
   // `type`: the struct's name in both texts, without modules.
   LayoutChange(std::string_view recorded_idl, std::string_view our_idl, std::string_view type);
 
-  // Not empty: why the messages cannot be read, as the end of a sentence.
+  // The reason why the messages cannot be read, as the end of a sentence. Empty: they can be read.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  // Whether there is nothing to do.
+  // True when both layouts are the same, so no conversion is needed.
   [[nodiscard]] bool is_none() const noexcept { return error_.empty() && is_same_; }
   // Fields that the recording lacks: "Distances.queries".
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }

@@ -1,4 +1,5 @@
-// The first batch is read before the file is made: a log without any leaves no recording behind.
+// The first batch is read before the file is made, so a log without batches leaves no recording
+// behind.
 #include "monitor/recording/log_recording.hpp"
 
 #include <fmt/format.h>
@@ -11,7 +12,8 @@
 namespace clearance {
 namespace {
 
-// Batches larger than a message may be do not come: a cell has at most so many objects and joints.
+// A batch always fits into a message, because the objects and joints of a cell are limited in
+// number.
 void write(const LoggedBatch& logged, const Scene& scene, RecordingWriter& writer,
            clearance_msg_PoseBatch& poses) {
   const PoseBatch& batch = logged.batch;
@@ -43,7 +45,7 @@ LogRecordingResult record_log(const std::filesystem::path& log, const std::files
   RecordingWriter writer(out, cell.topics, options);
   result.begun = writer.ok();
   result.first_ns = batch.log_ns;
-  static_cast<void>(writer.attach(cell));  // a replay says that it lacks them
+  static_cast<void>(writer.attach(cell));  // a replay reports that they are missing
   writer.catalogue(*make_catalogue(cell), result.first_ns);
   Sample<clearance_msg_PoseBatch> poses = make_batch(clearance_msg_kMaxPoses);
   for (; more && writer.ok(); more = input->next(batch)) {

@@ -1,4 +1,5 @@
-// Recordings made of what others logged: bags of ROS 2, joint positions as CSV (monitor/bags).
+// Recordings made of the logs of other programs: bags of ROS 2, joint positions as CSV
+// (monitor/bags).
 #pragma once
 
 #include <cstdint>
@@ -23,9 +24,10 @@ struct LogRecordingResult {
   std::vector<std::string> notes;  // what was left out, and why
 };
 
-// Every message that moves something of the scene becomes a batch, at the time at which it was
-// recorded: a replay of `out` makes the same reports as one of the log. `stop` is asked before
-// every message: true ends it, with an error that says how far it came.
+// Every message that moves something of the scene becomes a batch with the time at which it was
+// recorded. So a replay of `out` makes the same reports as a replay of the log. `stop` is called
+// before every message. If it returns true, the conversion ends with an error that names its
+// progress.
 [[nodiscard]] LogRecordingResult record_log(const std::filesystem::path& log,
                                             const std::filesystem::path& out, const Cell& cell,
                                             const InputLogOptions& log_options = {},

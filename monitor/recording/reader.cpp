@@ -19,7 +19,8 @@ std::optional<TopicKind> kind_of(const McapChannel& channel) {
   return topic_kind(channel.schema.name);
 }
 
-// Whether the summary says that the file has messages of a kind; none when there is no summary.
+// Says whether the file has messages of a kind, according to the summary. No value when there is no
+// summary.
 std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKind kind) {
   if (!summary || summary->statistics.messages == 0) return std::nullopt;
   for (const auto& [id, count] : summary->statistics.channel_messages) {
@@ -70,8 +71,8 @@ bool RecordingReader::next_in_file(RecordedMessage& message) {
   return false;
 }
 
-// A schema in another language than ours cannot be compared: such messages are taken by the name of
-// their type, and what does not decode is left out.
+// A schema in another language than ours cannot be compared. Such messages are taken by the name of
+// their type, and those that do not decode are left out.
 RecordingReader::Channel RecordingReader::examine(const McapChannel& channel) {
   Channel found{.kind = kind_of(channel), .change = {}};
   if (!found.kind || channel.schema.encoding != kIdlEncoding) return found;

@@ -92,8 +92,8 @@ struct RecordingOutline {
   std::int64_t first_ns = 0;        // log time of the first message
 };
 
-// Reads as far as it takes to know: a few messages of what our recorders write. Of a recording of
-// several files, the first one.
+// Reads only as far as needed: a few messages of a file that our recorders wrote. If the recording
+// has several files, it reads the first one.
 [[nodiscard]] RecordingOutline outline(const std::filesystem::path& file);
 
 }  // namespace clearance

@@ -19,7 +19,7 @@ namespace {
 // No compressed file may become larger.
 constexpr std::size_t kLargestFile = std::size_t{1} << 28;
 
-// Whoever made the recording says where they go: nowhere but under the root.
+// The recording determines the paths, so only those under the root are accepted.
 bool stays_inside(const std::filesystem::path& name) {
   return name.is_absolute() && name.has_filename() && name == name.lexically_normal() &&
          std::none_of(name.begin(), name.end(),

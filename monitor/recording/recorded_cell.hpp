@@ -13,9 +13,9 @@ namespace clearance {
 // The media type of an attachment whose bytes are compressed.
 inline constexpr std::string_view kZstdMediaType = "application/zstd";
 
-// Nothing where the recording holds no cell. The files stand in a directory of their own while the
-// cell is read, each where it stood when it was recorded; where none are kept, they are looked for
-// on this machine, beside the recording.
+// Returns nothing where the recording holds no cell. While the cell is read, its files stand in a
+// directory of their own, at the paths that they had when they were recorded. If the recording
+// keeps no files, they are looked for on this machine, beside the recording.
 [[nodiscard]] std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
                                                       const RecordingOutline& outline,
                                                       CellOptions options = {});

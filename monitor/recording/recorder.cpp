@@ -10,7 +10,8 @@
 namespace clearance {
 namespace {
 
-// Batches that no report names (made for another scene) are written all the same when so many wait.
+// When this many batches wait, those that no report names (made for another scene) are written all
+// the same.
 constexpr std::size_t kMostWaiting = 4096;
 
 // The source's stamp of a batch: its newest pose; joints have one in common.
@@ -90,7 +91,8 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
 }
 
-// In front of the distances, so that who reads these has it already. Thinned out as they are.
+// The message stands in front of the distances, so that a reader of these has it already. It is
+// thinned out like them.
 void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
   if (!writer_.holds(TopicKind::kSeparation)) return;
   to_wire(report, publish_ns, *separation_);

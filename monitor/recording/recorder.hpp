@@ -16,9 +16,9 @@
 
 namespace clearance {
 
-// Called from one thread, never the tick's: it converts, allocates and writes to disk. What it is
-// given is in the file at most 200 ms later, so that is what a crash can cost. After an error (a
-// full disk, a file that was deleted) nothing more is written and error() says why.
+// Called from one thread, never the tick's: it converts, allocates and writes to disk. A message is
+// in the file at most 200 ms after the call, so a crash can cost no more than that. After an error
+// (a full disk, a file that was deleted) nothing more is written, and error() says why.
 class Recorder {
  public:
   // Writes the catalogue.
@@ -45,7 +45,8 @@ class Recorder {
   [[nodiscard]] const std::string& error() const noexcept { return writer_.error(); }
   [[nodiscard]] std::uint64_t messages() const noexcept { return writer_.messages(); }
   [[nodiscard]] std::uint64_t bytes() const noexcept { return writer_.bytes(); }
-  // Why the files that the cell names are not in it; empty: they are, or there are none.
+  // The reason why the recording does not hold the files that the cell names. Empty: it holds them,
+  // or there are none.
   [[nodiscard]] const std::string& without_files() const noexcept { return without_files_; }
   // The file that is written, and how many there are by now.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return writer_.file(); }

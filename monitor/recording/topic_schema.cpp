@@ -100,7 +100,7 @@ std::string self_contained_idl(std::string_view idl, std::string_view type) {
   return fmt::format("{}}};\n}};\n", text);
 }
 
-// A comparison a topic, once for each channel.
+// This costs one comparison per topic, once for each channel.
 std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
   for (const Topic& topic : kTopics) {
     if (type_name == topic.type->m_typename) return topic.kind;

@@ -19,25 +19,26 @@
 
 namespace clearance {
 
-// Name of the metadata record with version, scene, scene_revision and cell (the YAML text), and
-// build, the one that made the reports (monitor/files/build_info.hpp), where that is known; of
-// a recording of several files `part`, from 1; pairs_every, where it is not 1; cell_file, where the
-// cell stood, of a recording with the files that it names (recorded_cell.hpp).
+// Name of the metadata record. Its keys are version, scene, scene_revision and cell (the YAML
+// text). Further keys stand only where they are known or needed. `build` is the build that made the
+// reports (monitor/files/build_info.hpp). `part` counts the files of one recording, from 1.
+// `pairs_every` stands where it is not 1. `cell_file` is the path of the cell, in a recording with
+// the files that it names (recorded_cell.hpp).
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
-// Errors are kept, as McapWriter does. Not for several threads at once.
+// Errors are kept, as in McapWriter. Only one thread may use it at a time.
 class RecordingWriter {
  public:
   RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                   const RecordingOptions& options = {});
 
-  // Keeps the files that the cell was read from, in this file and every one after it; in front of
-  // what describes it. Returns why they are not in it, if so: they are too large (attach_bytes), or
-  // one cannot be read. A recording without them is whole, but replays need the files.
+  // Keeps the files that the cell was read from, in this file and every one after it, in front of
+  // its description. If they are not kept, returns the reason: they are too large (attach_bytes),
+  // or one cannot be read. A recording without them is whole, but replays need the files.
   [[nodiscard]] std::string attach(const Cell& cell);
 
-  // Ids to names; also kept as metadata. Belongs in front of what uses the ids. `build`: the one
-  // that makes the reports; empty: not known.
+  // The catalogue maps ids to names and is also kept as metadata. It belongs in front of all
+  // messages that use the ids. `build`: the one that makes the reports; empty: not known.
   void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
                  const std::string& build = {});
   // Only the metadata.
@@ -52,8 +53,9 @@ class RecordingWriter {
   }
   [[nodiscard]] bool holds(TopicKind kind) const { return !options_.left_out.contains(kind); }
 
-  // Begins the next file, with the last catalogue, when this one is large or long enough. To be
-  // asked where a file may end: behind a report and what belongs to it. True: it did.
+  // Begins the next file, with the last catalogue, when this one is large or long enough. It is
+  // called where a file may end: after a report and the messages that belong to it. Returns true
+  // when it began a file.
   bool roll(std::int64_t log_ns);
 
   // A channel beside those of our topics, in this file and every one after it, with CDR messages;

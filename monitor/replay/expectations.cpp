@@ -1,4 +1,4 @@
-// Judges the bound over all pairs, which one comparison does in a tick; single pairs are searched
+// Judges the bound over all pairs, which takes one comparison a tick. Single pairs are searched
 // only to name the one that broke an expectation.
 #include "monitor/replay/expectations.hpp"
 
@@ -110,7 +110,7 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
                      metres(*min_distance_), name(pair.status), metres(pair.lower), expected);
 }
 
-// Nothing is too near now; was something since the last tick?
+// No pair is too near now, but one may have been since the last tick.
 std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {

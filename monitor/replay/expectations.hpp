@@ -23,12 +23,13 @@ class Expectations {
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
-  // To be called for every tick; judges only if told. Before all moving objects have been seen only
-  // a pair that is certainly too near counts. What is broken for the first time, a sentence each.
+  // To be called for every tick; judges only if told. Until all moving objects have been known
+  // once, only a pair that is certainly too near counts. Returns one sentence for each expectation
+  // that is broken for the first time.
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
                                                bool judge);
 
-  // After the last tick: why no tick could be judged, if so.
+  // After the last tick: the reason why no tick could be judged, if none was.
   [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
 
  private:

@@ -1,5 +1,5 @@
-// Walks the lists of fields (monitor/wire/message_fields.hpp) over both messages and stops at the
-// first difference; no text is made before that.
+// Goes through the lists of fields (monitor/wire/message_fields.hpp) in both messages and stops at
+// the first difference. No text is made before that.
 #include "monitor/replay/message_difference.hpp"
 
 #include <fmt/format.h>
@@ -93,8 +93,8 @@ class Comparer {
   }
 
  private:
-  // To the bit: -0 is not 0. Any NaN equals any other: what is not known has no bits worth
-  // comparing.
+  // Values are compared to the bit: -0 is not 0. Any NaN equals any other, because it only says
+  // that a value is not known.
   void value(double recorded, double replayed) {
     if (std::isnan(recorded) && std::isnan(replayed)) return;
     if (std::bit_cast<std::uint64_t>(recorded) != std::bit_cast<std::uint64_t>(replayed))

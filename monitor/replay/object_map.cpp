@@ -59,7 +59,7 @@ ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded
   }
 }
 
-// Poses of objects that the cell lacks, or has as fixed ones, are left out.
+// Poses are left out for objects that the cell lacks or has as fixed ones.
 bool ObjectMap::translate(PoseBatch& batch) const {
   if (!made_for(batch, revision_)) return false;
   if (identity_) return true;

@@ -1,6 +1,6 @@
 // Feeds each tick of the recording to a Monitor and passes the report to the comparison, the
-// expectations and the reference, each of which keeps its first failure. Failures are collected
-// rather than thrown: one run finds the first of each kind.
+// expectations and the reference. Each of these keeps its first failure. Failures are not thrown,
+// so one run finds the first of each kind.
 #include "monitor/replay/offline_replay.hpp"
 
 #include <fmt/format.h>
@@ -35,7 +35,7 @@ std::optional<ReferenceCheck> reference_of(const Scene& scene,
   return ReferenceCheck(scene, options.reference, options.tolerance);
 }
 
-// Behind a difference: whether another build may be the reason.
+// Added to the text of a difference when another build may be the reason.
 std::string other_build(const std::string& recorded) {
   if (recorded == kBuild) return {};
   const std::string ours = kBuild;
@@ -92,7 +92,7 @@ class Replay {
   const Scene& scene_;
   const OfflineReplayOptions& options_;
   bool has_reports_, some_without_pairs_;
-  std::string other_build_;  // what to say of it where something differs
+  std::string other_build_;  // what to add where something differs
   TickFeed feed_;
   Expectations expectations_;
   std::optional<ReferenceCheck> reference_;
@@ -113,7 +113,7 @@ class Replay {
   double shown_ = -1.0;
 };
 
-// Why the replay cannot be run at all; empty: it can.
+// The reason why the replay cannot be run at all; empty: it can.
 std::string Replay::refusal() const {
   if (feed_.log() != nullptr && !feed_.damage().empty()) return feed_.damage();
   if (!expectations_.error().empty()) return expectations_.error();
@@ -184,8 +184,8 @@ void Replay::judge_the_whole() {
 }
 
 // A daemon that was started anew begins with a new monitor: its bounds and zones have no history.
-// Cycle numbers of the daemon and of the replay differ by what the recording lacks in front and in
-// between.
+// Cycle numbers of the daemon and of the replay differ by the number of ticks that the recording
+// lacks.
 void Replay::begin_tick(const TickInput& input) {
   if (result_.ticks++ == 0) result_.first_ns = input.time.now_ns;
   result_.last_ns = input.time.now_ns;
@@ -265,8 +265,8 @@ void Replay::compare(const TickInput& input, const Report& report) {
                  what));
 }
 
-// The report comes first, since the other messages follow from it. Where only bounds are compared,
-// other bounds lead to other separations and gradients.
+// The report comes first, since the other messages follow from it. If only bounds are compared, the
+// other messages are not, because other bounds lead to other separations and gradients.
 std::optional<std::string> Replay::difference(const TickInput& input, const Report& report) {
   to_wire(report, input.sources, 0, *replayed_);
   if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
@@ -287,8 +287,8 @@ std::optional<std::string> Replay::difference(const TickInput& input, const Repo
   return std::nullopt;
 }
 
-// Zone changes come on a topic of their own and are compared when all are known; only where the
-// recording is whole, since a change can hang on any tick before.
+// Zone changes come on a topic of their own and are compared when all are known. The recording must
+// be whole, since a change can depend on any tick before.
 void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;

@@ -1,5 +1,5 @@
-// Runs Monitor::tick on a recording, a ROS 2 bag or a joint log, without a clock and without DDS,
-// and gets the same reports again as fast as they can be computed. This is for a user's own tests,
+// Runs Monitor::tick on a recording, a ROS 2 bag or a joint log, without a clock and without DDS.
+// It makes the same reports again as fast as they can be computed. This is for a user's own tests,
 // which find_package(clearance) and link clearance::replay:
 //
 //   #include <config/cell/cell_file.hpp>
@@ -35,8 +35,8 @@ class Monitor;  // monitor/monitor.hpp, in the source tree
 
 // All are optional: without any, the replay only runs.
 struct OfflineReplayOptions {
-  // Ticks in this window are compared, judged and handed out; s after the first tick. Those before
-  // it are run all the same, since bounds and zones have a history.
+  // Ticks in this window (s after the first tick) are compared, judged and handed out. Earlier
+  // ticks are run all the same, since bounds and zones depend on them.
   double start_s = 0.0;
   double end_s = std::numeric_limits<double>::infinity();
 
@@ -45,9 +45,9 @@ struct OfflineReplayOptions {
   // The further files of a recording of several files, in their order.
   std::vector<std::filesystem::path> continued_in = {};
 
-  // Ticks a second, where the recording holds no reports, which say when the ticks were; 0: only
-  // when something came. Not stated: the cell's rate for a bag or a joint log, 0 for recordings of
-  // ours.
+  // Ticks a second, used where the recording holds no reports with the times of its ticks. 0: a
+  // tick only when something came. Not stated: the cell's rate for a bag or a joint log, 0 for
+  // recordings of ours.
   std::optional<double> tick_hz = {};
   // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
@@ -62,7 +62,7 @@ struct OfflineReplayOptions {
 
   // Distances that something else computed (monitor/replay/reference_check.hpp): every one of a
   // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
-  // not meet it: let the scene evaluate all, with a budget for that.
+  // not count as met, so let the scene evaluate all pairs, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
   // The tolerance of a reference, m: distances and bounds may differ by that much. Not stated:
   // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
@@ -79,8 +79,8 @@ struct ReplayedTick {
   const Monitor& monitor;
 };
 
-// A tick as a person finds it: the replay counts its own from 1, and the daemon that was recorded
-// may have been further by then.
+// The numbers of a tick. The replay counts its ticks from 1; the recorded daemon may have been
+// further by then.
 struct TickNumber {
   std::uint64_t cycle = 0;     // of the replay; 0: no tick, all of it
   std::uint64_t recorded = 0;  // of the daemon; as `cycle` where the recording holds no reports
@@ -100,7 +100,8 @@ struct ReplayFailure {
 struct OfflineReplay {
   std::string error;                    // not empty: it could not be run at all
   std::string damage;                   // not empty: the recording was read up to a damage
-  bool stopped = false;                 // options.stop ended it: nothing is known of what follows
+  bool stopped = false;                 // options.stop ended it: nothing is known of the ticks that
+                                        // follow
   std::vector<std::string> notes;       // what a person should know, in sentences
   std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
 
@@ -116,9 +117,9 @@ struct OfflineReplay {
   [[nodiscard]] std::string text() const;
 };
 
-// The same recording and cell give the same ticks, bit for bit. `recording`: one of ours; a bag of
-// ROS 2 (MCAP, SQLite 3, or the folder of either); or joint positions as CSV (t_ns, a column a
-// joint).
+// The same recording and cell give the same ticks, bit for bit. `recording` is one of ours, a bag
+// of ROS 2 (MCAP, SQLite 3, or the folder of either), or joint positions as CSV (t_ns and one
+// column per joint).
 [[nodiscard]] OfflineReplay replay_offline(
     const Cell& cell, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},

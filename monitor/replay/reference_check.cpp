@@ -54,12 +54,12 @@ double seen_by(double reference, double ours) {
   return reference == 0.0 && ours < 0.0 ? 0.0 : ours;
 }
 
-// References may have more digits than a person cares for elsewhere.
+// References may need more digits than other figures for a person.
 std::string precise(double value) { return metres(value, 12); }
 
 }  // namespace
 
-// The whole table is read in front, so that a mistake in it is known before the replay runs.
+// The whole table is read first, so that a mistake in it is known before the replay runs.
 ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
                                std::optional<double> tolerance)
     : scene_(scene),

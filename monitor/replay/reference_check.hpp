@@ -1,8 +1,9 @@
 // Compares the distances of a replay with those that another program computed.
 //
 // A CSV table, plain or gzip: t_ns, object_a, object_b, distance (m), found by name in any order,
-// times not going back. Either object may come first. Where the reference is 0 the bodies touch or
-// overlap, and a depth of ours counts as 0. It is taken to be rounded to the digits written.
+// times not going back. Either object may come first. If the reference is 0, the bodies touch or
+// overlap, and a penetration depth of ours counts as 0. The reference is taken to be rounded to the
+// digits written.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +21,9 @@ namespace clearance {
 // The largest difference of a distance from its reference where no tolerance is stated.
 inline constexpr double kReferenceTolerance = 1e-6;  // m
 
-// Judges each value twice: our distance, and our bounds. A tolerance says how far off the reference
-// itself may be: it is allowed for in both. Without one, distances may differ by
-// kReferenceTolerance, and bounds have to hold the reference up to the rounding of its digits,
+// Judges each value twice: our distance, and our bounds. A tolerance is the largest error of the
+// reference itself, and both judgements allow for it. Without a tolerance, distances may differ by
+// kReferenceTolerance. Bounds then have to hold the reference up to the rounding of its digits,
 // since they hold every exact distance.
 class ReferenceCheck {
  public:
@@ -32,8 +33,8 @@ class ReferenceCheck {
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
-  // To be called for every tick, in order of time. The first value that is off, and the first that
-  // is outside of the bounds, a sentence each with pair and figures.
+  // To be called for every tick, in order of time. Returns a sentence with pair and figures for the
+  // first value that is off, and one for the first that is outside the bounds.
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor);
 
   // After the last tick.

@@ -1,5 +1,5 @@
 // Builds rows in memory with std::to_chars, the shortest text that reads back exactly, and writes
-// them in pieces of 256 KiB.
+// them in blocks of 256 KiB.
 #include "monitor/replay/report_csv.hpp"
 
 #include <algorithm>
@@ -36,9 +36,8 @@ void put(std::string& row, Number value) {
   row.append(text.data(), end);
 }
 
-// The columns of a field: its name, or, of vectors, an axis behind a letter, "ax". Empty: the table
-// leaves the field out, since it names the objects and not the parts, and ticks by their own
-// number.
+// The columns of a field: its name, or, for vectors, a letter and an axis ("ax"). Empty: the table
+// leaves the field out. It names the objects instead of the parts, and numbers the ticks itself.
 std::string column_of(std::string_view field) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 7> kOtherwise = {
       {{"pair", ""},
@@ -53,7 +52,7 @@ std::string column_of(std::string_view field) {
   return std::string(found == kOtherwise.end() ? field : found->second);
 }
 
-// Walks the columns that a pair's fields have.
+// Visits the columns of a pair's fields.
 template <class Visit>
 void for_each_column(const PairReport& pair, const Visit& visit) {
   for_each_field(
@@ -73,7 +72,7 @@ void put(std::string& row, PairStatus status) { row += name(status); }
 
 }  // namespace
 
-// The header is the first row in memory; it reaches the file with the first piece.
+// The header is the first row in memory; it goes to the file with the first block.
 ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool all_pairs)
     : path_(file), scene_(scene), all_pairs_(all_pairs), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) {
@@ -86,7 +85,7 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   rows_ += '\n';
 }
 
-// Rows are collected and written in large pieces.
+// Rows are collected and written in large blocks.
 void ReportCsv::add(const ReplayedTick& tick) {
   if (!error_.empty()) return;
   if (all_pairs_) {

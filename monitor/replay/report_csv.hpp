@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Columns: tick,now_ns,object_a,object_b, and then the fields of PairReport in their order but for
+// Columns: tick,now_ns,object_a,object_b, then the fields of PairReport in their order, without
 // pair, parts and evaluated_cycle: status,distance,lower,upper,swept_lower,ax,ay,az,bx,by,bz,nx,ny,
 // nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles. They are in SI units and
 // in the world frame, and numbers read back exactly. Errors are kept: error() says what happened.

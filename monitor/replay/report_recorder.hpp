@@ -24,7 +24,7 @@ class ReportRecorder {
     if (!recorder_) recorder_.emplace(file_, cell_, 0, RecordingOptions{});
     return recorder_->close();
   }
-  // Why the cell's files are not in it, if so.
+  // The reason why the recording does not hold the cell's files, if it does not.
   [[nodiscard]] std::string without_files() const {
     return recorder_ ? recorder_->without_files() : "";
   }

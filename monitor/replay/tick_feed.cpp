@@ -8,12 +8,12 @@
 namespace clearance {
 namespace {
 
-// A batch may stand behind the report that used it by this much log time: recorded over
-// DDS, topics overtake each other.
+// A batch may stand behind the report that used it by this much log time, because topics recorded
+// over DDS overtake each other.
 constexpr std::int64_t kReadAheadNs = 2'000'000'000;
 
-// After so long without a batch every pose is late, and more ticks show nothing new: a log may have
-// pauses of hours.
+// After this time without a batch every pose is late, and more ticks show nothing new. A log may
+// have pauses of hours.
 constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 }  // namespace
@@ -116,7 +116,7 @@ void TickFeed::read_message(const RecordedMessage& message) {
   }
 }
 
-// Poses get the ids of the scene; joints are found again by name, in whatever cell.
+// Poses get the ids of the scene; joints are matched by name in any cell.
 void TickFeed::read_inputs(const RecordedMessage& message) {
   PoseBatch* const batch = own_->decode(message.kind, message.cdr);
   if (batch == nullptr) {
@@ -131,8 +131,8 @@ void TickFeed::read_inputs(const RecordedMessage& message) {
   batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
 }
 
-// A report names the last batch of each source that its tick used. Recorded over DDS, that batch
-// may stand behind the report, so reading goes on for a while.
+// A report names the last batch of each source that its tick used. In a recording over DDS that
+// batch may stand behind the report, so reading goes on for a while.
 bool TickFeed::next_by_report(TickInput& tick) {
   while (reports_waiting_.empty()) {
     if (!read_one()) return false;
@@ -164,7 +164,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   return true;
 }
 
-// Reads behind the report of the tick, as far as topics may overtake each other.
+// Reads on after the report of the tick, as far as topics may overtake each other.
 bool TickFeed::read_ahead() { return read_to_ns_ < current_.log_ns + kReadAheadNs && read_one(); }
 
 // The place among the waiting batches; their count when it is not there.
@@ -182,7 +182,7 @@ bool TickFeed::consumed(const SourceUse& use) const {
   return last != consumed_.end() && last->second == use.sequence_number;
 }
 
-// Whether the batches that a report names have been read or were used before.
+// Returns true when the batches that a report names have been read or were used before.
 bool TickFeed::all_there(std::span<const SourceUse> sources) const {
   return std::ranges::all_of(sources, [this](const SourceUse& use) {
     return place_of(use) < batches_waiting_.size() || consumed(use);
@@ -251,8 +251,8 @@ bool TickFeed::next_by_time(TickInput& tick) {
   return true;
 }
 
-// The next batch is known before a tick is made that has none: behind the last one there are no
-// more.
+// A tick without a batch is made only while a further batch is known: after the last batch there
+// are no more ticks.
 bool TickFeed::next_by_rate(TickInput& tick) {
   while (batches_waiting_.empty()) {
     if (!read_one()) return false;

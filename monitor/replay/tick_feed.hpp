@@ -1,11 +1,11 @@
 // Reads a recording, or a log of another program, tick by tick: the poses that each tick of the
 // daemon took in, and its time.
 //
-// Where the recording holds reports, a tick is a report: it gets its time, and the batches that the
-// report names as used (by source and sequence number), wherever they stand in the file. Where it
-// holds none, ticks are at a fixed rate, as the daemon's are, from the first batch on, and each
-// gets the batches that came since the one before; or, without a rate, a tick is a distinct log
-// time and gets the batches of that time in file order.
+// If the recording holds reports, each report is a tick. The tick gets the report's time and the
+// batches that the report names as used (by source and sequence number), wherever they stand in the
+// file. If it holds none, ticks are at a fixed rate, as the daemon's are, from the first batch on.
+// Each gets the batches that came since the tick before. Without a rate, each distinct log time is
+// a tick and gets the batches of that time in file order.
 #pragma once
 
 #include <cstdint>
@@ -42,8 +42,9 @@ struct TickInput {
   // tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
-  bool restart = false;  // the daemon had been started anew: its monitor knew nothing
-  bool complete = true;  // false: a source's last batch is not in the file, older poses stand in
+  bool restart = false;  // the daemon had been started anew, so its monitor had no history
+  bool complete = true;  // false: a source's last batch is not in the file, so older poses replace
+                         // it
 };
 
 // The messages of one topic that a daemon writes every tick beside its report, in file order. A
@@ -53,10 +54,10 @@ class TickMessages {
  public:
   explicit TickMessages(bool wanted) : wanted_(wanted) {}
   void add(std::span<const std::byte> cdr, CdrDecoder& decoder);
-  // The message of the tick at `now_ns`; null: there is none. Recorded over DDS, it may stand
-  // behind the report: `read_ahead` reads one message more, and is false where it may not. After
-  // one search in vain nothing is read ahead until a message comes: most recordings have all or
-  // none.
+  // The message of the tick at `now_ns`; null: there is none. In a recording over DDS it may stand
+  // behind the report: `read_ahead` reads one message more and returns false at the limit. After
+  // one search in vain nothing is read ahead until a message comes, since most recordings have all
+  // or none.
   template <class ReadAhead>
   [[nodiscard]] const Message* of_tick(std::int64_t now_ns, const ReadAhead& read_ahead);
   // The number that came, though the scene asks for none.
@@ -75,8 +76,8 @@ class TickMessages {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  // A recording of ours, in one file or several. `tick_hz`: unless it holds reports; 0: ticks at
-  // log times.
+  // A recording of ours, in one file or several. `tick_hz` is used unless it holds reports; 0:
+  // ticks at log times.
   TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
            const RecordingOutline& outline, double tick_hz = 0.0);
   // A log of another program.
@@ -141,7 +142,7 @@ class TickFeed {
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
   ObjectMap objects_;
-  std::unique_ptr<OwnBatches> own_;  // null: somebody else's log
+  std::unique_ptr<OwnBatches> own_;  // null: a log of another program
   SourceNumbers sources_;
   bool by_report_;
   double tick_hz_;             // 0: at log times

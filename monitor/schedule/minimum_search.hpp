@@ -1,6 +1,6 @@
-// Finds the pair with the smallest distance: pairs are evaluated in the order of their lower bounds
-// until none left can beat the smallest upper bound, and the horizon is raised until no culled pair
-// can.
+// Finds the pair with the smallest distance. Pairs are evaluated in the order of their lower bounds
+// until none left can beat the smallest upper bound. The horizon is raised until no culled pair can
+// beat it.
 #pragma once
 
 #include <cstdint>

@@ -1,10 +1,11 @@
-// How many queries of a tick are kept for the round-robin refresh, so that every pair is refreshed
-// in time.
+// The number of queries of a tick that are kept for the round-robin refresh, so that every pair is
+// refreshed in time.
 //
-// Each tick owes (part pairs + 1) / ticks of a query. The whole queries of what is owed are due.
-// Let `most` be the queries that one pair can take. A refresh that may spend due + most - 1 queries
-// spends all that are due, or refreshes all pairs. So over any `ticks` ticks at least `part_pairs`
-// queries are spent, and every pair is refreshed. The count is in integers, so that nothing drifts.
+// Each tick adds (part_pairs + 1) / ticks queries to the debt. The integer part of the debt is due.
+// Let `most` be the largest number of queries that one pair can take. A refresh that may spend due
+// + most - 1 queries spends all that are due, or refreshes all pairs. So over any `ticks` ticks at
+// least `part_pairs` queries are spent, and every pair is refreshed. The count is in integers, so
+// that it does not drift.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +22,8 @@ class RefreshBudget {
       : part_pairs_(affordable ? pairs.part_pairs : 0), most_(pairs.most), ticks_(ticks) {}
 
   void begin_tick() noexcept { owed_ += part_pairs_ == 0 ? 0 : part_pairs_ + 1; }
-  // How many queries are due in this tick; a pair counts with the most that it can take.
+  // The number of queries that are due in this tick. A pair counts with the largest number that it
+  // can take.
   [[nodiscard]] std::uint32_t due() const noexcept {
     return static_cast<std::uint32_t>(owed_ / ticks_);
   }

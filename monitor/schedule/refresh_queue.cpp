@@ -66,7 +66,7 @@ void RefreshQueue::regain(std::uint32_t object) noexcept {
     return;
   }
   is_returning_[object] = 1;
-  // The object whose pairs are coming back stays last.
+  // The object whose pairs are coming back stays at the end of the list.
   returning_.insert(returning_.begin(), object);
 }
 

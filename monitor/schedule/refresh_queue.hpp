@@ -1,10 +1,10 @@
-// Which pair has waited longest for its refresh?
+// Finds the pair that has waited longest for its refresh.
 //
-// A pair is refreshed when its bound is found afresh from the poses of a tick: by an evaluation, or
-// by models of its objects that prove it far. The queue is a list in the order in which that last
-// happened; PairTable::refreshed_cycle has the ticks. Pairs with an object that is not known are
-// set aside when they come to the head. When the object is known again they come back ahead of all
-// others, which were refreshed later.
+// A pair is refreshed when its bound is computed from the poses of a tick alone. This is done by an
+// evaluation, or by models of its objects that prove it far. The queue is a list in the order in
+// which that last happened; PairTable::refreshed_cycle has the ticks. Pairs with an object that is
+// not known are set aside when they come to the head. When the object is known again they come back
+// ahead of all others, which were refreshed later.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// Stages 'schedule', 'evaluate' and 'refresh' of a tick: which pairs are evaluated, and with how
-// much of the budget? (§4.6)
+// Stages 'schedule', 'evaluate' and 'refresh' of a tick: they choose the pairs to evaluate and
+// divide the budget (§4.6).
 //
 // Every bound is true before and after; the schedule decides only how tight it is. Published pairs
 // are evaluated in every tick whose budget covers them and everything that competes with them.
@@ -9,8 +9,8 @@
 //     follows that (MinimumSearch);
 //  2. evaluate: bins by the number of ticks until contact, or a zone's threshold, can be reached.
 //     The first bins have their turn in every tick, the nearest first (UrgencyBins);
-//  3. the tick keeps from all that follows what the sweep needs for pairs that are outside their
-//     zones, but may have been inside since the last tick (ZoneCrossings);
+//  3. the tick keeps queries for the sweep, which later steps may not use. The sweep examines pairs
+//     that are outside their zones but may have been inside since the last tick (ZoneCrossings);
 //  4. refresh: published pairs, if the budget covers them after all;
 //  5. refresh: a share of all pairs, culled or not, and of the published pairs that the budget does
 //     not cover at once, round-robin (RoundRobin). The tick keeps their queries from 1 to 4;
@@ -31,13 +31,13 @@
 
 namespace clearance {
 
-// What stage 'schedule' decides about a tick.
+// The decisions of stage 'schedule' about a tick.
 struct Schedule {
   bool published_at_once = false;  // all published pairs are evaluated in one loop
   std::uint32_t kept = 0;          // queries that are kept for the refresh
 };
 
-// What the evaluations of a tick leave to the next one and to the report.
+// The results of a tick's evaluations for the next tick and for the report.
 struct Evaluated {
   double smallest_upper = kInfinity;  // of any pair that the search for the minimum examined, m
   // The tick in which the stalest known pair was last refreshed. While pairs are met for the first

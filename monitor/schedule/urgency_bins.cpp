@@ -84,8 +84,8 @@ std::size_t UrgencyBins::bin_of(std::uint32_t pair, const TickView& view) const 
   return bin;
 }
 
-// A velocity that is not known is zero: then the stated speed counts, and a pair of an object that
-// has just become known is evaluated anyway.
+// A velocity that is not known is zero here, and then the stated speed counts. A pair of an object
+// that has just become known is evaluated anyway.
 double UrgencyBins::speed_of(std::uint32_t object, const TrackedObject& state) const noexcept {
   const double turning = state.twist.angular.norm();
   const double measured = state.twist.linear.norm() + (turning > 0.0 ? turning * state.reach : 0.0);

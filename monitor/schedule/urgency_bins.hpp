@@ -1,4 +1,4 @@
-// How soon can a pair's distance fall below a level that is watched? (§4.6)
+// Sorts pairs by the time until their distance can fall below a watched level (§4.6).
 #pragma once
 
 #include <cstddef>

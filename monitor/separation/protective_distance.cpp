@@ -70,8 +70,8 @@ ProtectiveDistance protective_distance(const Separation& terms, const Approach& 
   return found;
 }
 
-// The root of c0 + c1 v + c2 v^2 = distance, in the form that does not cancel. Then it is lowered,
-// by its excess and more, until the rounded S_p agrees.
+// The root of c0 + c1 v + c2 v^2 = distance, in the form without cancellation. It is then lowered,
+// by its excess and more, until the rounded S_p is within the distance.
 double largest_speed(const Separation& terms, const Approach& approach, double distance) noexcept {
   constexpr int kMostSteps = 8;
   constexpr double kMore = 1.0 + 0x1p-40;

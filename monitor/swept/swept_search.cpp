@@ -11,7 +11,7 @@ namespace {
 // The rounding of a direction, and of a centre rotated into another frame, relative to the lengths
 // that take part.
 constexpr double kDirectionError = 0x1p-44;
-constexpr double kLeastGap = 0x1p-20;  // instants that are nearer are not told apart
+constexpr double kLeastGap = 0x1p-20;  // shorter gaps between instants are not divided
 
 struct Meeting {
   double value, at;
@@ -30,8 +30,8 @@ Meeting least_between(double left, double fall_right, double right, double fall_
   return least;
 }
 
-// Places a part as its object is after the share `s`, 0 to 1, of its motion. The part's errors hold
-// for that pose.
+// Places a part at its object's pose after the share `s`, 0 to 1, of the object's motion. The
+// part's errors hold for that pose.
 void place_between(const InterpolatedMotion& motion, double s, PosedPart& part) noexcept {
   place_at(pose_at(motion, s), part);
   if (s <= 0.0 || s >= 1.0) return;
@@ -116,8 +116,8 @@ SweptSearch::Gap SweptSearch::lowest_gap() const noexcept {
   return lowest;
 }
 
-// From either end the distance falls no faster than the parts approach, and no faster than they
-// approach along the direction that separates them at that end.
+// Counted from either end, the distance falls no faster than the parts approach. It also falls no
+// faster than they approach along the direction that separates them at that end.
 SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
   const Instant& left = instants_[before];
   const Instant& right = instants_[before + 1];
@@ -127,8 +127,8 @@ SweptSearch::Gap SweptSearch::gap_after(std::size_t before) const noexcept {
   return {.before = before, .lower = least.value - std::abs(error), .deepest = least.at};
 }
 
-// How much less the distance may be at `to` than at `from`, m, negative where it falls; between the
-// two it falls at most in proportion.
+// A lower bound of the change of the distance from `from` to `to`, m; negative where it may fall.
+// Between the two the distance falls at most in proportion.
 double SweptSearch::fall(const Instant& from, const Instant& to) const noexcept {
   const double width = std::abs(to.s - from.s);
   const double by_speed = -rounded_up(relative_.speed * width);

@@ -1,5 +1,5 @@
-// How near did two parts come between two ticks? Bounds from queries at a few instants, and from
-// how far the motion between those instants can go. README.md here has the proof.
+// Bounds of the smallest distance of two parts between two ticks. They follow from queries at a few
+// instants and from the largest motion between those instants. README.md here has the proof.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@ class SweptSearch {
 
   // Queries further instants, always in the gap with the lowest bound, until `level`, m, is
   // decided: the distance was never below it, or it was at some instant. Ends undecided when the
-  // budget does, after kMostQueries, or when the gap is too short to divide.
+  // budget is used up, after kMostQueries, or when the gap is too short to divide.
   [[nodiscard]] SweptBounds decide(double level, Budget& budget) noexcept;
 
  private:
@@ -28,7 +28,7 @@ class SweptSearch {
   struct Instant {
     double s = 0.0;  // share of the motion
     double lower = -kInfinity, upper = kInfinity;
-    // In the frame of the object from which the other is seen:
+    // In the frame of the object relative to which the other moves:
     Vec3 normal = Vec3::Zero();  // towards the other; zero: it need not separate after more motion
     Vec3 centre = Vec3::Zero();  // of the other's sphere
   };
@@ -36,7 +36,8 @@ class SweptSearch {
   struct Gap {
     std::size_t before = 0;     // index of the earlier of the two
     double lower = -kInfinity;  // m
-    double deepest = 0.5;       // where the distance may be that low, as a share of the gap
+    double deepest = 0.5;       // the instant at which the distance may be that low, as a share of
+                                // the gap
   };
 
   [[nodiscard]] Instant query_at(double s, Budget& budget) noexcept;
@@ -47,7 +48,8 @@ class SweptSearch {
 
   PosedPart a_, b_;
   InterpolatedMotion motion_a_, motion_b_;
-  bool from_b_ = false;    // A is seen from B's object, not B from A's, because that is slower
+  bool from_b_ = false;    // A moves relative to B's object, not B relative to A's, because that
+                           // motion is slower
   bool directed_ = false;  // a separating direction goes on separating bodies that only translate
   RelativeMotion relative_;
   double direction_error_ = 0.0;  // of a sphere centre's coordinate along a normal, m

@@ -36,13 +36,13 @@ SweptBounds search_part_pairs(std::uint32_t pair, double level, double displacem
   return all;
 }
 
-// Whether the object was known at the last tick and has made no discontinuity since.
+// Returns true when the object was known at the last tick and has made no discontinuity since.
 bool has_swept_motion(const TrackedObject& object) noexcept {
   return !object.first_seen && !object.discontinuous;
 }
 
-// Whether displacement alone proves that the pair was outside its zones since the last tick. Most
-// pairs are decided here.
+// Returns true when displacement alone proves that the pair was outside its zones since the last
+// tick. Most pairs are decided here.
 inline bool stayed_outside(std::uint32_t pair, double threshold, const TickView& view) noexcept {
   if (threshold == -kInfinity) return true;  // the pair has no zone
   const PairEntry& entry = view.pairs.entries[pair];

@@ -1,5 +1,5 @@
-// Which pairs are outside their zones now, but may have been inside between two ticks? Each of them
-// is searched more closely, until that is decided or the budget ends.
+// Finds the pairs that are outside their zones now but may have been inside between two ticks. Each
+// of them is searched more closely, until that is decided or the budget ends.
 #pragma once
 
 #include <cstdint>
@@ -29,8 +29,8 @@ class ZoneCrossings {
   void find(std::span<const std::uint32_t> updated, const Zones& zones,
             const TickView& view) noexcept;
 
-  // How many queries the sweep of the pairs found so far takes at most, if all but one part pair of
-  // each are clear.
+  // The largest number of queries that the sweep of the pairs found so far takes, if all but one
+  // part pair of each are clear.
   [[nodiscard]] std::uint32_t queries() const noexcept;
 
   // Stage 'sweep' of a tick: adds the pairs that have been updated since find(), and decides all of

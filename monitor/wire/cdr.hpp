@@ -38,10 +38,10 @@ class CdrEncoder {
   std::vector<std::byte> bytes_;
 };
 
-// Who vouches for bytes.
+// The origin of bytes, which determines the checks that they need.
 enum class CdrBytes : std::uint8_t {
-  kUnchecked,  // nobody: every length is checked before it is followed
-  kOfReader,   // Cyclone, whose reader has checked them and has put them into native byte order
+  kUnchecked,  // any origin: every length is checked before it is followed
+  kOfReader,   // Cyclone's reader, which has checked them and put them into native byte order
 };
 
 // Decodes bytes of any origin into samples: malformed, truncated or over-long input is refused,

@@ -19,7 +19,7 @@ namespace clearance {
 [[nodiscard]] Sample<clearance_msg_Distances> make_distances(const Scene& scene);
 
 // Fills `out`, made by make_distances for the same scene; `publish_ns` 0 when it is not published.
-// Pairs or sources beyond its capacity are left out, and false is returned; a sample of the same
+// Returns false when pairs or sources exceed its capacity and are left out. A sample of the same
 // scene holds them all.
 bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns,
              clearance_msg_Distances& out) noexcept;
@@ -29,7 +29,7 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
              clearance_msg_ZoneState& out) noexcept;
 
-// A sample for what every report of this scene says of zones with `separation`, and filling it.
+// Makes a sample for the zones with `separation` of every report of this scene, and fills it.
 [[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
@@ -37,19 +37,19 @@ void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separa
 [[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
 
 // The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
-// ids, non-finite numbers and the rest. Allocates only while `out` has less room than the batch has
-// poses.
+// ids, non-finite numbers and the rest. Allocates only while the capacity of `out` is smaller than
+// the number of poses in the batch.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
 
-// The same of joint states. Names that the cell has no use for are left out, those that it does not
-// know become samples of no variable, which the tick counts and refuses, as it does positions that
+// The same for joint states. Names that the cell does not use are left out. Names that it does not
+// know become samples of no variable. The tick counts and refuses these, and also positions that
 // are missing.
 void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out);
 
-// Of ROS 2's joint states, which held at `stamp_ns`. Names that the cell has no use for and those
-// that it does not know are left out, and everything when no positions were sent: drivers of
-// grippers send efforts only, and topics carry the joints of other machines. Of a list of positions
-// that is too short the rest is refused by the tick.
+// The same for ROS 2's joint states, which held at `stamp_ns`. Names that the cell does not use or
+// does not know are left out, because topics carry the joints of other machines. The result is
+// empty when no positions were sent: drivers of grippers send efforts only. If the list of
+// positions is too short, the tick refuses the joints without one.
 void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
                std::int64_t stamp_ns, PoseBatch& out);
 

@@ -9,13 +9,13 @@
 
 namespace clearance {
 
-// Pairs and joints are always the same: of each report only the numbers are filled in, which
+// Pairs and joints are always the same. For each report only the numbers are filled in, which
 // allocates nothing.
 class GradientMessage {
  public:
   explicit GradientMessage(const Scene& scene);
 
-  // Valid until the next call. `daemon` is the caller's to set. `publish_ns`: as of Distances.
+  // Valid until the next call. The caller sets `daemon`. `publish_ns` is the same as in Distances.
   [[nodiscard]] clearance_msg_Gradients& of(const Report& report, std::int64_t publish_ns) noexcept;
 
  private:

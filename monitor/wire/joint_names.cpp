@@ -10,7 +10,7 @@ JointNames::JointNames(const Scene& scene) {
   }
 }
 
-// Names with their prefixes come first: they are never those of two robots.
+// Names with their prefixes come first, because two robots never share one.
 JointNames::JointNames(const Scene& scene, std::string_view ros_topic) {
   const bool is_named = std::ranges::any_of(
       scene.robots, [&](const Robot& robot) { return robot.joint_states == ros_topic; });
@@ -23,7 +23,8 @@ JointNames::JointNames(const Scene& scene, std::string_view ros_topic) {
   }
 }
 
-// A variable comes before its joint: both may have one name. What is there already stays.
+// A variable comes before its joint: both may have one name. A name that is there already keeps its
+// variable.
 void JointNames::add(const Scene& scene, std::uint32_t robot, Prefix prefix) {
   const auto name_of = [&](const std::string& name) {
     return prefix == Prefix::kKept ? name : name.substr(scene.robots[robot].prefix.size());

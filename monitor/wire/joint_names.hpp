@@ -18,8 +18,9 @@ class JointNames {
 
   // On our own topic: the names of all robots, with their prefixes.
   explicit JointNames(const Scene& scene);
-  // On a topic of ROS 2, "/left/joint_states": those of the robots that name it, with or without
-  // their prefixes; if none does, those of the robots that name no other, with their prefixes.
+  // On a topic of ROS 2 such as "/left/joint_states": the names of the robots that name this topic,
+  // with or without their prefixes. If no robot names it: the names of the robots that name no
+  // topic, with their prefixes.
   JointNames(const Scene& scene, std::string_view ros_topic);
 
   // Index into Scene::variables, or one of the above.

@@ -1,6 +1,6 @@
-// Checks that a client should make before it believes a report: is it fresh, and is it the next
-// one of the same daemon? A reader that was held up gets the reports of that time one after
-// another, and each of them looks like news.
+// Checks that a client should make before it believes a report: it must be fresh, and the next one
+// of the same daemon. A reader that was held up gets the reports of that time one after another,
+// and each of them looks like news.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ struct ReportCheck {
   // Since it was published, by the client's clock. Negative: the clock of the daemon's machine is
   // ahead.
   std::int64_t age_ns = 0;
-  bool is_old = false;           // it says what was, not what is
+  bool is_old = false;           // it describes the past, not the present
   bool clocks_disagree = false;  // published later than now: its age means nothing
   // Not of the daemon of the report before: it was started again, or two daemons publish.
   bool other_daemon = false;
@@ -25,8 +25,8 @@ struct ReportCheck {
 
 class ReportChecker {
  public:
-  // A report older than this is old, and one that is from the future by more than it shows that the
-  // clocks disagree. On two machines the limit must be above what their clocks differ by.
+  // A report older than this is old. A report from the future by more than this shows that the
+  // clocks disagree. On two machines the limit must be above the difference of their clocks.
   explicit ReportChecker(std::int64_t limit_ns) : limit_ns_(limit_ns) {}
 
   // To be called with every report, in the order in which they are taken; `realtime_ns` is

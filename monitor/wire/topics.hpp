@@ -1,8 +1,8 @@
 // The topics of Clearance in one table: cell key, name, type, quality of service, history
 // depths.
 //
-// DDS endpoints, recordings and tools take everything about a topic from here; a test holds the
-// table of idl/README.md against it, which says why each topic has its QoS.
+// DDS endpoints, recordings and tools take everything about a topic from here. idl/README.md says
+// why each topic has its QoS, and a test compares its table with this one.
 #pragma once
 
 #include <array>
@@ -44,10 +44,10 @@ struct Topic {
   std::int32_t reader_depth;  // samples of a key that may wait, unless a reader asks for more
 };
 
-// In the order of TopicKind and of kTopicKeys, which is that of recordings: what comes in stands
-// before the reports that used them. A distances writer keeps 64 reports for a client that is held
-// up for a moment; the daemon may be 16 batches of a source (16 ms at 1 kHz) late in taking poses
-// without losing any.
+// In the order of TopicKind and of kTopicKeys, which is that of recordings: inputs stand before the
+// reports that used them. A distances writer keeps 64 reports for a client that is held up for a
+// moment. The daemon may take poses 16 batches of a source late (16 ms at 1 kHz) without losing
+// any.
 inline constexpr auto kTopics = [] {
   constexpr auto row = [](TopicKind kind, const dds_topic_descriptor_t& type, Delivery delivery,
                           std::int32_t writer_depth, std::int32_t reader_depth) {

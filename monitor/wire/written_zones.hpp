@@ -15,7 +15,7 @@ class WrittenZones {
   explicit WrittenZones(std::size_t zones) : active_(zones) {}
 
   [[nodiscard]] bool any(std::uint32_t zone) const { return active_[zone].has_value(); }
-  // Whether the last state written of this zone is `active`.
+  // Returns true when the last state written of this zone is `active`.
   [[nodiscard]] bool is(std::uint32_t zone, bool active) const { return active_[zone] == active; }
   void set(std::uint32_t zone, bool active) { active_[zone] = active; }
 

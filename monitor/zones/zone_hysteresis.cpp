@@ -25,8 +25,8 @@ void ZoneHysteresis::add_rest(const Clearance& clearance, std::uint32_t pair) no
   take(clearance, pair);
 }
 
-// Proved are: outside since the last tick; inside now, by an evaluation; inside at some instant
-// between.
+// Three states are certified: outside since the last tick; inside now, by an evaluation; inside at
+// some instant between.
 bool ZoneHysteresis::proves(const Clearance& clearance, double margins,
                             const PairBounds& bounds) const noexcept {
   if (outside(clearance.since)) return true;

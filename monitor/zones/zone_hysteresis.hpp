@@ -1,4 +1,4 @@
-// Is some pair of a zone too near? Decided with hysteresis by lower bounds less margins.
+// Decides whether some pair of a zone is too near, with hysteresis, by lower bounds less margins.
 #pragma once
 
 #include "monitor/pairs/pair_bounds.hpp"
@@ -29,7 +29,7 @@ class ZoneHysteresis {
   // `report`: that of the last tick becomes that of this one.
   void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
 
-  // From this clearance on a pair is outside, m.
+  // A pair with this clearance or more is outside, m.
   [[nodiscard]] double threshold() const noexcept { return threshold_; }
 
  private:

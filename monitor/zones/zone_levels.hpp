@@ -1,10 +1,10 @@
-// From which distance on is a pair outside its zones? One table for the broad phase, the schedule,
-// the sweep and the zones.
+// The distance from which on a pair is outside its zones. One table serves the broad phase, the
+// schedule, the sweep and the zones.
 //
 // A zone has two thresholds of the clearance (distance less both margins), with hysteresis between:
 // enter_below, and just above leave_above. A pair's level Z is the largest distance at the latter
-// threshold, over all its zones, margins included and rounded up. From Z on the pair is outside all
-// of them, whatever their states are.
+// threshold, over all its zones, margins included and rounded up. At Z or farther, the pair is
+// outside all of them, whatever their states are.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +19,7 @@ class ZoneLevels {
  public:
   explicit ZoneLevels(const Scene& scene);
 
-  // From this clearance on, m, a pair is outside a zone in this state.
+  // A pair with this clearance, m, or more is outside a zone in this state.
   [[nodiscard]] static double threshold(const Zone& zone, bool active) noexcept;
 
   // Z of a pair, m; -infinity: the pair has no zone.

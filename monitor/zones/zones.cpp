@@ -17,7 +17,8 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 
-// Whether the pair would be inside, now or since the last tick, if all its poses had been on time.
+// Returns true when the pair would be inside, now or since the last tick, if all its poses had been
+// on time.
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
              double threshold) noexcept {
   if (!a.known() || !b.known()) return false;
@@ -126,8 +127,8 @@ void Zones::add_lost(std::uint32_t zone, std::span<const TrackedObject> objects)
   }
 }
 
-// The weightier cause of the pair's two objects counts, and of two late ones the one that may have
-// moved farther.
+// The weightier cause of the pair's two objects counts. If both are late, the one that may have
+// moved farther counts.
 void Zones::explain(std::span<const TrackedObject> objects) noexcept {
   for (std::size_t z = 0; z < reports_.size(); ++z) {
     ZoneReport& report = reports_[z];

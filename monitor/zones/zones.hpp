@@ -17,14 +17,14 @@ class Zones {
   // Scene and levels must outlive it.
   Zones(const Scene& scene, const ZoneLevels& levels);
 
-  // As of the last finish(), in scene order.
+  // States after the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }
 
   // The pair has a zone.
   [[nodiscard]] bool watch(std::uint32_t pair) const noexcept { return levels_.has(pair); }
 
-  // The largest threshold, m, among the pair's zones that it is outside of with the distance
-  // `lower`, but not with `swept_lower`. -infinity: there is no such zone.
+  // The largest threshold, m, among those zones of the pair that it is outside with `lower` but not
+  // with `swept_lower`. -infinity: there is no such zone.
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
                                  double swept_lower) const noexcept;
 
@@ -35,9 +35,10 @@ class Zones {
   // Takes in an updated pair, each once a tick.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
-  // Ends the tick. A pair that was not added is absent or unknown; or it was beyond its zones'
-  // thresholds since the last tick; or it waits, and `waiting` is a lower bound of its distance,
-  // margins not subtracted. `any_lost`: an object is not known or has made a discontinuity.
+  // Ends the tick. A pair that was not added is in one of three states. It is absent or unknown; or
+  // it was outside its zones since the last tick; or it waits. `waiting` is a lower bound of the
+  // distance of pairs that wait, margins not subtracted. `any_lost`: an object is not known or has
+  // made a discontinuity.
   void finish(std::span<const TrackedObject> objects, const Clearance& waiting, bool any_lost,
               std::uint64_t cycle) noexcept;
   // After finish(), with all objects: finds why each zone is active.

@@ -23,7 +23,7 @@ namespace {
 // cache.
 constexpr std::size_t kPairs = 512;
 
-// Pairs that start on the same trajectory are this many steps apart.
+// Pairs on the same trajectory start this many steps after each other.
 constexpr std::size_t kApart = 8;
 
 // Bodies share shapes, as in a cell, or each body has a shape of its own in memory.
@@ -134,7 +134,7 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
   count(state, verdict);
 }
 
-// The mask of a target and all narrower ones, because single queries are not compiled for every
+// The mask of a target and of all narrower ones, because single queries are not compiled for every
 // target. In Highway, wider vectors have lower bits. 0: all targets of this machine.
 std::int64_t up_to(std::int64_t target) {
   return target == 0 ? 0 : (hwy::SupportedTargets() & -target) | target;

@@ -20,8 +20,8 @@ inline double cpu_ns() { return ns_of(CLOCK_THREAD_CPUTIME_ID); }
 // Wall-clock time, which includes whatever else the machine does.
 inline double wall_ns() { return ns_of(CLOCK_MONOTONIC); }
 
-// The cost of reading a clock, which is part of every difference of two readings: 0.02 us for the
-// wall clock, 0.2 to 0.8 us for the thread's time, which takes a system call.
+// The cost of reading a clock, which is part of every difference of two readings. It is 0.02 us for
+// the wall clock. It is 0.2 to 0.8 us for the thread's time, which takes a system call.
 template <class Clock>
 double cost_of(const Clock& clock) {
   std::array<double, 1001> costs;

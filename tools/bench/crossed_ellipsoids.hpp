@@ -1,6 +1,6 @@
-// The standard test of chapter 5: crossed ellipsoids of semi-axes [1 2 5] and [5 2 1], B's centre
-// at [4 4 4], and the same with B moved along the line of the closest points (§5.2), which leaves
-// these where they are on the bodies.
+// The standard test of chapter 5: crossed ellipsoids of semi-axes [1 2 5] and [5 2 1], with B's
+// centre at [4 4 4]. Further tests move B along the line of the closest points (§5.2). These then
+// stay where they are on the bodies.
 #pragma once
 
 #include "core/vec.hpp"

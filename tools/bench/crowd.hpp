@@ -40,13 +40,13 @@ struct OrbitingOptions {
 };
 
 // Boxes, facet-balls, capsules and tetrahedra of 0.15 to 0.28 m radius, one in each cell of a cubic
-// grid, of which `moving` move on circles of 0.18 m radius. No two ever meet; in a grid of 1 m
-// neighbours come as near as 0.08 m. All pairs are watched; what does not move sends the same pose
-// in every tick.
+// grid. `moving` of them move on circles of 0.18 m radius. No two ever meet; in a grid of 1 m
+// neighbours come as near as 0.08 m. All pairs are watched. Objects that do not move send the same
+// pose in every tick.
 [[nodiscard]] Crowd orbiting_crowd(const OrbitingOptions& options);
 
-// A serial arm of 20 links among `obstacles` fixed bodies around it; all pairs of a link and an
-// obstacle, and all pairs of links that are not neighbours or next neighbours.
+// A serial arm of 20 links among `obstacles` fixed bodies around it. Watched are all pairs of a
+// link and an obstacle, and all pairs of links that are neither neighbours nor next neighbours.
 [[nodiscard]] Crowd robot_in_crowd(std::uint32_t obstacles);
 
 // The generated warehouse of config/write/warehouse_cell.hpp: objects of up to eight parts, of

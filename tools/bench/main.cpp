@@ -1,4 +1,5 @@
-// clearance-bench: how fast, and how exact, on this machine. Google Benchmark's own options apply.
+// clearance-bench measures speed and accuracy on this machine. Google Benchmark's own options
+// apply.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

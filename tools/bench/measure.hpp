@@ -33,7 +33,7 @@ struct Answer {
   double distance;  // 0 or less: they overlap; infinity: they do not, and nothing more is known
   bool ok = true;   // false: the solver reports a failure
   int iterations = 0;
-  double width = 0.0;  // m: upper - lower bound, for those who certify
+  double width = 0.0;  // m: upper - lower bound, for solvers that certify
 };
 
 // A query has failed when it reports so, is NaN, or is wrong by more than this, m.

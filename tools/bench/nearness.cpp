@@ -24,7 +24,7 @@ namespace {
 constexpr int kPairs = 60, kSteps = 20;
 constexpr double kGaps[] = {1e-9, 1e-6, 1e-3, 1.0, 1e3};
 constexpr double kStep = 0.002, kTurn = 0.005;
-// Bodies as near as this are not turned: by a turn they would overlap.
+// Bodies as near as this are not rotated, because a rotation would make them overlap.
 constexpr double kNear = 1e-3;
 constexpr double kWide = 1e-13;
 

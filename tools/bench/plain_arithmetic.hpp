@@ -1,5 +1,5 @@
-// Measures the noise of the machine: a fixed number of multiplications in registers, which take the
-// same time again and again where nothing else (the host, interrupts) takes part.
+// Measures the noise of the machine by a fixed number of multiplications in registers. They always
+// take the same time unless something else (the host, interrupts) interferes.
 #pragma once
 
 #include <benchmark/benchmark.h>

@@ -47,7 +47,7 @@ class MovingRobots {
   }
   [[nodiscard]] const std::vector<JointSample>& joints() const noexcept { return joints_; }
 
-  // Does the tick's work for joints: takes each in, and places all links.
+  // Does the tick's work for joints: takes in each joint state, and places all links.
   void place(std::int64_t now_ns) noexcept {
     for (const JointSample& joint : joints_) {
       const JointVariable& variable = scene_.variables[joint.variable];

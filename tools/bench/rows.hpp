@@ -15,16 +15,16 @@ void register_ours(RowSet set);
 // batch/boxes ...: the same pairs at once, by single queries, and with each vector width.
 void register_batches();
 
-// nearness/cold/KIND/GAP and nearness/tracked/KIND/GAP for every kind of nearness.cpp and every gap
-// from 1e-9 to 1e3 of the bodies' larger semi-axes: 60 random pairs at that gap. They show whether
+// nearness/cold/KIND/GAP and nearness/tracked/KIND/GAP for every kind of nearness.cpp, with 60
+// random pairs at each gap. Gaps are 1e-9 to 1e3 of the bodies' larger semi-axes. They show whether
 // a query of curved bodies costs more for nearer or thinner bodies. Counters: iterations, the mean
-// number of support points; most_iterations; wide, the queries whose bounds are farther apart than
+// number of support points; most_iterations; wide, the queries whose bounds differ by more than
 // 1e-13 of sizes and distance.
 void register_nearness();
 
 // robot/kinematics/NAME, robot/tick/poses/NAME, robot/tick/joints/NAME and
-// robot/tick/gradients/NAME for each of these cells that has a robot: the cost of kinematics, and
-// of a tick with and without it.
+// robot/tick/gradients/NAME for each of these cells that has a robot. They measure the cost of
+// kinematics, and of a tick with and without it.
 void register_robots(const std::vector<std::filesystem::path>& cells);
 
 }  // namespace clearance::bench

@@ -39,9 +39,9 @@ class TickRun {
 // certified.
 [[nodiscard]] std::vector<double> certified_minima(const Crowd& crowd, int ticks);
 
-// The time of the ticks themselves: `least` holds the time of each tick of a run, ns; runs them
-// again, `runs` times, with a new monitor each, and leaves the least that each has taken. The
-// machine disturbs some tick in every run, but hardly the same tick in all.
+// Finds the time of the ticks without disturbances. `least` holds the time of each tick of a run,
+// ns. Runs them again, `runs` times, with a new monitor each, and keeps the least time of each
+// tick. The machine disturbs some tick in every run, but hardly the same tick in all.
 void keep_least(const Crowd& crowd, int runs, std::vector<double>& least);
 
 }  // namespace clearance::bench

@@ -66,7 +66,7 @@ std::vector<double> time_run(benchmark::State& state, const Crowd& crowd) {
     certified += run.report().minimum_certified;
     hash.add(run.report());
   }
-  // Measured after the ticks: in between it would leave colder caches for them.
+  // This is measured after the ticks, because between them it would leave colder caches.
   for (std::size_t i = 0; i < times.size(); ++i) control_times.push_back(control.time());
   const double ticks = static_cast<double>(times.size());
   const double pairs = static_cast<double>(crowd.scene.pairs.size());
@@ -112,7 +112,7 @@ void register_plain(const std::string& name, int ticks, const MakeCrowd& make) {
 
 struct Ticks {
   int ours, plain, fcl;  // how many are timed; 0: none
-  int runs = 1;          // of ours, for what each tick takes at its best
+  int runs = 1;          // of our monitor, for the least time of each tick
 };
 
 void register_all(const std::string& name, const Ticks& ticks, const MakeCrowd& make) {

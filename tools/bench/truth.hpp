@@ -1,7 +1,7 @@
-// The reference distance for the error of every row, from a method that shares nothing with
-// the core: Wolfe's nearest point (P. Wolfe, "Finding the nearest point in a polytope", 1976) over
-// all differences of support points, in 80-bit long doubles, each answer with the gap between its
-// primal and its dual value. Bodies are the hulls of the polyhedra's vertices, or the curved
+// The reference distance for the error of every row, from a method that shares nothing with the
+// core. It is Wolfe's nearest point (P. Wolfe, "Finding the nearest point in a polytope", 1976)
+// over all differences of support points, in 80-bit long doubles. Each answer has the gap between
+// its primal and its dual value. Bodies are the hulls of the polyhedra's vertices, or the curved
 // shapes; radii are taken off. Poses are the exact rotations of their quaternions.
 #pragma once
 

@@ -82,7 +82,8 @@ std::vector<Trajectory> passing(ConvexBody (*make)(Random&), const Drift& by, do
   return all;
 }
 
-// B slides across the face of A at a constant distance, from beside it over it to beyond it.
+// B slides across the face of A at a constant distance, from outside one edge to outside the
+// opposite edge.
 std::vector<Trajectory> sliding_boxes() {
   Random random(3);
   std::vector<Trajectory> all;

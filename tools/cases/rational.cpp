@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-constexpr int kLargestExponent = 10'000;  // far beyond any double
+constexpr int kLargestExponent = 10'000;  // far larger than any double
 
 Rational power_of_ten(int exponent) {
   mpz_class power;

@@ -18,8 +18,8 @@ struct DistanceAnswer {
   Vec3 own_point_on_b;  // the witness point in B's local frame, before the radius
 };
 
-// The number of answers of each method, by DistancePath, and the number of pairs that touch or
-// overlap among those that feature tracking did not answer.
+// The number of answers of each method, by DistancePath. Also the number of touching or overlapping
+// pairs among those that feature tracking did not answer.
 struct PathCount {
   std::array<std::size_t, static_cast<std::size_t>(DistancePath::kDirection) + 1> by_path{};
   std::size_t met = 0;

@@ -22,8 +22,9 @@ struct UnionAnswer {
   Vec3 normal, on_a, on_b;  // of the nearest parts; where they overlap, both points are the same
 };
 
-// A point of both bodies that overlap, in frame A. GJK finds one, unless the bodies without their
-// radii are apart or hardly overlap; then the point halfway between the deepest points is one.
+// A common point of two overlapping bodies, in frame A. GJK finds one, unless the bodies without
+// their radii are separate or hardly overlap. In that case it is the midpoint of the deepest
+// points.
 Vec3 common_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                   const DistanceResult& r) {
   if (a.is_half_space()) return r.point_on_b;

@@ -14,7 +14,7 @@ class CurvedAnswerer {
   // As for Answerer.
   CurvedAnswerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
-  // As for Answerer, without the deepest points. Overlapping parts have no depth.
+  // The same as in Answerer, without the deepest points. Overlapping parts have no depth.
   [[nodiscard]] nlohmann::ordered_json answer(const CurvedCase& question);
 
   // Prints to stderr if there were any answers.

@@ -24,7 +24,7 @@ struct CurvedCase {
   bool motion = false;
 };
 
-// Whether a or b has a key that polyhedra do not have.
+// Returns true when a or b has a key that polyhedra do not have.
 [[nodiscard]] bool is_curved_case(const nlohmann::json& line);
 
 // Throws BadLine.

@@ -78,8 +78,9 @@ std::string shown(double value) {
   return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 
-// The length that the gap between bounds is relative to, m: both bounding radii (for an unbounded
-// body the largest distance at which its closest points may lie) plus the distance of the origins.
+// The length that the gap between bounds is relative to, m: both bounding radii plus the distance
+// of the origins. For an unbounded body, the radius is the largest distance at which its closest
+// points may lie.
 double size_of(const DistanceCase& asked, std::size_t pose, double farthest) {
   const auto& [world_from_a, world_from_b] = asked.poses[pose];
   const double apart = (world_from_b.position - world_from_a.position).norm();

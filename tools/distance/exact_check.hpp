@@ -21,7 +21,7 @@ class ExactCheck {
  public:
   // `tolerance` is relative: for distance and witness points to the larger of scale and distance,
   // for depth to the scale. Bounds have no tolerance. `widest` is the largest accepted gap between
-  // the bounds, relative to the bounding radii plus the distance of the origins; a converged answer
+  // the bounds, relative to the bounding radii plus the distance of the origins. A converged answer
   // promises 1e-14 (and kUnderflow). Two unbounded bodies only have true bounds.
   ExactCheck(double tolerance, double widest) : tolerance_(tolerance), widest_(widest) {}
 

@@ -27,8 +27,8 @@ std::string plot_text(const std::string& text) {
   return out + "\"";
 }
 
-// The script is a file, so that the pipe is free for gnuplot's own words. env finds gnuplot in
-// PATH, and ends with 127 when it is not there.
+// The script is a file, so that the pipe is free for gnuplot's messages. env finds gnuplot in PATH,
+// and ends with 127 when it is not there.
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
   const std::string file = svg.string() + ".gnuplot";

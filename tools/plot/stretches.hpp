@@ -10,7 +10,8 @@
 namespace clearance {
 
 // Each stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells,
-// which begin as Cell{}. merge(later, into), found in their namespace, joins two Heads or Cells.
+// which begin as Cell{}. merge(later, into) joins two Heads or Cells; it is found in their
+// namespace.
 template <class Head, class Cell>
 class Stretches {
  public:

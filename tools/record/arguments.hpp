@@ -29,7 +29,7 @@ struct RecordArguments {
 // cell, or null when none was given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Cell* cell,
                                   StopSignal& stop);
-// From a bag, or from joints as CSV.
+// Converts a bag, or joints as CSV.
 [[nodiscard]] int record_from_log(const RecordArguments& arguments, const std::string& log,
                                   const Cell& cell, StopSignal& stop);
 [[nodiscard]] int record_from_dds(const RecordArguments& arguments, const Cell* cell,

@@ -213,8 +213,8 @@ bool Publishing::prepare() {
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
   }
-  // Once one topic has a reader, the others get a moment more: discovery of all takes 2 to 12 ms,
-  // or longer on a busy machine.
+  // Once one topic has a reader, the others get a moment more. Discovery of all readers takes 2 to
+  // 12 ms, or longer on a busy machine.
   constexpr std::int64_t kSettleNs = 300 * kMillisecond;
   std::int64_t until = monotonic_ns() + std::llround(arguments_.wait_s * 1e9);
   bool heard = false;

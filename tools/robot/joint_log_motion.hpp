@@ -21,7 +21,7 @@ class JointLogMotion {
   // The fault in the file as "FILE:LINE: ..."; empty: none.
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
   [[nodiscard]] double seconds() const noexcept;  // from its first row to its last
-  // As JointSweep::at. The joints stand still before the first row and after the last.
+  // The same as JointSweep::at. The joints stand still before the first row and after the last.
   void at(double t_s, std::vector<JointSample>& joints);
 
  private:

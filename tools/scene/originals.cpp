@@ -48,8 +48,9 @@ void add_facets(const Part& part, TriangleMesh& mesh) {
   }
 }
 
-// For a hull around several parts. surface_error() knows to 2 % how far the hull's surface is from
-// theirs. certified_error() also bounds points inside the hull, less closely for many facets.
+// The error of a hull around several parts. surface_error() bounds the distance of the hull's
+// surface from theirs to 2 %. certified_error() also bounds points inside the hull, but less
+// closely for many facets.
 double hull_error_of(const Object& object, const ConvexBody& hull) {
   TriangleMesh surface;
   for (const Part& part : object.parts) add_facets(part, surface);

@@ -34,7 +34,7 @@ struct Originals {
 
 // Reads cells (.yaml, .yml), robots (.urdf) and meshes, or returns the mistakes in them. `object`,
 // if not empty, selects an object of a cell or a link of a robot. A mesh is split into 2, 4, 8 and
-// 16 parts, unless the error of its hull is less than 0.5 % of the hull's radius.
+// 16 parts. It is not split if the error of its hull is less than 0.5 % of the hull's radius.
 [[nodiscard]] std::variant<Originals, std::vector<std::string>> read_originals(
     std::span<const std::filesystem::path> files, const std::string& object);
 

@@ -1,13 +1,14 @@
 // The cost of certifying at every instant that two bodies are not near, with a coarse or a fine
-// model; it shows where a finer model stops paying.
+// model. It shows where a finer model no longer pays.
 //
 // The monitor's broad phase queries a pair and certifies a distance. It then leaves the pair alone
-// until both objects have moved by the allowance: the distance beyond the threshold that matters
-// (§4.6; monitor/broad_phase/README.md). At distance D beyond that threshold a model of error e
-// certifies at least D - e. If both objects together move V metres per second, as fast as the cell
-// states, the pair is queried V / (D - e - u) times a second, where u is the margin of the broad
-// phase for urgent pairs. A model of c ns per query therefore costs c V / (D - e - u). In a plot of
-// c against e, the cheapest model has the least slope as seen from the point (D - u, 0).
+// until both objects have moved by the allowance: the excess of the distance over the threshold
+// that matters (§4.6; monitor/broad_phase/README.md). If the distance exceeds that threshold by D,
+// a model of error e certifies at least D - e. Let both objects together move V metres per second,
+// as fast as the cell states, and let u be the margin of the broad phase for urgent pairs. Then the
+// pair is queried V / (D - e - u) times a second. A model of c ns per query therefore costs c V /
+// (D - e - u). In a plot of c against e, the cheapest model is the one whose line to the point (D -
+// u, 0) has the least slope.
 #pragma once
 
 #include <optional>
@@ -28,7 +29,8 @@ struct Level {
 };
 
 struct Watching {
-  double distance = 0.0;  // m: of the bodies, beyond a zone's threshold or the horizon
+  double distance = 0.0;  // m: the excess of the bodies' distance over a zone's threshold or the
+                          // horizon
   double speed = 0.0;     // m/s: sum of the objects' speeds; > 0
 };
 

@@ -13,9 +13,9 @@ namespace clearance {
 // A sample without a stamp or a source.
 [[nodiscard]] JointSample moving_joint(std::size_t variable, double position, double velocity);
 
-// Every position swings about the middle of its limits, with a frequency of its own, through nine
-// tenths of its range and at most at half its velocity limit. A joint without limits swings through
-// a quarter turn to either side.
+// Every position swings about the middle of its limits with a frequency of its own. It moves
+// through nine tenths of its range, at most at half its velocity limit. A joint without limits
+// swings through a quarter turn to either side.
 class JointSweep {
  public:
   // The scene must outlive this.

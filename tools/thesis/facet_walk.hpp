@@ -6,8 +6,8 @@
 
 namespace clearance::bench {
 
-// O(N^2). In doubles and with the tie at a vertex of more than three facets decided by index: at
-// such vertices it finds neighbours that share only a point.
+// It takes O(N^2) in doubles. At a vertex of more than three facets the tie is decided by index, so
+// it finds neighbours there that share only a point.
 [[nodiscard]] Neighbours walk_facets(std::span<const HalfSpace> rows);
 
 }  // namespace clearance::bench

@@ -1,6 +1,6 @@
 // A polyhedron whose tables are moved to a pose at every query, as the base algorithm of Table 4.2
-// needs them: all tables that the iteration reads. (The thesis's iteration, without adjacency, read
-// only the half-spaces.)
+// needs them. All tables that the iteration reads are moved. (The thesis's iteration, without
+// adjacency, read only the half-spaces.)
 #pragma once
 
 #include "core/convex_body.hpp"

@@ -1,6 +1,6 @@
 // The thesis's active-set iteration in its variants (§4.1), over the core's tables and its delta,
-// alpha and lambda, without what the core adds: no certificate, no rule for ties, no feature
-// tracking.
+// alpha and lambda. It has none of the core's additions: no certificate, no rule for ties, no
+// feature tracking.
 #pragma once
 
 #include "core/active_set/active_feature.hpp"

@@ -1,4 +1,4 @@
-// The newest message of every topic for the viewers: some pass unchanged; transforms and markers
+// The newest message of every topic for the viewers. Some pass unchanged. Transforms and markers
 // are made from poses, joints and report while a viewer subscribes to them.
 #pragma once
 

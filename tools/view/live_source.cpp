@@ -10,19 +10,20 @@
 namespace clearance::view {
 namespace {
 
-// No report for this long: the daemon hangs, or the machine does. As clearance-watch.
+// Without a report for this long, the daemon or the machine hangs. clearance-watch uses the same
+// time.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
 
-// Readers stay for so long after the last viewer has gone: a page that is loaded again.
+// Readers stay for this time after the last viewer has gone, because a page may be loaded again.
 constexpr std::int64_t kLingerNs = 5'000'000'000;
 
-// What every message tells anew is read only while somebody looks. Of poses the last must not be
-// missed: an object that seldom moves tells it once.
+// Topics whose every message is complete are read only while there is a viewer. The last pose must
+// not be missed, because an object that seldom moves sends it once.
 constexpr std::array kOnDemand = {TopicKind::kDistances, TopicKind::kSeparation,
                                   TopicKind::kGradients};
 
-// A reader of reports needs no more than the newest of each 1/60 s; of poses as many as a source
-// sends meanwhile, since the report names the batch that it used.
+// A reader of reports needs no more than the newest of each 1/60 s. A reader of poses needs as many
+// as a source sends meanwhile, since the report names the batch that it used.
 std::int32_t depth_of(TopicKind kind) {
   return kind == TopicKind::kPoses || kind == TopicKind::kJointStates ? 32 : 1;
 }
@@ -69,7 +70,7 @@ void LiveSource::join(TopicKind kind) {
   reader = participant_.reader(kind, topics_.*topic(kind).name, depth_of(kind));
 }
 
-// Whoever looks next must not be shown the last report of before.
+// The next viewer must not be shown an old report.
 void LiveSource::leave(Server& server) {
   for (const TopicKind kind : kOnDemand) {
     dds_entity_t& reader = readers_[index(kind)];
@@ -94,7 +95,7 @@ void LiveSource::take(TopicKind kind) {
   taken_.clear();
 }
 
-// As the daemon does (dds/pose_reader.cpp). Its log names what is wrong, not the page.
+// The daemon does the same (dds/pose_reader.cpp). Its log names the faults; the page does not.
 void LiveSource::take_from_ros(const Now& now) {
   if (!intake_.hears_ros()) return;
   if (ros_.look()) intake_.keep(ros_.writers());
@@ -105,7 +106,7 @@ void LiveSource::take_from_ros(const Now& now) {
   static_cast<void>(intake_.take_news());
 }
 
-// The same states as clearance-watch tells apart.
+// The same states as those of clearance-watch.
 void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
   const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
   const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_.report_time_ns());

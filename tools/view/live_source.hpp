@@ -38,7 +38,7 @@ class LiveSource final : public Source {
   Frame frame_;
   Intake intake_;  // of ROS 2's topics
   RosReaders ros_;
-  bool heard_ = false;           // a report has come since somebody looks
+  bool heard_ = false;           // a report has come since there is a viewer
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC
 };
 

@@ -1,7 +1,7 @@
-// A recording, played like a film: every viewer of the server sees the same moment, and any of them
-// may move it, by parameters:
+// A recording, played like a film. Every viewer of the server sees the same moment, and any of them
+// may move it by these parameters:
 //   playback.playing  true or false
-//   playback.time     s after the first report; of what is set, the last report up to then is shown
+//   playback.time     s after the first report; shows the last report up to the time that is set
 //   playback.rate     multiples of the recorded speed, 0.01 to 100
 //   playback.step     set only: so many reports on, negative: back
 #pragma once

@@ -11,7 +11,7 @@ namespace {
 
 using Piece = RunHistory::Piece;
 
-// Distances that are kept, 64 MB: an hour of 162 pairs is kept in pieces of 64 ms.
+// Distances that are kept, 64 MB. An hour of 162 pairs is kept in stretches of 64 ms.
 constexpr std::size_t kMostDistances = 1 << 24;
 constexpr std::int64_t kShortestNs = 4'000'000;
 

@@ -1,4 +1,4 @@
-// A recorded run in short pieces of time, for the time line and for the plots before any moment.
+// A recorded run in short stretches of time, for the time line and for the plots before any moment.
 #pragma once
 
 #include <cstddef>
@@ -41,15 +41,15 @@ class RunHistory {
 
   // The least of the whole run; NaN when there is none.
   [[nodiscard]] Piece least() const;
-  // The run in at most `most` pieces of equal length, without those that have no report.
+  // The run in at most `most` stretches of equal length, without those that have no report.
   [[nodiscard]] std::vector<Piece> pieces(std::size_t most) const;
   // The last kWindowNs up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
-  // "tick": [...], "pairs": {"ID": [...]}}; s after the first report, m, us; null: not known.
-  // Distances of pairs that are not published are null.
+  // "tick": [...], "pairs": {"ID": [...]}}. Units are s after the first report, m and us. null: not
+  // known. Distances of pairs that are not published are null.
   [[nodiscard]] std::string window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const;
 
  private:
-  // The least distance of the pieces from `first` up to, but not including, `last`, m. NaN: the
+  // The least distance of the stretches from `first` up to, but not including, `last`, m. NaN: the
   // pair is not published, or was never known.
   [[nodiscard]] double least_of(std::uint32_t pair, std::size_t first, std::size_t last) const;
 

@@ -1,5 +1,5 @@
-// A recording at a glance: the least distance over time, the active zones, the moments worth a
-// look, and the data needed to jump to any of them.
+// An overview of a recording: the least distance over time, the active zones, the notable moments,
+// and the data to jump to any of them.
 #pragma once
 
 #include <cstdint>

@@ -64,7 +64,7 @@ class Feed {
   // The number of writers of distances that are alive: they wrote within their leases. More than
   // one is a mistake.
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
-  // Why the reports of a present daemon do not come; empty when no reason is known.
+  // The reason why the reports of a present daemon do not come; empty when none is known.
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
   // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }

@@ -60,7 +60,7 @@ Line& Line::to(std::size_t column) {
   return *this;
 }
 
-// Of the locale, only the encoding: numbers keep their points.
+// Only the encoding is taken from the locale, so numbers keep their decimal points.
 Screen::Screen() {
   std::setlocale(LC_CTYPE, "C.UTF-8");
   screen_ = newterm(nullptr, stdout, stdin);
@@ -95,7 +95,8 @@ Size Screen::size() const {
           .rows = static_cast<std::size_t>(getmaxy(stdscr))};
 }
 
-// A line that has changed is sent as a whole, so that what another program wrote over it goes.
+// A line that has changed is sent as a whole, so that it replaces text that another program wrote
+// over it.
 void Screen::draw(const std::vector<Line>& lines) {
   werase(stdscr);
   for (std::size_t i = 0; i < lines.size(); ++i) {

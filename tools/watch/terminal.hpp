@@ -42,12 +42,12 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // Whether stdout is a terminal on which the cursor can be moved.
+  // Returns true when stdout is a terminal on which the cursor can be moved.
   [[nodiscard]] static bool available();
-  // The size as of the last call of quit_key(), which follows a terminal that is resized.
+  // The size at the last call of quit_key(), which follows a terminal that is resized.
   [[nodiscard]] Size size() const;
   void draw(const std::vector<Line>& lines);
-  // Whether q has been pressed.
+  // Returns true when q has been pressed.
   [[nodiscard]] bool quit_key();
 
  private:

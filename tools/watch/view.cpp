@@ -13,10 +13,10 @@ namespace clearance::watch {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
-// After this program itself was held up, Cyclone thinks for a moment that the daemon was: a report
-// that has just come says otherwise.
+// After a delay of this program, Cyclone assumes for a moment that the daemon was delayed. A report
+// that has just come disproves this.
 constexpr std::int64_t kJustCameNs = 200'000'000;
-// How long old reports are told of: two plain lines.
+// The time for which old reports are mentioned: that of two plain lines.
 constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
@@ -53,7 +53,7 @@ std::string time_of_day(std::int64_t realtime_ns) {
   return fmt::format("{:02}:{:02}:{:02}", local.tm_hour, local.tm_min, local.tm_sec);
 }
 
-// Why what is shown is not what is; empty: it is.
+// The reason why the screen does not show the present state; empty: it does.
 std::string frozen(const Feed& feed, std::int64_t now_ns) {
   const std::int64_t since = now_ns - feed.last_ns();
   const std::string last =
@@ -68,7 +68,7 @@ std::string frozen(const Feed& feed, std::int64_t now_ns) {
   return {};
 }
 
-// What is wrong with the latest reports themselves, or was a moment ago; empty: nothing.
+// A present or recent fault of the latest reports themselves; empty: none.
 std::string not_fresh(const Feed& feed, std::int64_t now_ns) {
   if (feed.check().clocks_disagree) {
     return fmt::format("the clock of clearanced is {:.1f} s ahead of this one: ages mean nothing",
@@ -253,7 +253,7 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   return line.add(feed.pair_name(pair));
 }
 
-// Sorted by lower bound, so that an unknown pair is not hidden behind a known one.
+// Pairs are sorted by lower bound, so that an unknown pair is not hidden behind a known one.
 std::vector<const clearance_msg_PairDistance*> closest_first(
     const clearance_msg_Distances& report) {
   std::vector<const clearance_msg_PairDistance*> pairs(report.pairs._length);

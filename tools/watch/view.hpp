@@ -19,7 +19,7 @@ struct ViewContext {
   double reports_a_second = 0.0;
 };
 
-// At most size.rows lines; the closest pairs fill the room that is left.
+// At most size.rows lines; the closest pairs fill the remaining lines.
 [[nodiscard]] std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context,
                                              Size size);
 

@@ -1,11 +1,11 @@
-// The distance as the quadratic programme (3.2.5), solved by a general primal active-set method
-// (§3.3.2, Fletcher) that knows nothing of geometry: six variables, N1 + N2 rows.
+// The distance as the quadratic programme (3.2.5), which has six variables and N1 + N2 rows. It is
+// solved by a general primal active-set method (§3.3.2, Fletcher) that knows nothing of geometry.
 //
-// Each body's point is kept in its own frame, minimise |x1 - R x2 - t|^2, so that the rows stay as
-// they are when bodies move and a tracked start is feasible. The objective is used as the least
-// squares that it is, which keeps the digits that forming H = J'J loses; the equality problem is
-// solved in the null space of the active rows. Slacks are carried along, so alpha costs one product
-// with the rows.
+// Each body's point is kept in the body's local frame, and |x1 - R x2 - t|^2 is minimised. So the
+// rows do not change when bodies move, and a tracked start is feasible. The objective is treated as
+// a least-squares problem, which keeps the digits that forming H = J'J loses. The equality problem
+// is solved in the null space of the active rows. The slacks d - n.x are updated, so alpha costs
+// one product with the rows.
 #pragma once
 
 #include <algorithm>
@@ -120,7 +120,7 @@ class ActiveSetQp {
     return false;
   }
 
-  // Lambda: lets go of the row with the most negative multiplier; false if there is none.
+  // Lambda: releases the row with the most negative multiplier; false if there is none.
   bool release(const Vec3& residual, bool smallest_index) {
     if (active_.empty()) return false;
     const Vec6 gradient = jacobian_.transpose() * residual;

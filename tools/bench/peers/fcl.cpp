@@ -10,7 +10,7 @@
 namespace clearance::bench {
 namespace {
 
-// FCL's solvers are functions of the shapes' types: of a pair of them, the one that applies.
+// FCL's solvers are functions of the shapes' types. Selects the one for a pair of types.
 template <class Use>
 void with_types(const FclShape& a, const FclShape& b, const Use& use) {
   std::visit([&](const auto& of_a) { std::visit([&](const auto& of_b) { use(*of_a, *of_b); }, b); },
@@ -50,9 +50,8 @@ class WithLibccd : public Pair {
   fcl::detail::GJKSolver_libccd<double> gjk_;
 };
 
-// FCL starts from minus its guess and hands back its last ray with the sign as it was, so that a
-// guess passed on untouched points away from the other body; turned round here, it is as fast as it
-// can be.
+// FCL starts from minus its guess and returns its last ray with the original sign. So an unchanged
+// guess would point away from the other body. Its sign is reversed here, for FCL's best speed.
 class WithOwnGjk : public Pair {
  public:
   WithOwnGjk(Shape a, Shape b) : Pair(std::move(a), std::move(b)) { gjk_.gjk_tolerance = 1e-12; }

@@ -21,8 +21,8 @@ using FclHull = fcl::Convex<double>;
 // Vertices closer than rounding are welded.
 [[nodiscard]] std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body);
 
-// Curved bodies as what they are: ellipsoid, cylinder, cone; a capsule along z, a sphere around the
-// origin; others as hulls.
+// Curved bodies keep their shapes: ellipsoid, cylinder, cone, a capsule along z, a sphere around
+// the origin. Others become hulls.
 using FclShape = std::variant<std::shared_ptr<FclHull>, std::shared_ptr<fcl::Ellipsoidd>,
                               std::shared_ptr<fcl::Cylinderd>, std::shared_ptr<fcl::Coned>,
                               std::shared_ptr<fcl::Capsuled>, std::shared_ptr<fcl::Sphered>>;

@@ -1,8 +1,8 @@
 // The smallest distance of a crowd in every tick by FCL's DynamicAABBTreeCollisionManager, as FCL
-// is meant to be used: only what moved is updated, fixed objects have a tree of their own, and the
-// pair that was closest in the last tick is evaluated first, so that its distance cuts the trees
-// from the beginning. It answers one question of those that a tick answers: no bounds of other
-// pairs, no zones, no witness of a pair that is not the minimum.
+// is meant to be used. Only objects that moved are updated, and fixed objects have a tree of their
+// own. The pair that was closest in the last tick is evaluated first, so that its distance prunes
+// the trees from the beginning. FCL finds only the minimum of a tick's results: no bounds of other
+// pairs, no zones, and no witness points of other pairs.
 #include <fcl/broadphase/broadphase_dynamic_AABB_tree.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/sphere.h>

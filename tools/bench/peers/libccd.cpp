@@ -9,8 +9,8 @@
 namespace clearance::bench {
 namespace {
 
-// Points, and of each the points at the other ends of its edges; or a curved shape; and the radius
-// around either.
+// Points, each with the points at the other ends of its edges; or a curved shape. Either has a
+// radius around it.
 struct Mesh {
   std::vector<Vec3> points;
   std::vector<std::vector<int>> neighbours;
@@ -31,7 +31,7 @@ std::shared_ptr<const Mesh> mesh_of(const ConvexBody& body) {
   const Welded welds = welded(body);
   mesh->points = welds.points;
   mesh->neighbours.resize(welds.points.size());
-  // Every edge once in each direction: two faces pass it, one each way.
+  // Each edge occurs once in each direction, because its two faces pass it in opposite directions.
   for (const std::vector<int>& face : welds.faces) {
     for (std::size_t i = 0; i < face.size(); ++i) {
       mesh->neighbours[static_cast<std::size_t>(face[i])].push_back(face[(i + 1) % face.size()]);
@@ -127,7 +127,7 @@ class Libccd {
 
 }  // namespace
 
-// It has no distance that the thesis's tables could compare.
+// libccd has no distance that the thesis's tables could compare.
 void register_libccd(RowSet set) {
   if (set == RowSet::kBench) register_peer<Libccd>(set, "libccd");
 }

@@ -1,6 +1,7 @@
-// The linear algebra of a small primal active-set method: an orthonormal basis of the active rows,
-// kept up to date, and least squares in what they leave free. By Gram and Schmidt, each time twice,
-// which is enough for orthogonality to rounding (W. Kahan and B. Parlett, "twice is enough").
+// The linear algebra of a small primal active-set method: an updated orthonormal basis of the
+// active rows, and least squares in their null space. The basis is found by Gram-Schmidt
+// orthogonalisation. Each step is done twice, which is enough for orthogonality to rounding (W.
+// Kahan and B. Parlett, "twice is enough").
 #pragma once
 
 #include <Eigen/Core>
@@ -45,7 +46,8 @@ class NullSpace {
 
   // The shortest p with rows.p = 0 that makes |jacobian p + residual| least.
   [[nodiscard]] Vec6 least_squares(const Wide& jacobian, const Eigen::Vector3d& residual) const {
-    Eigen::Matrix<double, 6, 3> left = jacobian.transpose();  // of its rows, what is free
+    Eigen::Matrix<double, 6, 3> left = jacobian.transpose();  // the component in the null space of
+                                                              // its rows
     for (int i = 0; i < size_; ++i) left -= q_.col(i) * (q_.col(i).transpose() * left);
     Eigen::Matrix<double, 6, 3> basis;
     Eigen::Matrix3d image, triangle;

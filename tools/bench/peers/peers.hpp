@@ -1,6 +1,7 @@
-// Other solvers in the same process on the same poses: benchmarks peer/WHO/tracked/f2 ... Each at
-// its best setting for this use that does not change its code: double precision, no margins, its
-// own warm start where it has one, its solver called directly rather than through its scene.
+// Other solvers in the same process on the same poses: benchmarks peer/WHO/tracked/f2 ... Each runs
+// at its best setting for this use that does not change its code. This means double precision, no
+// margins, and its own warm start where it has one. Its solver is called directly rather than
+// through its scene.
 #pragma once
 
 #include <functional>
@@ -11,10 +12,11 @@
 
 namespace clearance::bench {
 
-// FCL 0.7. 'fcl': its default solver (libccd's simplex with FCL's repairs; climbs along edges from
-// 33 vertices; no warm start, so tracked is as cold) at its default tolerance, 1e-6. 'fcl-tight':
-// the same at 1e-12, which costs hardly any time here. 'fcl-gjk': its own GJK (cached guess while
-// tracked; supports by search of all vertices) at 1e-12, which costs none.
+// FCL 0.7. 'fcl' is its default solver at its default tolerance, 1e-6: libccd's simplex with FCL's
+// repairs. This climbs along edges from 33 vertices, and has no warm start, so tracked equals cold.
+// 'fcl-tight' is the same at 1e-12, which costs hardly any time here. 'fcl-gjk' is its own GJK at
+// 1e-12, which costs none: with a cached guess while tracked, and supports by a search of all
+// vertices.
 void register_fcl(RowSet set);
 // Bullet 3 with doubles: btGjkEpaSolver2 on hulls, starting from the last separation while tracked.
 void register_bullet(RowSet set);
@@ -28,7 +30,8 @@ void register_qp(RowSet set);
 // fcl_manager.cpp.
 void register_fcl_manager(const std::string& name, int ticks, const std::function<Crowd()>& make);
 
-// All of them; says on stderr which are left out because they are not installed.
+// Registers all of them, and names on stderr those that are left out because they are not
+// installed.
 void register_peers(RowSet set);
 
 }  // namespace clearance::bench

@@ -1,4 +1,5 @@
-// The rows of active_set_qp.hpp, warm-started while tracked and from the bodies' middles else.
+// The benchmark rows of active_set_qp.hpp: warm-started while tracked, otherwise started from the
+// bodies' centres.
 #include "tools/bench/peers/active_set_qp.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/solver_rows.hpp"

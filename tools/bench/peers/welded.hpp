@@ -1,6 +1,7 @@
-// A body as meshes are: vertices closer than rounding are one. The core's exact polyhedron keeps
-// them apart (four facets of a facet-ball that meet in a point but for rounding have two vertices
-// 1e-16 apart), and solvers that climb along edges in doubles would fail on such edges.
+// A body as a mesh, in which vertices closer than rounding are welded. The core's exact polyhedron
+// keeps them separate: four facets of a facet-ball that meet in a point up to rounding have two
+// vertices at a distance of 1e-16. Solvers that climb along edges in doubles would fail on such
+// edges.
 #pragma once
 
 #include <vector>
@@ -11,7 +12,7 @@ namespace clearance::bench {
 
 struct Welded {
   std::vector<Vec3> points;
-  std::vector<std::vector<int>> faces;  // counter-clockwise as seen from outside
+  std::vector<std::vector<int>> faces;  // counter-clockwise when viewed from outside
 };
 
 [[nodiscard]] Welded welded(const ConvexBody& body);

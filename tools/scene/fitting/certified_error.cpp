@@ -1,9 +1,9 @@
 // The signed distance from one convex body is a convex function. Over the hull of some points it is
 // therefore greatest at one of these points. The distance from the nearest of several bodies is not
-// convex, but no point of the hull is farther from the nearest body than the farthest of the points
-// is from any one of the bodies. The model is covered by such hulls ("cells"), and the cell with
-// the largest bound is split until that bound is close to the distance of a point that the model
-// has. A ball of radius r around each point of the model adds at most r.
+// convex. But for any one of the bodies, the largest signed distance of the points bounds the
+// distance of every point of the hull from the nearest body. The model is covered by such hulls
+// ("cells"). The cell with the largest bound is split until that bound is close to the distance of
+// a point of the model. A ball of radius r around each point of the model adds at most r.
 #include "tools/scene/fitting/certified_error.hpp"
 
 #include <algorithm>
@@ -49,7 +49,7 @@ class Distances {
   ConvexBody point_;
 };
 
-// For each body the distance of the farthest of some points.
+// For each body, the largest distance of some points from it.
 class FarthestPoint {
  public:
   void add(const std::vector<double>& distances) {

@@ -9,7 +9,7 @@ namespace clearance {
 namespace {
 
 constexpr std::size_t kFewestFacets = 8;
-// A share of the body's size. Vertices that extend beyond a plane by less need no further plane.
+// A share of the body's size. Vertices outside a plane by less than this need no further plane.
 constexpr double kLeftAlone = 1e-9;
 
 }  // namespace

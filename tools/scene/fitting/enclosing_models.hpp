@@ -1,10 +1,10 @@
 // Coarser models of a polyhedron, each of one simple shape: box, rounded box, capsule, cylinder,
 // ellipsoid, or a polyhedron of few facets.
 //
-// Each model holds the body, rounding included, and states how far it extends beyond the body at
-// most. It is fitted in doubles and then enlarged until every vertex is inside by more than
-// rounding. distance() certifies the error afterwards, however good the fit is. A call allocates
-// and may take up to a second.
+// Each model holds the body, rounding included, and states the largest distance by which it exceeds
+// the body. It is fitted in doubles and then enlarged until every vertex is inside by more than
+// rounding. distance() certifies the error afterwards, whatever the quality of the fit. A call
+// allocates and may take up to a second.
 #pragma once
 
 #include <optional>

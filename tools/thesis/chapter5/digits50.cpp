@@ -101,7 +101,7 @@ Solution solve(const Problem& problem) {
     }
     Real fraction = 1;
     const Real before = value(problem, v);
-    // Near the end what a step gains, its square, is less than 50 digits tell.
+    // Near the end, the gain of a step is its square, which is below the resolution of 50 digits.
     const bool near = dot(move, move) <= kNear * kNear * kNear * kNear * dot(v, v);
     while (!near && value(problem, plus(v, fraction, move)) > before) fraction /= 2;
     v = plus(v, fraction, move);
@@ -133,9 +133,10 @@ std::string distance_digits(const EllipsoidPair& pair, int digits) {
   return solve(problem_of(pair)).distance.str(digits);
 }
 
-// x_i = a_i^2 p_i / (a_i^2 - a_n^2 + t), a_n the least semi-axis, where the sum of (x_i / a_i)^2 is
-// 1 (5.1.5, 5.1.6); the sum falls with t > 0. If it is below 1 even at t = 0, p_n is 0 and x_n is
-// what the others leave (D. Eberly, "Distance from a point to an ellipse, an ellipsoid", 2013).
+// x_i = a_i^2 p_i / (a_i^2 - a_n^2 + t), where a_n is the least semi-axis and the sum of (x_i /
+// a_i)^2 is 1 (5.1.5, 5.1.6). The sum falls with t > 0. If it is below 1 even at t = 0, p_n is 0
+// and x_n follows from the other coordinates (D. Eberly, "Distance from a point to an ellipse, an
+// ellipsoid", 2013).
 TrueNearest true_nearest(const Vec3& axes, const Vec3& p) {
   const Point a = exact(axes), q = exact(p.cwiseAbs());
   const auto thin =

@@ -14,8 +14,8 @@ struct TruePoints {
 };
 
 // The closest points of ellipsoids that do not overlap. The vector v from A's closest point to B's
-// minimises the convex function |v|^2 / 2 + h_A(v) + h_B(v) - v.apart, where h are the support
-// functions of bodies around the origin. Newton's method finds it.
+// minimises the convex function |v|^2 / 2 + h_A(v) + h_B(v) - v.apart. Here h are the support
+// functions of the bodies around the origin. Newton's method finds it.
 [[nodiscard]] TruePoints true_closest_points(const EllipsoidPair& pair);
 
 struct CrossedTest {
@@ -27,7 +27,7 @@ struct CrossedTest {
   return {pair, true_closest_points(pair)};
 }
 
-// The same of ellipsoids at any pose; the rotations are those of the normalised quaternions.
+// The same for ellipsoids at any pose; the rotations are those of the normalised quaternions.
 [[nodiscard]] double true_distance(const Vec3& axes_a, const Pose& world_from_a, const Vec3& axes_b,
                                    const Pose& world_from_b);
 

@@ -1,8 +1,8 @@
 // §5.1: the multiplier of (5.1.6) by its dominant term, with the ratio accelerator.
 //
 // x_i = a_i^2 p_i / (a_i^2 + lambda) (5.1.5), where the three terms of S(lambda) (5.1.6) have the
-// sum 1. The iteration takes for granted that the terms keep their proportions: a term i is chosen
-// once, and lambda set so that it becomes its share of the sum (5.1.7), which by (5.1.8) is
+// sum 1. The iteration assumes that the terms keep their proportions. A term i is chosen once, and
+// lambda is set so that the term becomes its share of the sum (5.1.7). By (5.1.8) this is
 //
 //     lambda' = (a_i^2 + lambda) sqrt(S) - a_i^2.
 //
@@ -17,8 +17,9 @@
 
 namespace clearance::bench {
 
-// The thesis ends at |S - 1| of 1e-10 at best and multiplies the lower limit of lambda, minus the
-// least semi-axis squared, by 0.999; the limits here are those of doubles, which only helps it.
+// The thesis ends at |S - 1| of 1e-10 at best, and multiplies the lower limit of lambda, minus the
+// least semi-axis squared, by 0.999. The limits here are those of doubles, which only helps the
+// method.
 struct DominantTermOptions {
   double tolerance = 1e-14;  // of S
   int most_iterations = 200;
@@ -74,7 +75,7 @@ class DominantTerm {
     }
   }
 
-  // Another term, whose step stays farthest from the pole.
+  // Chooses another term, the one whose step keeps the largest distance from the pole.
   double beyond_the_pole(double s) {
     int farthest = term_ == 0 ? 1 : 0;
     for (int i = 0; i < N; ++i) {

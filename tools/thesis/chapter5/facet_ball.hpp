@@ -11,9 +11,9 @@
 
 namespace clearance::bench {
 
-// The outward normals of the thesis's facet-ball: rings around the x-axis, every other one turned
-// by half a facet (tools/bench/bodies.hpp turns none), and all reversed, because its rows point
-// inwards. Order 15 has 288.
+// The outward normals of the thesis's facet-ball: rings around the x-axis. Every other ring is
+// rotated by half a facet (tools/bench/bodies.hpp rotates none). All normals are reversed, because
+// the thesis's rows point inwards. Order 15 has 288.
 [[nodiscard]] std::vector<Vec3> facet_ball_directions(int order);
 
 // Facets touch the ellipsoid: their offsets are the support function (5.3.2).

@@ -9,9 +9,9 @@
 namespace clearance::bench {
 namespace {
 
-// The z of unit length that makes |c + H^(1/2) z| least, H = diag(h): (H - l I) z = -g, g = H^(1/2)
-// c, with l the least real eigenvalue of [H -I; -g g' H] (W. Gander, G. Golub, U. von Matt, "A
-// constrained eigenvalue problem", 1989), which is where the paper's formula comes from.
+// The z of unit length that minimises |c + H^(1/2) z|, with H = diag(h). It solves (H - l I) z =
+// -g, where g = H^(1/2) c and l is the least real eigenvalue of [H -I; -g g' H]. The paper's
+// formula is from W. Gander, G. Golub, U. von Matt, "A constrained eigenvalue problem", 1989.
 Vec3 nearest_of_sphere(const Vec3& h, const Vec3& g) {
   Eigen::Matrix<double, 6, 6> m;
   m << Mat3(h.asDiagonal()), -Mat3::Identity(), -g * g.transpose(), Mat3(h.asDiagonal());
@@ -25,9 +25,9 @@ Vec3 nearest_of_sphere(const Vec3& h, const Vec3& g) {
 
 }  // namespace
 
-// In the space where A is the unit sphere, B has the semi-axes b_i / a_i (the axes are parallel)
-// and the centre c_i / a_i. The first step finds the point of B nearest to the origin there, the
-// second the point of A nearest to that point.
+// In the space where A is the unit sphere, B has the semi-axes b_i / a_i and the centre c_i / a_i,
+// because the axes are parallel. The first step finds the point of B nearest to the origin there,
+// the second the point of A nearest to that point.
 FreeMargin free_margin(const EllipsoidPair& pair) {
   const Vec3 ratios = pair.axes_b.cwiseQuotient(pair.axes_a);
   const Vec3 centre = pair.apart.cwiseQuotient(pair.axes_a);

@@ -1,6 +1,6 @@
 // Rimon and Boyd's free margin ("Obstacle collision detection using best ellipsoid fit", J. of
-// Intelligent and Robotic Systems 18, 1997), which §5.6 compares: not the distance, but how far A
-// must be scaled to touch B, from one eigenvalue problem.
+// Intelligent and Robotic Systems 18, 1997), which §5.6 compares. It is not the distance, but the
+// factor by which A must be scaled to touch B, from one eigenvalue problem.
 #pragma once
 
 #include "tools/bench/crossed_ellipsoids.hpp"

@@ -17,7 +17,7 @@ Vec3 support(const Vec3& axes, const Vec3& direction) {
 }
 
 // 'Delta': the closest points of the active feature's affine hull and the ellipsoid, relative to
-// its centre. From the inside, of the point where x is.
+// its centre. If the feature is the inside, both are the ellipsoid's point nearest to x.
 ClosestPoints delta_to_ellipsoid(const ActiveFeature& side, const Vec3& axes, const Vec3& centre) {
   const Vec3 x = side.point_in_a() - centre;
   if (side.feature() == FeatureKind::kFacet) {
@@ -36,7 +36,8 @@ ClosestPoints delta_to_ellipsoid(const ActiveFeature& side, const Vec3& axes, co
 ClosestPoints line_to_ellipsoid(const Line& line, const Vec3& axes) {
   const Vec3& l = line.direction;
   const Vec3 origin = line.point - line.point.dot(l) * l;
-  // The first normal points to the line, or anywhere across it.
+  // The first normal points to the line; if that passes through the centre, it is any normal across
+  // the line.
   const double away = origin.norm();
   const Vec3 normal_a = away > 1e-12 * axes.minCoeff() ? Vec3(origin / away) : l.unitOrthogonal();
   const Vec3 x_a = support(axes, normal_a);

@@ -1,6 +1,6 @@
 // §5.5.1, which the thesis describes and did not build: DQP3's analogue for a polyhedron and an
-// ellipsoid. The active set is the polyhedron's; 'delta' is the point of a facet's plane, an edge's
-// line or a vertex nearest to the ellipsoid; alpha and lambda are as they are among polyhedra.
+// ellipsoid. The active set is the polyhedron's. 'Delta' is the point nearest to the ellipsoid on a
+// facet's plane or an edge's line, or a vertex. Alpha and lambda are the same as for two polyhedra.
 #pragma once
 
 #include "core/active_set/active_feature.hpp"
@@ -12,17 +12,17 @@ struct Line {
   Vec3 point, direction;  // unit
 };
 
-// The closest points of a line and an ellipsoid around the origin, on_a that of the line: normals
-// across the line belong to an ellipse of the surface (5.5.1 to 5.5.4), which the plane across the
-// line shows as an ellipse around the origin and the line as a point. Where the line passes through
-// the ellipsoid, both are the same point in it.
+// The closest points of a line and an ellipsoid around the origin; on_a is that of the line.
+// Normals perpendicular to the line belong to an ellipse of the surface (5.5.1 to 5.5.4). Projected
+// onto the plane across the line, this is an ellipse around the origin, and the line is a point. If
+// the line passes through the ellipsoid, both are the same point in it.
 [[nodiscard]] ClosestPoints line_to_ellipsoid(const Line& line, const Vec3& axes);
 
-// The same of a plane n.x = offset, n of unit length.
+// The same for a plane n.x = offset, with n of unit length.
 [[nodiscard]] ClosestPoints plane_to_ellipsoid(const Vec3& normal, double offset, const Vec3& axes);
 
 // The polyhedron's frame is A's; the ellipsoid's axes are parallel to it, its centre is `apart`.
-// Starts inside; the bodies must be apart.
+// Starts inside; the bodies must not touch.
 [[nodiscard]] ClosestPoints polyhedron_to_ellipsoid(const ConvexBody& a, const Vec3& axes,
                                                     const Vec3& apart);
 

@@ -1,5 +1,6 @@
-// The quadratic programme is solved by peers/active_set_qp.hpp rather than by DQP3 over adjacency,
-// which would have to be made in every cycle: the same active-set method, in orthonormal bases.
+// The quadratic programme is solved by peers/active_set_qp.hpp, the same active-set method in
+// orthonormal bases. DQP3 would need the adjacency of facets, which would have to be made in every
+// cycle.
 #include "tools/thesis/chapter5/refinement.hpp"
 
 #include <algorithm>

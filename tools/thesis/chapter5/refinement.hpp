@@ -5,9 +5,9 @@
 
 namespace clearance::bench {
 
-// Facets added to each body a cycle: at the nearest point of the ellipsoid, at the normal along the
-// distance, two more on the circle around the former through the latter; of seven, three more on a
-// circle twice as wide.
+// Facets added to each body in a cycle. The first is at the nearest point of the ellipsoid, the
+// second at the normal along the distance. Two more are on the circle around the first through the
+// second. If seven are added, three more are on a circle twice as wide.
 enum class Cluster { kFour, kSeven };
 
 // The points are those of the ellipsoids nearest to the polyhedra's closest points. Ends after so

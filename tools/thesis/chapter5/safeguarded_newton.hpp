@@ -1,11 +1,11 @@
 // The same problem as dominant_term.hpp by Newton's method, for any p and any ratio of semi-axes.
 //
-// With t = lambda + a_n^2, a_n the shortest semi-axis, the terms are (a_i p_i / (a_i^2 - a_n^2 +
-// t))^2: the differences are exact where lambda would lose digits near its pole. 1 / sqrt(S) is
-// nearly a straight line in t, and concave (J. Moré and D. Sorensen, "Computing a trust region
-// step", 1983), so that Newton's method on it rises to the root from where S is at least 1 and
-// never passes it. That is the dominant-term iteration with the slope of the sum in place of the
-// slope of one term.
+// Let a_n be the shortest semi-axis and t = lambda + a_n^2. Then the terms are (a_i p_i / (a_i^2 -
+// a_n^2 + t))^2, whose differences are exact where lambda would lose digits near its pole. 1 /
+// sqrt(S) is nearly a straight line in t, and concave (J. Moré and D. Sorensen, "Computing a trust
+// region step", 1983). So Newton's method on it, started where S is at least 1, rises to the root
+// and never passes it. This is the dominant-term iteration with the slope of the sum in place of
+// the slope of one term.
 #pragma once
 
 #include <algorithm>

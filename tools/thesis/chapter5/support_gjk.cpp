@@ -25,9 +25,9 @@ class Simplex {
   [[nodiscard]] int size() const { return part_.size; }
   void add(const Corner& corner) { corners_[static_cast<std::size_t>(part_.size++)] = corner; }
 
-  // Leaves the smallest simplex that holds the point nearest to the origin (Johnson's
-  // sub-algorithm): of all that have the newest vertex, the nearest one inside itself. None, where
-  // rounding leaves no such point.
+  // Keeps the smallest simplex that holds the point nearest to the origin (Johnson's
+  // sub-algorithm). Among all simplices with the newest vertex, it is the nearest one whose nearest
+  // point is inside it. Keeps none if rounding leaves no such point.
   void reduce() {
     Part best;
     double nearest = kInfinity;

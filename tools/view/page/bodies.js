@@ -1,5 +1,5 @@
-// The bodies of the cell in a few draw calls: moving parts, and in groups of their own the parts that stand still
-// (`still`) and their transparent fragments (`veil`).
+// The bodies of the cell in a few draw calls. Moving parts are one group. Parts that stand still
+// (`still`) and their transparent fragments (`veil`) are groups of their own.
 import * as THREE from "three";
 import { css } from "./format.js";
 import { gridOn } from "./grid.js";

@@ -1,5 +1,6 @@
-// Speed and separation monitoring, a row per zone that asks for it: the distance between a person and the robot beyond
-// the protective separation distance S_p, and the robot's allowed speed.
+// Speed and separation monitoring, a row per zone that asks for it. It has the excess of the
+// distance between a person and the robot over the protective separation distance S_p, and the
+// robot's allowed speed.
 import { mm, put } from "./format.js";
 
 const VALIDITY = ["not known", "by stated speeds", "measured", "absent"];
