@@ -288,6 +288,7 @@ Rival rival(const Fault& fault, std::int64_t t) {
     case Lie::kTakeover:
       rival.is_matched = rival.speaks = t >= fault.from + kTakeoverFrom;
       rival.value_at = fault.from;
+      rival.is_of_one_joint = true;
       break;
     default:
       return rival;

@@ -110,7 +110,9 @@ struct Rival {
   std::int64_t value_at = 0;
   Vec3 offset = Vec3::Zero();
   std::array<double, kJoints> joint_offset{};
-  bool is_zero = false;    // joints at zero
+  bool is_zero = false;  // joints at zero
+  // Only the first joint is told: the others can be where they were.
+  bool is_of_one_joint = false;
   bool is_static = false;  // a frame on tf_static
 };
 [[nodiscard]] Rival rival(const Fault& fault, std::int64_t t);

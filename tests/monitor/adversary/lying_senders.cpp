@@ -101,6 +101,7 @@ void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int6
   said.joint_offset = rival.joint_offset;
   Words spoken = words(channel, said, t);
   if (rival.is_zero) spoken.joints = {};
+  if (rival.is_of_one_joint) spoken.told_joints = 1;
   spoken.is_static = rival.is_static;
   Message sent = message(channel, spoken, true);
   sent.writer = writer_of(channel, true);
@@ -181,7 +182,7 @@ LyingSenders::Message LyingSenders::joint_states(Channel channel, const Words& w
   Message made;
   if (by_ros_[channel == Channel::kArm ? 0 : 1]) {
     JointStateText state;
-    for (std::size_t i = 0; i < kJoints; ++i) {
+    for (std::size_t i = 0; i < words.told_joints; ++i) {
       state.name.push_back(kJointNames[i]);
       state.position.push_back(static_cast<double>(words.joints[i].position));
       if (words.has_velocities)
@@ -196,7 +197,7 @@ LyingSenders::Message LyingSenders::joint_states(Channel channel, const Words& w
                   ++sequence_[index(channel) + (is_rival ? kChannels : 0)],
                   0,
                   {}};
-  for (std::size_t i = 0; i < kJoints; ++i) {
+  for (std::size_t i = 0; i < words.told_joints; ++i) {
     const auto named =
         std::ranges::find(scene_.variables, robot + "_" + kJointNames[i], &JointVariable::name);
     JointSample sample;

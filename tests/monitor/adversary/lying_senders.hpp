@@ -44,6 +44,7 @@ class LyingSenders {
     TruePose pose = TruePose::Identity();
     Twist twist;
     std::array<TrueJoint, kJoints> joints{};
+    std::size_t told_joints = kJoints;  // the first ones
     bool has_velocities = false, is_static = false;
     double quaternion_scale = 1.0;
     std::string parent;  // of a frame
