@@ -85,6 +85,7 @@ TruthJudge::TruthJudge(const Scene& scene, const TrueMotion& truth,
     body_.push_back(body);
   }
   for (const Fault& fault : faults) {
+    if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
     available_from_ = std::max(available_from_, fault.to + kRecovers);
   }
 }
