@@ -156,12 +156,9 @@ std::vector<Fault> drawn_mix(std::uint64_t seed) {
 
 Admissible admissible(const Fault& fault) {
   switch (fault.lie) {
-    // With the true speed u below the stated v, velocities contradict a value that stays when
-    // 5/6 of their path since then exceeds (v + u) age limits: 2.4 at most, and one more sample.
+    // A velocity may be wrong by a sixth, over at most 50 age limits. With the true speed u below
+    // the stated v, the values contradict it after (v + u) age limits and a sixth of the path.
     case Lie::kFreezeInMotion:
-      return {0, 2.5};
-    // A velocity may be wrong by a sixth, over at most 50 age limits: (v + u) age limits and a
-    // sixth of the path.
     case Lie::kHalfSpeed:
       return {0, 10.5};
     // The frozen limit is the time that the cell grants. The next sample shows that it has passed.
@@ -176,9 +173,9 @@ Admissible admissible(const Fault& fault) {
     // Where an angle passes through zero, it is right in any unit.
     case Lie::kScaled:
       return {0, is_robot(fault.channel) ? 1.0 : 0.0};
-    // Only the lie is heard, until the owner speaks for the first time.
+    // Only the lie is heard, until the owner speaks for the first time and its message has come.
     case Lie::kRivalFirst:
-      return {kOwnerStarts, 0.0};
+      return {kOwnerStarts + 5 * kMs, 0.0};
     // All others can be noticed in the tick that hears them.
     default:
       return {};
@@ -213,7 +210,10 @@ Told told(const Fault& fault, std::int64_t t) {
       break;
     case Lie::kDrift: {
       const double way = 2.5 * since(fault, t);
-      told.offset = way * stated_speed(fault.channel) * fault.direction;
+      // What rests on odom is held against a limit of its own.
+      const double stated =
+          fault.channel == Channel::kOdom ? kBallSpeed : stated_speed(fault.channel);
+      told.offset = way * stated * fault.direction;
       told.joint_offset[fault.joint] = way * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
       break;
     }

@@ -35,8 +35,9 @@ inline constexpr std::array<const char*, kJoints> kJointNames{"shoulder", "elbow
 inline constexpr std::array<double, kJoints> kJointSpeed{1.5, 1.5, 2.0, 0.5};  // rad/s, m/s
 
 // Keys of the robot that a cell may not know yet; empty: left out, and so are faults that need it.
-inline constexpr const char* kBaseSpeedKey = "";    // of `base`, with the value kBaseSpeed
-inline constexpr const char* kJointFrozenKey = "";  // of a robot, with the value kFrozenLimit
+inline constexpr const char* kBaseSpeedKey = "max_speed";  // of `base`, with the value kBaseSpeed
+inline constexpr const char* kJointFrozenKey =
+    "frozen_limit_ms";  // of a robot, with the value kFrozenLimit
 
 // A body, in the order of the true motion: balls 0 to 2, the follower, the rock, the links of the
 // arm from its foot to its tip, and those of the post.
