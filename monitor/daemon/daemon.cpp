@@ -93,6 +93,7 @@ void Daemon::run(StopSignal& signal) {
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
+    if (signal.hung_up()) log_line(lines::kNoReload);
     if (recording_) recording_->watch();
   }
   stop_ = true;
