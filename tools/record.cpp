@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  the recording is complete
-  1  the recording is incomplete, or nothing was received; the message says why. SIGINT and SIGTERM end a recording
+  1  the recording is incomplete, or nothing was received; the message says why. SIGINT, SIGTERM and SIGHUP end a recording
      from DDS in order; they interrupt --from-csv, which then removes its output
   2  wrong usage
   3  the cell file is wrong

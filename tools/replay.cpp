@@ -21,7 +21,7 @@ constexpr const char* kExamples = R"(Examples:
   clearance-replay check run.mcap --cell cell.yaml --expect-min-distance 0.05 --expect-no-zone stop)";
 
 constexpr const char* kPublishFooter = R"(Exit status:
-  0  every message was published, or SIGINT or SIGTERM stopped the replay
+  0  every message was published, or SIGINT, SIGTERM or SIGHUP stopped the replay
   1  a file cannot be read, or holds no message between --start and --end
   2  wrong usage
   3  the cell file is wrong
@@ -38,7 +38,7 @@ constexpr const char* kCheckFooter = R"(Exit status:
      read or written
   2  wrong usage
   3  the cell file is wrong
-  5  the recording is damaged, or SIGINT or SIGTERM stopped the replay; the part before that gave no reason for 1
+  5  the recording is damaged, or SIGINT, SIGTERM or SIGHUP stopped the replay; the part before that gave no reason for 1
 
 Examples:
   clearance-replay check run.mcap --cell cell.yaml --compare

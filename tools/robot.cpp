@@ -33,7 +33,7 @@ namespace clearance {
 namespace {
 
 constexpr const char* kFooter = R"(Exit status:
-  0  stopped by SIGINT, SIGTERM or --seconds
+  0  stopped by SIGINT, SIGTERM, SIGHUP or --seconds
   1  something else failed
   2  wrong usage
   3  the cell file or the log of joints is wrong, or nothing says how anything moves

@@ -40,12 +40,12 @@ viewers of their protocol connect to the same address with ws:// instead of http
 that reaches the port may watch and move a recording's time, and can change nothing else.
 
 Exit status:
-  0  stopped by SIGINT or SIGTERM, or all screenshots are written
+  0  stopped by SIGINT, SIGTERM or SIGHUP, or all screenshots are written
   1  the port cannot be used, the recording cannot be read, or the browser gave no picture
   2  wrong usage
   3  the cell file is wrong
   4  DDS could not be joined
-  5  stopped by SIGINT or SIGTERM while a recording was being read
+  5  stopped by SIGINT, SIGTERM or SIGHUP while a recording was being read
 
 Examples:
   clearance-view cell.yaml

@@ -25,7 +25,7 @@ constexpr std::int64_t kPlainNs = 1'000'000'000;
 constexpr const char* kFooter = R"(Ctrl-C ends it, and q in the full screen.
 
 Exit status:
-  0  stopped by SIGINT, SIGTERM, q or --seconds
+  0  stopped by SIGINT, SIGTERM, SIGHUP, q or --seconds
   1  something else failed
   2  wrong usage
   4  DDS could not be joined

@@ -30,11 +30,8 @@ std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const Urd
     return shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_}, at_,
                               at_);
   }
-  const std::string package = package_of(mesh.file);
-  const std::string missing =
-      path ? fmt::format("no file '{}'", path->string())
-           : fmt::format("no directory for the package '{}'; expected packages: {{{}: DIRECTORY}}",
-                         package, package);
+  const std::string missing = path ? fmt::format("no file '{}'", path->string())
+                                   : why_not_found(mesh.file, PackagesFrom::kCell);
   refuse_robot(at_,
                {{mesh.line, fmt::format("{}:{}: found the mesh '{}', and {}",
                                         files_.named_in.string(), mesh.line, mesh.file, missing)}},

@@ -20,10 +20,8 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   if (!name) return std::nullopt;
   const auto path = files.find(*name);
   if (!path) {
-    const std::string package = package_of(*name);
-    diagnostics.add(node, fmt::format("found '{}', and no directory for the package '{}'; expected "
-                                      "packages: {{{}: DIRECTORY}}",
-                                      *name, package, package));
+    diagnostics.add(
+        node, fmt::format("found '{}', and {}", *name, why_not_found(*name, PackagesFrom::kCell)));
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/mesh/file_lock.hpp"
+#include "config/mesh/parts_cover.hpp"
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 
@@ -156,9 +157,20 @@ std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
   return std::move(parts);
 }
 
-std::optional<MeshParts> MeshLibrary::kept(const std::string& key) const {
+std::optional<MeshParts> MeshLibrary::kept(const MeshUse& use, const std::string& key, File& file) {
   const auto parts = cache_.find(key);
-  return parts ? bodies_of(*parts) : std::nullopt;
+  if (!parts) return std::nullopt;
+  const auto mesh = mesh_of(use, file);
+  if (std::holds_alternative<MeshRefusal>(mesh)) return std::nullopt;
+  auto bodies = bodies_of(*parts);
+  if (bodies && cover(bodies->shapes, std::get<TriangleMesh>(mesh))) return bodies;
+  if (splits_) {
+    say(
+        fmt::format("warning: {}: the parts that are kept of it in '{}' do not contain it; they "
+                    "are made again",
+                    path_of(use).filename().string(), cache_.folder().string()));
+  }
+  return std::nullopt;
 }
 
 // A mesh that cannot be read, or is too large, is refused at once.
@@ -177,7 +189,7 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::make(const MeshUse& use, const
     say(fmt::format("{}: another program splits it ...", path.filename().string()));
   });
   if (lock.waited()) {
-    if (auto bodies = kept(key)) return *std::move(bodies);
+    if (auto bodies = kept(use, key, file)) return *std::move(bodies);
   }
   auto made = split(use, key, file);
   if (auto* refusal = std::get_if<MeshRefusal>(&made)) return std::move(*refusal);
@@ -205,7 +217,7 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
   const std::string key = key_of(use, file.bytes);
   auto made = made_.find(key);
   if (made == made_.end()) {
-    std::optional<MeshParts> bodies = kept(key);
+    std::optional<MeshParts> bodies = kept(use, key, file);
     if (!bodies && !splits_) return put_off(use, file);
     if (!bodies) {
       auto result = make(use, key, file);

@@ -83,7 +83,9 @@ class MeshLibrary {
   File& load(const std::filesystem::path& path);
   // Returns the mesh in metres, or refuses one that is too large.
   std::variant<TriangleMesh, MeshRefusal> mesh_of(const MeshUse& use, File& file);
-  [[nodiscard]] std::optional<MeshParts> kept(const std::string& key) const;
+  // Returns the kept parts if they contain the mesh, whoever wrote them.
+  [[nodiscard]] std::optional<MeshParts> kept(const MeshUse& use, const std::string& key,
+                                              File& file);
   std::variant<MeshParts, MeshRefusal> put_off(const MeshUse& use, File& file);
   std::variant<MeshParts, MeshRefusal> make(const MeshUse& use, const std::string& key, File& file);
   std::variant<ConvexParts, MeshRefusal> split(const MeshUse& use, const std::string& key,

@@ -1,11 +1,14 @@
 #include "config/mesh/parts_cache.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <sstream>
 #include <system_error>
 
@@ -15,6 +18,68 @@ namespace clearance {
 namespace {
 
 constexpr const char* kChecksum = "checksum ";
+
+// 64 parts of 10,000 vertices need half as much.
+constexpr std::size_t kMostBytes = std::size_t{64} << 20;
+
+class Descriptor {
+ public:
+  explicit Descriptor(int number) : number_(number) {}
+  ~Descriptor() {
+    if (number_ >= 0) ::close(number_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  [[nodiscard]] int number() const noexcept { return number_; }
+
+ private:
+  int number_;
+};
+
+// Root can change everything anyway.
+bool belongs_to_user(const struct stat& status) {
+  return status.st_uid == geteuid() || status.st_uid == 0;
+}
+
+bool is_own_folder(const std::filesystem::path& folder) {
+  struct stat status {};
+  return ::stat(folder.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && belongs_to_user(status);
+}
+
+// Returns the content of a regular file of the user. Opening never waits, as it would for the
+// writer of a FIFO.
+std::optional<std::string> own_text(const std::filesystem::path& path) {
+  const Descriptor file(
+      ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY | O_NOFOLLOW));
+  struct stat status {};
+  if (file.number() < 0 || ::fstat(file.number(), &status) != 0 || !S_ISREG(status.st_mode) ||
+      !belongs_to_user(status)) {
+    return std::nullopt;
+  }
+  std::string text;
+  std::array<char, 1 << 16> piece;
+  for (;;) {
+    const ssize_t count = ::read(file.number(), piece.data(), piece.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0 || text.size() > kMostBytes) return std::nullopt;
+    if (count == 0) return text;
+    text.append(piece.data(), static_cast<std::size_t>(count));
+  }
+}
+
+bool write_new(const std::filesystem::path& path, std::string_view text) {
+  ::unlink(path.c_str());
+  const Descriptor file(
+      ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0644));
+  if (file.number() < 0) return false;
+  while (!text.empty()) {
+    const ssize_t count = ::write(file.number(), text.data(), text.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return false;
+    text.remove_prefix(static_cast<std::size_t>(count));
+  }
+  return true;
+}
 
 std::string checksum(const std::string& text) {
   Revision hash;
@@ -87,13 +152,12 @@ std::optional<ConvexParts> parts_of(const std::string& text, const std::string& 
 bool write_whole(const std::filesystem::path& file, const std::string& text) {
   std::error_code fault;
   std::filesystem::create_directories(file.parent_path(), fault);
+  if (!is_own_folder(file.parent_path())) return false;
   std::filesystem::path own = file;
   own += fmt::format(".{}", getpid());
-  std::ofstream stream(own, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (stream) std::filesystem::rename(own, file, fault);
-  if (stream && !fault) return true;
+  const bool written = write_new(own, text);
+  if (written) std::filesystem::rename(own, file, fault);
+  if (written && !fault) return true;
   std::filesystem::remove(own, fault);
   return false;
 }
@@ -113,11 +177,10 @@ PartsCache::PartsCache(const std::optional<std::filesystem::path>& beside) {
 
 std::optional<ConvexParts> PartsCache::find(const std::string& key) const {
   for (const std::filesystem::path& folder : folders_) {
-    std::ifstream stream(folder / (key + ".parts"), std::ios::binary);
-    if (!stream) continue;
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (auto parts = parts_of(text.str(), key)) return parts;
+    if (!is_own_folder(folder)) continue;
+    const auto text = own_text(folder / (key + ".parts"));
+    if (!text) continue;
+    if (auto parts = parts_of(*text, key)) return parts;
   }
   return std::nullopt;
 }

@@ -4,7 +4,11 @@
 // written, XDG_CACHE_HOME/clearance/parts (default ~/.cache). A file holds the parts of a mesh, a
 // scale, a unit and limits, and is called by the hash of all these: KEY.parts. It is text: the key,
 // the error, each part's vertices as hexadecimal floating-point numbers, and a checksum. A file
-// that is damaged, or is something else, counts as none, and is written anew.
+// that is damaged, or is something else, counts as none, and is written anew. So does a folder or
+// file that belongs to neither the user nor root.
+//
+// The checksum finds damage, not a person who wrote the file: who uses the parts checks that they
+// contain the mesh (parts_cover.hpp).
 #pragma once
 
 #include <filesystem>

@@ -1,5 +1,7 @@
 #include "config/urdf/robot_files.hpp"
 
+#include <fmt/format.h>
+
 #include <cstdlib>
 #include <sstream>
 #include <system_error>
@@ -50,7 +52,30 @@ std::optional<std::filesystem::path> directory_of(const std::string& package,
   return files.root.empty() ? installed_package(package) : kept_package(package, files.root);
 }
 
+// A path through a symbolic link stays allowed, because workspaces of ROS 2 are built of such
+// links.
+bool leaves_package(const std::string& name) {
+  const std::string package = package_of(name);
+  if (package.empty() || package == "." || package == "..") return true;
+  const std::size_t slash = name.find('/', kPackage.size());
+  if (slash == std::string::npos) return false;
+  const auto within = std::filesystem::path(name.substr(slash + 1)).lexically_normal();
+  return within.is_absolute() || (!within.empty() && *within.begin() == "..");
+}
+
 }  // namespace
+
+std::string why_not_found(const std::string& name, PackagesFrom from) {
+  if (leaves_package(name)) {
+    return fmt::format("'{}' leads out of its package; expected {}NAME/PATH with a path within it",
+                       name, kPackage);
+  }
+  const std::string package = package_of(name);
+  return fmt::format("no directory for the package '{}'; expected {}", package,
+                     from == PackagesFrom::kCell
+                         ? fmt::format("packages: {{{}: DIRECTORY}}", package)
+                         : fmt::format("--package {}=DIRECTORY", package));
+}
 
 std::string package_of(const std::string& name) {
   if (!name.starts_with(kPackage)) return "";
@@ -60,6 +85,7 @@ std::string package_of(const std::string& name) {
 std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) const {
   std::filesystem::path path;
   if (name.starts_with(kPackage)) {
+    if (leaves_package(name)) return std::nullopt;
     const std::size_t slash = name.find('/', kPackage.size());
     const auto directory = directory_of(package_of(name), *this);
     if (!directory || slash == std::string::npos) return std::nullopt;

@@ -22,10 +22,17 @@ struct RobotFiles {
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   std::filesystem::path root = {};  // as of path_in()
 
-  // Returns the absolute path, whether or not there is such a file; nothing: its package was not
-  // found.
+  // Returns the absolute path, whether or not there is such a file. Returns nothing if its package
+  // was not found, or if its path leads out of the package, as package://NAME/../x does.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
 };
+
+// Where a person can say which folder a package is.
+enum class PackagesFrom { kCell, kCommandLine };
+
+// Says why find() returned nothing for this name, as the end of a sentence: "no directory for the
+// package 'x'; expected ...".
+[[nodiscard]] std::string why_not_found(const std::string& name, PackagesFrom from);
 
 // Returns NAME of package://NAME/PATH; empty: the name has none.
 [[nodiscard]] std::string package_of(const std::string& name);

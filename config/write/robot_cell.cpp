@@ -88,10 +88,8 @@ void RobotCellWriter::find_fixed_links() {
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
   const auto path = RobotFiles{options_.urdf, options_.packages}.find(mesh.file);
   if (!path) {
-    const std::string package = package_of(mesh.file);
-    fail(mesh.line, fmt::format("found the mesh '{}', and no directory for the package '{}'; "
-                                "expected --package {}=DIRECTORY",
-                                mesh.file, package, package));
+    fail(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file,
+                                why_not_found(mesh.file, PackagesFrom::kCommandLine)));
     return mesh.file;
   }
   if (std::error_code fault; !std::filesystem::is_regular_file(*path, fault)) {

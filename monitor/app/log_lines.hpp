@@ -27,6 +27,10 @@ inline constexpr LogLine<Text> kPartitionWithoutRos{
     "ROS 2 uses the default partition only: in partition {}, tf does not arrive and no node of ROS "
     "2 receives what this daemon writes for it"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
+inline constexpr LogLine<> kNoReload{
+    "no-reload", kWarn,
+    "SIGHUP came (from a person, or from a terminal that was closed): this daemon cannot read its "
+    "cell again, and goes on with the one it has. SIGTERM ends it"};
 inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
     "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
@@ -122,6 +126,11 @@ inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{
 inline constexpr LogLine<Text, Count, Text, Text> kZoneDiscontinuous{
     "zone-discontinuous", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 
+inline constexpr LogLine<Text, Count, Text> kZoneFlickers{
+    "zone-flickers", kWarn,
+    "zone '{}' changed {} more times in the last second; it is {} at present"};
+inline constexpr LogLine<Text> kZonesLeftOut{"zones-left-out", kWarn, "{} of zones left out"};
+
 // ---- DDS and ROS 2
 
 inline constexpr LogLine<Text> kDdsWarning{"dds-warning", kWarn, "dds: {}"};
@@ -135,6 +144,19 @@ inline constexpr LogLine<Text, Count> kIncompatibleReader{
     "incompatible-reader", kWarn,
     "a reader of {} asks for QoS that is not offered (policy {}): it gets nothing. Policy 2: only "
     "catalogue, zones and health are latched; idl/README.md has the whole contract"};
+inline constexpr LogLine<Text, Text> kOtherTypeWriter{
+    "other-type-writer", kWarn,
+    "a writer of {} has another type, or another version of it: it is not heard. Build it with the "
+    "IDL of this daemon ({})"};
+inline constexpr LogLine<Text, Count> kIncompatibleWriter{
+    "incompatible-writer", kWarn,
+    "a writer of {} offers QoS that does not fit (policy {}): it is not heard. Policy 11: it must "
+    "be reliable; idl/README.md has the whole contract"};
+inline constexpr LogLine<Text, Count> kWriterAppeared{"writer-appeared", kInfo,
+                                                      "a writer of {} appeared: {} now"};
+inline constexpr LogLine<Text, Count> kWriterLeft{"writer-left", kInfo,
+                                                  "a writer of {} left: {} now"};
+inline constexpr LogLine<Text> kInputsFailed{"inputs-failed", kError, "taking inputs failed: {}"};
 inline constexpr LogLine<Text, Text, Count> kWriteFailed{
     "write-failed", kError, "writing {} failed: {} ({} failed so far)"};
 inline constexpr LogLine<Text, Count> kRosWriteFailed{
@@ -159,6 +181,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kSystemRefuses,
                                  kPartitionWithoutRos,
                                  kStopped,
+                                 kNoReload,
                                  kWaitingForDescription,
                                  kDescriptionKept,
                                  kRecordingRenamed,
@@ -193,11 +216,18 @@ inline constexpr std::tuple kAll{kStarted,
                                  kZoneUnknown,
                                  kZoneContradicted,
                                  kZoneDiscontinuous,
+                                 kZoneFlickers,
+                                 kZonesLeftOut,
                                  kDdsWarning,
                                  kDdsError,
                                  kDdsLeftOut,
                                  kOlderReader,
                                  kIncompatibleReader,
+                                 kOtherTypeWriter,
+                                 kIncompatibleWriter,
+                                 kWriterAppeared,
+                                 kWriterLeft,
+                                 kInputsFailed,
                                  kWriteFailed,
                                  kRosWriteFailed,
                                  kOtherDaemonFirst,

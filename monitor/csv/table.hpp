@@ -43,6 +43,7 @@ class CsvTable {
     void operator()(void* file) const;
   };
 
+  bool fill_buffer();
   bool read_line(std::string& line);
   bool read_header();
   bool split(const std::string& line);
@@ -53,6 +54,8 @@ class CsvTable {
   std::string error_;
   std::size_t line_ = 0;
   std::int64_t last_t_ns_ = 0;
+  std::vector<char> buffer_;              // read from the file
+  std::size_t next_ = 0;                  // the first byte in `buffer_` that no line has taken
   std::string text_;                      // of the line
   std::vector<std::string_view> fields_;  // into text_
   std::vector<std::size_t> place_;        // by column

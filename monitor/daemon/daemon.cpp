@@ -88,10 +88,12 @@ void Daemon::run(StopSignal& signal) {
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
+  poses_.start();
   std::thread ticking([&] { tick_thread(done); });
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
+    if (signal.hung_up()) log_line(lines::kNoReload);
     if (recording_) recording_->watch();
   }
   stop_ = true;

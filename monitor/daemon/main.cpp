@@ -25,7 +25,7 @@ namespace clearance {
 namespace {
 
 constexpr const char* kFooter = R"(Exit status:
-  0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong
+  0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong. SIGHUP does not stop it
   1  something else failed, or --check was stopped before its end
   2  wrong usage
   3  the cell file is wrong
@@ -146,6 +146,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     signal.end_with(kFailed, "clearanced: stopped before the cell was checked\n");
     return check_only(arguments.cell);
   }
+  signal.keep_running_on_hangup();
   if (!arguments.cell.description_topic.empty()) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }

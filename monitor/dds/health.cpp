@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "monitor/intake/news.hpp"
 #include "monitor/loop/ports.hpp"
 
 namespace clearance {
@@ -54,8 +55,9 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
   reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
   for (const RefusedSource& source : refused) {
     const std::string_view of = source.source.view();
-    add_rejection(out, of.empty() ? "other sources" : fmt::format("source '{}'", of),
-                  name(source.cause), source.poses);
+    const bool is_sum = of.empty() && source.cause != SourceRefusal::kNoName;
+    add_rejection(out, is_sum ? "other sources" : "source " + quoted(of), name(source.cause),
+                  source.poses);
   }
   add_rejection(out, "sources", "batches of a writer with too many names", poses.refused_names());
   std::array<std::uint64_t, kRejects> nameless = statistics.rejected_total;

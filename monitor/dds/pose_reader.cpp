@@ -9,44 +9,48 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <utility>
 
+#include "monitor/app/log_lines.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
 namespace {
 
-// This reader hears nothing of a writer with other QoS. Only this line tells.
-void log_incompatible(dds_entity_t, const dds_requested_incompatible_qos_status_t status, void*) {
+std::string topic_of(dds_entity_t reader) {
+  std::array<char, 128> name{"?"};
+  dds_get_name(dds_get_topic(reader), name.data(), name.size());
+  return name.data();
+}
+
+// This reader hears nothing of a writer with another type or other QoS. Only this line tells.
+void log_incompatible(dds_entity_t reader, const dds_requested_incompatible_qos_status_t status,
+                      void*) {
   if (status.last_policy_id == DDS_PARTITION_QOS_POLICY_ID) return;  // another cell's writer
-  spdlog::warn(
-      "a writer of the poses topic offers QoS that does not fit (policy {}): it is not heard. "
-      "Policy 11: it "
-      "must be reliable; 24: another type; idl/README.md has the whole contract",
-      status.last_policy_id);
+  if (status.last_policy_id == DDS_TYPE_CONSISTENCY_ENFORCEMENT_QOS_POLICY_ID) {
+    log_line(lines::kOtherTypeWriter, topic_of(reader), kBuild);
+  } else {
+    log_line(lines::kIncompatibleWriter, topic_of(reader), status.last_policy_id);
+  }
 }
 
 // Cyclone calls this in a thread of its own. The flag makes the taking thread check which writers
 // have left.
-void log_matched(dds_entity_t, const dds_subscription_matched_status_t status, void* changed) {
+void log_matched(dds_entity_t reader, const dds_subscription_matched_status_t status,
+                 void* changed) {
   static_cast<std::atomic<bool>*>(changed)->store(true);
-  spdlog::info("a writer of poses {}: {} now",
-               status.current_count_change > 0 ? "appeared" : "left", status.current_count);
+  log_line(status.current_count_change > 0 ? lines::kWriterAppeared : lines::kWriterLeft,
+           topic_of(reader), status.current_count);
 }
 
 // Cyclone asks before it stores a sample, with the name's instance handle and no decoded sample.
 bool admits(const dds_sample_info_t* info, void* names) {
   return static_cast<NameLimit*>(names)->admits(info->publication_handle, info->instance_handle,
                                                 SystemClock().monotonic_ns());
-}
-
-void log_matched_joints(dds_entity_t, const dds_subscription_matched_status_t status,
-                        void* changed) {
-  static_cast<std::atomic<bool>*>(changed)->store(true);
-  spdlog::info("a writer of joint states {}: {} now",
-               status.current_count_change > 0 ? "appeared" : "left", status.current_count);
 }
 
 // The domain that a ROS 2 node started from the same shell would join.
@@ -89,21 +93,22 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
     slot.samples.resize(samples_a_batch(cell.scene));
     slot.joints.resize(joints_a_batch(cell.scene));
   });
+}
+
+void PoseReader::start() {
   thread_ = std::thread([this] { run(); });
 }
 
 // Cyclone copies the listener and the filter. The objects to which they point are members of this
 // one.
 void PoseReader::open(Participant& participant, TopicKind kind) {
-  const bool of_joints = kind == TopicKind::kJointStates;
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
-  dds_lset_subscription_matched_arg(listener, of_joints ? log_matched_joints : log_matched,
-                                    &writers_changed_, true);
+  dds_lset_subscription_matched_arg(listener, log_matched, &writers_changed_, true);
   const dds_topic_filter filter{
       .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
   const dds_entity_t reader =
-      participant.reader(kind, topics_.*topic(kind).name, kDepth, listener, &filter);
+      participant.reader(kind, topics_.*topic(kind).name, 0, listener, &filter);
   dds_delete_listener(listener);
   own_.push_back({reader, intake_.topic(kind)->number});
   wait_.add(reader);
@@ -114,7 +119,7 @@ void PoseReader::open(Participant& participant, TopicKind kind) {
 PoseReader::~PoseReader() {
   stop_ = true;
   wait_.wake();
-  thread_.join();
+  if (thread_.joinable()) thread_.join();
   for (const OwnReader& reader : own_) dds_delete(reader.handle);
 }
 
@@ -183,7 +188,7 @@ void PoseReader::run() {
       look();
       take_all({.realtime_ns = clock.realtime_ns(), .monotonic_ns = clock.monotonic_ns()});
     } catch (const DdsError& error) {
-      spdlog::error("taking inputs failed: {}", error.what());
+      log_line(lines::kInputsFailed, error.what());
     }
     log_news();
   }
@@ -234,8 +239,8 @@ void PoseReader::log_news() {
         news.cause == News::Cause::kNoTransforms
             ? fmt::format(" on {}; there is: {}", where_, ros_.present().listed())
             : "";
-    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{}{}", news.text,
-                instead);
+    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{}{} [{}]", news.text,
+                instead, code(news.cause));
   }
 }
 

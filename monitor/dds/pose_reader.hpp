@@ -28,12 +28,14 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] static std::size_t joints_a_batch(const Scene& scene) noexcept;
   // The number of batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
-  // The number of samples of a source that may arrive while the taking thread is delayed.
-  static constexpr std::int32_t kDepth = topic(TopicKind::kPoses).reader_depth;
 
-  // Starts the thread. Cell and participant must outlive this.
+  // Cell and participant must outlive this.
   PoseReader(const Cell& cell, Participant& participant);
   ~PoseReader() override;
+
+  // Starts the thread that takes samples. Call this once, when ticks are about to begin: what
+  // arrives earlier would only fill the ring.
+  void start();
 
   const PoseBatch* next() noexcept override;
 

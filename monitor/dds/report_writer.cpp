@@ -12,9 +12,7 @@
 #include "monitor/app/log_lines.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/pair_name.hpp"
 #include "monitor/wire/convert.hpp"
-#include "monitor/zone_cause.hpp"
 
 namespace clearance {
 namespace {
@@ -29,29 +27,6 @@ void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_st
     log_line(lines::kOlderReader, topic, kBuild);
   } else {
     log_line(lines::kIncompatibleReader, topic, status.last_policy_id);
-  }
-}
-
-// Logs that a zone was entered, and why, or that it was left. Only near and late zones have bounds.
-void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
-              std::uint64_t cycle) {
-  const std::string& name = scene.zones[index].name;
-  if (!zone.active) return log_line(lines::kZoneLeft, name, cycle);
-  const std::string pair = pair_name(scene, zone.pair);
-  const std::string cause = cause_text(zone.cause, scene.objects[zone.cause_object].name);
-  switch (zone.cause) {
-    case ZoneCause::kLate:
-      return log_line(lines::kZoneLate, name, cycle, cause, pair, zone.clearance,
-                      zone.swept_clearance);
-    case ZoneCause::kUnknown:
-      return log_line(lines::kZoneUnknown, name, cycle, cause, pair);
-    case ZoneCause::kContradicted:
-      return log_line(lines::kZoneContradicted, name, cycle, cause, pair);
-    case ZoneCause::kDiscontinuous:
-      return log_line(lines::kZoneDiscontinuous, name, cycle, cause, pair);
-    default:
-      return log_line(lines::kZoneNear, name, cycle, cause, pair, zone.clearance,
-                      zone.swept_clearance);
   }
 }
 
@@ -98,6 +73,7 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       separation_sample_(make_separation(cell.scene)),
       gradient_message_(cell.scene),
       written_zones_(cell.scene.zones.size()),
+      zone_log_(cell.scene),
       health_log_(cell.scene) {
   distances_sample_->daemon = separation_sample_->daemon = identity_.id;
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
@@ -185,7 +161,7 @@ void ReportWriter::write_zones(const Report& report) {
     to_wire(scene_, report, zone, state);
     write(zones_, &state, "zone state");
     if (!is_written && (written_zones_.any(zone) || active)) {
-      log_zone(scene_, zone, report.zones[zone], report.cycle);
+      zone_log_.note(zone, report.zones[zone], report.cycle);
     }
     written_zones_.set(zone, active);
   }
@@ -199,6 +175,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
+  zone_log_.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 

@@ -12,6 +12,7 @@
 #include "monitor/dds/health_log.hpp"
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/dds/zone_log.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -67,6 +68,7 @@ class ReportWriter {
   GradientMessage gradient_message_;
   WrittenZones written_zones_;
   bool write_zones_again_ = false;
+  ZoneLog zone_log_;
   HealthLog health_log_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::thread thread_;

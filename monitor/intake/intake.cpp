@@ -147,6 +147,12 @@ void Intake::tell_of(const Admission& admission, const PoseBatch& batch, std::ui
                                source.view(), options_.writer_name(writer),
                                options_.writer_name(admission.former_writer))});
     case Admission::News::kFirstRefusal:
+      if (admission.cause == SourceRefusal::kNoName) {
+        return tell({Cause::kSourceRefused, true,
+                     fmt::format("writer {} sends {} without the name of a source: they are not "
+                                 "used; expected `source` to have 1 to {} bytes",
+                                 options_.writer_name(writer), inputs, kMaxSourceLength)});
+      }
       if (admission.cause == SourceRefusal::kTooMany) {
         return tell({Cause::kSourceRefused, true,
                      fmt::format("source '{}' is one too many: {} sources are heard, its {} are "

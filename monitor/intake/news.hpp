@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 
 namespace clearance {
 
@@ -30,5 +31,11 @@ struct News {
   bool is_warning = true;  // false: information only
   std::string text;
 };
+
+// "'arm'", or "(no name)" for an empty name.
+[[nodiscard]] std::string quoted(std::string_view name);
+
+// The code at the end of the daemon's log line, as of the lines in monitor/app/log_lines.hpp.
+[[nodiscard]] const char* code(News::Cause cause) noexcept;
 
 }  // namespace clearance

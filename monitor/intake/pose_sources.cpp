@@ -29,11 +29,14 @@ const char* name(SourceRefusal cause) noexcept {
       return "one source too many";
     case SourceRefusal::kOtherWriter:
       return "another writer's name";
+    case SourceRefusal::kNoName:
+      return "a source without a name";
   }
   return "";
 }
 
 void SourceTally::note_sequence(std::uint64_t number) noexcept {
+  if (number == 0) return;
   const bool ahead = last_ns != 0 && number > last_sequence;
   if (ahead && number - last_sequence < kCountsAnew) lost += number - last_sequence - 1;
   last_sequence = number;
@@ -46,6 +49,7 @@ PoseSources::PoseSources(std::vector<SourceName> named) : named_(std::move(named
 
 Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
                              std::int64_t monotonic_ns) {
+  if (source.view().empty()) return refuse(source, SourceRefusal::kNoName, poses);
   const auto known = std::ranges::find(tallies_, source, &SourceTally::source);
   if (known != tallies_.end()) {
     SourceTally& tally = *known;

@@ -24,7 +24,7 @@ struct SourceTally {
   bool warned_of_revision = false;
 
   // Counts the batches that are missing before this number. A source has restarted its numbers if
-  // this one is smaller, or farther ahead than any plausible loss.
+  // this one is smaller, or farther ahead than any plausible loss. 0 stands for no number.
   void note_sequence(std::uint64_t number) noexcept;
 };
 
@@ -36,11 +36,12 @@ struct SourceTally {
 enum class SourceRefusal : std::uint8_t {
   kTooMany,      // all places are taken
   kOtherWriter,  // the name belongs to another writer
+  kNoName,       // an empty name, which stands for no source everywhere else
 };
 [[nodiscard]] const char* name(SourceRefusal cause) noexcept;
 
 struct RefusedSource {
-  SourceName source = {};  // empty: the sum of all others
+  SourceName source = {};  // empty: the sum of all others, or those without a name
   SourceRefusal cause = SourceRefusal::kTooMany;
   std::uint64_t poses = 0;
 };

@@ -104,7 +104,7 @@ void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
     if (unknown_names_.size() >= kMostUnknownNames) break;
     if (topic.names.find(name) != JointNames::kUnknown) continue;
     if (unknown_names_.insert(name).second)
-      added += (added.empty() ? "" : ", ") + std::string(name);
+      added += (added.empty() ? "" : ", ") + (*name == '\0' ? quoted(name) : std::string(name));
   }
   if (added.empty()) return;
   out_.tell(

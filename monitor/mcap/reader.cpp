@@ -178,8 +178,8 @@ void McapReader::open_chunk(const Record& record) {
 std::span<const std::byte> McapReader::decompressed(const Record& record, McapCompression how,
                                                     std::span<const std::byte> stored,
                                                     std::uint64_t size) {
-  if (size > kLargestMcapRecord) {
-    damage(record.offset, too_large(size));
+  if (size > kLargestMcapChunk) {
+    damage(record.offset, too_large("chunk", size, kLargestMcapChunk));
     return {};
   }
   decompress(how, stored, static_cast<std::size_t>(size), decompressed_);
@@ -206,6 +206,9 @@ void McapReader::take_from_chunk(McapMessage& message, bool& found) {
   if (!fields.ok()) {
     if (chunk_cut_off_) return cut_off(file_.size());
     return damage(offset, "a record in a chunk that is longer than the chunk");
+  }
+  if (kind == McapKind{}) {
+    return damage(offset, "a record of kind 0 in a chunk, which does not exist");
   }
   chunk_ = fields.rest();
   bool sound = true;

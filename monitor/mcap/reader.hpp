@@ -2,7 +2,8 @@
 // or the damage. For a window of time, it is read through the index.
 //
 // Chunks may be compressed by zstd or LZ4; others are refused by name. Padding and unknown records
-// are skipped. A length in the file is trusted only up to the file's size and 1 GiB.
+// are skipped. A length in the file is trusted only up to the file's size and 1 GiB,
+// and a chunk is decompressed only up to 256 MiB.
 #pragma once
 
 #include <cstddef>
@@ -23,6 +24,9 @@ namespace clearance {
 
 // A length that a flipped bit made huge must not allocate that much.
 inline constexpr std::uint64_t kLargestMcapRecord = std::uint64_t{1} << 30;  // in memory at once
+// A small compressed chunk can state to be huge. Writers make chunks of a few MiB, or of one
+// message.
+inline constexpr std::uint64_t kLargestMcapChunk = std::uint64_t{1} << 28;  // decompressed
 
 // One message; its payload is a view into the reader.
 struct McapMessage {
@@ -104,7 +108,8 @@ class McapReader {
   [[nodiscard]] std::span<const std::byte> decompressed(const Record& record, McapCompression how,
                                                         std::span<const std::byte> stored,
                                                         std::uint64_t size);
-  [[nodiscard]] static std::string too_large(std::uint64_t bytes);
+  [[nodiscard]] static std::string too_large(std::string_view what, std::uint64_t bytes,
+                                             std::uint64_t most);
   void refuse_compression(const std::string& compression);
   void take_from_chunk(McapMessage& message, bool& found);
   void end_data(const Record& record);

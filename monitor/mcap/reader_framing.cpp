@@ -8,8 +8,9 @@
 
 namespace clearance {
 
-std::string McapReader::too_large(std::uint64_t bytes) {
-  return fmt::format("a record of {} bytes is more than this reader takes (1 GiB)", bytes);
+std::string McapReader::too_large(std::string_view what, std::uint64_t bytes, std::uint64_t most) {
+  return fmt::format("a {} of {} bytes is more than this reader takes ({} MiB)", what, bytes,
+                     most >> 20);
 }
 
 // Reads the header of the next record. A file that ends between records, without its closing magic,
@@ -65,7 +66,7 @@ bool McapReader::read_body(const Record& record) {
     return false;
   }
   if (record.length > kLargestMcapRecord) {
-    damage(record.offset, too_large(record.length));
+    damage(record.offset, too_large("record", record.length, kLargestMcapRecord));
     return false;
   }
   body_.resize(static_cast<std::size_t>(record.length));

@@ -55,16 +55,21 @@ Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
 }
 
 // The QoS of ROS 2, with the USER_DATA that its tools look for.
-Qos ros_qos(const RosType& type, bool reliable) {
+Qos ros_qos(const RosType& type, bool reliable, std::int32_t depth) {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), reliable ? DDS_RELIABILITY_RELIABLE : DDS_RELIABILITY_BEST_EFFORT,
                        kMaxBlocking);
   dds_qset_durability(qos.get(),
                       type.is_latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, type.depth);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
   dds_qset_userdata(qos.get(), type.user_data, std::strlen(type.user_data));
   return qos;
 }
+
+// A reliable reader hands out samples in order: behind a lost one, newer ones wait. Cyclone's
+// readers ask for the lost one only 100 ms later. That is longer than a deep history of a writer at
+// 1 kHz keeps it, so everything arrives late by that history. This setting makes them ask at once.
+constexpr const char* kAskAtOnce = "<NackDelay>0 ms</NackDelay>";
 
 // The largest sizes of a datagram, and of a fragment of a sample with its headers.
 struct DatagramSizes {
@@ -169,9 +174,9 @@ std::string domain_configuration(const DdsOptions& options) {
   std::string xml = fmt::format(
       "<CycloneDDS><Domain id=\"any\"><General>{}"
       "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
-      "{}</Domain></CycloneDDS>",
+      "{}{}</Domain></CycloneDDS>",
       interface_xml(options), sizes.message, sizes.fragment,
-      element("Discovery", discovery_xml(options)));
+      element("Discovery", discovery_xml(options)), element("Internal", kAskAtOnce));
   // The person's own settings for Cyclone come last, so they win.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;
@@ -321,14 +326,14 @@ dds_entity_t Participant::reader_of_others(const std::string& name,
 
 dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
                                      const dds_listener_t* listener) {
-  const Qos qos = ros_qos(type, type.is_latched);
+  const Qos qos = ros_qos(type, type.is_latched, type.depth);
   return check_dds(
       dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
       fmt::format("making a reader of {}", name));
 }
 
 dds_entity_t Participant::ros_writer(const RosType& type, const std::string& name) {
-  const Qos qos = ros_qos(type, true);
+  const Qos qos = ros_qos(type, true, type.writer_depth);
   return check_dds(
       dds_create_writer(publisher_, make_topic(*type.descriptor, name), qos.get(), nullptr),
       fmt::format("making a writer of {}", name));

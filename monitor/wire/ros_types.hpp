@@ -48,12 +48,14 @@ struct RosType {
   const char* user_data;
   bool is_latched;     // reliable and transient-local; else the reader takes what comes
   std::int32_t depth;  // samples that may wait, of all writers together: such topics have no keys
+  // Samples that a writer keeps. There are few of a state, as in kTopics.
+  std::int32_t writer_depth = depth;
 };
 
 inline constexpr RosType kRosJointState{
     &sensor_msgs_msg_dds__JointState__desc,
-    "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;", false,
-    128};
+    "typehash=RIHS01_a13ee3a330e346c9d87b5aa18d24e11690752bd33a0350f11c5882bc9179260e;", false, 128,
+    4};
 inline constexpr RosType kRosString{
     &std_msgs_msg_dds__String__desc,
     "typehash=RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18;", true, 1};

@@ -46,8 +46,9 @@ struct Topic {
 
 // In the order of TopicKind and of kTopicKeys, which is that of recordings: inputs stand before the
 // reports that used them. A distances writer keeps 64 reports for a client that is held up for a
-// moment. The daemon may take poses 16 batches of a source late (16 ms at 1 kHz) without losing
-// any.
+// moment. Inputs are states, of which only the newest counts: behind a lost sample, a reader waits
+// for as many samples as the writer keeps. What waits in a reader is taken at once and delays
+// nothing, so a reader may be late by 16 batches (16 ms at 1 kHz) without losing any.
 inline constexpr auto kTopics = [] {
   constexpr auto row = [](TopicKind kind, const dds_topic_descriptor_t& type, Delivery delivery,
                           std::int32_t writer_depth, std::int32_t reader_depth) {
@@ -58,8 +59,8 @@ inline constexpr auto kTopics = [] {
   using enum Delivery;
   return std::array{
       row(kCatalogue, clearance_msg_Catalogue_desc, kLatched, 1, 1),
-      row(kPoses, clearance_msg_PoseBatch_desc, kStream, 64, 16),
-      row(kJointStates, clearance_msg_JointStates_desc, kStream, 64, 16),
+      row(kPoses, clearance_msg_PoseBatch_desc, kStream, 4, 16),
+      row(kJointStates, clearance_msg_JointStates_desc, kStream, 4, 16),
       row(kDistances, clearance_msg_Distances_desc, kStream, 64, 64),
       row(kZones, clearance_msg_ZoneState_desc, kLatched, 1, 1),
       row(kHealth, clearance_msg_Health_desc, kLatched, 1, 1),

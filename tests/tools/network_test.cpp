@@ -2,12 +2,19 @@
 // not use this project's configuration.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <regex>
+#include <span>
 #include <sstream>
+#include <vector>
 
+#include "monitor/mcap/reader.hpp"
+#include "monitor/wire/cdr.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -84,6 +91,149 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   EXPECT_EQ(wire.ip_fragments(), 0u);
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+// Objects that stand still above a floor, each with a published pair.
+std::string standing_cell(int objects, int age_limit_ms) {
+  std::string text = "name: standing\nunits: {length: m, angle: deg}\nrate_hz: 1000\n";
+  text +=
+      "defaults: {age_limit_ms: " + std::to_string(age_limit_ms) + ", max_speed: 1}\nobjects:\n";
+  for (int i = 0; i < objects; ++i) {
+    text += "  - {name: ball" + std::to_string(i) + ", groups: [balls], sphere: {radius: 0.1}}\n";
+  }
+  return text +
+         "  - {name: floor, groups: [still], fixed: true, half_space: {normal: [0, 0, 1], offset: "
+         "0}}\npairs:\n  - {between: [balls, still], publish: true}\n";
+}
+
+// A driver whose writer keeps `depth` samples, with Cyclone's own settings otherwise.
+class Driver {
+ public:
+  Driver(const DdsOptions& dds, const Cell& cell, std::int32_t depth)
+      : participant_(dds), revision_(cell.scene.revision) {
+    dds_qos_t* const qos = dds_create_qos();
+    dds_qset_partition1(qos, dds.partition.c_str());
+    const dds_entity_t publisher = dds_create_publisher(participant_.handle(), qos, nullptr);
+    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(10));
+    dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, depth);
+    const dds_entity_t topic =
+        check_dds(dds_create_topic(participant_.handle(), &clearance_msg_PoseBatch_desc,
+                                   cell.topics.poses.c_str(), nullptr, nullptr),
+                  "topic");
+    writer_ = check_dds(dds_create_writer(publisher, topic, qos, nullptr), "writer");
+    dds_delete_qos(qos);
+    for (std::uint32_t object = 0; object + 1 < cell.scene.objects.size(); ++object) {
+      PoseSample& pose = poses_.emplace_back();
+      pose.object = object;
+      pose.world_from_object.position = Vec3(0.3 * object, 0, 1);
+    }
+  }
+  [[nodiscard]] dds_entity_t writer() const { return writer_; }
+
+  void send() {
+    PoseBatch batch{SourceName("driver"), ++sent_, revision_, poses_};
+    for (PoseSample& pose : batch.samples) pose.stamp_ns = dds_time();
+    Sample<clearance_msg_PoseBatch> sample = make_batch(batch.samples.size());
+    to_wire(batch, *sample);
+    dds_write(writer_, &*sample);
+  }
+
+ private:
+  Participant participant_;
+  std::uint64_t revision_, sent_ = 0;
+  dds_entity_t writer_ = 0;
+  std::vector<PoseSample> poses_;
+};
+
+struct LossyRun {
+  std::int32_t depth;  // of the driver's writer
+  double loss;         // share of packets
+  int objects = 8, age_limit_ms = 20, rate_hz = 1000;
+  std::chrono::milliseconds time{2000};
+};
+
+// Returns the share of reports, while packets are lost, of which a pair rests on a late pose.
+double stale_share(const LossyRun& run, const std::string& recording) {
+  test::NetworkNamespace robot(1), computer(2);
+  test::LossyWire wire(robot.frames(), computer.frames());
+  const test::CellFile cell(standing_cell(run.objects, run.age_limit_ms));
+  const Cell read = cell.cell();
+  DdsOptions dds = test::own_dds();
+  const auto arguments = test::with(test::dds_arguments(dds),
+                                    {"--interface", "eth0", "--record", recording, "--force"});
+  std::optional<ChildProcess> daemon;
+  computer.run([&] { daemon.emplace(test::kDaemon, test::with({cell.path()}, arguments)); });
+  dds.interface = "eth0";
+  std::optional<Driver> driver;
+  robot.run([&] { driver.emplace(dds, read, run.depth); });
+  EXPECT_TRUE(eventually([&] { return test::matched_readers(driver->writer()) == 1; }));
+  std::int64_t begin_ns = 0, next_ns = dds_time();
+  const std::int64_t half_a_second_ns = 500'000'000, start_ns = next_ns;
+  const std::int64_t end_ns = start_ns + half_a_second_ns + 1'000'000 * run.time.count();
+  while (next_ns < end_ns) {
+    if (begin_ns == 0 && next_ns > start_ns + half_a_second_ns) {
+      wire.lose(run.loss);
+      begin_ns = next_ns;
+    }
+    driver->send();
+    next_ns += 1'000'000'000 / run.rate_hz;
+    dds_sleepfor(std::max<std::int64_t>(0, next_ns - dds_time()));
+  }
+  daemon->signal(SIGTERM);
+  EXPECT_GE(daemon->wait(), 0) << daemon->output();
+  robot.run([&] { driver.reset(); });
+
+  McapReader reader(recording);
+  McapMessage message;
+  CdrDecoder decoder;
+  Sample<clearance_msg_Distances> report;
+  std::uint64_t reports = 0, stale = 0;
+  while (reader.next(message)) {
+    if (message.channel->topic != read.topics.distances) continue;
+    if (!decoder.decode(message.payload, report)) continue;
+    if (report->now_ns < begin_ns || report->now_ns > end_ns) continue;
+    ++reports;
+    const std::span pairs(report->pairs._buffer, report->pairs._length);
+    stale += std::ranges::any_of(pairs, [](const auto& pair) { return pair.status >= 5; });
+  }
+  EXPECT_GT(reports, 0u) << reader.error();
+  return static_cast<double>(stale) / static_cast<double>(std::max<std::uint64_t>(1, reports));
+}
+
+class StateInputs : public test::RunsPrograms {
+ protected:
+  void SetUp() override {
+    const test::NetworkNamespace machine(1);
+    if (!machine.refusal().empty()) GTEST_SKIP() << machine.refusal();
+  }
+};
+
+// Without a request for a lost sample at once, every second batch waits for 100 ms, and the others
+// behind it. The limit is far from both results, since inputs are late on busy machines, too.
+TEST_F(StateInputs, AreNotLateByTheHistoryOfTheirWriterWhenPacketsAreLost) {
+  for (const std::int32_t depth : {topic(TopicKind::kPoses).writer_depth, 64}) {
+    const double share = stale_share(
+        {.depth = depth, .loss = 0.1, .objects = 50, .age_limit_ms = 60, .rate_hz = 500},
+        path("run.mcap"));
+    EXPECT_LT(share, 0.3) << "depth " << depth;
+    RecordProperty("stale_at_depth_" + std::to_string(depth), std::to_string(share));
+  }
+}
+
+// Prints the table of idl/README.md. It is no test, because its figures need an idle machine.
+TEST_F(StateInputs, DISABLED_TableOfStaleShares) {
+  for (const double loss : {0.1, 0.3}) {
+    for (const int objects : {8, 50}) {
+      std::printf("| %.0f %% | %d |", 100.0 * loss, objects);
+      for (const std::int32_t depth : {1, 4, 16, 64}) {
+        const double share =
+            stale_share({.depth = depth, .loss = loss, .objects = objects}, path("run.mcap"));
+        std::printf(" %.1f %% |", 100.0 * share);
+        std::fflush(stdout);
+      }
+      std::printf("\n");
+    }
+  }
 }
 
 // A participant with Cyclone's default configuration on another machine.

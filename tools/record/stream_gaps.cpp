@@ -5,6 +5,7 @@
 namespace clearance {
 
 void StreamGaps::note(const std::string& kind, const std::string& stream, std::uint64_t number) {
+  if (number == 0) return;
   const auto [entry, is_new] = streams_.try_emplace(stream, Stream{kind, number, number, 0});
   Stream& known = entry->second;
   if (!is_new && number > known.last) known.missing += number - known.last - 1;

@@ -11,7 +11,7 @@ namespace clearance {
 class StreamGaps {
  public:
   // `kind` and `stream` name it: "batches" and "of source 'arm'". A number that is not larger means
-  // that the sender was started again.
+  // that the sender was started again. 0 stands for no number.
   void note(const std::string& kind, const std::string& stream, std::uint64_t number);
 
   // Sentences about streams that begin after their first sample, and about the number of samples

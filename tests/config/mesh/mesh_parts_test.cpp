@@ -13,6 +13,9 @@
 #include <string>
 #include <thread>
 
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include "config/mesh/file_lock.hpp"
 #include "config/write/single_robot_cell.hpp"
 #include "tests/config/cells.hpp"
@@ -138,6 +141,60 @@ TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
     EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
     EXPECT_EQ(good, test::read_text(file));
   }
+}
+
+// Somebody else wrote the file, with a correct checksum.
+TEST_F(PartsOfMeshes, AreMadeAnewWhereThoseThatAreKeptDoNotContainTheMesh) {
+  const Scene first = read();
+  const auto file = only_file(folder_ / "clearance.parts");
+  const std::string good = test::read_text(file);
+  const PartsCache cache(folder_ / "");
+  ConvexParts smaller = cache.find(file.stem()).value();
+  for (auto& part : smaller.parts) {
+    for (Vec3& vertex : part) vertex *= 0.1;
+  }
+  cache.keep(file.stem(), smaller);
+  EXPECT_NE(good, test::read_text(file));
+  EXPECT_EQ(anchors(first), anchors(read()));
+  EXPECT_THAT(told_, HasSubstr("do not contain it"));
+  EXPECT_EQ(good, test::read_text(file));
+}
+
+TEST_F(PartsOfMeshes, AreNotReadFromAPipeADeviceOrALink) {
+  const Scene first = read();
+  const auto file = only_file(folder_ / "clearance.parts");
+  const std::string good = test::read_text(file);
+  const auto is_made_anew = [&] {
+    EXPECT_EQ(anchors(first), anchors(read()));
+    EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+    EXPECT_TRUE(std::filesystem::is_regular_file(std::filesystem::symlink_status(file)));
+    EXPECT_EQ(good, test::read_text(file));
+    std::filesystem::remove(file);
+  };
+  std::filesystem::remove(file);
+  ASSERT_EQ(0, ::mkfifo(file.c_str(), 0600));
+  is_made_anew();
+  std::filesystem::create_symlink("/dev/zero", file);
+  is_made_anew();
+  test::write_text(folder_ / "elsewhere", good);
+  std::filesystem::create_symlink(folder_ / "elsewhere", file);
+  is_made_anew();
+}
+
+TEST_F(PartsOfMeshes, AreNotTakenFromAnotherUser) {
+  if (::geteuid() != 0) GTEST_SKIP() << "only root can give a file to another user";
+  const Scene first = read();
+  const auto folder = folder_ / "clearance.parts";
+  const auto file = only_file(folder);
+  constexpr uid_t kStranger = 65534;
+  ASSERT_EQ(0, ::chown(file.c_str(), kStranger, static_cast<gid_t>(-1)));
+  read();
+  EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+  read();
+  EXPECT_THAT(told_, IsEmpty()) << "it was not written anew";
+  ASSERT_EQ(0, ::chown(folder.c_str(), kStranger, static_cast<gid_t>(-1)));
+  EXPECT_EQ(anchors(first), anchors(read()));
+  EXPECT_THAT(told_, HasSubstr("kept in '" + (folder_ / "cache").string()));
 }
 
 TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {

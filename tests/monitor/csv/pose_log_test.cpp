@@ -48,6 +48,34 @@ TEST_F(CsvPoses, FindsColumnsByNameInAnyOrderAndIgnoresOthers) {
   EXPECT_EQ(1e-3, poses[1].world_from_object.position.x());
 }
 
+TEST_F(CsvPoses, RefuseALineThatDoesNotEnd) {
+  const std::string row = std::string(kHeader) + "5,hand,1,2,3,1,0,0,0\n";
+  for (const char byte : {'7', ' ', '\0'}) {
+    gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");
+    const std::string text = row + std::string(std::size_t{8} << 20, byte);
+    gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
+    gzclose(file);
+    CsvPoseLog log(folder / "log.csv.gz");
+    CsvPose pose;
+    EXPECT_TRUE(log.next(pose));
+    EXPECT_FALSE(log.next(pose));
+    EXPECT_THAT(log.error(), HasSubstr("log.csv.gz:3: is longer than 1 MiB"));
+  }
+}
+
+TEST_F(CsvPoses, ReadLinesThatCrossTheBuffer) {
+  std::string text = kHeader;
+  for (int i = 0; i < 5000; ++i) {
+    text += std::to_string(i) + ",hand,1,2," + std::to_string(i) + ",1,0,0,0\n";
+  }
+  const auto poses = read(text);
+  EXPECT_EQ("", error);
+  ASSERT_EQ(5000u, poses.size());
+  for (int i = 0; i < 5000; ++i) {
+    EXPECT_EQ(i, poses[static_cast<std::size_t>(i)].world_from_object.position.z());
+  }
+}
+
 TEST_F(CsvPoses, ReadsGzipAndPlainAlike) {
   const std::string text = std::string(kHeader) + "5,hand,1,2,3,1,0,0,0\n";
   gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");

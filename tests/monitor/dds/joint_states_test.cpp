@@ -14,6 +14,7 @@ namespace {
 class JointStatesReader : public testing::Test {
  protected:
   void SetUp() override {
+    inputs.start();
     ASSERT_TRUE(test::eventually(
         [&] { return test::matched_readers(joints) == 1 && test::matched_readers(poses) == 1; }));
   }

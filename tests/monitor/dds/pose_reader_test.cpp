@@ -10,6 +10,7 @@
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -63,6 +64,7 @@ struct Port {
   Participant participant{dds};
   PoseReader poses{cell, participant};
 
+  Port() { poses.start(); }
   void wait_for(const Sender& sender) {
     ASSERT_TRUE(test::eventually([&] { return test::matched_readers(sender.writer()) == 1; }));
   }
@@ -73,12 +75,13 @@ TEST(PoseReader, HandsEveryBatchOverInOrder) {
   Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
   std::vector<std::uint64_t> sent, came;
-  for (std::uint64_t round = 0; round < 20; ++round) {
-    for (std::uint64_t i = 1; i <= 8; ++i) {
-      sent.push_back(8 * round + i);
+  constexpr auto kBurst = static_cast<std::uint64_t>(topic(TopicKind::kPoses).reader_depth);
+  for (std::uint64_t round = 0; round < 160 / kBurst; ++round) {
+    for (std::uint64_t i = 1; i <= kBurst; ++i) {
+      sent.push_back(kBurst * round + i);
       sender.send(sent.back());
     }
-    for (const std::uint64_t number : take(port.poses, 8)) came.push_back(number);
+    for (const std::uint64_t number : take(port.poses, kBurst)) came.push_back(number);
   }
   EXPECT_EQ(came, sent);
   const auto tallies = port.poses.tallies();
@@ -105,8 +108,10 @@ TEST(PoseReader, CountsGapsInTheNumbersButNotANewStartAsLoss) {
   Port port;
   Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
-  for (const std::uint64_t number : {5, 6, 9, 1, 2}) sender.send(number);
-  EXPECT_EQ(take(port.poses, 5), (std::vector<std::uint64_t>{5, 6, 9, 1, 2}));
+  for (const std::uint64_t number : {5, 6, 9, 1, 2}) {
+    sender.send(number);
+    EXPECT_EQ(take(port.poses, 1), std::vector<std::uint64_t>{number});
+  }
   EXPECT_EQ(port.poses.tallies().at(0).lost, 2u);
 }
 
@@ -288,6 +293,63 @@ TEST(PoseReader, DropsAndCountsWhatNoTickTakes) {
   }
   EXPECT_EQ(port.poses.tallies().at(0).lost, 10u);
   EXPECT_EQ(take(port.poses, PoseReader::kBatches).size(), PoseReader::kBatches);
+}
+
+// A driver was there before the daemon, which takes longer to start than the ring lasts.
+TEST(PoseReader, CountsNothingAsLostThatCameBeforeItsStart) {
+  const Cell cell{two_movers()};
+  const DdsOptions dds = test::own_dds();
+  Participant participant(dds);
+  PoseReader poses(cell, participant);
+  Sender sender(cell, dds, "arm");
+  ASSERT_TRUE(test::eventually([&] { return test::matched_readers(sender.writer()) == 1; }));
+  std::uint64_t number = 0;
+  while (number < 2 * PoseReader::kBatches) {
+    sender.send(++number);
+    dds_sleepfor(DDS_MSECS(1));  // a thread that takes samples would take each of them
+  }
+  poses.start();
+  EXPECT_EQ(take(poses, 1).back(), number) << "the newest has not come";
+  sender.send(++number);
+  EXPECT_EQ(take(poses, 1), std::vector<std::uint64_t>{number});
+  EXPECT_EQ(poses.tallies().at(0).lost, 0u);
+}
+
+TEST(PoseReader, RefusesASourceWithoutANameAndNamesTheRefusal) {
+  const auto logged = std::make_shared<test::Logged>();
+  const test::LoggedTo log(logged);
+  Port port;
+  Sender sender(port.cell, port.dds, "");
+  port.wait_for(sender);
+  sender.send(1, 3);
+  EXPECT_TRUE(test::eventually([&] { return refused(port, "a source without a name") == 3; }));
+  EXPECT_TRUE(test::eventually([&] { return logged->has("[source-refused]"); })) << logged->text();
+  const auto health = make_health(port.scene, LoopStatistics(port.scene), port.poses, 0);
+  EXPECT_STREQ(health->rejected._buffer[0].object, "source (no name)");
+  EXPECT_EQ(port.poses.next(), nullptr);
+}
+
+TEST(PoseReader, TellsAWriterWithOtherQosFromOneWithAnotherType) {
+  const auto logged = std::make_shared<test::Logged>();
+  const test::LoggedTo log(logged);
+  Port port;
+  Participant robot(port.dds);
+  const auto topic = [&](const dds_topic_descriptor_t& type) {
+    return check_dds(
+        dds_create_topic(robot.handle(), &type, port.cell.topics.poses.c_str(), nullptr, nullptr),
+        "topic");
+  };
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_partition1(qos, port.dds.partition.c_str());
+  const dds_entity_t publisher = dds_create_publisher(robot.handle(), qos, nullptr);
+  dds_delete_qos(qos);
+  dds_qos_t* const best_effort = dds_create_qos();
+  dds_qset_reliability(best_effort, DDS_RELIABILITY_BEST_EFFORT, 0);
+  check_dds(dds_create_writer(publisher, topic(clearance_msg_PoseBatch_desc), best_effort, nullptr),
+            "writer");
+  dds_delete_qos(best_effort);
+  EXPECT_TRUE(test::eventually([&] { return logged->has("[incompatible-writer]"); }));
+  EXPECT_FALSE(logged->has("[other-type-writer]")) << logged->text();
 }
 
 TEST(PoseReader, HearsNothingFromAnotherPartition) {

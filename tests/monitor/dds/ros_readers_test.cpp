@@ -55,6 +55,8 @@ class RosReadersTest : public testing::Test {
   DdsOptions dds = test::own_dds();
   Participant daemon{dds}, robot{dds};
   PoseReader inputs{cell, daemon};
+
+  RosReadersTest() { inputs.start(); }
 };
 
 TEST_F(RosReadersTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHave) {
@@ -133,6 +135,7 @@ TEST(RosReaders, TransformsComeFromBothTopicsWhicheverWasThereFirst) {
   test::RosFrames fixed(robot, test::RosFrames::Kind::kStatic);
   fixed.send({{"cart", "cart_link", {0, 0, 1}}});
   PoseReader inputs(cell, daemon);
+  inputs.start();
   test::RosFrames frames(robot);
   ASSERT_TRUE(frames.is_heard() && fixed.is_heard());
   const auto comes_to = [&](const Vec3& place) {

@@ -69,6 +69,24 @@ TEST(PoseSources, CountGapsButNeitherARestartNorANewNumberingAsLoss) {
   EXPECT_EQ(sources.tallies()[0].lost, 3u) << "6, 7 and 8";
 }
 
+TEST(PoseSources, TakeNumberZeroAsNoNumber) {
+  PoseSources sources;
+  for (const std::uint64_t number : {5000, 0, 5001, 0, 0, 5002, 5004}) {
+    send(sources, "arm", 7, 0, number);
+  }
+  EXPECT_EQ(sources.tallies()[0].lost, 1u) << "5003";
+}
+
+TEST(PoseSources, RefuseASourceWithoutAName) {
+  PoseSources sources;
+  const Admission admission = send(sources, "", 7, 0);
+  EXPECT_EQ(admission.tally, nullptr);
+  EXPECT_EQ(admission.cause, SourceRefusal::kNoName);
+  EXPECT_EQ(admission.news, Admitted::kFirstRefusal);
+  EXPECT_EQ(sources.refused().at(0).poses, 3u);
+  EXPECT_TRUE(sources.tallies().empty());
+}
+
 // Fills all slots with sources, each from a different writer.
 PoseSources all_places_taken() {
   PoseSources sources;

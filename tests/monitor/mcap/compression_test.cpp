@@ -176,9 +176,22 @@ TEST(CompressedChunk, ThatLiesAboutItsSizeIsDamage) {
       EXPECT_THAT(outcome.error, HasSubstr("damaged at byte"));
     }
     EXPECT_THAT(outcome_of({method, compressed(how, records), ~std::uint64_t{0}}).error,
-                HasSubstr("is more than this reader takes (1 GiB)"));
+                HasSubstr("is more than this reader takes (256 MiB)"));
+    EXPECT_THAT(outcome_of({method, compressed(how, records), kLargestMcapChunk + 1}).error,
+                HasSubstr("is more than this reader takes (256 MiB)"));
     EXPECT_THAT(outcome_of({method, records, records.size()}).error,
                 HasSubstr("a chunk whose " + method + " data makes no sense"));
+  }
+}
+
+// Ten thousand times as large as it is in the file.
+TEST(CompressedChunk, OfNothingIsDamageAtItsFirstRecord) {
+  const Bytes nothing(std::size_t{1} << 24);
+  for (const McapCompression how : kBoth) {
+    const Outcome outcome =
+        outcome_of({std::string(name(how)), compressed(how, nothing), nothing.size()});
+    EXPECT_EQ(0, outcome.messages);
+    EXPECT_THAT(outcome.error, HasSubstr("a record of kind 0"));
   }
 }
 
