@@ -15,6 +15,10 @@ namespace clearance {
 // Reports every fault of a robot's description at the place where the cell names the file.
 void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics);
 
+// Returns the key of a cell, or the option of the command line, that gives a package's directory.
+[[nodiscard]] std::string where_packages_are(const std::string& package,
+                                             const Diagnostics& diagnostics);
+
 // A mesh becomes parts that contain it: the link never becomes smaller.
 class LinkParts {
  public:
@@ -34,6 +38,7 @@ class LinkParts {
  private:
   std::optional<std::variant<MeshParts, ShapeError>> shapes_of(const UrdfCollision& collision);
   std::optional<std::variant<MeshParts, ShapeError>> parts_of(const UrdfMesh& mesh);
+  void refuse(int line, const std::string& text);
 
   RobotFiles files_;
   const YamlNode& at_;

@@ -21,16 +21,17 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   const auto path = files.find(*name);
   if (!path) {
     const std::string package = package_of(*name);
-    diagnostics.add(node, fmt::format("found '{}', and no directory for the package '{}'; expected "
-                                      "packages: {{{}: DIRECTORY}}",
-                                      *name, package, package));
+    diagnostics.add(
+        node, fmt::format("found '{}', and no directory for the package '{}'; expected {}", *name,
+                          package, where_packages_are(package, diagnostics)));
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());
   if (const auto* fault = std::get_if<FileFault>(&bytes)) {
-    diagnostics.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
-                                      "relative to the cell file",
-                                      fault->reason));
+    diagnostics.add(node,
+                    fmt::format("found a file that cannot be used: {}; expected {}", fault->reason,
+                                diagnostics.is_of_urdf() ? "a robot's URDF, and its SRDF"
+                                                         : "a path relative to the cell file"));
     return std::nullopt;
   }
   revision.add_file(*path, std::get<std::string>(bytes));

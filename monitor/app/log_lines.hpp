@@ -31,6 +31,7 @@ inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
     "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
     "description-kept", kInfo, "the robot's description from {} is kept as {}"};
+inline constexpr LogLine<Text, Text> kRobotNote{"robot-note", kInfo, "robot '{}': {}"};
 
 // ---- The daemon's own recording
 
@@ -156,6 +157,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kStopped,
                                  kWaitingForDescription,
                                  kDescriptionKept,
+                                 kRobotNote,
                                  kRecordingRenamed,
                                  kRecordingWithoutFiles,
                                  kRecordingContinues,
