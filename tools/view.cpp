@@ -18,6 +18,7 @@
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/loop/ports.hpp"
 #include "tools/shared/progress_bar.hpp"
+#include "tools/view/allowed_hosts.hpp"
 #include "tools/view/browser.hpp"
 #include "tools/view/live_source.hpp"
 #include "tools/view/offline_recording.hpp"
@@ -36,8 +37,9 @@ constexpr std::size_t kMostCurves = 64;  // pairs that a page may ask for at onc
 
 constexpr const char* kFooter =
     R"(Open the printed address in a browser; Ctrl-C ends the program. Foxglove, Lichtblick and other
-viewers of their protocol connect to the same address with ws:// instead of http://. Every viewer
-that reaches the port may watch and move a recording's time, and can change nothing else.
+viewers of their protocol connect to the same address with ws:// instead of http://. Every program
+that reaches the port may watch and move a recording's time, and can change nothing else. Pages of
+other servers get no answer: --allow states those that do.
 
 Exit status:
   0  stopped by SIGINT or SIGTERM, or all screenshots are written
@@ -51,13 +53,15 @@ Examples:
   clearance-view cell.yaml
   clearance-view cell.yaml --replay run.mcap
   clearance-view cell.yaml --replay poses.mcap --offline
-  clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5)";
+  clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5
+  clearance-view cell.yaml --host 0.0.0.0 --allow robot.example)";
 
 struct Arguments {
   std::string cell, recording;
   bool offline = false;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8765;
+  std::vector<std::string> allowed;  // hosts and origins
   std::vector<std::string> screenshots;
   std::vector<double> at_s;
   std::string query;  // of the page in pictures
@@ -80,6 +84,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--port", arguments.port, "Port to serve on; 0: a free one")
       ->capture_default_str();
+  app.add_option("--allow", arguments.allowed,
+                 "Also answer requests for this host and by its pages: NAME or NAME:PORT; or pages "
+                 "of this origin: https://NAME; repeatable")
+      ->allow_extra_args(false)
+      ->check(view::fault_of_allowed);
   const char* const kPictures = "Pictures";
   CLI::Option* const screenshot =
       app.add_option("--screenshot", arguments.screenshots,
@@ -247,7 +256,7 @@ int run_view(const Cell& cell, const Arguments& arguments, StopSignal& stop) {
     if (stop.wait(0)) return kIncomplete;
   }
   const bool pictures = !arguments.screenshots.empty();
-  Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port,
+  Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port, arguments.allowed,
                 content_of(cell, *source));
   return pictures ? take_screenshots(arguments, server, *source)
                   : serve(arguments, server, *source, stop);
