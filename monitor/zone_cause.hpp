@@ -1,30 +1,63 @@
 // The reason why a zone is active, as text for all programs.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
+#include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {
 
+// What places an object. A link of a robot that is driven by joints has joint states, not poses.
+enum class PlacedBy { kPoses, kJointStates, kEither };
+
+// "poses of hand".
+[[nodiscard]] inline std::string inputs_of(const std::string& object, PlacedBy placed_by) {
+  switch (placed_by) {
+    case PlacedBy::kPoses:
+      return "poses of " + object;
+    case PlacedBy::kJointStates:
+      return "joint states for " + object;
+    case PlacedBy::kEither:
+      return "poses or joint states of " + object;
+  }
+  return object;
+}
+
 // Returns, for example, "by distance" or "poses of hand are late", or an empty text if the zone is
 // not active. `object` is the name of ZoneReport::cause_object.
-[[nodiscard]] inline std::string cause_text(ZoneCause cause, const std::string& object) {
+[[nodiscard]] inline std::string cause_text(ZoneCause cause, const std::string& object,
+                                            PlacedBy placed_by) {
+  const std::string inputs = inputs_of(object, placed_by);
   switch (cause) {
     case ZoneCause::kInactive:
       return "";
     case ZoneCause::kNear:
       return "by distance";
     case ZoneCause::kLate:
-      return "poses of " + object + " are late";
+      return inputs + " are late";
     case ZoneCause::kUnknown:
-      return "no pose of " + object + " has come";
+      return "no " + inputs + " have come";
     case ZoneCause::kDiscontinuous:
-      return "the pose of " + object + " is discontinuous";
+      return inputs + " are discontinuous";
     case ZoneCause::kContradicted:
-      return "poses of " + object + " contradict each other or the cell";
+      return inputs + " contradict each other or the cell";
   }
   return "";
+}
+
+[[nodiscard]] inline PlacedBy placed_by(const Scene& scene, std::uint32_t object) {
+  const bool is_link = std::ranges::any_of(scene.robots, [=](const Robot& robot) {
+    return std::ranges::find(robot.links, object, &RobotLink::object) != robot.links.end();
+  });
+  return is_link ? PlacedBy::kJointStates : PlacedBy::kPoses;
+}
+
+// The same text for a zone of a report of this scene.
+[[nodiscard]] inline std::string cause_text(const Scene& scene, const ZoneReport& zone) {
+  return cause_text(zone.cause, scene.objects[zone.cause_object].name,
+                    placed_by(scene, zone.cause_object));
 }
 
 }  // namespace clearance

@@ -13,6 +13,7 @@
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -41,11 +42,13 @@ constexpr const char* kFooter = R"(Exit status:
 
 Example:
   clearance-robot config/cells/two_arms.yaml --partition lab --seconds 60
-  clearance-robot --urdf panda.urdf --srdf panda.srdf --ros /joint_states --interface default
+  clearance-robot --urdf panda.urdf --srdf panda.srdf --ros --interface default
   clearance-robot cell.yaml --joints joints.csv.gz
 
 Latency at every phase between the robot's cycle and the daemon's (997 Hz drifts against 1000 Hz):
   clearance-robot config/cells/two_arms.yaml --partition lab --seconds 60 --rate 997 --latency)";
+
+constexpr const char* kRosJointStates = "/joint_states";
 
 struct Arguments {
   CellArguments cell;
@@ -65,12 +68,18 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Robots follow this CSV: t_ns, and a column a joint, rad or m; plain or gzip. "
                  "Otherwise every joint swings through its range");
   app.add_option("--ros", arguments.robot.ros_topic,
-                 "Send joints as ROS 2 does, on this topic: /joint_states")
+                 "Send joints as ROS 2 does, on this topic; --ros alone: /joint_states")
+      ->expected(0, 1)
+      ->default_str(kRosJointStates)
+      ->option_text("[TOPIC]")
       ->check([](const std::string& topic) {
         return topic.starts_with('/') && topic.size() > 1
                    ? std::string()
-                   : fmt::format("found '{}'; expected a topic with its namespace: /joint_states",
-                                 topic);
+                   : fmt::format(
+                         "found '{}'; expected a topic with its namespace: "
+                         "/joint_states; or, for that one, nothing: the cell stands "
+                         "before --ros",
+                         topic);
       });
   app.add_option("--rate", arguments.rate_hz, "Batches per second")
       ->check(finite_number())
@@ -89,7 +98,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_flag(
       "--latency", arguments.latency,
-      "Read the reports too, and print the delay from a pose to the first report that uses it");
+      "Read the reports too, and print the delay from a batch to the first report that uses it");
   app.add_option("--priority", arguments.priority, "Run under SCHED_FIFO")
       ->check(CLI::Range(1, 99));
   arguments.dds.add_to(app);
@@ -117,6 +126,13 @@ Histogram send_all(SimulatedRobot& robot, const Arguments& arguments,
   return lateness;
 }
 
+// "3 poses and 7 joint states", and neither without any.
+std::string inputs_of(const SimulatedRobot& robot) {
+  const std::string poses = robot.objects() > 0 ? counted(robot.objects(), "pose") : "";
+  const std::string joints = robot.joints() > 0 ? counted(robot.joints(), "joint state") : "";
+  return poses + (poses.empty() || joints.empty() ? "" : " and ") + joints;
+}
+
 int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
               StopSignal& signal) {
   use_precise_timers();
@@ -131,8 +147,8 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   SimulatedRobot robot(cell, connection, arguments.robot, std::move(motion));
   std::optional<LatencyMeter> latency;
   if (arguments.latency) latency.emplace(connection);
-  spdlog::info("source '{}' moves {} objects and {} joints at {} Hz on {}", arguments.robot.source,
-               robot.objects(), robot.joints(), arguments.rate_hz, connection.where());
+  spdlog::info("source '{}' sends {} at {} Hz on {}", arguments.robot.source, inputs_of(robot),
+               arguments.rate_hz, connection.where());
 
   std::atomic<bool> stop{false}, done{false};
   Histogram lateness;
@@ -144,15 +160,15 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   }
   stop = true;
   sending.join();
-  print(stdout, "{} batches of {} poses{} sent, {} failed\n", robot.sent(), robot.objects(),
-        robot.joints() > 0 ? fmt::format(" and {} joints", robot.joints()) : "", robot.failed());
+  print(stdout, "{} of {} sent, {} failed\n", counted(robot.sent(), "batch", "batches"),
+        inputs_of(robot), robot.failed());
   print(stdout, "wake-up  {}\n", percentiles(lateness));
   if (latency) latency->tell(connection.where());
   return kOk;
 }
 
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app("Publishes simulated poses of a cell over DDS.");
+  CLI::App app("Simulates a robot: moves a cell's objects and joints over DDS.");
   Arguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;

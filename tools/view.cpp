@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <sstream>
 
+#include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
@@ -18,12 +19,14 @@
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/loop/ports.hpp"
 #include "tools/shared/progress_bar.hpp"
+#include "tools/view/allowed_hosts.hpp"
 #include "tools/view/browser.hpp"
 #include "tools/view/live_source.hpp"
 #include "tools/view/offline_recording.hpp"
 #include "tools/view/page_files.hpp"
 #include "tools/view/recording_source.hpp"
 #include "tools/view/scene_json.hpp"
+#include "tools/view/visuals.hpp"
 
 namespace clearance {
 namespace {
@@ -36,8 +39,9 @@ constexpr std::size_t kMostCurves = 64;  // pairs that a page may ask for at onc
 
 constexpr const char* kFooter =
     R"(Open the printed address in a browser; Ctrl-C ends the program. Foxglove, Lichtblick and other
-viewers of their protocol connect to the same address with ws:// instead of http://. Every viewer
-that reaches the port may watch and move a recording's time, and can change nothing else.
+viewers of their protocol connect to the same address with ws:// instead of http://. Every program
+that reaches the port may watch and move a recording's time, and can change nothing else. Pages of
+other servers get no answer: --allow states those that do.
 
 Exit status:
   0  stopped by SIGINT, SIGTERM or SIGHUP, or all screenshots are written
@@ -49,15 +53,19 @@ Exit status:
 
 Examples:
   clearance-view cell.yaml
+  clearance-view --urdf panda.urdf --srdf panda.srdf
   clearance-view cell.yaml --replay run.mcap
   clearance-view cell.yaml --replay poses.mcap --offline
-  clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5)";
+  clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5
+  clearance-view cell.yaml --host 0.0.0.0 --allow robot.example)";
 
 struct Arguments {
-  std::string cell, recording;
+  CellArguments cell;
+  std::string recording;
   bool offline = false;
   std::string host = "127.0.0.1";
   std::uint16_t port = 8765;
+  std::vector<std::string> allowed;  // hosts and origins
   std::vector<std::string> screenshots;
   std::vector<double> at_s;
   std::string query;  // of the page in pictures
@@ -67,12 +75,12 @@ struct Arguments {
 };
 
 void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
+  arguments.cell.add_to(app);
   CLI::Option* const replay =
       app.add_option("--replay", arguments.recording,
                      "Show this recording (MCAP) with a time line, instead of a daemon");
   app.add_flag("--offline", arguments.offline,
-               "Compute the reports from the recording's poses with this cell, instead of showing "
+               "Compute the reports from the recording's inputs with this cell, instead of showing "
                "the recorded ones")
       ->needs(replay);
   app.add_option("--host", arguments.host,
@@ -80,6 +88,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--port", arguments.port, "Port to serve on; 0: a free one")
       ->capture_default_str();
+  app.add_option("--allow", arguments.allowed,
+                 "Also answer requests for this host and by its pages: NAME or NAME:PORT; or pages "
+                 "of this origin: https://NAME; repeatable")
+      ->allow_extra_args(false)
+      ->check(view::fault_of_allowed);
   const char* const kPictures = "Pictures";
   CLI::Option* const screenshot =
       app.add_option("--screenshot", arguments.screenshots,
@@ -171,13 +184,14 @@ view::Resource history(const Source& source, const std::string& query) {
   return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
 }
 
-view::Content content_of(const Cell& cell, Source& source) {
+view::Content content_of(const Cell& cell, Source& source, view::Visuals& visuals) {
   return {.name = cell.scene.name,
           .channels = view::channels_of(cell.topics),
           .get =
-              [found = resources(cell, source), &source](const std::string& path,
-                                                         const std::string& query) {
+              [found = resources(cell, source), &source, &visuals](const std::string& path,
+                                                                   const std::string& query) {
                 if (path == "/history.json") return history(source, query);
+                if (path == "/visuals.json") return visuals.get();
                 const auto entry = found.find(path);
                 return entry == found.end() ? view::Resource{} : entry->second;
               },
@@ -247,8 +261,9 @@ int run_view(const Cell& cell, const Arguments& arguments, StopSignal& stop) {
     if (stop.wait(0)) return kIncomplete;
   }
   const bool pictures = !arguments.screenshots.empty();
-  Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port,
-                content_of(cell, *source));
+  view::Visuals visuals(cell);
+  Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port, arguments.allowed,
+                content_of(cell, *source, visuals));
   return pictures ? take_screenshots(arguments, server, *source)
                   : serve(arguments, server, *source, stop);
 }
@@ -259,12 +274,15 @@ int run(int argc, char** argv, StopSignal& stop) {
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   for (const std::string& picture : arguments.screenshots) {
-    if (!output_is_not_an_input("clearance-view", picture, {arguments.cell, arguments.recording}))
-      return kUsage;
+    std::vector<std::filesystem::path> inputs = arguments.cell.files();
+    inputs.emplace_back(arguments.recording);
+    for (const std::filesystem::path& input : inputs) {
+      if (!output_is_not_an_input("clearance-view", picture, {input})) return kUsage;
+    }
     if (!can_create("clearance-view", picture, arguments.force)) return kFailed;
   }
   start_log("clearance-view", "error");
-  const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+  const auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;
   return run_view(*cell, arguments, stop);
 }

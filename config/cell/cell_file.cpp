@@ -273,7 +273,8 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 // reported first.
 CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                       const CellOptions& options) {
-  Diagnostics diagnostics(file.string());
+  Diagnostics diagnostics(file.string(),
+                          options.is_of_urdf ? CellText::kOfUrdf : CellText::kWritten);
   const auto document = parse_yaml(yaml);
   if (const auto* fault = std::get_if<YamlFault>(&document)) {
     diagnostics.add(fault->line, fault->column, fault->reason);

@@ -23,7 +23,7 @@ struct CellOptions {
   // If not null: filled, for each object with meshes, by its name, with the largest distance of the
   // surface of its parts from the meshes, m.
   std::map<std::string, double>* mesh_errors = nullptr;
-  // The text was made from a URDF: advice tells how to get a cell.
+  // The text was made from the URDF `file`: mistakes name its lines; advice: how to get a cell.
   bool is_of_urdf = false;
   // The directory that holds the files of another machine, the cell among them, at their paths
   // there; empty: they are this machine's.

@@ -19,23 +19,35 @@ constexpr std::array<const char*, 5> kKinds = {"mesh", "box", "cylinder", "spher
 
 void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics) {
   for (const UrdfFault& fault : faults) {
-    diagnostics.add(at, fmt::format("found a robot that cannot be used: {}", fault.text));
+    diagnostics.add(at, "found a robot that cannot be used", {fault.line, fault.text});
   }
+}
+
+PackagesFrom packages_from(const Diagnostics& diagnostics) {
+  return diagnostics.is_of_urdf() ? PackagesFrom::kCommandLine : PackagesFrom::kCell;
+}
+
+void LinkParts::refuse(int line, const std::string& text) {
+  refuse_robot(at_, {{line, fmt::format("{}:{}: {}", files_.named_in.string(), line, text)}},
+               diagnostics_);
 }
 
 // A missing mesh is reported by its name in the URDF.
 std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const UrdfMesh& mesh) {
   const auto path = files_.find(mesh.file);
   if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) {
-    return shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_}, at_,
-                              at_);
+    auto parts =
+        shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_});
+    if (const auto* mistake = std::get_if<MeshMistake>(&parts)) {
+      refuse(mesh.line, mistake->text);
+      return std::nullopt;
+    }
+    if (auto* error = std::get_if<ShapeError>(&parts)) return std::move(*error);
+    return std::get<MeshParts>(std::move(parts));
   }
   const std::string missing = path ? fmt::format("no file '{}'", path->string())
-                                   : why_not_found(mesh.file, PackagesFrom::kCell);
-  refuse_robot(at_,
-               {{mesh.line, fmt::format("{}:{}: found the mesh '{}', and {}",
-                                        files_.named_in.string(), mesh.line, mesh.file, missing)}},
-               diagnostics_);
+                                   : why_not_found(mesh.file, packages_from(diagnostics_));
+  refuse(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file, missing));
   return std::nullopt;
 }
 
@@ -71,9 +83,9 @@ double LinkParts::add(const UrdfLink& link, Object& object) {
     if (!result) continue;
     const char* kind = kKinds[collision.shape.index()];
     if (const auto* error = std::get_if<ShapeError>(&*result)) {
-      diagnostics_.add(
-          at_, fmt::format("found a {} of the link '{}' that is not a solid convex body: {}", kind,
-                           link.name, error->reason));
+      refuse(collision.line,
+             fmt::format("found a {} of the link '{}' that is not a solid convex body: {}", kind,
+                         link.name, error->reason));
       continue;
     }
     auto& parts = std::get<MeshParts>(*result);

@@ -15,6 +15,9 @@ namespace clearance {
 // Reports every fault of a robot's description at the place where the cell names the file.
 void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics);
 
+// Tells where a person can say which directory a package has.
+[[nodiscard]] PackagesFrom packages_from(const Diagnostics& diagnostics);
+
 // A mesh becomes parts that contain it: the link never becomes smaller.
 class LinkParts {
  public:
@@ -34,6 +37,7 @@ class LinkParts {
  private:
   std::optional<std::variant<MeshParts, ShapeError>> shapes_of(const UrdfCollision& collision);
   std::optional<std::variant<MeshParts, ShapeError>> parts_of(const UrdfMesh& mesh);
+  void refuse(int line, const std::string& text);
 
   RobotFiles files_;
   const YamlNode& at_;

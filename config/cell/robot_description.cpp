@@ -20,15 +20,16 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   if (!name) return std::nullopt;
   const auto path = files.find(*name);
   if (!path) {
-    diagnostics.add(
-        node, fmt::format("found '{}', and {}", *name, why_not_found(*name, PackagesFrom::kCell)));
+    diagnostics.add(node, fmt::format("found '{}', and {}", *name,
+                                      why_not_found(*name, packages_from(diagnostics))));
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());
   if (const auto* fault = std::get_if<FileFault>(&bytes)) {
-    diagnostics.add(node, fmt::format("found a file that cannot be used: {}; expected a path "
-                                      "relative to the cell file",
-                                      fault->reason));
+    diagnostics.add(node,
+                    fmt::format("found a file that cannot be used: {}; expected {}", fault->reason,
+                                diagnostics.is_of_urdf() ? "a robot's URDF, and its SRDF"
+                                                         : "a path relative to the cell file"));
     return std::nullopt;
   }
   revision.add_file(*path, std::get<std::string>(bytes));

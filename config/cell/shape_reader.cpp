@@ -351,9 +351,14 @@ std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_mesh(const 
   const auto file = read_text(*file_node, "the path of a mesh file", diagnostics);
   if (!file || !rounding || diagnostics.count() != before) return std::nullopt;
   use.file = *file;
-  auto parts = mesh_parts(use, *file_node, node);
-  if (!parts || std::holds_alternative<ShapeError>(*parts)) return parts;
-  for (ConvexBody& shape : std::get<MeshParts>(*parts).shapes) {
+  auto made = mesh_parts(use);
+  if (const auto* mistake = std::get_if<MeshMistake>(&made)) {
+    diagnostics.add(mistake->is_of_size ? node : *file_node, mistake->text);
+    return std::nullopt;
+  }
+  if (auto* error = std::get_if<ShapeError>(&made)) return std::move(*error);
+  auto parts = std::get<MeshParts>(std::move(made));
+  for (ConvexBody& shape : parts.shapes) {
     ShapeResult round = rounded_by(*rounding, std::move(shape));
     if (auto* error = std::get_if<ShapeError>(&round)) return std::move(*error);
     shape = std::get<ConvexBody>(std::move(round));
@@ -361,30 +366,28 @@ std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_mesh(const 
   return parts;
 }
 
-std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::mesh_parts(
-    const MeshUse& use, const YamlNode& file_node, const YamlNode& node) {
-  Diagnostics& diagnostics = quantities_.diagnostics();
+std::variant<MeshParts, ShapeError, MeshMistake> ShapeReader::mesh_parts(const MeshUse& use) {
   auto result = meshes_.parts(use);
   if (auto* parts = std::get_if<MeshParts>(&result)) return std::move(*parts);
   auto& refusal = std::get<MeshRefusal>(result);
   switch (refusal.kind) {
     case MeshRefusal::Kind::kFile:
-      diagnostics.add(file_node, fmt::format("found a mesh file that cannot be used: {}; expected "
-                                             "a path relative to the cell file",
-                                             refusal.reason));
-      return std::nullopt;
+      return MeshMistake{
+          false,
+          fmt::format("found a mesh file that cannot be used: {}; expected a path relative to the "
+                      "file that names it",
+                      refusal.reason)};
     case MeshRefusal::Kind::kDamaged:
-      diagnostics.add(file_node, fmt::format("found a mesh file that cannot be used: {}; expected "
-                                             "an undamaged mesh with faces, in one file",
-                                             refusal.reason));
-      return std::nullopt;
+      return MeshMistake{false,
+                         fmt::format("found a mesh file that cannot be used: {}; expected an "
+                                     "undamaged mesh with faces, in one file",
+                                     refusal.reason)};
     case MeshRefusal::Kind::kTooLarge:
-      diagnostics.add(node,
-                      fmt::format("found a mesh with a vertex {} from its origin along an axis; "
-                                  "expected another unit or scale, or, where the body reaches "
-                                  "farther than {:g} m, 'reach' beside 'file'",
-                                  refusal.reason, use.reach));
-      return std::nullopt;
+      return MeshMistake{true,
+                         fmt::format("found a mesh with a vertex {} from its origin along an axis; "
+                                     "expected another unit or scale, or, where the body reaches "
+                                     "farther than {:g} m, 'reach' beside 'file'",
+                                     refusal.reason, use.reach)};
     case MeshRefusal::Kind::kNotSolid:
       break;
   }

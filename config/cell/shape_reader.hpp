@@ -14,6 +14,12 @@
 
 namespace clearance {
 
+// A mesh that cannot be used: what was found, and what was expected of its size or of its file.
+struct MeshMistake {
+  bool is_of_size;
+  std::string text;
+};
+
 // A shape and its place in the file, for messages.
 struct NamedShape {
   std::string kind;  // the key: "box"
@@ -42,10 +48,8 @@ class ShapeReader {
   // map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 
-  // Returns the parts of a mesh; nothing after a diagnostic. The file is named at `file_node`, and
-  // its size stated at `node`.
-  [[nodiscard]] std::optional<std::variant<MeshParts, ShapeError>> mesh_parts(
-      const MeshUse& use, const YamlNode& file_node, const YamlNode& node);
+  // Returns the parts of a mesh; reports nothing.
+  [[nodiscard]] std::variant<MeshParts, ShapeError, MeshMistake> mesh_parts(const MeshUse& use);
 
  private:
   std::optional<std::variant<MeshParts, ShapeError>> read_kind(const std::string& kind,

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "config/text/printable.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 
@@ -68,8 +69,8 @@ std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped
     }
   }
   if (!added.empty()) {
-    notes.push_back(
-        fmt::format("{} pairs are disabled by default in the SRDF and not enabled", added.size()));
+    notes.push_back(fmt::format("{} disabled by default in the SRDF and not enabled",
+                                counted(added.size(), "pair")));
   }
   return all;
 }
@@ -102,8 +103,8 @@ std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shape
     reasons += fmt::format("{}{} {}", reasons.empty() ? "" : ", ", count, reason);
   }
   if (!left_out.empty()) {
-    notes.push_back(
-        fmt::format("{} disabled pairs left out: {}", disabled.size() - useful.size(), reasons));
+    notes.push_back(fmt::format(
+        "{} left out: {}", counted(disabled.size() - useful.size(), "disabled pair"), reasons));
   }
   return useful;
 }
@@ -128,11 +129,9 @@ std::vector<SrdfDisabled> neighbours_of(const UrdfRobot& robot, const LinkNames&
     pairs.push_back({parent, link.name, "Adjacent in the URDF", 0});
     names += fmt::format("{}{} - {}", names.empty() ? "" : ", ", parent, link.name);
   }
-  notes.push_back(
-      pairs.empty() ? "no SRDF, and no neighbours: every pair of links is watched"
-                    : fmt::format("no SRDF: neighbours are left out, and every other pair of links "
-                                  "is watched: {}",
-                                  names));
+  notes.push_back(pairs.empty()
+                      ? "no SRDF, and no neighbours: every pair of links is watched"
+                      : fmt::format("no SRDF: these neighbours are not watched: {}", names));
   return pairs;
 }
 

@@ -1,191 +1,25 @@
 // Reads the XML elements that a cell needs and ignores the others (visual, inertial, transmission).
 // A mistake is kept with its line and the reading goes on, so that one run finds all of them. Only
-// XML that cannot be parsed ends it.
+// XML that cannot be parsed, or that xacro has to expand first, ends it.
 #include "config/urdf/urdf.hpp"
 
 #include <fmt/format.h>
 
-#include <tinyxml2.h>
-
 #include <algorithm>
-#include <array>
-#include <charconv>
-#include <cmath>
 #include <map>
 #include <set>
-#include <span>
 #include <string_view>
-#include <system_error>
 
-#include "config/text/printable.hpp"
+#include "config/urdf/shape_element.hpp"
+#include "config/urdf/xml_reader.hpp"
 
 namespace clearance {
 namespace {
 
 using tinyxml2::XMLElement;
 
-// Returns the children of this name, in order.
-std::vector<const XMLElement*> children(const XMLElement& element, const char* name) {
-  std::vector<const XMLElement*> found;
-  for (const XMLElement* at = element.FirstChildElement(name); at != nullptr;
-       at = at->NextSiblingElement(name)) {
-    found.push_back(at);
-  }
-  return found;
-}
-
-enum class Sign { kAny, kPositive };
-
-// An XML file and its mistakes. A value that cannot be read is reported and keeps its default.
-class XmlReader {
- public:
-  explicit XmlReader(const std::filesystem::path& file) : file_(file.string()) {
-    if (document_.LoadFile(file_.c_str()) == tinyxml2::XML_SUCCESS) {
-      root_ = document_.FirstChildElement("robot");
-      if (root_ == nullptr) add(1, "found no <robot>; expected it as the root");
-    } else {
-      add(std::max(1, document_.ErrorLineNum()),
-          fmt::format("not readable as XML: {}; expected URDF or SRDF, with xacro expanded",
-                      document_.ErrorName()));
-    }
-  }
-
-  // Returns <robot>, of URDF or SRDF; null after a fault.
-  const XMLElement* root() const { return root_; }
-
-  void report(const XMLElement& at, const std::string& text) { add(at.GetLineNum(), text); }
-
-  [[nodiscard]] UrdfFaults faults() const { return faults_; }
-
-  // Returns an attribute, which is required.
-  std::string attribute(const XMLElement& element, const char* name) {
-    const char* value = element.Attribute(name);
-    if (value != nullptr) return value;
-    report(element, fmt::format("found <{}> without '{}'", element.Name(), name));
-    return "";
-  }
-
-  // Returns the first child element of this name, which is required; null after a fault.
-  const XMLElement* child(const XMLElement& element, const char* name) {
-    const XMLElement* found = element.FirstChildElement(name);
-    if (found == nullptr) {
-      report(element, fmt::format("found <{}> without <{}>", element.Name(), name));
-    }
-    return found;
-  }
-
-  // Returns an attribute of a child element; both are required.
-  std::string attribute_of_child(const XMLElement& element, const char* child_name,
-                                 const char* name) {
-    const XMLElement* found = child(element, child_name);
-    return found == nullptr ? "" : attribute(*found, name);
-  }
-
-  // Reads finite numbers in SI units; lengths and radii have to be positive.
-  double number(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
-    double value = 0.0;
-    numbers(element, name, std::span(&value, 1), sign);
-    return value;
-  }
-  Vec3 vector(const XMLElement& element, const char* name, Sign sign = Sign::kAny) {
-    std::array<double, 3> values{};
-    numbers(element, name, values, sign);
-    return {values[0], values[1], values[2]};
-  }
-  double length(const XMLElement& element, const char* name) {
-    return number(element, name, Sign::kPositive);
-  }
-
-  // <origin xyz="..." rpy="..."/>: the element and both attributes are optional, zero by default.
-  UrdfOrigin origin(const XMLElement& element) {
-    UrdfOrigin origin;
-    if (const XMLElement* found = element.FirstChildElement("origin")) {
-      if (found->Attribute("xyz") != nullptr) origin.xyz = vector(*found, "xyz");
-      if (found->Attribute("rpy") != nullptr) origin.rpy = vector(*found, "rpy");
-    }
-    return origin;
-  }
-
- private:
-  // Reads exactly values.size() finite numbers, separated by blanks.
-  void numbers(const XMLElement& element, const char* name, std::span<double> values, Sign sign) {
-    if (element.Attribute(name) == nullptr) {
-      static_cast<void>(attribute(element, name));
-      return;
-    }
-    const std::string text = element.Attribute(name);
-    const char* at = text.data();
-    const char* end = text.data() + text.size();
-    const auto skip_blanks = [&] {
-      while (at != end && std::string_view(" \t\r\n").find(*at) != std::string_view::npos) ++at;
-    };
-    bool good = true;
-    for (double& value : values) {
-      skip_blanks();
-      if (at != end && *at == '+') ++at;
-      const auto result = std::from_chars(at, end, value);
-      good = good && result.ec == std::errc() && std::isfinite(value) &&
-             (sign == Sign::kAny || value > 0.0);
-      at = result.ptr;
-    }
-    skip_blanks();
-    if (!good || at != end) {
-      report(element,
-             fmt::format("found {}=\"{}\"; expected {} number{}{}", name, text, values.size(),
-                         values.size() == 1 ? "" : "s", sign == Sign::kPositive ? " above 0" : ""));
-    }
-  }
-
-  void add(int line, const std::string& text) {
-    faults_.push_back({line, fmt::format("{}:{}: {}", file_, line, excerpt(text))});
-  }
-
-  std::string file_;
-  tinyxml2::XMLDocument document_;
-  const XMLElement* root_ = nullptr;
-  UrdfFaults faults_;
-};
-
-// Reads one collision shape with its place in the link; the shape is unset after a fault. Visual
-// geometry is not read.
-UrdfCollision read_collision(XmlReader& xml, const XMLElement& element) {
-  UrdfCollision collision;
-  collision.link_from_shape = xml.origin(element);
-  const XMLElement* geometry = xml.child(element, "geometry");
-  if (geometry == nullptr) return collision;
-  if (const XMLElement* mesh = geometry->FirstChildElement("mesh")) {
-    UrdfMesh shape{.file = xml.attribute(*mesh, "filename"), .line = mesh->GetLineNum()};
-    if (mesh->Attribute("scale") != nullptr) shape.scale = xml.vector(*mesh, "scale");
-    collision.shape = shape;
-  } else if (const XMLElement* box = geometry->FirstChildElement("box")) {
-    collision.shape = UrdfBox{xml.vector(*box, "size", Sign::kPositive)};
-  } else if (const XMLElement* cylinder = geometry->FirstChildElement("cylinder")) {
-    const double radius = xml.length(*cylinder, "radius");
-    collision.shape = UrdfCylinder{radius, xml.length(*cylinder, "length")};
-  } else if (const XMLElement* sphere = geometry->FirstChildElement("sphere")) {
-    collision.shape = UrdfSphere{xml.length(*sphere, "radius")};
-  } else if (const XMLElement* capsule = geometry->FirstChildElement("capsule")) {
-    const double radius = xml.length(*capsule, "radius");
-    collision.shape = UrdfCapsule{radius, xml.length(*capsule, "length")};
-  } else {
-    xml.report(
-        *geometry,
-        "found a geometry of an unknown kind; expected mesh, box, cylinder, sphere or capsule");
-  }
-  return collision;
-}
-
 // A robot without shapes would give a cell that watches nothing, and is refused.
 void read_links(XmlReader& xml, UrdfRobot& robot) {
-  for (const XMLElement* at = xml.root()->FirstChildElement(); at != nullptr;
-       at = at->NextSiblingElement()) {
-    if (!std::string_view(at->Name()).starts_with("xacro:")) continue;
-    xml.report(*at,
-               fmt::format("found <{}>; expected a URDF: expand it first (xacro R.urdf.xacro > "
-                           "R.urdf)",
-                           at->Name()));
-    return;
-  }
   std::set<std::string> names;
   bool any_shape = false;
   for (const XMLElement* at : children(*xml.root(), "link")) {
@@ -193,7 +27,7 @@ void read_links(XmlReader& xml, UrdfRobot& robot) {
     if (!link.name.empty() && !names.insert(link.name).second)
       xml.report(*at, fmt::format("found the link '{}' again", link.name));
     for (const XMLElement* part : children(*at, "collision")) {
-      link.collisions.push_back(read_collision(xml, *part));
+      link.collisions.push_back(read_shape(xml, *part));
     }
     any_shape = any_shape || !link.collisions.empty();
     robot.links.push_back(std::move(link));

@@ -42,6 +42,7 @@ struct UrdfOrigin {
 struct UrdfCollision {
   std::variant<UrdfMesh, UrdfBox, UrdfCylinder, UrdfSphere, UrdfCapsule> shape;
   UrdfOrigin link_from_shape;
+  int line = 0;
 };
 
 // <link>: only its collision elements; a link without any is a frame.

@@ -22,7 +22,7 @@ struct SingleRobotOptions {
 // pair of its links is watched and published. Paths are absolute.
 [[nodiscard]] std::string single_robot_cell(const SingleRobotOptions& options);
 
-// Reads that text; the errors are those of a cell, at lines of this text.
+// Reads that text; the errors name the URDF, and its lines where they are of one.
 [[nodiscard]] CellResult read_single_robot(const SingleRobotOptions& options,
                                            const CellOptions& cell_options = {});
 

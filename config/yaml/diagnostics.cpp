@@ -11,30 +11,40 @@
 namespace clearance {
 
 void Diagnostics::add(int line, int column, const std::string& text) {
-  // The text that was found may hold line breaks; a message is one line.
-  std::string one_line = text;
-  std::replace_if(
-      one_line.begin(), one_line.end(), [](char c) { return static_cast<unsigned char>(c) < 0x20; },
-      ' ');
-  diagnostics_.push_back({line, column, std::move(one_line)});
+  add({line, column, 0, text});
+}
+
+void Diagnostics::add(const YamlNode& at, const std::string& what,
+                      const NamedFileMistake& mistake) {
+  add({at.line, at.column, mistake.line,
+       is_of_urdf() ? mistake.text : fmt::format("{}: {}", what, mistake.text)});
+}
+
+// The text that was found may hold line breaks; a message is one line.
+void Diagnostics::add(Diagnostic diagnostic) {
+  std::ranges::replace_if(
+      diagnostic.text, [](char c) { return static_cast<unsigned char>(c) < 0x20; }, ' ');
+  diagnostics_.push_back(std::move(diagnostic));
+}
+
+std::string Diagnostics::place_of(const Diagnostic& diagnostic) const {
+  if (!is_of_urdf()) return fmt::format("{}:{}:{}: ", file_, diagnostic.line, diagnostic.column);
+  return diagnostic.named_line > 0 ? "" : fmt::format("{}: ", file_);
 }
 
 // Equal input gives equal output: messages of one place are ordered by their text.
 std::vector<CellError> Diagnostics::sorted() const {
+  const auto key = [](const Diagnostic& each) {
+    return std::tie(each.line, each.column, each.named_line, each.text);
+  };
   std::vector<Diagnostic> ordered = diagnostics_;
-  std::sort(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
-    return std::tie(a.line, a.column, a.text) < std::tie(b.line, b.column, b.text);
-  });
+  std::ranges::sort(ordered, {}, key);
   // A mistake inside an anchor (&x) is found once for every alias of it.
-  const auto end =
-      std::unique(ordered.begin(), ordered.end(), [](const Diagnostic& a, const Diagnostic& b) {
-        return std::tie(a.line, a.column, a.text) == std::tie(b.line, b.column, b.text);
-      });
-  ordered.erase(end, ordered.end());
+  const auto same = std::ranges::unique(ordered, {}, key);
+  ordered.erase(same.begin(), same.end());
   std::vector<CellError> errors;
   for (const Diagnostic& diagnostic : ordered) {
-    errors.push_back(
-        {fmt::format("{}:{}:{}: {}", file_, diagnostic.line, diagnostic.column, diagnostic.text)});
+    errors.push_back({place_of(diagnostic) + diagnostic.text});
   }
   return errors;
 }

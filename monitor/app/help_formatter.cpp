@@ -50,8 +50,11 @@ std::string HelpFormatter::make_usage(const CLI::App* app, std::string name) con
 
 std::string HelpFormatter::make_group(std::string group, bool is_positional,
                                       std::vector<const CLI::Option*> options) const {
-  std::ranges::stable_partition(options,
-                                [](const CLI::Option* option) { return option->get_required(); });
+  const auto rank = [](const CLI::Option* option) {
+    if (option->get_required()) return 0;
+    return option->check_lname("help") || option->check_lname("version") ? 2 : 1;
+  };
+  std::ranges::stable_sort(options, {}, rank);
   return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
 }
 
@@ -63,14 +66,15 @@ std::string HelpFormatter::make_positionals(const CLI::App* app) const {
       text += make_option(option, option->get_positional());
     }
   }
-  return text + CLI::Formatter::make_positionals(app);
-}
-
-std::string HelpFormatter::make_subcommands(const CLI::App* app, CLI::AppFormatMode) const {
+  text += CLI::Formatter::make_positionals(app);
   const std::vector<const CLI::App*> parts = named_subcommands_of(*app);
-  std::string text = parts.empty() ? "" : "\nSubcommands (each has its own --help):\n";
+  if (!parts.empty()) text += "\nSubcommands (each has its own --help):\n";
   for (const CLI::App* part : parts) text += make_subcommand(part);
   return text;
+}
+
+std::string HelpFormatter::make_subcommands(const CLI::App*, CLI::AppFormatMode) const {
+  return "";
 }
 
 }  // namespace clearance

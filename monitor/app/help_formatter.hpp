@@ -8,16 +8,16 @@
 namespace clearance {
 
 // Differs from CLI11's formatter in three ways. The usage line names required arguments before
-// "[OPTIONS]". Alternatives of which one is required (an option group) stand first, not last. In
-// each list, required options come first.
+// "[OPTIONS]". Arguments, alternatives of which one is required (an option group), and subcommands
+// stand before options. In each list, required options come first, --help and --version last.
 class HelpFormatter : public CLI::Formatter {
  public:
   [[nodiscard]] std::string make_usage(const CLI::App* app, std::string name) const override;
   [[nodiscard]] std::string make_group(std::string group, bool is_positional,
                                        std::vector<const CLI::Option*> options) const override;
-  // The alternatives, then positional arguments.
+  // The alternatives, then positional arguments, then subcommands that have a name.
   [[nodiscard]] std::string make_positionals(const CLI::App* app) const override;
-  // Subcommands that have a name; the others are the alternatives above.
+  // Nothing: make_positionals() has them.
   [[nodiscard]] std::string make_subcommands(const CLI::App* app,
                                              CLI::AppFormatMode mode) const override;
 };

@@ -35,6 +35,7 @@ inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
     "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
     "description-kept", kInfo, "the robot's description from {} is kept as {}"};
+inline constexpr LogLine<Text, Text> kRobotNote{"robot-note", kInfo, "robot '{}': {}"};
 
 // ---- The daemon's own recording
 
@@ -184,6 +185,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kNoReload,
                                  kWaitingForDescription,
                                  kDescriptionKept,
+                                 kRobotNote,
                                  kRecordingRenamed,
                                  kRecordingWithoutFiles,
                                  kRecordingContinues,

@@ -84,6 +84,9 @@ void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
   log_line(lines::kStarted, scene_.name, scene_.revision, scene_.rate_hz, participant_.where());
   log_line(lines::kHowToReach, participant_.how_to_reach());
+  for (const Robot& robot : scene_.robots) {
+    for (const std::string& note : robot.notes) log_line(lines::kRobotNote, robot.name, note);
+  }
   warn_of_partition(cell_, options_.dds);
 
   std::atomic<bool> done{false};

@@ -97,11 +97,21 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
+// A run logs the same notes.
+void print_summary(const Scene& scene) {
+  for (const Robot& robot : scene.robots) {
+    for (const std::string& note : robot.notes) {
+      print(stderr, "robot '{}': {}\n", robot.name, note);
+    }
+  }
+  print(stdout, "{}\n", summary(scene));
+}
+
 // --check reads the cell like a run does: a cell that passes here starts.
 int check_only(const CellArguments& cell) {
   const auto read = cell_or_errors(cell.read());
   if (!read) return kBadCell;
-  print(stdout, "{}\n", summary(read->scene));
+  print_summary(read->scene);
   return kOk;
 }
 
@@ -155,7 +165,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   cell->scene.gradients = cell->scene.gradients || arguments.gradients;
   add_ros_outputs(arguments.ros, cell->ros.outputs);
   if (arguments.check) {
-    print(stdout, "{}\n", summary(cell->scene));
+    print_summary(cell->scene);
     return kOk;
   }
   for (const std::filesystem::path& file : arguments.cell.files()) {

@@ -18,7 +18,7 @@ void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
   const std::string& name = scene.zones[index].name;
   if (!zone.active) return log_line(lines::kZoneLeft, name, cycle);
   const std::string pair = pair_name(scene, zone.pair);
-  const std::string cause = cause_text(zone.cause, scene.objects[zone.cause_object].name);
+  const std::string cause = cause_text(scene, zone);
   switch (zone.cause) {
     case ZoneCause::kLate:
       return log_line(lines::kZoneLate, name, cycle, cause, pair, zone.clearance,

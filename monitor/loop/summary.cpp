@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "config/text/sentences.hpp"
 #include "monitor/pair_name.hpp"
 
 namespace clearance {
@@ -18,10 +19,11 @@ std::string percentiles(const Histogram& histogram) {
 std::string run_summary(const Scene& scene, const LoopStatistics& statistics, double seconds,
                         std::uint64_t dropped_reports) {
   std::string text = fmt::format(
-      "{} ticks in {:.2f} s, {} overruns, {} skipped cycles, {} reports dropped\n"
+      "{} in {:.2f} s, {}, {}, {} dropped\n"
       "tick     {}\n"
       "wake-up  {}\n",
-      statistics.cycle, seconds, statistics.overruns, statistics.skipped_cycles, dropped_reports,
+      counted(statistics.cycle, "tick"), seconds, counted(statistics.overruns, "overrun"),
+      counted(statistics.skipped_cycles, "skipped cycle"), counted(dropped_reports, "report"),
       percentiles(statistics.tick), percentiles(statistics.wakeup));
   const MinimumSeen& minimum = statistics.minimum;
   if (!minimum.known) return fmt::format("{}minimum  none: no pair was ever evaluated\n", text);

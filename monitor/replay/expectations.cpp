@@ -142,7 +142,7 @@ std::optional<std::string> Expectations::never_judged(const Monitor& monitor) co
       unseen.push_back(scene_.objects[i].name);
     }
   }
-  return fmt::format("no tick could be judged: the recording never gives a usable pose of {}",
+  return fmt::format("no tick could be judged: the recording never tells where {} is",
                      one_of(unseen));
 }
 

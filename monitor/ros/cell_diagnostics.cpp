@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/text/sentences.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/zone_cause.hpp"
 
@@ -35,10 +36,10 @@ Status tick_status(const clearance_msg_Health& health, std::uint64_t overruns,
   Status status{.name = "tick", .message = "on time"};
   if (dropped > 0)
     status.raise(DiagnosticLevel::kWarn,
-                 fmt::format("{} reports were not published in the last second", dropped));
+                 fmt::format("{} not published in the last second", counted(dropped, "report")));
   if (overruns > 0)
     status.raise(DiagnosticLevel::kWarn,
-                 fmt::format("{} ticks ended late in the last second", overruns));
+                 fmt::format("{} ended late in the last second", counted(overruns, "tick")));
   const auto us = [](double value) { return fmt::format("{:.1f} us", value); };
   status.values = {{"cycle", std::to_string(health.cycle)},
                    {"tick p50", us(health.tick_p50_us)},
@@ -57,10 +58,11 @@ Status distances_status(const Scene& scene, const Report& report) {
     status.raise(DiagnosticLevel::kWarn, "the minimum is not certified");
   if (report.stale > 0) {
     status.level = DiagnosticLevel::kWarn;
-    status.message = fmt::format("{} pairs are stale", report.stale);
+    status.message = fmt::format("{} stale", counted(report.stale, "pair"));
   }
   if (report.unknown > 0)
-    status.raise(DiagnosticLevel::kError, fmt::format("{} pairs are unknown", report.unknown));
+    status.raise(DiagnosticLevel::kError,
+                 fmt::format("{} unknown", counted(report.unknown, "pair")));
   status.values = {{"pairs", std::to_string(report.pairs_total)},
                    {"stale", std::to_string(report.stale)},
                    {"unknown", std::to_string(report.unknown)},
@@ -108,8 +110,7 @@ Status joints_status(const Scene& scene, std::uint32_t robot, const clearance_ms
 
 Status zone_status(const Scene& scene, std::uint32_t index, const ZoneReport& zone) {
   Status status{.name = "zone " + scene.zones[index].name, .message = "not active"};
-  const std::string cause =
-      zone.active ? cause_text(zone.cause, scene.objects[zone.cause_object].name) : "clear";
+  const std::string cause = zone.active ? cause_text(scene, zone) : "clear";
   const std::string pair = pair_name(scene, zone.pair);
   if (zone.active) status.raise(DiagnosticLevel::kWarn, fmt::format("active: {}, {}", pair, cause));
   if (zone.active && zone.cause > ZoneCause::kLate) status.level = DiagnosticLevel::kError;

@@ -24,6 +24,10 @@ void set_up(const ChildOptions& options, int output) {
     const rlimit limit{*options.most_file_bytes, *options.most_file_bytes};
     setrlimit(RLIMIT_FSIZE, &limit);
   }
+  if (options.most_descriptors) {
+    const rlimit limit{*options.most_descriptors, *options.most_descriptors};
+    setrlimit(RLIMIT_NOFILE, &limit);
+  }
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(options.out < 0 ? output : options.out, STDOUT_FILENO);
   dup2(options.err < 0 ? output : options.err, STDERR_FILENO);

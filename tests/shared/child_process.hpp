@@ -20,6 +20,8 @@ struct ChildOptions {
   std::vector<std::pair<std::string, std::string>> environment = {};
   // limit of a file's size, which simulates a full disk
   std::optional<std::size_t> most_file_bytes = {};
+  // limit of the number of open files and connections
+  std::optional<std::size_t> most_descriptors = {};
 };
 
 class ChildProcess {
@@ -31,6 +33,7 @@ class ChildProcess {
   ChildProcess(const ChildProcess&) = delete;
   ChildProcess& operator=(const ChildProcess&) = delete;
 
+  [[nodiscard]] pid_t pid() const noexcept { return pid_; }
   void signal(int number) const;
   // Returns the exit status, 128 + the signal that ended the process, or -1 if it still runs after
   // the limit.

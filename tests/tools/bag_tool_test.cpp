@@ -76,7 +76,7 @@ TEST_F(BagTool, JointTableAndGivenJointsDo) {
   for (int i = 0; i < 100; ++i) table += std::to_string(i * 10'000'000) + ",0.5,0.2\n";
   write_text(folder / "log.csv", table);
   EXPECT_EQ(1, replay("log.csv", {"--expect-min-distance", "0.05"}));
-  EXPECT_THAT(output, HasSubstr("never gives a usable pose of 'finger'"));
+  EXPECT_THAT(output, HasSubstr("never tells where 'finger' is"));
   EXPECT_THAT(output, HasSubstr("is unknown: push; --joint NAME=POSITION"));
   EXPECT_EQ(0, replay("log.csv", {"--expect-min-distance", "0.05", "--joint", "push=0.1"}))
       << output;

@@ -230,9 +230,11 @@ TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
 TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
   write_text(folder / "scara.urdf", kScaraUrdf);
   const std::vector<std::string> robot = {"--urdf", folder / "scara.urdf"};
+  const std::string neighbours = "not watched: foot - upper, upper - lower, lower - finger";
   ChildProcess check(kDaemon, with(robot, {"--check"}));
   EXPECT_EQ(check.wait(), 0) << check.output();
   EXPECT_TRUE(check.wrote("scara")) << check.output();
+  EXPECT_TRUE(check.wrote(neighbours)) << check.output();
   daemon.emplace(kDaemon, with(robot, dds_arguments(dds)));
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
@@ -242,6 +244,7 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
     return daemon->told("joints-heard", {"3 joints of scara"});
   })) << daemon->output();
   EXPECT_TRUE(daemon->told("how-to-reach", {"CYCLONEDDS_URI='<CycloneDDS>"})) << daemon->output();
+  EXPECT_TRUE(daemon->told("robot-note", {"scara", neighbours})) << daemon->output();
 }
 
 TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {

@@ -37,7 +37,7 @@ class RobotJoints : public testing::Test {
         << robot.output();
     robot.signal(SIGTERM);
     EXPECT_EQ(robot.wait(), 0);
-    EXPECT_TRUE(robot.wrote("joints sent, 0 failed")) << robot.output();
+    EXPECT_TRUE(robot.wrote("joint states sent, 0 failed")) << robot.output();
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(), 0);
     EXPECT_FALSE(daemon.told("refused")) << daemon.output();
@@ -63,6 +63,14 @@ TEST_F(RobotJoints, OfTheShippedArmsSwingThroughTheirRanges) {
 TEST_F(RobotJoints, OfAUrdfAreSentAsRos2Does) {
   moves(with({"--urdf", kArm}, kSlow), std::get<Cell>(read_single_robot({.urdf = kArm})),
         {"--rate", "200", "--ros", "/joint_states"});
+}
+
+TEST_F(RobotJoints, AreSentOnTheTopicOfRos2WhereNoneIsNamed) {
+  moves(with({"--urdf", kArm}, kSlow), std::get<Cell>(read_single_robot({.urdf = kArm})),
+        {"--rate", "200", "--ros"});
+  ChildProcess swallowed(kRobot, {"--ros", kArms});
+  EXPECT_EQ(swallowed.wait(), 2);
+  EXPECT_TRUE(swallowed.wrote("the cell stands before --ros")) << swallowed.output();
 }
 
 TEST_F(RobotJoints, FollowALog) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -14,6 +15,26 @@
 namespace clearance::test {
 
 inline const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
+
+inline const std::string kScripts = CLEARANCE_VIEW_JS;
+
+// A folder in the build for pictures that are kept after the run.
+inline std::string pictures() {
+  const std::filesystem::path folder = CLEARANCE_VIEW_PICTURES;
+  std::filesystem::create_directories(folder);
+  return folder.string();
+}
+
+// Waits until the daemon has poses of both boxes.
+inline void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
+  Participant client(dds);
+  Distances reports(client, cell);
+  for (;;) {
+    const auto report = reports.next();
+    ASSERT_NE(report, nullptr);
+    if ((*report)->minimum_known && (*report)->unknown == 0) return;
+  }
+}
 
 // Returns the lines of JSON that a script has printed.
 inline std::vector<nlohmann::json> lines_of(const ChildProcess& script) {
@@ -29,8 +50,8 @@ inline std::vector<nlohmann::json> lines_of(const ChildProcess& script) {
 // A viewer on a free port.
 class View {
  public:
-  explicit View(const std::vector<std::string>& arguments)
-      : process_(kView, with(arguments, {"--port", "0"})) {
+  explicit View(const std::vector<std::string>& arguments, const ChildOptions& options = {})
+      : process_(kView, with(arguments, {"--port", "0"}), options) {
     EXPECT_TRUE(eventually([&] { return process_.wrote("http://127.0.0.1:"); }))
         << process_.output();
     const std::string output = process_.output();
@@ -39,6 +60,7 @@ class View {
   }
   [[nodiscard]] std::string page() const { return address_; }
   [[nodiscard]] std::string socket() const { return "ws" + address_.substr(4); }
+  [[nodiscard]] const ChildProcess& process() const { return process_; }
   int end() {
     process_.signal(SIGTERM);
     return process_.wait();

@@ -193,6 +193,14 @@ TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
       << daemon.output();
 }
 
+TEST_F(SceneProgram, HelpNamesSubcommandsAndArgumentsBeforeOptions) {
+  ASSERT_EQ(run({"--help"}), 0);
+  EXPECT_LT(output_.find("  reduce "), output_.find("Options:")) << output_;
+  ASSERT_EQ(run({"reduce", "--help"}), 0);
+  EXPECT_LT(output_.find("  FILE "), output_.find("Options:")) << output_;
+  EXPECT_LT(output_.find("--tolerance"), output_.find("--help")) << output_;
+}
+
 // A post, a slide beside it, a tip that the slide moves through the post, and a body far from all
 // of them.
 std::string crane_urdf() {

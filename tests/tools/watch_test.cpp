@@ -142,7 +142,7 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
   test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
   ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
-  ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no pose of left"); }))
+  ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no poses of left"); }))
       << watch.output();
   ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
   // Sends poses at 0.8 m until the distance is known, and then falls silent.
@@ -200,7 +200,7 @@ TEST(Robot, MeasuresHowSoonTheAnswerIsBack) {
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--latency", "--seconds", "0.5"}, dds));
   EXPECT_EQ(robot.wait(), 0);
-  EXPECT_TRUE(robot.wrote("pose sent to report received")) << robot.output();
+  EXPECT_TRUE(robot.wrote("batch sent to report received")) << robot.output();
 }
 
 TEST(Robot, SaysThatACellHasNoMotion) {

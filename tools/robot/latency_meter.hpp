@@ -8,6 +8,7 @@
 #include <string>
 #include <thread>
 
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/client/client.hpp"
 #include "monitor/loop/histogram.hpp"
@@ -35,9 +36,9 @@ class LatencyMeter {
             where);
       return;
     }
-    print(stdout, "latency  {}  pose sent to report received, {} poses\n", percentiles(all_),
-          all_.count());
-    print(stdout, "         {}  of which: pose sent to tick\n", percentiles(to_tick_));
+    print(stdout, "latency  {}  batch sent to report received, {}\n", percentiles(all_),
+          counted(all_.count(), "batch", "batches"));
+    print(stdout, "         {}  of which: batch sent to tick\n", percentiles(to_tick_));
     print(stdout, "         {}  of which: tick to report received\n", percentiles(from_tick_));
   }
 

@@ -7,6 +7,7 @@
 #include <set>
 
 #include "monitor/visual/body_mesh.hpp"
+#include "monitor/zone_cause.hpp"
 
 namespace clearance::view {
 namespace {
@@ -84,12 +85,12 @@ class Meshes {
 
 json objects_json(const Scene& scene) {
   json list = json::array();
-  for (const Object& object : scene.objects) {
-    json entry = {{"name", object.name},
-                  {"groups", object.groups},
-                  {"fixed", object.fixed},
-                  {"margin", object.margin},
-                  {"parts", json::array()}};
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    json entry = {
+        {"name", object.name},     {"groups", object.groups},
+        {"fixed", object.fixed},   {"by_joints", placed_by(scene, i) == PlacedBy::kJointStates},
+        {"margin", object.margin}, {"parts", json::array()}};
     for (const Part& part : object.parts) entry["parts"].push_back(part.name);
     if (object.fixed) entry["pose"] = pose_json(object.world_from_object);
     list.push_back(std::move(entry));
@@ -166,6 +167,7 @@ std::string scene_json(const Cell& cell) {
   json all = {{"name", scene.name},
               {"revision", std::to_string(scene.revision)},
               {"rate_hz", scene.rate_hz},
+              {"has_robots", !scene.robots.empty()},
               {"topics",
                {{"distances", cell.topics.distances},
                 {"zones", cell.topics.zones},

@@ -3,17 +3,19 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <chrono>
+#include <cstdio>
 #include <set>
 #include <stdexcept>
 
+#include "monitor/app/print.hpp"
 #include "tools/view/protocol.hpp"
+#include "tools/view/server_state.hpp"
+#include "tools/view/viewer.hpp"
 
 namespace clearance::view {
 namespace {
@@ -27,208 +29,9 @@ using Error = beast::error_code;
 using HttpRequest = http::request<http::empty_body>;
 
 constexpr auto kPatience = std::chrono::seconds(30);
+constexpr auto kPause = std::chrono::milliseconds(200);  // after a connection was not accepted
 constexpr std::size_t kMostRequestBytes = 1 << 16;
-// The kernel may hold about two frames of a large cell for a viewer, so that a slow viewer does not
-// see old ones.
-constexpr int kSendBuffer = 1 << 18;
-
-}  // namespace
-
-class Viewer;
-
-struct ServerState {
-  explicit ServerState(Content the_content) : content(std::move(the_content)) {}
-
-  Content content;
-  std::string address, session;
-  std::set<Viewer*> viewers;
-  std::map<std::pair<ChannelId, std::uint32_t>, Message> latest;
-  std::map<std::string, std::string> statuses;  // by id: the JSON that is sent
-  // Last, since its operations use all of the above and end with it.
-  asio::io_context context{1};
-  tcp::acceptor acceptor{context};
-
-  void accept();
-};
-
-// One WebSocket. It lives while an operation of it is under way.
-class Viewer : public std::enable_shared_from_this<Viewer> {
- public:
-  Viewer(tcp::socket socket, ServerState& server) : socket_(std::move(socket)), server_(server) {}
-  ~Viewer() { server_.viewers.erase(this); }
-  Viewer(const Viewer&) = delete;
-  Viewer& operator=(const Viewer&) = delete;
-
-  void accept(const HttpRequest& request);
-  void send(const Message& message) {
-    if (!subscribed(message.channel)) return;
-    outbox_.add(message);
-    write_next();
-  }
-  void send_time(std::int64_t ns) {
-    outbox_.set_time(ns);
-    write_next();
-  }
-  void send_text(std::string text) {
-    if (outbox_.add_text(std::move(text))) return write_next();
-    Error ignored;
-    beast::get_lowest_layer(socket_).socket().close(ignored);
-  }
-  [[nodiscard]] bool wants_parameters() const noexcept { return wants_parameters_; }
-  [[nodiscard]] bool subscribed(ChannelId channel) const {
-    return std::ranges::any_of(subscriptions_,
-                               [=](const auto& entry) { return entry.second == channel; });
-  }
-
- private:
-  void greet();
-  void read();
-  void answer(const Request& request);
-  void subscribe(const Request& request);
-  void set_parameters(const Request& request);
-  void write_next();
-  void write(bool is_text, std::size_t begin);
-
-  websocket::stream<beast::tcp_stream> socket_;
-  ServerState& server_;
-  beast::flat_buffer received_;
-  Outbox outbox_;
-  std::map<std::uint32_t, ChannelId> subscriptions_;  // by the client's id
-  bool open_ = false, writing_ = false, wants_parameters_ = false;
-  // The message being written; it must stay until the end of the write.
-  std::string text_;
-  std::array<std::byte, kMessageHeader> header_{};
-  std::array<std::byte, kTimeMessage> time_{};
-  Bytes payload_;
-};
-
-void Viewer::accept(const HttpRequest& request) {
-  socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-  socket_.read_message_max(kMostRequestBytes);
-  const std::string asked(request[http::field::sec_websocket_protocol]);
-  for (const std::string_view known : kSubprotocols) {
-    if (asked.find(known) == std::string::npos) continue;
-    socket_.set_option(websocket::stream_base::decorator([known](websocket::response_type& reply) {
-      reply.set(http::field::sec_websocket_protocol, std::string(known));
-    }));
-    break;
-  }
-  socket_.async_accept(request, [self = shared_from_this()](Error error) {
-    if (!error) self->greet();
-  });
-}
-
-void Viewer::greet() {
-  open_ = true;
-  Error ignored;
-  auto& stream = beast::get_lowest_layer(socket_).socket();
-  stream.set_option(tcp::no_delay(true), ignored);
-  stream.set_option(asio::socket_base::send_buffer_size(kSendBuffer), ignored);
-  server_.viewers.insert(this);
-  send_text(server_info(server_.content.name, server_.session));
-  send_text(advertise(server_.content.channels));
-  for (const auto& [id, text] : server_.statuses) send_text(text);
-  read();
-}
-
-void Viewer::read() {
-  socket_.async_read(received_, [self = shared_from_this()](Error error, std::size_t) {
-    if (error) {
-      self->open_ = false;
-      self->server_.viewers.erase(self.get());
-      return;
-    }
-    const auto bytes = self->received_.data();
-    self->answer(parse_request({static_cast<const char*>(bytes.data()), self->received_.size()}));
-    self->received_.clear();
-    self->read();
-  });
-}
-
-void Viewer::answer(const Request& request) {
-  switch (request.kind) {
-    case Request::Kind::kIgnored:
-      return;
-    case Request::Kind::kSubscribe:
-      return subscribe(request);
-    case Request::Kind::kUnsubscribe:
-      for (const std::uint32_t id : request.ids) subscriptions_.erase(id);
-      return;
-    case Request::Kind::kGetParameters:
-      return send_text(parameter_values(server_.content.parameters(), request.id));
-    case Request::Kind::kSetParameters:
-      return set_parameters(request);
-    case Request::Kind::kSubscribeParameters:
-      wants_parameters_ = true;
-      return;
-  }
-}
-
-// The latest message of each key follows at once, since some topics are written only once.
-void Viewer::subscribe(const Request& request) {
-  constexpr std::size_t kMostSubscriptions = 256;
-  for (const auto& [id, channel] : request.subscriptions) {
-    if (channel >= server_.content.channels.size()) continue;
-    if (subscriptions_.size() >= kMostSubscriptions) return;
-    subscriptions_[id] = channel;
-    for (const auto& [place, message] : server_.latest) {
-      if (place.first == channel) outbox_.add(message);
-    }
-  }
-  write_next();
-}
-
-void Viewer::set_parameters(const Request& request) {
-  for (const auto& parameter : request.parameters) {
-    if (!parameter.is_object() || !parameter.contains("name") || !parameter["name"].is_string())
-      continue;
-    server_.content.set_parameter(parameter["name"], parameter.value("value", nlohmann::json{}));
-  }
-  if (!request.id.empty()) {
-    send_text(parameter_values(server_.content.parameters(), request.id));
-  }
-}
-
-// One message is under way at a time; later ones wait in the outbox or replace others there.
-void Viewer::write_next() {
-  if (writing_ || !open_) return;
-  if (auto text = outbox_.take_text()) {
-    text_ = std::move(*text);
-    return write(true, 0);
-  }
-  if (const auto time_ns = outbox_.take_time()) {
-    time_ = time_message(*time_ns);
-    return write(false, 0);
-  }
-  while (const auto message = outbox_.take_message()) {
-    const auto subscription = std::ranges::find_if(
-        subscriptions_, [&](const auto& entry) { return entry.second == message->channel; });
-    if (subscription == subscriptions_.end()) continue;
-    header_ = message_header(subscription->first, message->time_ns);
-    payload_ = message->payload;
-    return write(false, 1);
-  }
-}
-
-// `begin` 0: a text or the time; 1: a message.
-void Viewer::write(bool is_text, std::size_t begin) {
-  writing_ = true;
-  socket_.text(is_text);
-  std::array<asio::const_buffer, 2> buffers;
-  if (is_text) {
-    buffers[0] = asio::buffer(text_);
-  } else if (begin == 0) {
-    buffers[0] = asio::buffer(time_.data(), time_.size());
-  } else {
-    buffers = {asio::buffer(header_.data(), header_.size()),
-               asio::buffer(payload_->data(), payload_->size())};
-  }
-  socket_.async_write(buffers, [self = shared_from_this()](Error error, std::size_t) {
-    self->writing_ = false;
-    self->payload_.reset();
-    if (!error) self->write_next();
-  });
-}
+constexpr std::size_t kMostTold = 32;  // different messages on stderr
 
 // One HTTP connection, until it becomes a viewer.
 class Visitor : public std::enable_shared_from_this<Visitor> {
@@ -248,15 +51,31 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
  private:
   void answer() {
     const HttpRequest request = parser_->release();
+    if (const std::string refusal = refusal_of(request); !refusal.empty()) {
+      server_.tell_once(refusal);
+      return respond(request, http::status::forbidden, "text/plain; charset=utf-8",
+                     fmt::format("clearance-view: {}\n", refusal));
+    }
     if (websocket::is_upgrade(request)) {
       stream_.expires_never();
       std::make_shared<Viewer>(stream_.release_socket(), server_)->accept(request);
       return;
     }
-    respond(request);
+    serve(request);
   }
 
-  void respond(const HttpRequest& request) {
+  std::string refusal_of(const HttpRequest& request) {
+    Error error;
+    Asked asked{.hosts = {}, .origins = {}, .reached = stream_.socket().local_endpoint(error)};
+    if (error) return error.message();
+    for (const auto& field : request) {
+      if (field.name() == http::field::host) asked.hosts.emplace_back(field.value());
+      if (field.name() == http::field::origin) asked.origins.emplace_back(field.value());
+    }
+    return server_.hosts.refusal_of(asked);
+  }
+
+  void serve(const HttpRequest& request) {
     const std::string target(request.target());
     Resource found;
     if (request.method() == http::verb::get) {
@@ -264,10 +83,20 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
       found = server_.content.get(target.substr(0, end),
                                   target.substr(std::min(end + 1, target.size())));
     }
-    response_ = {found.body ? http::status::ok : http::status::not_found, request.version()};
-    response_.set(http::field::content_type, found.body ? found.type : "text/plain");
+    if (found.body) return respond(request, http::status::ok, found.type, *found.body);
+    respond(request, http::status::not_found, "text/plain", "There is no such page here.\n");
+  }
+
+  // Other servers' pages may neither embed what is sent nor show it in a frame.
+  void respond(const HttpRequest& request, http::status status, const std::string& type,
+               std::string body) {
+    response_ = {status, request.version()};
+    response_.set(http::field::content_type, type);
     response_.set(http::field::cache_control, "no-cache");
-    response_.body() = found.body ? *found.body : "There is no such page here.\n";
+    response_.set("Cross-Origin-Resource-Policy", "same-origin");
+    response_.set("Content-Security-Policy", "frame-ancestors 'self'");
+    response_.set("X-Content-Type-Options", "nosniff");
+    response_.body() = std::move(body);
     response_.keep_alive(request.keep_alive());
     response_.prepare_payload();
     http::async_write(stream_, response_, [self = shared_from_this()](Error error, std::size_t) {
@@ -285,8 +114,11 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   http::response<http::string_body> response_;
 };
 
-Server::Server(const std::string& host, std::uint16_t port, Content content)
-    : state_(std::make_unique<ServerState>(std::move(content))) {
+}  // namespace
+
+Server::Server(const std::string& host, std::uint16_t port, const std::vector<std::string>& allowed,
+               Content content)
+    : state_(std::make_unique<ServerState>(std::move(content), AllowedHosts(host, allowed))) {
   try {
     tcp::resolver resolver(state_->context);
     const tcp::endpoint endpoint = *resolver.resolve(host, std::to_string(port)).begin();
@@ -299,7 +131,8 @@ Server::Server(const std::string& host, std::uint16_t port, Content content)
         fmt::format("cannot listen on {} port {}: {}", host, port, error.code().message()));
   }
   const tcp::endpoint local = state_->acceptor.local_endpoint();
-  const std::string shown = local.address().is_v6() ? fmt::format("[{}]", host) : host;
+  const bool is_v6_address = host.find(':') != std::string::npos;
+  const std::string shown = is_v6_address ? fmt::format("[{}]", host) : host;
   state_->address = fmt::format("http://{}:{}/", shown, local.port());
   state_->session = std::to_string(std::chrono::system_clock::now().time_since_epoch().count());
   state_->accept();
@@ -307,14 +140,26 @@ Server::Server(const std::string& host, std::uint16_t port, Content content)
 
 Server::~Server() = default;
 
+// A connection that cannot be accepted waits, and the acceptor would fail again at once: it pauses.
 void ServerState::accept() {
   acceptor.async_accept([this](Error error, tcp::socket socket) {
     if (!acceptor.is_open()) return;
     if (!error) {
       std::make_shared<Visitor>(std::move(socket), *this)->read();
+    } else if (error != asio::error::connection_aborted) {
+      tell_once(fmt::format("cannot accept a connection: {}; it waits until others have ended",
+                            error.message()));
+      pause.expires_after(kPause);
+      return pause.async_wait([this](Error) { accept(); });
     }
     accept();
   });
+}
+
+void ServerState::tell_once(const std::string& line) {
+  if (told.size() < kMostTold && told.insert(line).second) {
+    print(stderr, "clearance-view: {}\n", line);
+  }
 }
 
 const std::string& Server::address() const noexcept { return state_->address; }

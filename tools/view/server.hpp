@@ -34,9 +34,10 @@ struct ServerState;
 
 class Server {
  public:
-  // Listens at once; port 0 takes a free one. Throws std::runtime_error with the address and the
-  // system's reason.
-  Server(const std::string& host, std::uint16_t port, Content content);
+  // Listens at once; port 0 takes a free one. `allowed`: hosts and origins beside its own
+  // (allowed_hosts.hpp). Throws std::runtime_error with the address and the system's reason.
+  Server(const std::string& host, std::uint16_t port, const std::vector<std::string>& allowed,
+         Content content);
   ~Server();
   Server(const Server&) = delete;
   Server& operator=(const Server&) = delete;

@@ -112,7 +112,7 @@ Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
     found.error = reader.error();
   } else if (found.reports.empty()) {
     found.error = fmt::format(
-        "{} holds no reports; --offline computes them from the recorded poses", file.string());
+        "{} holds no reports; --offline computes them from the recorded inputs", file.string());
   }
   return found;
 }

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <ctime>
+#include <span>
 
+#include "monitor/app/log_line.hpp"
 #include "monitor/zone_cause.hpp"
 #include "tools/watch/number_text.hpp"
 #include "tools/watch/separation_lines.hpp"
@@ -88,11 +90,30 @@ std::string trouble(const Feed& feed, std::int64_t now_ns) {
   return why.empty() ? not_fresh(feed, now_ns) : why;
 }
 
+// As far as the daemon has told: it knows of joints once it has heard some.
+PlacedBy placed_by(const Feed& feed, std::uint32_t object) {
+  if (const clearance_msg_Health* const health = feed.health()) {
+    const std::span inputs(health->inputs._buffer, health->inputs._length);
+    const auto found = std::ranges::find(inputs, object, &clearance_msg_InputAge::object);
+    if (found != inputs.end() && found->follows_joints) return PlacedBy::kJointStates;
+  }
+  const auto* const catalogue = feed.catalogue();
+  return catalogue != nullptr && catalogue->joints._length > 0 ? PlacedBy::kEither
+                                                               : PlacedBy::kPoses;
+}
+
+// A word for all that places the objects of the cell.
+std::string inputs_of(const Feed& feed) {
+  const auto* const catalogue = feed.catalogue();
+  return catalogue != nullptr && catalogue->joints._length > 0 ? "inputs" : "poses";
+}
+
 // "", or ": poses of hand are late".
 std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
   const auto cause = static_cast<ZoneCause>(zone.cause);
   if (cause == ZoneCause::kNear) return "";
-  const std::string text = cause_text(cause, feed.object_name(zone.cause_object));
+  const std::string text =
+      cause_text(cause, feed.object_name(zone.cause_object), placed_by(feed, zone.cause_object));
   return text.empty() ? text : ": " + text;
 }
 
@@ -122,13 +143,14 @@ void add_minimum(std::vector<Line>& lines, const Feed& feed, std::int64_t now_ns
   Line& line = lines.emplace_back(width);
   line.add("minimum   ", Style::kDim);
   if (!report.minimum_known) {
-    line.add("none yet: no pose of any pair's objects has come", Style::kWarning);
+    line.add(fmt::format("none yet: no {} of any pair's objects have come", inputs_of(feed)),
+             Style::kWarning);
     return;
   }
   const clearance_msg_PairDistance& pair = report.minimum;
   if (is_stale(pair)) {
-    line.add(fmt::format("not known, poses are late; the least upper bound is {:.4f} m, of {}",
-                         pair.upper, feed.pair_name(pair)),
+    line.add(fmt::format("not known, {} are late; the least upper bound is {:.4f} m, of {}",
+                         inputs_of(feed), pair.upper, feed.pair_name(pair)),
              Style::kWarning);
     return;
   }
@@ -188,8 +210,9 @@ void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& c
   const bool trouble = health->overruns + health->skipped_cycles + health->dropped_reports > 0;
   lines.emplace_back(width)
       .add("          ")
-      .add(fmt::format("{} overruns  {} skipped cycles  {} reports dropped", health->overruns,
-                       health->skipped_cycles, health->dropped_reports),
+      .add(fmt::format("{}  {}  {} dropped", counted(health->overruns, "overrun"),
+                       counted(health->skipped_cycles, "skipped cycle"),
+                       counted(health->dropped_reports, "report")),
            trouble ? Style::kWarning : Style::kPlain);
   lines.emplace_back(width)
       .add("wake-up   ", Style::kDim)
@@ -205,9 +228,9 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   Line& ages = lines.emplace_back(width);
   ages.add("inputs    ", Style::kDim);
   if (report.newest_pose_ns == 0) {
-    ages.add("no pose has come", Style::kWarning);
+    ages.add(fmt::format("no {} have come", inputs_of(feed)), Style::kWarning);
   } else {
-    ages.add(fmt::format("poses in use {:.2f} to {:.2f} ms old",
+    ages.add(fmt::format("{} in use {:.2f} to {:.2f} ms old", inputs_of(feed),
                          kMsPerNs * static_cast<double>(report.now_ns - report.newest_pose_ns),
                          kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns)));
   }
@@ -215,8 +238,8 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   if (health == nullptr) return;
   for (std::uint32_t i = 0; i < health->sources._length; ++i) {
     const clearance_msg_SourceHealth& source = health->sources._buffer[i];
-    ages.add(fmt::format("  {}: {} batches, {} lost", source.source, source.batches,
-                         source.lost_batches),
+    ages.add(fmt::format("  {}: {}, {} lost", source.source,
+                         counted(source.batches, "batch", "batches"), source.lost_batches),
              source.lost_batches != 0 ? Style::kWarning : Style::kPlain);
   }
   Line late(width);
@@ -311,8 +334,8 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
     text += fmt::format("  ({})", why);
   }
   if (report.minimum_known && is_stale(report.minimum)) {
-    text += fmt::format("  no minimum known, poses are late: least upper bound {:.4f} m, {}",
-                        report.minimum.upper, feed.pair_name(report.minimum));
+    text += fmt::format("  no minimum known, {} are late: least upper bound {:.4f} m, {}",
+                        inputs_of(feed), report.minimum.upper, feed.pair_name(report.minimum));
   } else if (report.minimum_known) {
     const clearance_msg_PairDistance& pair = report.minimum;
     text += fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  {}", pair.distance, pair.lower,
@@ -330,7 +353,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
                         health->overruns);
   }
   if (report.newest_pose_ns != 0) {
-    text += fmt::format("  poses {:.2f} ms old",
+    text += fmt::format("  {} {:.2f} ms old", inputs_of(feed),
                         kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns));
   }
   return text;
@@ -338,8 +361,9 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
 
 std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns) {
   if (!feed.any()) return fmt::format("no report came in {:.1f} s\n", seconds);
-  std::string text = fmt::format("{} reports in {:.1f} s, {} missed, {} restarts of the daemon\n",
-                                 feed.reports(), seconds, feed.missed(), feed.restarts());
+  std::string text = fmt::format("{} in {:.1f} s, {} missed, {} of the daemon\n",
+                                 counted(feed.reports(), "report"), seconds, feed.missed(),
+                                 counted(feed.restarts(), "restart"));
   if (const OldReports& old = feed.old_reports(); old.count != 0) {
     text += fmt::format("{} of them were old when they were read, up to {:.1f} s\n", old.count,
                         seconds_of(old.oldest_ns));
@@ -355,10 +379,10 @@ std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns)
   if (const auto* health = feed.health()) {
     text += fmt::format(
         "tick     p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us\n"
-        "daemon   {} overruns, {} skipped cycles, {} batches, {} lost, as last told (each "
-        "second)\n",
-        health->tick_p50_us, health->tick_p999_us, health->tick_max_us, health->overruns,
-        health->skipped_cycles, health->batches, health->lost_batches);
+        "daemon   {}, {}, {}, {} lost, as last told (each second)\n",
+        health->tick_p50_us, health->tick_p999_us, health->tick_max_us,
+        counted(health->overruns, "overrun"), counted(health->skipped_cycles, "skipped cycle"),
+        counted(health->batches, "batch", "batches"), health->lost_batches);
   }
   return text;
 }

@@ -201,7 +201,7 @@ TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
   EXPECT_TRUE(watched(cell, "arm", "hand"));
   EXPECT_TRUE(watched(cell, "arm", "foot"));
   EXPECT_THAT(cell.robots.front().notes,
-              testing::Contains(HasSubstr("1 disabled pairs left out: 1 of two fixed links")));
+              testing::Contains(HasSubstr("1 disabled pair left out: 1 of two fixed links")));
 }
 
 TEST_F(Robots, WithoutAnSrdfNeighboursMayTouchAndAreNamed) {

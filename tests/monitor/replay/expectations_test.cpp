@@ -84,7 +84,7 @@ TEST_F(ReplayExpectations, ExpectationsFailWhenAnObjectIsNeverSeen) {
   record_run(cell, run);
   const OfflineReplay result = replay({.expect_min_distance = 0.01});
   ASSERT_EQ(1u, result.failures.size());
-  EXPECT_THAT(result.failures[0].what, HasSubstr("never gives a usable pose of 'ghost'"));
+  EXPECT_THAT(result.failures[0].what, HasSubstr("never tells where 'ghost' is"));
 }
 
 }  // namespace

@@ -1,20 +1,10 @@
 // Opens clearance-view's page in Debian's Chromium and says what it shows, a line of JSON a step:
 //   node page.mjs URL FOLDER live|recording|separation
 // Pictures go into FOLDER.
-import { chromium } from "playwright-core";
+import { openBrowser, say } from "./browser.mjs";
 
 const [url, folder, what] = process.argv.slice(2);
-const browser = await chromium.launch({
-  executablePath: "/usr/bin/chromium",
-  args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"],
-});
-const page = await browser.newPage({ viewport: { width: 1440, height: 900 }, colorScheme: "light" });
-page.setDefaultTimeout(100_000);
-const errors = [];
-page.on("pageerror", ({ message }) => errors.push(message));
-page.on("console", (message) => message.type() === "error" && errors.push(message.text()));
-
-const say = (values) => console.log(JSON.stringify(values));
+const { browser, page, errors } = await openBrowser();
 const picture = (name) => page.screenshot({ path: `${folder}/${name}.png` });
 const minimum = () => page.$eval("#minimum", ({ dataset }) => ({
   cycle: Number(dataset.cycle), distance: dataset.distance === "" ? null : Number(dataset.distance),

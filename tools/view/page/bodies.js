@@ -1,12 +1,12 @@
 // The bodies of the cell in a few draw calls. Moving parts are one group. Parts that stand still
-// (`still`) and their transparent fragments (`veil`) are groups of their own.
+// (`still`), and those of them that have faded (`veil`), are groups of their own.
 import * as THREE from "three";
 import { css } from "./format.js";
 import { gridOn } from "./grid.js";
 import { edgesOf, everywhere, Placements, trianglesOf } from "./placements.js";
-import { CUT, edgeMaterial, solidMaterial } from "./solid_material.js";
+import { hidingObjects } from "./hiding.js";
+import { DRAWS, edgeMaterial, solidMaterial } from "./solid_material.js";
 
-const MOST_FOCUS = 0.8; // share of the cell's radius
 // Hues of moving groups, distinct from the hues of levels and of unknown poses: red, amber, green, violet.
 const MOVING = ["#4f8fe8", "#a88b6a", "#3fa7c4", "#c77fc9", "#7f8f4f", "#6c86a3"];
 
@@ -31,7 +31,10 @@ export class Bodies extends THREE.Group {
     this.parts = kinds.flat();
     this.moving = kinds[0].length;
     this.placements = kinds.map((parts) => new Placements(parts.length));
-    this.lights = { focus: { value: new THREE.Vector4(0, 0, 0, 0) }, sun: { value: new THREE.Vector3(0, 0, 1) } };
+    this.lights = { sun: { value: new THREE.Vector3(0, 0, 1) } };
+    this.faded = new Set(); // objects
+    this.hidden = new Set(); // objects that something else shows
+    this.veil.visible = false;
     this.edgeColour = { value: new THREE.Color() };
     this.local = this.parts.map(({ pose }) => matrixOf(pose));
     this.ofObject = scene.objects.map(() => []);
@@ -50,11 +53,11 @@ export class Bodies extends THREE.Group {
     kinds.forEach((parts, kind) => {
       if (!parts.length) return;
       const placements = this.placements[kind], triangles = trianglesOf(parts, meshes);
-      const solid = (cut) => everywhere(new THREE.Mesh(triangles, solidMaterial(placements, this.lights, cut)));
+      const solid = (draws) => everywhere(new THREE.Mesh(triangles, solidMaterial(placements, this.lights, draws)));
       const segments = edgesOf(parts, meshes);
-      const edges = (cut) => everywhere(new THREE.LineSegments(segments, edgeMaterial(placements, this.lights, cut, this.edgeColour)));
-      const groups = kind === 0 ? [[this, CUT.nothing]] : [[this.still, CUT.away], [this.veil, CUT.ghost]];
-      for (const [group, cut] of groups) group.add(solid(cut), edges(cut));
+      const edges = (draws) => everywhere(new THREE.LineSegments(segments, edgeMaterial(placements, draws, this.edgeColour)));
+      const groups = kind === 0 ? [[this, DRAWS.all]] : [[this.still, DRAWS.solid], [this.veil, DRAWS.faded]];
+      for (const [group, draws] of groups) group.add(solid(draws), edges(draws));
     });
     this.shapes = meshes.map(({ positions, triangles }) => {
       const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(positions, 3)).setIndex(triangles);
@@ -115,7 +118,7 @@ export class Bodies extends THREE.Group {
       if (parts.length) colour.set(this.colourOf(object, known));
       for (const part of parts) {
         const [placements, i] = this.placedBy(part);
-        placements.colour(i, colour, this.thickness[part]);
+        placements.colour(i, colour, this.thickness[part], this.hidden.has(object) ? "hidden" : this.faded.has(object) ? "faded" : "solid");
       }
     });
     this.edgeColour.value.set(css("--edge"));
@@ -140,17 +143,30 @@ export class Bodies extends THREE.Group {
     });
     return all;
   }
-  // The view is cut open towards moving parts, unless they fill most of the cell.
-  refocus() {
-    const moving = this.bounds(({ fixed }) => !fixed);
-    if (moving.isEmpty()) return;
-    const { center, radius } = moving.getBoundingSphere(new THREE.Sphere());
-    const isMost = radius > MOST_FOCUS * this.bounds().getBoundingSphere(new THREE.Sphere()).radius;
-    const focus = new THREE.Vector4(...center, isMost ? 0 : radius);
-    if (focus.equals(this.lights.focus.value)) return;
-    this.lights.focus.value.copy(focus);
-    this.veil.visible = !isMost;
-    ++this.stillChanges;
+  // The boxes of moving objects in the world.
+  movingBoxes() {
+    const boxes = new Map();
+    for (let part = 0; part < this.moving; ++part) {
+      const { object, unbounded, mesh } = this.parts[part];
+      if (unbounded || !this.poses[object]) continue;
+      if (!boxes.has(object)) boxes.set(object, new THREE.Box3());
+      boxes.get(object).union(box.copy(this.shapes[mesh].boundingBox).applyMatrix4(this.placed(part)));
+    }
+    return boxes;
+  }
+  // Leaves out these objects, or none.
+  hide(objects) {
+    this.hidden = new Set(objects);
+    this.recolour();
+  }
+  // Bodies between the eye and moving ones fade.
+  fade(eye) {
+    const still = this.parts.slice(this.moving).map(({ object, mesh }, i) => ({ object, shape: this.shapes[mesh], matrix: this.placements[1].matrices[i] }));
+    const hiding = hidingObjects(eye, [...this.movingBoxes().values()], still.filter(({ object }) => this.poses[object]), this.faded);
+    if (hiding.size === this.faded.size && [...hiding].every((object) => this.faded.has(object))) return;
+    this.faded = hiding;
+    this.veil.visible = hiding.size > 0;
+    this.recolour();
   }
 
   // The light comes from behind the viewer.
@@ -158,20 +174,15 @@ export class Bodies extends THREE.Group {
     this.lights.sun.value.copy(camera.position).sub(target).normalize().add(ABOVE).normalize();
   }
 
-  // An estimate: nearer fragments are transparent.
-  isCutAway(distance, eye) {
-    const { x, y, z, w } = this.lights.focus.value;
-    return w > 0 && distance < eye.distanceTo(new THREE.Vector3(x, y, z)) - 0.55 * w;
-  }
   objectAt(raycaster) {
     const probe = new THREE.Mesh(), hits = [];
     this.parts.forEach(({ mesh, object }, part) => {
-      if (!this.poses[object]) return;
+      if (!this.poses[object] || this.faded.has(object)) return;
       probe.geometry = this.shapes[mesh];
       probe.matrixWorld = this.placed(part);
       const found = [];
       probe.raycast(raycaster, found);
-      for (const { distance } of found) if (part < this.moving || !this.isCutAway(distance, raycaster.ray.origin)) hits.push({ distance, object });
+      for (const { distance } of found) hits.push({ distance, object });
     });
     return hits.sort((one, other) => one.distance - other.distance)[0]?.object;
   }

@@ -1,8 +1,12 @@
 // The known state of the cell: the latest report, zones, health, and the alarms.
-import { isKnown } from "./format.js";
+import { counted, isKnown } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
-const CAUSE = ["", "near", "late poses of", "no pose of", "a discontinuity of", "contradicting poses of"];
+// ZoneCause of monitor/report.hpp, with the kind and the object of the inputs.
+const ENTERED_BY = [
+  () => "", () => "distance", (inputs) => `late ${inputs}`, (inputs) => `no ${inputs}`,
+  (inputs) => `a discontinuity of ${inputs}`, (inputs) => `contradicting ${inputs}`,
+];
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
 const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
@@ -73,9 +77,19 @@ export class CellState {
   zoneStates() {
     return this.scene.zones.map((zone, id) => {
       const state = this.zones.get(id);
-      const cause = state?.active && state.cause > 1 ? `${CAUSE[state.cause]} ${this.scene.objects[state.cause_object]?.name}` : "";
-      return { id, zone, active: state?.active, known: state !== undefined, cause };
+      const enteredBy = state?.active ? (ENTERED_BY[state.cause]?.(this.inputsOf(state.cause_object)) ?? "") : "";
+      return { id, zone, active: state?.active, known: state !== undefined, enteredBy, pair: this.pairs[state?.pair]?.name, cycle: state?.since_cycle };
     });
+  }
+  // "poses of hand", or "joint states for hand" where joints place it.
+  inputsOf(object) {
+    const { name, by_joints } = this.scene.objects[object] ?? {};
+    return by_joints ? `joint states for ${name}` : `poses of ${name}`;
+  }
+  // A word for what places the objects of the cell.
+  get inputs() {
+    const moving = this.scene.objects.filter(({ fixed }) => !fixed), byJoints = moving.filter(({ by_joints }) => by_joints);
+    return byJoints.length === 0 ? "poses" : byJoints.length === moving.length ? "joint states" : "poses or joint states";
   }
 
   // The alarms: [{level: "lost" | "alarm" | "near", text}], the worst first. `frozen`: the view is not the present
@@ -100,10 +114,10 @@ export class CellState {
     if (report && report.stale + report.unknown > 0) {
       const names = [...(this.lateObjects ?? [])].slice(0, 4).map(([object, { age }]) =>
         `${this.scene.objects[object].name} ${age < 0 ? "never seen" : `${(age * 1e-6).toFixed(0)} ms old`}`);
-      found.push({ level: "lost", text: `${report.stale} pairs stale, ${report.unknown} unknown${names.length ? `: ${names.join(", ")}` : ""}` });
+      found.push({ level: "lost", text: `${counted(report.stale, "pair")} stale, ${report.unknown} unknown${names.length ? `: ${names.join(", ")}` : ""}` });
     }
     if (this.overrun && Math.abs(this.timeNs - this.overrun.ns) * 1e-9 < TOLD_FOR_S) {
-      found.push({ level: "near", text: `${this.overrun.count} ${this.overrun.count === 1 ? "overrun" : "overruns"} in the last second, longest tick ${(this.overrun.us / 1000).toFixed(2)} ms` });
+      found.push({ level: "near", text: `${counted(this.overrun.count, "overrun")} in the last second, longest tick ${(this.overrun.us / 1000).toFixed(2)} ms` });
     }
     return found;
   }

@@ -21,6 +21,9 @@ export const micro = (us) => (us < 1000 ? `${us.toFixed(us < 100 ? 1 : 0)} µs` 
 
 export const seconds = (s, digits = 3) => `${s.toFixed(digits)} s`;
 
+// "1 pair", "2 pairs".
+export const counted = (count, singular, plural = `${singular}s`) => `${count} ${Number(count) === 1 ? singular : plural}`;
+
 // Sets the text only when it has changed, which saves the browser work.
 export function put(element, text) {
   if (element.textContent !== text) element.textContent = text;

@@ -12,11 +12,13 @@ const KEYS = [
   ["ArrowUp", "previous pair of the table", (actions) => actions.row(-1)],
   ["/", "filter the pairs", (actions) => actions.filter()],
   ["Escape", "choose nothing", (actions) => actions.clear()],
+  ["v", "look at the chosen pair; also two clicks on it", (actions) => actions.lookAtChosen()],
   ["f", "show the whole cell", (actions) => actions.fit()],
   ["1", "from above", (actions) => actions.look("top")],
   ["2", "from the front", (actions) => actions.look("front")],
   ["3", "from the side", (actions) => actions.look("side")],
   ["z", "zones as shells", (actions) => actions.shells()],
+  ["b", "robots as they look, or the bodies that are compared", (actions) => actions.visuals()],
   ["t", "dark or light", (actions) => actions.theme()],
   ["l", "link to this view", (actions) => actions.share()],
   ["s", "save a picture", (actions) => actions.picture()],
@@ -29,6 +31,8 @@ export function onKeys(actions, track) {
     Object.assign(document.createElement("dd"), { textContent: text }),
   ]));
   document.addEventListener("keydown", (event) => {
+    // The list of keys closes by Escape, as every dialog, and by the key that opens it.
+    if (document.querySelector("dialog[open]") && event.key !== "?") return;
     const inField = event.target.matches("input, select");
     if (inField && event.key === "Escape") event.target.blur();
     if ((inField && event.key !== "Escape") || event.ctrlKey || event.metaKey || event.altKey) return;

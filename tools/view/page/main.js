@@ -2,6 +2,7 @@
 import { addressOf, asked } from "./address.js";
 import { CellState } from "./cell_state.js";
 import { Connection } from "./connection.js";
+import { isKnown } from "./format.js";
 import { onKeys } from "./keys.js";
 import { PairTable } from "./pair_table.js";
 import { savePicture } from "./picture.js";
@@ -31,8 +32,8 @@ applyTheme();
 
 // ---- The parts of the page
 
-const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), objectChosen: chooseObject });
-const table = new PairTable(choose, changed);
+const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), pairLookedAt: look, objectChosen: chooseObject });
+const table = new PairTable(choose, look, changed);
 const separations = new SeparationRows(choose);
 const plots = new Plots();
 const topics = scene.topics;
@@ -66,6 +67,17 @@ function choose(pair, more) {
   else chosen.add(pair);
   selected();
   table.scrollTo(pair);
+}
+// Chooses the pair and brings it into view.
+function look(pair) {
+  if (!chosen.has(pair)) choose(pair, false);
+  lookAtChosen();
+}
+// Without a chosen pair, at the least one.
+function lookAtChosen() {
+  const shown = state.report?.pairs.filter((each) => isKnown(each) && chosen.has(each.pair)) ?? [];
+  const least = state.minimum();
+  view.lookAt(shown.length || !least ? shown : [least]);
 }
 function chooseObject(object) {
   if (object === undefined) return clear();
@@ -119,6 +131,7 @@ function toast(text) {
 const actions = {
   fit: () => view.fit(),
   look: (side) => view.fit(side),
+  lookAtChosen,
   theme: () => {
     theme = document.documentElement.dataset.theme === "dark" ? "light" : "dark";
     applyTheme();
@@ -129,6 +142,13 @@ const actions = {
     view.shells.visible = !view.shells.visible;
     element("shells").setAttribute("aria-pressed", view.shells.visible);
     changed();
+  },
+  visuals: async () => {
+    if (!scene.has_robots) return;
+    const isWanted = !view.visuals.isWanted;
+    element("visuals").setAttribute("aria-pressed", isWanted);
+    await view.visuals.show(isWanted);
+    if (isWanted && !view.visuals.children.length) toast("No robot of this cell has visual shapes that can be read");
   },
   share: async () => {
     const link = address(true);
@@ -149,9 +169,11 @@ const actions = {
     const next = table.neighbour([...chosen].at(-1), by);
     if (next !== undefined && !chosen.has(next)) choose(next, false);
   },
-  help: () => element("keys").showModal(),
+  help: () => (element("keys").open ? element("keys").close() : element("keys").showModal()),
 };
-for (const id of ["fit", "shells", "theme", "share", "picture", "help"]) element(id).onclick = actions[id];
+for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help"]) element(id).onclick = actions[id];
+element("look").onclick = lookAtChosen;
+element("visuals").hidden = !scene.has_robots;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
 dark.addEventListener("change", () => {
   applyTheme();
@@ -196,7 +218,7 @@ function isDrawn() {
 
 // For tests and pictures: the state of the page.
 window.clearance = {
-  state, view, connection,
+  state, view, connection, plots,
   stands: () => ({ at: secondsIn(), report: drawnReport, time: state.timeNs, ready: view.isReady, frames, connected: state.connected }),
   shownFor: () => (firstMs === undefined ? -1 : (performance.now() - firstMs) / 1000),
   // True when the recording stands at this time, s, and has been drawn there with tables and plots.

@@ -1,8 +1,7 @@
 // The published pairs as a table: sorted, filtered, chosen by a click. It is drawn a few times a second, with no more
 // rows than a person reads.
-import { isKnown, STATUS } from "./format.js";
+import { contact, isKnown, milliseconds, mm, put, signed, STATUS } from "./format.js";
 import { COLOUR } from "./pair_lines.js";
-import { contact, milliseconds, mm, put, signed } from "./format.js";
 
 const MOST_ROWS = 250;
 const AGAIN_MS = 125;
@@ -18,13 +17,14 @@ const KEYS = {
 const ageOf = ({ age_a_ns, age_b_ns }) => (Math.min(age_a_ns, age_b_ns) < 0 ? Infinity : Math.max(age_a_ns, age_b_ns));
 
 export class PairTable {
-  // `choose(pair, more)` is called for a clicked row; `more`: with Ctrl or Shift.
-  constructor(choose, changed) {
+  // `choose(pair, more)` is called for a clicked row, `more`: with Ctrl or Shift; `look(pair)` for two clicks.
+  constructor(choose, look, changed) {
     this.body = document.querySelector("#pair-table tbody");
     this.heads = [...document.querySelectorAll("#pair-table th")];
     this.input = document.getElementById("filter");
     this.count = document.getElementById("pair-count");
     this.choose = choose;
+    this.look = look;
     this.rows = [];
     this.drawnMs = 0;
     this.sortBy("lower", false);
@@ -96,6 +96,7 @@ export class PairTable {
     const row = this.body.insertRow();
     for (let i = 0; i < 6; ++i) row.insertCell();
     row.onclick = (event) => this.choose(Number(row.dataset.pair), event.ctrlKey || event.metaKey || event.shiftKey);
+    row.ondblclick = () => this.look(Number(row.dataset.pair));
     return row;
   }
 

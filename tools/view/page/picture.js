@@ -20,6 +20,17 @@ function drawLabel(context, label, origin) {
   });
 }
 
+function drawLeader(context, leader) {
+  if (leader.style.display === "none") return;
+  const at = (name) => leader[name].baseVal.value;
+  context.strokeStyle = getComputedStyle(leader).stroke;
+  context.lineWidth = 1.5;
+  context.beginPath();
+  context.moveTo(at("x1"), at("y1"));
+  context.lineTo(at("x2"), at("y2"));
+  context.stroke();
+}
+
 function drawCaption(context, caption, width, top) {
   context.fillStyle = css("--panel");
   context.fillRect(0, top, width, CAPTION);
@@ -38,7 +49,8 @@ export function savePicture(view, labels, caption, name) {
   const context = canvas.getContext("2d");
   context.scale(sharp, sharp);
   context.drawImage(view, 0, 0, box.width, box.height);
-  for (const label of labels.children) if (!label.hidden) drawLabel(context, label, box);
+  for (const leader of labels.querySelectorAll("line")) drawLeader(context, leader);
+  for (const label of labels.querySelectorAll(".label")) if (!label.hidden) drawLabel(context, label, box);
   drawCaption(context, caption, box.width, box.height);
   const link = document.createElement("a");
   link.download = name;

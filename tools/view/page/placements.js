@@ -2,15 +2,19 @@
 // one texture update.
 import * as THREE from "three";
 
-const TEXELS = 5; // four columns of the matrix, the colour with the part's thickness
+const TEXELS = 5; // four columns of the matrix, the colour with the part's thickness: negative where it has faded
+const HIDDEN = 1e9; // the thickness of parts that are not drawn, m
 const A_ROW = 128; // parts per row
+const LEAST = 1e-9; // m
 
 // For vertex shaders: `owner` is the part's number.
 export const PLACED = `uniform highp sampler2D placements; attribute float owner;
   vec4 texel(int i) { int part = int(owner); return texelFetch(placements, ivec2(${TEXELS} * (part % ${A_ROW}) + i, part / ${A_ROW}), 0); }
   mat4 placed() { return mat4(texel(0), texel(1), texel(2), texel(3)); }
   vec3 ownColour() { return texel(4).rgb; }
-  float ownSize() { return texel(4).a; }`;
+  float ownSize() { return abs(texel(4).a); }
+  bool isFaded() { return texel(4).a < 0.0; }
+  bool isHidden() { return texel(4).a >= ${HIDDEN.toExponential()}; }`;
 
 export class Placements {
   constructor(count) {
@@ -26,9 +30,10 @@ export class Placements {
     this.matrices[part].toArray(this.texture.image.data, 4 * TEXELS * part);
     this.texture.needsUpdate = true;
   }
-  // `thickness`: m.
-  colour(part, colour, thickness) {
-    this.texture.image.data[4 * (TEXELS * part + 4) + 3] = thickness;
+  // `thickness`: m. `look`: "solid", "faded" or "hidden".
+  colour(part, colour, thickness, look) {
+    const size = Math.max(LEAST, thickness);
+    this.texture.image.data[4 * (TEXELS * part + 4) + 3] = { solid: size, faded: -size, hidden: HIDDEN }[look];
     colour.toArray(this.texture.image.data, 4 * (TEXELS * part + 4));
     this.texture.needsUpdate = true;
   }

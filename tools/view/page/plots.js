@@ -1,6 +1,7 @@
 // The last 30 s as curves, drawn by uPlot: the least distance and its lower bound, the time of the tick, chosen pairs.
 import uPlot from "uplot";
-import { css, micro, mm, put, roundUp } from "./format.js";
+import { axisOf, ticksOf } from "./axis.js";
+import { css, micro, mm, put } from "./format.js";
 import { HISTORY_S, tickOf } from "./history.js";
 
 const AGAIN_MS = 66;
@@ -8,7 +9,7 @@ const MOST_THRESHOLDS = 4;
 const HUES = ["--accent", "--lost", "--good", "--near", "--alarm", "--quiet"];
 
 // A number with at most five characters.
-const axisNumber = (value) => (Math.abs(value) < 1e4 ? String(Number(value.toPrecision(3))) : `${Number((1e-3 * value).toPrecision(3))}k`);
+const axisNumber = (value) => (Math.abs(value) < 1e4 ? String(Number(value.toPrecision(3))) : `${Number((1e-3 * value).toPrecision(3))}k`).replace("-", "−");
 
 // Functions give the colours, since the theme may change.
 const curve = (hue, more) => ({ stroke: () => css(hue), width: 1.6, points: { show: false }, ...more });
@@ -16,22 +17,19 @@ const filled = (hue) => curve(hue, { fill: () => `color-mix(in srgb, ${css(hue)}
 // A horizontal line that does not stretch the axis.
 const threshold = () => curve("--alarm", { width: 1, dash: [5, 4], auto: false });
 
-// The axis goes from 0, or the least value, to a round number above the greatest.
-function valueRange(plot, least, most) {
-  return [Math.min(0, least ?? 0), most === null ? 100 : roundUp(Math.max(1e-9, most) * 1.02)];
-}
+const valueRange = (plot, least, most) => axisOf(least ?? NaN, most ?? NaN);
 
 class Plot {
   constructor(id, series) {
     this.element = document.getElementById(id);
     const grid = { stroke: () => css("--line"), width: 1 }, ticks = { show: false };
     this.plot = new uPlot({
-      ...this.size(), legend: { show: false }, cursor: { show: false }, padding: [4, 0, 4, 0],
+      ...this.size(), legend: { show: false }, cursor: { show: false }, padding: [7, 0, 6, 0],
       scales: { x: { time: false, range: [-HISTORY_S, 0] }, y: { range: valueRange } },
       axes: [
         { size: 0, grid, ticks, splits: [-20, -10], values: () => [] },
         { size: 34, gap: 5, grid, ticks, font: "10px system-ui, sans-serif", stroke: () => css("--quiet"),
-          splits: (plot, axis, least, most) => [0, most / 2, most], values: (plot, splits) => splits.map(axisNumber) },
+          splits: (plot, axis, low, high) => ticksOf(low, high), values: (plot, splits) => splits.map(axisNumber) },
       ],
       series: [{}, ...series],
     }, [[]], this.element);

@@ -1,6 +1,7 @@
 // The header, the alarm below it and the health: readable from across the cell.
-import { css, micro, mm, milliseconds, put, seconds } from "./format.js";
+import { counted, micro, milliseconds, mm, put } from "./format.js";
 import { COLOUR } from "./pair_lines.js";
+import { drawZones } from "./zone_chips.js";
 
 const element = (id) => document.getElementById(id);
 
@@ -12,26 +13,15 @@ function drawMinimum(state, frozen) {
   box.dataset.distance = minimum && !frozen ? minimum.distance : "";
   if (!minimum) {
     put(value, state.report ? "not known" : "–");
-    put(element("minimum-pair"), state.report ? "poses are late or were never seen" : "no report yet");
+    put(element("minimum-pair"), state.report ? `${state.inputs} are late or have never come` : "no report yet");
     put(element("minimum-bounds"), state.report ? `every pair at least ${mm(state.report.lower_all)} mm` : "");
     return;
   }
   if (value.lastChild?.nodeName !== "SMALL") value.innerHTML = "<span></span><small>mm</small>";
   put(value.firstChild, mm(minimum.distance));
   put(element("minimum-pair"), `${frozen ? "was " : ""}${state.pairs[minimum.pair].name}`);
+  element("minimum").title = `${element("minimum-pair").textContent}\n${element("minimum-bounds").textContent}`;
   put(element("minimum-bounds"), `[${mm(minimum.lower, 3)}, ${mm(minimum.upper, 3)}]  ${state.report.minimum_certified ? "certified" : "NOT certified"}`);
-}
-
-function drawZones(state, frozen) {
-  const chips = state.zoneStates().map(({ zone, active, known, cause }) => {
-    const kind = frozen || !known ? "" : active ? (cause ? "lost" : "alarm") : "live";
-    const text = `${zone.name} ${!known ? "?" : active ? "ACTIVE" : "clear"}${cause ? `: ${cause}` : ""}`;
-    return [kind, text, `below ${mm(zone.enter_below)} mm between ${zone.between.join(" and ")}, left above ${mm(zone.leave_above)} mm`];
-  });
-  const key = JSON.stringify(chips);
-  if (element("zones").dataset.key === key) return;
-  element("zones").dataset.key = key;
-  element("zones").replaceChildren(...chips.map(([kind, text, title]) => Object.assign(document.createElement("span"), { className: `chip ${kind}`, textContent: text, title })));
 }
 
 function drawAlarm(alarms) {
@@ -58,17 +48,17 @@ function healthRows({ report, health }) {
   const rows = [];
   if (report) {
     rows.push(["Pairs", `${report.pairs_total}: ${report.evaluated} evaluated, ${report.carried} carried, ${report.stale} stale, ${report.unknown} unknown`, report.stale + report.unknown > 0]);
-    rows.push(["Cycle", `${report.cycle}, refreshed within ${report.oldest_evaluation_cycles} ticks`]);
+    rows.push(["Cycle", `${report.cycle}, refreshed within ${counted(report.oldest_evaluation_cycles, "tick")}`]);
     if (report.newest_pose_ns) {
       const age = (ns) => milliseconds(report.now_ns + report.clock_offset_ns - ns);
-      rows.push(["Poses", `${age(report.newest_pose_ns)} to ${age(report.oldest_pose_ns)} ms old`]);
+      rows.push(["Inputs", `${age(report.newest_pose_ns)} to ${age(report.oldest_pose_ns)} ms old`]);
     }
   }
   if (!health) return rows;
   rows.push(["Tick", `p50 ${micro(health.tick_p50_us)}, p99.9 ${micro(health.tick_p999_us)}, max ${micro(health.tick_max_us)}, last second ${micro(health.tick_second_max_us)}`]);
   rows.push(["Wake-up", `p50 ${micro(health.wakeup_p50_us)}, p99.9 ${micro(health.wakeup_p999_us)}, max ${micro(health.wakeup_max_us)}`]);
-  rows.push(["Overruns", `${health.overruns}, ${health.skipped_cycles} cycles skipped, ${health.dropped_reports} reports dropped`, health.overruns + health.skipped_cycles + health.dropped_reports > 0]);
-  for (const { source, batches, lost_batches } of health.sources) rows.push(["Source", `${source}: ${batches} batches, ${lost_batches} lost`, lost_batches > 0]);
+  rows.push(["Overruns", `${health.overruns}, ${counted(health.skipped_cycles, "cycle")} skipped, ${counted(health.dropped_reports, "report")} dropped`, health.overruns + health.skipped_cycles + health.dropped_reports > 0]);
+  for (const { source, batches, lost_batches } of health.sources) rows.push(["Source", `${source}: ${counted(batches, "batch", "batches")}, ${lost_batches} lost`, lost_batches > 0]);
   for (const { name, age_ns, contradicted } of health.inputs.filter(({ stale }) => stale).slice(0, 6)) {
     rows.push(["Late", `${name}: ${age_ns < 0 ? "never seen" : `${milliseconds(age_ns)} ms`}${contradicted ? ", contradicted" : ""}`, true]);
   }

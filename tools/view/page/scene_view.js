@@ -4,6 +4,7 @@ import { OrbitControls } from "orbit";
 import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
+import { Visuals } from "./visuals.js";
 import { ZoneShells } from "./zone_shells.js";
 import { css } from "./format.js";
 
@@ -13,11 +14,17 @@ const LARGE = 500; // parts: in larger cells only the still picture has smooth o
 const ROUNDING = 1e-7; // m
 // When frames take longer than this, ms, they are drawn with fewer pixels, down to this share.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
+const FADE_AGAIN_MS = 250; // between searches for bodies that hide moving ones
+const STAYS_AGAIN_MS = 100, GROWTH = 1.15; // the first view is checked, and grows by this factor
+// A pair fills this share of the view, or less where its gap is small beside its objects or this length, m.
+const GAP_SHARE = 0.45, OBJECT_SHARE = 0.6, LEAST_LOOK = 0.03;
+const ALONG = 0.6; // cosine between view and gap, above which the gap would be seen from its end
 
 export class SceneView {
-  // Callbacks: pairChosen(pair), objectChosen(object or undefined).
+  // Callbacks: pairChosen(pair), pairLookedAt(pair), objectChosen(object or undefined).
   constructor(scene, on) {
     this.on = on;
+    this.cell = scene;
     this.element = document.getElementById("scene");
     const canvas = document.getElementById("view");
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: scene.parts.length < LARGE });
@@ -28,19 +35,29 @@ export class SceneView {
     this.controls = new OrbitControls(this.camera, canvas);
     this.controls.enableDamping = true;
     this.controls.dampingFactor = 0.15;
+    this.controls.addEventListener("start", () => (this.follows = undefined));
+    this.follows = { side: "cell", moving: true }; // what the view shows by itself, until a person moves it
+    this.reached = new THREE.Box3(); // where moving parts have been
     this.bodies = new Bodies(scene);
     this.shells = new ZoneShells(scene);
-    this.lines = new PairLines(document.getElementById("labels"), on.pairChosen);
+    this.lines = new PairLines(document.getElementById("labels"), on.pairChosen, on.pairLookedAt);
+    this.visuals = new Visuals(this.bodies);
     this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
-    this.world.add(this.backdrop, this.bodies, this.shells, this.lines);
+    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.lines);
     this.clicks(canvas);
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    this.changes = 0;
+    new ResizeObserver(() => this.resizeSoon()).observe(this.element);
     this.resize();
     this.retheme();
   }
 
+  // A canvas of another size is empty, so it gets its size right before it is drawn.
+  resizeSoon() {
+    this.isResized = true;
+    ++this.changes;
+  }
   resize() {
-    this.changes = (this.changes ?? 0) + 1;
+    this.isResized = false;
     this.size = { width: this.element.clientWidth, height: this.element.clientHeight };
     this.renderer.setPixelRatio(this.sharpness);
     this.renderer.setSize(this.size.width, this.size.height, false);
@@ -58,11 +75,50 @@ export class SceneView {
   fit(side = "cell", moving = false) {
     const sphere = this.sphere(moving) ?? this.sphere(false);
     if (!sphere) return;
-    const narrow = Math.min(1, this.camera.aspect);
-    const away = (1.12 * sphere.radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
-    this.controls.target.copy(sphere.center);
-    this.camera.position.copy(sphere.center).addScaledVector(new THREE.Vector3(...DIRECTIONS[side]).normalize(), away);
+    this.follows = { side, moving };
+    this.lookFrom(new THREE.Vector3(...DIRECTIONS[side]), sphere.center, 1.12 * sphere.radius);
     this.surround();
+  }
+  // Puts the camera where a sphere fills the view.
+  lookFrom(direction, centre, radius) {
+    const narrow = Math.min(1, this.camera.aspect);
+    const away = radius / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    this.controls.target.copy(centre);
+    this.camera.position.copy(centre).addScaledVector(direction.normalize(), away);
+  }
+  // Looks at the gaps of these pairs of a report, from the viewer's side but not along the first gap.
+  lookAt(pairs) {
+    const gaps = pairs.map(({ witness_a, witness_b }) => [witness_a, witness_b].map(({ x, y, z }) => new THREE.Vector3(x, y, z)));
+    if (!gaps.length || !gaps.flat().every(({ x }) => Number.isFinite(x))) return;
+    const { center, radius } = new THREE.Box3().setFromPoints(gaps.flat()).getBoundingSphere(new THREE.Sphere());
+    const named = new Set(pairs.flatMap(({ pair }) => this.cell.pairs[pair].slice(0, 2)));
+    const sizes = [...named].map((object) => this.bodies.bounds((each) => each === this.cell.objects[object]))
+      .filter((box) => !box.isEmpty()).map((box) => box.getBoundingSphere(new THREE.Sphere()).radius);
+    const towards = this.camera.position.clone().sub(this.controls.target).normalize();
+    const gap = gaps[0][1].clone().sub(gaps[0][0]).normalize(), along = towards.dot(gap);
+    if (Math.abs(along) > ALONG) towards.addScaledVector(gap, -along);
+    if (towards.length() < 1e-3) towards.set(gap.y, -gap.x, 0.3);
+    this.follows = undefined;
+    this.lookFrom(towards, center, Math.max(radius / GAP_SHARE, sizes.length ? OBJECT_SHARE * Math.min(...sizes) : 0, LEAST_LOOK));
+  }
+  // Until a person moves the view, moving bodies stay in it.
+  keepInView(nowMs) {
+    if (!this.follows || !this.fitted || nowMs - this.keptMs < STAYS_AGAIN_MS) return;
+    this.keptMs = nowMs;
+    const moving = this.movingBounds();
+    if (moving.isEmpty()) return;
+    this.reached.union(moving);
+    const { min, max } = moving, corner = new THREE.Vector3();
+    for (let i = 0; i < 8; ++i) {
+      corner.set(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).project(this.camera);
+      if (Math.abs(corner.x) < 1 && Math.abs(corner.y) < 1 && Math.abs(corner.z) < 1) continue;
+      const grown = this.reached.getSize(new THREE.Vector3()).multiplyScalar(0.5 * (GROWTH - 1));
+      this.reached.expandByVector(grown);
+      return this.fit(this.follows.side, this.follows.moving);
+    }
+  }
+  movingBounds() {
+    return this.bodies.bounds(({ fixed }) => !fixed);
   }
   // Grids are as large as the cell.
   surround() {
@@ -72,7 +128,6 @@ export class SceneView {
       material.uniforms.centre.value.copy(sphere.center);
       material.uniforms.reach.value = sphere.radius;
     }
-    this.bodies.refocus();
     ++this.bodies.stillChanges;
     this.fitted = true;
   }
@@ -82,7 +137,8 @@ export class SceneView {
   }
 
   sphere(moving) {
-    const bounds = this.bodies.bounds(moving ? ({ fixed }) => !fixed : undefined);
+    const bounds = moving ? this.movingBounds() : this.bodies.bounds();
+    bounds.union(this.reached);
     return bounds.isEmpty() ? undefined : bounds.getBoundingSphere(new THREE.Sphere());
   }
 
@@ -95,33 +151,43 @@ export class SceneView {
     if (numbers.length !== 6 || !numbers.every(Number.isFinite)) return;
     this.camera.position.set(...numbers.slice(0, 3));
     this.controls.target.set(...numbers.slice(3));
-    this.isPlaced = true;
+    this.follows = undefined;
   }
 
   moved(transforms) {
     if (!this.bodies.move(transforms) && this.fitted) return;
-    if (this.isPlaced) this.surround();
-    else this.fit("cell", true);
+    if (this.follows) this.fit(this.follows.side, this.follows.moving);
+    else this.surround();
   }
 
   // Draws only after a change: a recording that stands still costs nothing.
   draw(state, chosen, frozen, nowMs) {
+    this.keepInView(nowMs);
     this.controls.update();
     this.camera.updateMatrixWorld();
     this.noteCamera();
-    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.cameraChanges].join();
+    this.fadeHiding([state.reportNs, this.cameraChanges].join(), nowMs);
+    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.bodies.stillChanges, this.cameraChanges].join();
     if (key === this.drawnKey) return (this.drawnMs = undefined);
     this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
-    if (this.drawn % 30 === 0) this.bodies.refocus();
+    if (this.isResized) this.resize();
     this.bodies.lit(this.camera, this.controls.target);
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
+    this.visuals.update();
     this.shells.update(this.bodies.poses, state.zoneStates());
-    if (state.report) this.lines.update(state, chosen, this.camera, this.size);
+    if (state.report) this.lines.update(state, chosen, this.camera, this.size, this.bodies);
     const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
     this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));
     this.renderer.render(this.world, this.camera);
     this.adapt(nowMs);
+  }
+
+  fadeHiding(key, nowMs) {
+    if (!this.fitted || key === this.fadedKey || nowMs - this.fadedMs < FADE_AGAIN_MS) return;
+    this.fadedKey = key;
+    this.fadedMs = nowMs;
+    this.bodies.fade(this.camera.position);
   }
 
   // Controls at rest still move the camera within rounding.
@@ -156,7 +222,7 @@ export class SceneView {
     if (!(this.sinceAdapted > 20) || this.took < SLOW_FRAME || this.sharpness <= LEAST_SHARPNESS) return;
     this.sharpness = Math.max(LEAST_SHARPNESS, 0.7 * this.sharpness);
     this.sinceAdapted = 0;
-    this.resize();
+    this.resizeSoon();
   }
 
   clicks(canvas) {
@@ -171,6 +237,10 @@ export class SceneView {
       const raycaster = new THREE.Raycaster();
       raycaster.setFromCamera(new THREE.Vector2((x / box.width) * 2 - 1, 1 - (y / box.height) * 2), this.camera);
       this.on.objectChosen(this.bodies.objectAt(raycaster));
+    });
+    canvas.addEventListener("dblclick", ({ offsetX, offsetY }) => {
+      const pair = this.lines.pairAt(offsetX, offsetY, this.camera, this.size);
+      if (pair !== undefined) this.on.pairLookedAt(pair);
     });
   }
 }

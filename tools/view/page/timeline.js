@@ -1,5 +1,6 @@
 // The time line of a recording: least distance over time, zones, marked moments; dragging moves the recording.
-import { css, put, roundUp, seconds } from "./format.js";
+import { axisOf, ticksOf } from "./axis.js";
+import { css, mm, put, roundUp, seconds } from "./format.js";
 
 const element = (id) => document.getElementById(id);
 const MARK = { closest: "--alarm", zone: "--near", overrun: "--lost" };
@@ -112,16 +113,16 @@ export class Timeline {
 
   drawDistance(context, x, height, width) {
     const known = this.timeline.stretches.filter(([, distance]) => distance !== null);
-    const most = roundUp(1e3 * Math.max(1e-6, ...known.map(([, distance]) => distance)));
-    const least = Math.min(0, ...known.map(([, distance]) => 1e3 * distance));
+    const values = known.map(([, distance]) => 1e3 * distance);
+    const [low, high] = axisOf(Math.min(...values), Math.max(...values));
     const floor = height - 14;
-    const y = (value) => TOP + (floor - TOP) * (1 - (value - least) / (most - least));
+    const y = (value) => TOP + (floor - TOP) * (1 - (value - low) / (high - low));
     context.font = "10px system-ui, sans-serif";
     context.fillStyle = css("--quiet");
     context.strokeStyle = css("--line");
     context.textAlign = "right";
-    for (const value of [0, most]) {
-      context.fillText(`${value} mm`, LEFT - 5, y(value) + (value ? 8 : 0));
+    for (const value of low < 0 ? ticksOf(low, high) : [low, high]) {
+      context.fillText(`${mm(1e-3 * value, 0)} mm`, LEFT - 5, Math.min(floor, Math.max(TOP + 8, y(value) + 4)));
       context.strokeRect(LEFT, y(value), width - LEFT - 8, 0);
     }
     context.textAlign = "center";

@@ -1,0 +1,192 @@
+// What the page makes of its window, its keys and its scene, a line of JSON a step:
+//   node view_page.mjs URL STEP...
+// A step is one of the functions below.
+import { openBrowser, say } from "./browser.mjs";
+
+const [url, ...steps] = process.argv.slice(2);
+const { browser, page, errors } = await openBrowser({ width: 1200, height: 800 });
+const ready = () => page.waitForFunction(() => window.clearance?.stands().ready && window.clearance.state.report && window.clearance.view.drawn > 1);
+
+// Waits for frames of the page.
+async function frames(count) {
+  const first = await page.evaluate(() => window.clearance.stands().frames);
+  await page.waitForFunction((last) => window.clearance.stands().frames > last, first + count);
+}
+
+// Frames that a person saw empty: a canvas gets its size, which empties it, and is shown before it is drawn again.
+async function resolution() {
+  await page.evaluate(() => {
+    const { renderer } = window.clearance.view, { setSize, render } = renderer;
+    const seen = (window.seen = { sizes: 0, blank: 0 });
+    let isBlank = false;
+    renderer.setSize = (...all) => (++seen.sizes, (isBlank = true), setSize.apply(renderer, all));
+    renderer.render = (...all) => (renderer.getRenderTarget() || (isBlank = false), render.apply(renderer, all));
+    const shown = new MessageChannel(); // its task runs after the frame has been shown
+    shown.port1.onmessage = () => (seen.blank += isBlank ? 1 : 0);
+    const each = () => (requestAnimationFrame(each), shown.port2.postMessage(0));
+    each();
+  });
+  const changed = async (change) => {
+    const sizes = await page.evaluate(() => window.seen.sizes);
+    await change();
+    await page.waitForFunction((before) => window.seen.sizes > before, sizes);
+    await frames(3);
+  };
+  for (const width of [1000, 1300]) await changed(() => page.setViewportSize({ width, height: 800 }));
+  await changed(() => page.evaluate(() => Object.assign(window.clearance.view, { took: 1000, sinceAdapted: 100, sharpness: 1 }) && 0));
+  return page.evaluate(() => window.seen);
+}
+
+// Where moving bodies are in the view over some seconds: the largest coordinate, 1 at its edge.
+async function firstView() {
+  let largest = 0;
+  for (let i = 0; i < 12; ++i) {
+    await page.waitForTimeout(400);
+    largest = Math.max(largest, await page.evaluate(() => {
+      const { view } = window.clearance, { min, max } = view.bodies.bounds(({ fixed }) => !fixed), corner = view.camera.position.clone();
+      return Math.max(...Array.from({ length: 8 }, (_, k) => {
+        corner.set(k & 1 ? max.x : min.x, k & 2 ? max.y : min.y, k & 4 ? max.z : min.z).project(view.camera);
+        return Math.max(Math.abs(corner.x), Math.abs(corner.y));
+      }));
+    }));
+  }
+  const box = await (await page.$("#view")).boundingBox();
+  await page.mouse.move(box.x + 0.1 * box.width, box.y + 0.1 * box.height);
+  await page.mouse.down();
+  await page.mouse.move(box.x + 0.3 * box.width, box.y + 0.1 * box.height, { steps: 3 });
+  await page.mouse.up();
+  const place = () => page.evaluate(() => window.clearance.view.place);
+  let moved = "";
+  while (moved !== (await place())) {
+    moved = await place(); // until the view has come to rest
+    await frames(3);
+  }
+  await page.waitForTimeout(2000);
+  return { largest, stays: moved === (await place()) };
+}
+
+// How the closest pair lies in the view by the key, and by two clicks on its row: the middle of its gap, and the gap's length.
+async function look() {
+  const lies = () => page.evaluate(() => {
+    const { view, state } = window.clearance, pair = state.minimum();
+    const at = ({ x, y, z }) => view.camera.position.clone().set(x, y, z).project(view.camera);
+    const [a, b] = [at(pair.witness_a), at(pair.witness_b)];
+    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, length: Math.hypot(a.x - b.x, a.y - b.y) };
+  });
+  const found = {};
+  await page.waitForFunction(() => document.querySelector("#pair-table tbody tr"));
+  await page.keyboard.press("v");
+  await frames(2);
+  found.key = await lies();
+  await page.keyboard.press("f");
+  await frames(2);
+  found.far = await lies();
+  await page.dblclick("#pair-table tbody tr:first-child");
+  await frames(2);
+  found.clicks = await lies();
+  found.chosen = await page.$$eval("tr.chosen", (rows) => rows.length);
+  return found;
+}
+
+// Whether labels cover the bodies that they name, or each other, and how many lines lead from them.
+async function labels() {
+  await frames(5);
+  return page.evaluate(() => {
+    const { view } = window.clearance, { lines, size } = view;
+    const boxes = [...document.querySelectorAll(".label")].filter(({ hidden }) => !hidden).map((label) => {
+      const { left, top, right, bottom } = label.getBoundingClientRect(), origin = document.getElementById("view").getBoundingClientRect();
+      return { pair: Number(label.dataset.pair), left: left - origin.left, top: top - origin.top, right: right - origin.left, bottom: bottom - origin.top };
+    });
+    const overlap = (a, b) => a.left < b.right && b.left < a.right && a.top < b.bottom && b.top < a.bottom;
+    const covers = boxes.filter((box) => view.cell.pairs[box.pair].slice(0, 2).some((object) =>
+      lines.rectangles.some((each) => each.object === object && overlap(box, each.rectangle)))).length;
+    const meet = boxes.flatMap((a, i) => boxes.slice(i + 1).filter((b) => overlap(a, b))).length;
+    const leaders = [...document.querySelectorAll("#labels line")].filter(({ style }) => style.display !== "none");
+    return { labels: boxes.length, covers, meet, leaders: leaders.length, size };
+  });
+}
+
+// The objects that have faded, and whether the materials draw a part of a body.
+async function fading() {
+  await page.waitForFunction(() => window.clearance.view.bodies.faded.size > 0);
+  return page.evaluate(() => {
+    const { bodies } = window.clearance.view;
+    return { faded: [...bodies.faded].map((object) => bodies.cell.objects[object].name), veil: bodies.veil.visible };
+  });
+}
+
+// The header at several widths, and the right column at the height of a small screen.
+async function layout() {
+  const found = { rows: [] };
+  for (const width of [1440, 1180, 1024, 820]) {
+    await page.setViewportSize({ width, height: 800 });
+    await page.waitForTimeout(500);
+    found.rows.push(await page.evaluate(() => {
+      const header = document.querySelector("header"), boxes = [...header.children].map((each) => each.getBoundingClientRect());
+      return { width: innerWidth, height: header.clientHeight, overflow: header.scrollWidth - header.clientWidth,
+        overlaps: boxes.slice(1).filter(({ left }, i) => left < boxes[i].right - 1).length, last: innerWidth - boxes.at(-1).right };
+    }));
+  }
+  await page.setViewportSize({ width: 1440, height: 800 });
+  await page.click("#pair-table tbody tr:first-child");
+  await page.waitForTimeout(500);
+  found.column = await page.evaluate(() => {
+    const aside = document.querySelector("aside"), rows = document.querySelector(".rows").getBoundingClientRect();
+    const full = [...document.querySelectorAll("#pair-table tbody tr")].filter((row) => row.getBoundingClientRect().bottom <= rows.bottom + 1);
+    return { overflow: aside.scrollHeight - aside.clientHeight, rows: full.length };
+  });
+  return found;
+}
+
+async function keys() {
+  const isOpen = () => page.$eval("#keys", ({ open }) => open);
+  await page.keyboard.press("?");
+  const opened = await isOpen();
+  await page.keyboard.press("Escape");
+  const closed = !(await isOpen());
+  return { opened, closed };
+}
+
+async function ticks() {
+  return page.evaluate(async () => {
+    const { axisOf, ticksOf } = await import("/axis.js");
+    const { low, high } = (({ min, max }) => ({ low: min, high: max }))(window.clearance.plots.minimum.plot.scales.y);
+    const of = (least, most) => ticksOf(...axisOf(least, most));
+    return { shown: ticksOf(low, high), mixed: of(-30, 300), negative: of(-30, -5), positive: of(5, 300) };
+  });
+}
+
+const zones = () => page.$$eval("#zones .chip", (chips) => chips.map(({ textContent, className, title }) => ({ text: textContent, kind: className, title })));
+
+// What the header says of the least distance once the daemon has reported.
+async function inputs() {
+  await page.waitForFunction(() => window.clearance.state.report && /have|are/.test(document.getElementById("minimum-pair").textContent));
+  return { minimum: await page.$eval("#minimum-pair", ({ textContent }) => textContent) };
+}
+
+// The switch between bodies and visual meshes: the links with visual shapes, the triangles of each, and
+// which objects' bodies are left out.
+async function visuals() {
+  await page.keyboard.press("b");
+  await page.waitForFunction(() => window.clearance.view.visuals.visible);
+  const shown = await page.evaluate(() => {
+    const { visuals, bodies } = window.clearance.view, name = (object) => bodies.cell.objects[object].name;
+    return { links: visuals.children.map(({ userData }) => name(userData.object)), hidden: [...bodies.hidden].map(name),
+      triangles: visuals.children.map(({ geometry }) => geometry.getAttribute("position").count / 3) };
+  });
+  await page.click("#visuals");
+  const back = await page.evaluate(() => ({ visible: window.clearance.view.visuals.visible, hidden: window.clearance.view.bodies.hidden.size }));
+  return { ...shown, back };
+}
+
+const known = { inputs, visuals, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+try {
+  await page.goto(url);
+  await ready();
+  for (const step of steps) say({ step, found: await known[step]() });
+  say({ step: "errors", found: errors });
+} catch (error) {
+  say({ failed: error.stack, errors });
+  process.exitCode = 1;
+}
+await browser.close();

@@ -1,0 +1,208 @@
+// What clearance-view's page makes of its window, its keys and its scene.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+#include "tests/tools/running_view.hpp"
+
+namespace clearance {
+namespace {
+
+using nlohmann::json;
+using test::ChildProcess;
+using test::kScripts;
+using test::lines_of;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+
+// Two boxes of which one swings far, before and behind a wall; eight zones with long names.
+std::string swinging_cell() {
+  std::string text = R"(name: swinging
+units: {length: m, angle: deg}
+rate_hz: 100
+defaults: {age_limit_ms: 20000}
+objects:
+  - {name: swinging, groups: [arm], box: {size: [0.2, 0.2, 0.2]}}
+  - {name: standing, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}
+  - {name: wall, groups: [still], fixed: true, pose: {xyz: [0.6, -1.2, 0.2]}, box: {size: [9, 0.1, 3]}}
+  - {name: back, groups: [still], fixed: true, pose: {xyz: [0, 2, 0]}, box: {size: [3, 0.1, 1]}}
+pairs: [{between: [arm, still], publish: true}, {between: [swinging, standing], publish: true}]
+zones:
+)";
+  for (int i = 0; i < 8; ++i) {
+    text += "  - {name: zone_of_a_long_name_" + std::to_string(i) +
+            ", between: [arm, arm], enter_below: " + (i < 4 ? "9" : "0.01") +
+            ", leave_above: 9.5}\n";
+  }
+  return text + R"(simulation:
+  movers:
+    - {object: swinging, centre: {xyz: [2, 0, 0]}, amplitude: [1.5, 0, 1], frequency_hz: 0.2}
+    - {object: standing, centre: {xyz: [0, 0, 0]}}
+)";
+}
+
+// The page of a running cell.
+class ViewPage : public testing::Test {
+ protected:
+  explicit ViewPage(const std::string& text = swinging_cell()) : cell(text) {}
+
+  // Runs these steps of view_page.mjs; returns what each found.
+  std::map<std::string, json> run(const std::vector<std::string>& steps) {
+    const auto dds = test::dds_arguments(test::own_dds());
+    const ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
+    const ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "50"}, dds));
+    const test::View view(test::with({cell.path()}, dds));
+    ChildProcess page("/usr/bin/env",
+                      test::with({"node", kScripts + "/view_page.mjs", view.page()}, steps));
+    EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
+    std::map<std::string, json> found;
+    for (const json& line : lines_of(page)) {
+      if (line.contains("step")) found[line["step"]] = line["found"];
+    }
+    EXPECT_EQ(found["errors"], json::array()) << page.output();
+    return found;
+  }
+
+  test::CellFile cell;
+};
+
+class SmallViewPage : public ViewPage {
+ protected:
+  SmallViewPage() : ViewPage(test::small_cell("small")) {}
+};
+
+TEST_F(ViewPage, IsNeverBlankWhileItChangesItsResolution) {
+  const json seen = run({"resolution"})["resolution"];
+  EXPECT_GE(seen.value("sizes", 0), 3);
+  EXPECT_EQ(seen.value("blank", -1), 0);
+}
+
+TEST_F(ViewPage, MovingBodiesStayInTheFirstViewUntilAPersonMovesIt) {
+  const json found = run({"firstView"})["firstView"];
+  EXPECT_LE(found.value("largest", 9.0), 1.05);
+  EXPECT_TRUE(found.value("stays", false));
+}
+
+TEST_F(ViewPage, AKeyAndTwoClicksLookAtAPair) {
+  const json found = run({"look"})["look"];
+  for (const char* const by : {"key", "clicks"}) {
+    SCOPED_TRACE(by);
+    EXPECT_NEAR(found[by].value("x", 9.0), 0.0, 0.3);
+    EXPECT_NEAR(found[by].value("y", 9.0), 0.0, 0.3);
+    EXPECT_GT(found[by].value("length", 0.0), 0.3);
+  }
+  EXPECT_EQ(found.value("chosen", 0), 1);
+}
+
+TEST_F(SmallViewPage, LabelsStandAsideOfWhatTheyNameWithLinesThatLeadThere) {
+  const json found = run({"labels"})["labels"];
+  EXPECT_GE(found.value("labels", 0), 1);
+  EXPECT_EQ(found.value("leaders", 0), found.value("labels", -1));
+  EXPECT_EQ(found.value("covers", -1), 0);
+  EXPECT_EQ(found.value("meet", -1), 0);
+}
+
+TEST_F(ViewPage, WhatHidesMovingBodiesFadesAsAWhole) {
+  const json found = run({"fading"})["fading"];
+  EXPECT_EQ(found["faded"], json({"wall"}));
+  EXPECT_TRUE(found.value("veil", false));
+}
+
+TEST_F(ViewPage, TheHeaderFitsOneRowAndTheRightColumnALowWindow) {
+  const json found = run({"layout"})["layout"];
+  ASSERT_EQ(found["rows"].size(), 4u);
+  for (const json& row : found["rows"]) {
+    SCOPED_TRACE(row.dump());
+    EXPECT_LE(row["height"], 64);
+    EXPECT_LE(row["overflow"], 0);
+    EXPECT_EQ(row["overlaps"], 0);
+    EXPECT_GE(row["last"], 0);
+  }
+  EXPECT_LE(found["column"]["overflow"], 0);
+  EXPECT_GE(found["column"]["rows"], 4);
+}
+
+TEST_F(ViewPage, EscapeClosesTheKeys) {
+  const json found = run({"keys"})["keys"];
+  EXPECT_TRUE(found.value("opened", false));
+  EXPECT_TRUE(found.value("closed", false));
+}
+
+TEST_F(ViewPage, NegativeDistancesHaveTicks) {
+  const json found = run({"ticks"})["ticks"];
+  EXPECT_EQ(found["mixed"], json({-50, 0, 500}));
+  EXPECT_EQ(found["negative"], json({-50, -25, 0}));
+  EXPECT_EQ(found["positive"], json({0, 250, 500}));
+}
+
+TEST_F(ViewPage, ZonesTellTheirStateAndWhatTheyWereEnteredBy) {
+  const json found = run({"zones"})["zones"];
+  ASSERT_FALSE(found.empty());
+  const std::string first = found[0].value("text", "");
+  EXPECT_THAT(first, HasSubstr("zone_of_a_long_name_"));
+  EXPECT_THAT(first, HasSubstr("ACTIVE"));
+  EXPECT_THAT(first, HasSubstr("entered: "));
+  EXPECT_THAT(found[0].value("kind", ""), HasSubstr("alarm"));
+}
+
+// Without joint states, as a person meets it who has started no driver yet.
+TEST(ViewOfAUrdf, NeedsNoCellFileAndSpeaksOfJointStates) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const std::vector<std::string> robot = {"--urdf", (folder / "scara.urdf").string()};
+  const auto dds = test::dds_arguments(test::own_dds());
+  const ChildProcess daemon(test::kDaemon, test::with(robot, dds));
+  const test::View view(test::with(robot, dds));
+  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "inputs"});
+  EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
+  const std::vector<json> said = lines_of(page);
+  ASSERT_FALSE(said.empty()) << page.output();
+  const std::string text = said.front().value("found", json::object()).value("minimum", "");
+  EXPECT_THAT(text, HasSubstr("joint states"));
+  EXPECT_THAT(text, Not(HasSubstr("pose")));
+}
+
+// A visual mesh, a visual box in a material of the file, and a shape that cannot be read.
+TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
+  const test::ScratchFolder folder;
+  std::string urdf = test::kScaraUrdf;
+  const auto add = [&](const std::string& link, const std::string& geometry) {
+    const std::string begin = "<link name=\"" + link + "\">";
+    urdf.insert(urdf.find(begin) + begin.size(),
+                "<visual><geometry>" + geometry + "</geometry><material name=\"red\"/></visual>");
+  };
+  add("foot", R"(<mesh filename="tip.obj" scale="0.001 0.001 0.001"/>)");
+  add("upper", R"(<box size="0.8 0.1 0.1"/>)");
+  add("lower", R"(<mesh filename="gone.obj"/>)");
+  urdf.insert(urdf.find("</robot>"),
+              R"(<material name="red"><color rgba="0.8 0.1 0.1 1"/></material>)");
+  test::write_text(folder / "scara.urdf", urdf);
+  test::write_text(
+      folder / "tip.obj",
+      "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  const std::vector<std::string> robot = {"--urdf", (folder / "scara.urdf").string()};
+  const auto dds = test::dds_arguments(test::own_dds());
+  const ChildProcess daemon(test::kDaemon, test::with(robot, dds));
+  const ChildProcess joints(test::kRobot, test::with(test::with(robot, {"--rate", "50"}), dds));
+  const test::View view(test::with(robot, dds));
+  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "visuals"});
+  EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
+  const std::vector<json> said = lines_of(page);
+  ASSERT_FALSE(said.empty()) << page.output();
+  const json found = said.front().value("found", json::object());
+  EXPECT_EQ(found["links"], json({"foot", "upper"})) << page.output();
+  EXPECT_EQ(found["hidden"], json({"foot", "upper"}));
+  EXPECT_EQ(found["triangles"], json({4, 12}));
+  EXPECT_EQ(found["back"], (json{{"visible", false}, {"hidden", 0}}));
+}
+
+}  // namespace
+}  // namespace clearance
