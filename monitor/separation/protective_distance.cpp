@@ -73,15 +73,19 @@ ProtectiveDistance protective_distance(const Separation& terms, const Approach& 
   const Stopping s = stopping(terms);
   const double reaction = seconds(terms.reaction_time_ns);
   const double braked_from = rounded_up(speed + terms.robot_acceleration * reaction);
-  const double until_standing = rounded_up(reaction + s.constant_time + swept(braked_from, s.time));
-  const double since_pose = rounded_up(approach.human_age + until_standing);
+  const double since_pose =
+      rounded_up(approach.human_age + reaction + s.constant_time + swept(braked_from, s.time));
   ProtectiveDistance found;
-  found.human =
-      rounded_up(std::fmax(path(approach, until_standing),
-                           rounded_up(path(approach, since_pose)) - approach.human_counted));
-  const double robot_since_pose = rounded_up(approach.robot_speed * approach.robot_age);
-  found.robot = rounded_up(std::fmax(0.0, robot_since_pose - approach.robot_counted) +
-                           braked_from * reaction);
+  found.human = rounded_up(path(approach, since_pose));
+  if (approach.human_counted > 0.0) {
+    const double from_now = rounded_up(reaction + s.constant_time + swept(braked_from, s.time));
+    found.human =
+        rounded_up(std::fmax(path(approach, from_now), found.human - approach.human_counted));
+  }
+  double before_tick = approach.robot_speed * approach.robot_age;
+  if (approach.robot_counted > 0.0)
+    before_tick = std::fmax(0.0, rounded_up(before_tick) - approach.robot_counted);
+  found.robot = rounded_up(before_tick + braked_from * reaction);
   found.stopping =
       rounded_up(s.constant_distance + swept(braked_from, swept(braked_from, s.distance)));
   found.sum = rounded_up(found.human + found.robot + found.stopping + terms.intrusion_distance +
