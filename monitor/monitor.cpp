@@ -119,7 +119,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.conclusion =
       conclude(s.published, s.displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
-  s.differentiation.differentiate(s.report.pairs, s.inputs.robots, s.report.gradients);
+  s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
   check_report(s.report);
   return s.report;

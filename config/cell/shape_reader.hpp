@@ -41,7 +41,7 @@ class ShapeReader {
   ShapeReader(const Quantities& quantities, MeshLibrary& meshes, const PartLimits& limits)
       : quantities_(quantities), meshes_(meshes), limits_(limits) {}
 
-  // Returns the keys of shapes, of which a part has exactly one: "box", "sphere", ...
+  // Returns the keys of shapes: "box", "sphere", ... A part has exactly one of them.
   [[nodiscard]] static std::span<const std::string> kinds();
 
   // Reads the one shape among the keys of `map`; reports none, several, or a bad one. `at` is the

@@ -22,7 +22,7 @@ std::string folded(std::string_view word) {
 
 }  // namespace
 
-// The usual table of optimal string alignment (Damerau, Levenshtein), of which three rows are kept.
+// Keeps three rows of the usual table of optimal string alignment (Damerau, Levenshtein).
 std::size_t edit_distance(std::string_view a_word, std::string_view b_word) {
   const std::string a = folded(a_word), b = folded(b_word);
   std::vector<std::size_t> before(b.size() + 1), last(b.size() + 1), row(b.size() + 1);

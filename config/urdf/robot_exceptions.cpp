@@ -47,8 +47,8 @@ using LinkPair = std::pair<std::string, std::string>;
 
 LinkPair in_order(const std::string& a, const std::string& b) { return std::minmax(a, b); }
 
-// As MoveIt does, takes the pairs disabled by default, less the enabled ones, and the pairs
-// disabled one by one.
+// Takes the pairs disabled by default, less the enabled ones, and the pairs disabled one by one.
+// MoveIt does the same.
 std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped,
                                        std::vector<std::string>& notes) {
   std::vector<SrdfDisabled> all = srdf.disabled;

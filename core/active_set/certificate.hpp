@@ -16,7 +16,7 @@ struct Separator {
   // The facet of A whose normal this is, or of B whose normal is the opposite: its offset is the
   // support value.
   std::int32_t facet_of_a = kNone, facet_of_b = kNone;
-  // The edges of A and B to both of which it is orthogonal.
+  // The normal is orthogonal to these edges of A and B.
   std::int32_t edge_of_a = kNone, edge_of_b = kNone;
 };
 

@@ -1,5 +1,5 @@
 // The straight-line part of core/feature_tracking/parallel_transitions-inl.hpp for as many pairs as
-// a vector has lanes: features of which, within tolerance, more than one point is closest. Compiled
+// a vector has lanes. More than one point of these features is closest, within tolerance. Compiled
 // once an instruction set.
 #if defined(CLEARANCE_BATCH_LEVEL_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_LEVEL_INL_HPP_

@@ -26,6 +26,11 @@ inline constexpr LogLine<Text> kPartitionWithoutRos{
     "partition-without-ros", kWarn,
     "ROS 2 uses the default partition only: in partition {}, tf does not arrive and no node of ROS "
     "2 receives what this daemon writes for it"};
+inline constexpr LogLine<Text> kNoSpeedScaling{
+    "no-speed-scaling", kWarn,
+    "{} is not published: no zone of the cell defines the scaling of speeds. Add a zone to the "
+    "cell "
+    "('zones:'), with 'separation:' for speeds between 0 and 1"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
 inline constexpr LogLine<> kNoReload{
     "no-reload", kWarn,
@@ -181,6 +186,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kHowToReach,
                                  kSystemRefuses,
                                  kPartitionWithoutRos,
+                                 kNoSpeedScaling,
                                  kStopped,
                                  kNoReload,
                                  kWaitingForDescription,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "monitor/gradients/alternatives.hpp"
 #include "monitor/kinematics/fixed_order.hpp"
 
 namespace clearance {
@@ -18,7 +19,12 @@ Differentiation::Differentiation(const Scene& scene) : scene_(scene), rows_(grad
   for (const ObjectPair& pair : scene.pairs) {
     if (pair.publish) published.push_back(&pair);
   }
-  for (const GradientRow& row : rows_.rows) add_terms(row, *published[row.published]);
+  std::size_t most_terms = 0;
+  for (const GradientRow& row : rows_.rows) {
+    add_terms(row, *published[row.published]);
+    most_terms = std::max<std::size_t>(most_terms, terms_of_.back().end - terms_of_.back().first);
+  }
+  turns_.reserve(most_terms);
 }
 
 std::uint32_t Differentiation::first_screw_of(const MovingJoint& joint) {
@@ -56,8 +62,8 @@ void Differentiation::find_screws(const RobotInputs& inputs) noexcept {
   }
 }
 
-void Differentiation::differentiate(std::span<const PairReport> pairs, const RobotInputs& inputs,
-                                    Gradients& gradients) noexcept {
+void Differentiation::differentiate(std::span<const PairReport> pairs, const TickView& view,
+                                    const RobotInputs& inputs, Gradients& gradients) noexcept {
   if (rows_.rows.empty()) return;
   find_screws(inputs);
   for (std::size_t r = 0; r < rows_.rows.size(); ++r) {
@@ -68,16 +74,20 @@ void Differentiation::differentiate(std::span<const PairReport> pairs, const Rob
     if (!is_of_this_tick(pair.status)) {
       std::ranges::fill(rates, std::numeric_limits<double>::quiet_NaN());
       gradients.drifts[r] = std::numeric_limits<double>::quiet_NaN();
+      gradients.alternatives[r] = unknown_alternative();
       continue;
     }
     std::ranges::fill(rates, 0.0);
+    turns_.clear();
     for (std::uint32_t t = terms_of_[r].first; t < terms_of_[r].end; ++t) {
       const Term& term = terms_[t];
       const JointScrew& screw = screws_[term.screw];
       const Vec3 arm = (term.moves_b ? pair.witness_b : pair.witness_a) - screw.origin;
       const double along = dot(pair.normal, screw.linear + cross(screw.angular, arm));
       gradients.rates[term.entry] += term.moves_b ? along : -along;
+      turns_.push_back(screw.angular);
     }
+    gradients.alternatives[r] = alternative_of(pair, turns_, view);
     double by_joints = 0.0;
     for (std::uint32_t e = row.first; e < row.end; ++e) {
       by_joints += gradients.rates[e] * inputs.variables()[rows_.variables[e]].velocity;

@@ -82,7 +82,9 @@ GradientRows gradient_rows(const Scene& scene) {
 Gradients unknown_gradients(const GradientRows& rows) {
   constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
   return {.rates = std::vector(rows.variables.size(), kUnknown),
-          .drifts = std::vector(rows.rows.size(), kUnknown)};
+          .drifts = std::vector(rows.rows.size(), kUnknown),
+          .alternatives = std::vector(
+              rows.rows.size(), GradientAlternative{GradientStatus::kUnknown, kUnknown, kUnknown})};
 }
 
 }  // namespace clearance

@@ -35,7 +35,7 @@ struct MovingJoint {
 // There are no rows unless Scene::gradients is set.
 [[nodiscard]] GradientRows gradient_rows(const Scene& scene);
 
-// Gradients of the size of these rows, all NaN.
+// Gradients of the size of these rows, all unknown.
 [[nodiscard]] Gradients unknown_gradients(const GradientRows& rows);
 
 }  // namespace clearance

@@ -38,9 +38,9 @@ struct TrackedObject {
   // one. At no instant since the last tick was any point farther than this from that motion, m.
   double bend = 0.0;
   double accumulated_turn = 0.0;  // accumulated Motion::turn
-  double reach = kInfinity;       // bounding radius around its origin, m; set by displace()
-  InputRecord input;              // of its poses; for a link that follows joints, of the joints
 
+  // The reports of its pairs read the members from here to the first ones of `input`.
+  double reach = kInfinity;  // bounding radius around its origin, m; set by displace()
   // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
   // 5e-7.
   Pose pose;
@@ -48,8 +48,9 @@ struct TrackedObject {
   // not known after the first pose, and after a gap longer than twice the age limit. Over such a
   // gap a mean says nothing about the present.
   Twist twist;
-  bool twist_known = false;
   Motion motion;  // since the last tick; zero if nothing was known then
+  bool twist_known = false;
+  InputRecord input;  // of its poses; for a link that follows joints, of the joints
   // For a link that follows joints, the joints determine its lateness and its unobserved motion, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;

@@ -46,6 +46,8 @@ std::string text(const Scene& scene, Meaning meaning, std::uint64_t value) {
       return word_or_number(static_cast<ZoneCause>(value));
     case Meaning::kValidity:
       return word_or_number(static_cast<SeparationValidity>(value));
+    case Meaning::kGradientStatus:
+      return word_or_number(static_cast<GradientStatus>(value));
     default:
       return fmt::format("{}", value);
   }

@@ -24,7 +24,17 @@ dds_entity_t make_writer(Participant& participant, const RosType& type, const st
   return topic.empty() ? 0 : participant.ros_writer(type, ros_dds_name(topic));
 }
 
+// Zones define the scaling of speeds: without any, 1 would say that everything is clear.
+dds_entity_t make_speed_scaling_writer(Participant& participant, const Cell& cell) {
+  const std::string& topic = cell.ros.outputs.speed_scaling;
+  if (topic.empty() || !cell.scene.zones.empty())
+    return make_writer(participant, kRosFloat64, topic);
+  log_line(lines::kNoSpeedScaling, topic);
+  return 0;
+}
+
 // The smallest scaling of separation monitoring. In a cell without it, zones stand for two speeds.
+// Both are 0 while a pair is unknown or overlaps: it makes its zone active.
 double speed_scaling(const Report& report) noexcept {
   if (!report.separated_zones.empty())
     return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;
@@ -49,7 +59,7 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReade
       markers_(make_writer(participant, kRosMarkers, cell.ros.outputs.markers)),
       diagnostics_(make_writer(participant, kRosDiagnostics, cell.ros.outputs.diagnostics)),
       minimum_distance_(make_writer(participant, kRosFloat64, cell.ros.outputs.minimum_distance)),
-      speed_scaling_(make_writer(participant, kRosFloat64, cell.ros.outputs.speed_scaling)),
+      speed_scaling_(make_speed_scaling_writer(participant, cell)),
       queue_(cell.scene, {.reports = kReports}),
       numbers_(kNumbers),
       period_ns_(std::llround(1e9 / (markers_ != 0 ? cell.ros.markers_hz : kDiagnosticReportsHz))),

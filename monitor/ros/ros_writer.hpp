@@ -29,8 +29,9 @@ namespace clearance {
 
 class RosWriter final : public ReportSink {
  public:
-  // Joins the topics that the scene names and starts the thread. Everything given must outlive
-  // this. `published` is the queue of the reports on DDS; diagnostics name its losses.
+  // Joins the topics that the scene names and starts the thread. The scaling of speeds is left out,
+  // with a line in the log, if the cell has no zone. Everything given must outlive this.
+  // `published` is the queue of the reports on DDS; diagnostics name its losses.
   RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
             const ReportQueue& published, const RecordingHealth& recording);
   ~RosWriter() override;

@@ -19,8 +19,8 @@ double speed_towards(const TrackedObject& body, const Vec3& towards, const Vec3&
   const double of_turn = swept(turning, body.reach);
   const double rounding = kVelocityError * (v.norm() + swept(w.norm(), body.reach));
   const double any_point = rounded_up(linear + of_turn + (rounding < kInfinity ? rounding : 0.0));
-  const double at_witness =
-      directed ? towards.dot(velocity_at(witness, body.pose, body.twist)) + rounding : v.norm();
+  const Vec3 of_witness = witness.allFinite() ? velocity_at(witness, body.pose, body.twist) : v;
+  const double at_witness = (directed ? towards.dot(of_witness) : of_witness.norm()) + rounding;
   return std::max({0.0, std::min(any_point, max_speed), std::min(at_witness, any_point)});
 }
 

@@ -13,6 +13,9 @@ struct Approach {
   double robot_speed = 0.0;         // m/s
   double human_age = 0.0;           // s: the age of the pose that the distance rests on
   double robot_age = 0.0;
+  // The path, m, that the distance has already lost because the pose is late. S_p then counts the
+  // rest of the path since the pose, if any is left.
+  double human_counted = 0.0, robot_counted = 0.0;
 };
 
 // The terms of S_p, m, rounded up. `sum` is C + Z_d + Z_r more than the sum of the others.

@@ -12,10 +12,14 @@
 namespace clearance {
 namespace {
 
-// The age that S_p has to cover, s. A late object counts as 0: the pair's lower bound already has
-// what the object may have moved since its pose.
-double age_to_count_in(const TrackedObject& object) noexcept {
-  return object.input.late ? 0.0 : rounded_up(seconds(object.input.age_ns));
+double age_of(const TrackedObject& object) noexcept {
+  return rounded_up(seconds(object.input.age_ns));
+}
+
+// What an object may have moved since its pose, m, if it is late: its pairs' lower bounds are
+// without it.
+double counted_in_bounds(const TrackedObject& object) noexcept {
+  return object.input.late ? object.may_have_moved : 0.0;
 }
 
 PairSeparation unknown_separation(std::uint32_t zone, std::uint32_t pair) noexcept {
@@ -38,6 +42,30 @@ double scaling_of(double robot_speed, double speed_limit, double remaining_when_
   if (!(remaining_when_standing >= 0.0)) return 0.0;
   if (robot_speed <= speed_limit) return 1.0;
   return rounded_down(speed_limit / robot_speed);
+}
+
+// What one assumption of the person's motion comes to.
+struct Finding {
+  Approach approach;
+  ProtectiveDistance distance;  // at the robot's present speed
+  double standing;              // S_p of a robot that stands, m
+  double speed_limit;
+};
+
+Finding find(const Separation& terms, const Approach& approach, double clearance) noexcept {
+  return {.approach = approach,
+          .distance = protective_distance(terms, approach, approach.robot_speed),
+          .standing = protective_distance(terms, approach, 0.0).sum,
+          .speed_limit = largest_speed(terms, approach, clearance)};
+}
+
+// The worse of each figure. The terms are those of the larger sum.
+Finding worse_of(const Finding& a, const Finding& b) noexcept {
+  Finding worse = a.distance.sum >= b.distance.sum ? a : b;
+  worse.approach.human_speed = std::max(a.approach.human_speed, b.approach.human_speed);
+  worse.standing = std::max(a.standing, b.standing);
+  worse.speed_limit = std::min(a.speed_limit, b.speed_limit);
+  return worse;
 }
 
 // Takes the least of each figure.
@@ -109,7 +137,8 @@ void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cy
   }
 }
 
-// Measured speeds count; a speed that is not known counts as the largest that is stated.
+// Measured speeds count; a speed that is not known counts as the largest that is stated. While a
+// pose is late, its last measured speed counts as well: a larger age never allows more.
 void Separations::write_pair(const SeparatedZone& zone, const Member& member,
                              const PairReport& pair, std::span<const TrackedObject> objects,
                              std::uint64_t cycle, PairSeparation& out) const noexcept {
@@ -135,32 +164,41 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const Vec3 towards = towards_human(pair, member.human_is_first, cycle);
   const Vec3& on_human = member.human_is_first ? pair.witness_a : pair.witness_b;
   const Vec3& on_robot = member.human_is_first ? pair.witness_b : pair.witness_a;
+  const double robot_measured =
+      robot.twist_known ? speed_towards(robot, towards, on_robot, robot_limit) : 0.0;
+  const Approach assumed{
+      .human_speed = terms.human_speed,
+      .robot_speed = robot_known ? robot_measured : std::max(robot_assumed, robot_measured),
+      .human_age = age_of(human),
+      .robot_age = age_of(robot),
+      .human_counted = counted_in_bounds(human),
+      .robot_counted = counted_in_bounds(robot)};
+  out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;
+
   const bool human_known = !terms.human_speed_is_measured || human.velocity_known();
-  const bool measured = terms.human_speed_is_measured && human_known;
-  const Approach approach{
-      .human_speed = measured ? speed_towards(human, -towards, on_human,
-                                              scene_.objects[member.human].max_speed)
-                              : terms.human_speed,
-      .human_acceleration = measured ? terms.human_acceleration : 0.0,
-      .robot_speed =
-          robot_known ? speed_towards(robot, towards, on_robot, robot_limit) : robot_assumed,
-      .human_age = age_to_count_in(human),
-      .robot_age = age_to_count_in(robot)};
+  Finding found;
+  if (terms.human_speed_is_measured && human.twist_known) {
+    Approach measured = assumed;
+    measured.human_speed =
+        speed_towards(human, -towards, on_human, scene_.objects[member.human].max_speed);
+    measured.human_acceleration = terms.human_acceleration;
+    found = find(terms, measured, out.clearance);
+    if (!human_known) found = worse_of(found, find(terms, assumed, out.clearance));
+  } else {
+    found = find(terms, assumed, out.clearance);
+  }
 
   const bool on_time = !human.input.late && !robot.input.late && human_known && robot_known;
   out.validity = on_time ? SeparationValidity::kMeasured : SeparationValidity::kAssumed;
-  out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;
-  out.human_speed = approach.human_speed;
-  out.robot_speed = approach.robot_speed;
-  const ProtectiveDistance distance = protective_distance(terms, approach, approach.robot_speed);
-  out.human_term = distance.human;
-  out.robot_term = distance.robot;
-  out.stopping_term = distance.stopping;
-  out.protective_distance = distance.sum;
-  out.remaining = rounded_down(out.clearance - distance.sum);
-  out.speed_limit = largest_speed(terms, approach, out.clearance);
-  out.scaling = scaling_of(approach.robot_speed, out.speed_limit,
-                           out.clearance - protective_distance(terms, approach, 0.0).sum);
+  out.human_speed = found.approach.human_speed;
+  out.robot_speed = found.approach.robot_speed;
+  out.human_term = found.distance.human;
+  out.robot_term = found.distance.robot;
+  out.stopping_term = found.distance.stopping;
+  out.protective_distance = found.distance.sum;
+  out.remaining = rounded_down(out.clearance - found.distance.sum);
+  out.speed_limit = found.speed_limit;
+  out.scaling = scaling_of(out.robot_speed, out.speed_limit, out.clearance - found.standing);
 }
 
 }  // namespace clearance

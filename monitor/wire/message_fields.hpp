@@ -89,6 +89,7 @@ struct GradientsMessageFields {
     DeliveryFields::for_each(visit, message...);
     TickFields::for_each(visit, message...);
     visit(Field{"pairs"}, message.pairs...);
+    visit(Field{"alternatives"}, message.alternatives...);
   }
 };
 
@@ -128,6 +129,10 @@ struct FieldsOf<clearance_msg_JointGradient> : JointGradientFields {
 template <>
 struct FieldsOf<clearance_msg_PairGradient> : PairGradientFields {
   static constexpr std::string_view kType = "PairGradient";
+};
+template <>
+struct FieldsOf<clearance_msg_GradientAlternative> : GradientAlternativeFields {
+  static constexpr std::string_view kType = "GradientAlternative";
 };
 template <>
 struct FieldsOf<clearance_msg_Gradients> : GradientsMessageFields {

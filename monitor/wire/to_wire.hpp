@@ -38,7 +38,11 @@ struct ToWire {
   template <class From, MessageSequence To>
   static void put(const std::vector<From>& from, To& to) noexcept {
     to._length = static_cast<std::uint32_t>(std::min<std::size_t>(from.size(), to._maximum));
-    for (std::uint32_t i = 0; i < to._length; ++i) put(from[i], to._buffer[i]);
+    // Held here, because a store to an octet could change them as far as the compiler knows.
+    const std::size_t length = to._length;
+    auto* const elements = to._buffer;
+    const From* const values = from.data();
+    for (std::size_t i = 0; i < length; ++i) put(values[i], elements[i]);
   }
 };
 

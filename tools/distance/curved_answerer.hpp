@@ -11,7 +11,7 @@ namespace clearance {
 
 class CurvedAnswerer {
  public:
-  // As for Answerer.
+  // The arguments have the same meaning as in Answerer.
   CurvedAnswerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
   // The same as in Answerer, without the deepest points. Overlapping parts have no depth.

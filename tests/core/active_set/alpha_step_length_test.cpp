@@ -14,16 +14,8 @@
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
-
-using test::active;
-using test::cube;
-using test::edge_around;
-using test::facet_towards;
-using test::made;
-using test::turned;
-using test::vertex_at;
 
 TEST(AlphaStep, FromTheInsideStopsAtTheFirstFacet) {
   const ConvexBody body = cube();
@@ -144,4 +136,4 @@ TEST(AlphaStep, LeavesThePointOnTheFeatureThatBlocked) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

@@ -15,7 +15,7 @@
 #include "core/curved/bounds.hpp"
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
-#include "tests/core/model/counted.hpp"
+#include "tests/core/model/counted_vectors.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/random.hpp"
 
@@ -23,16 +23,10 @@ namespace clearance {
 namespace {
 
 using test::Counted;
+using test::counted;
+using test::Counted3;
 using test::made;
-using Counted3 = std::array<Counted, 3>;
 
-Counted3 counted(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Counted3 operator+(const Counted3& a, const Counted3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Counted3 operator-(const Counted3& a, const Counted3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 Counted3 operator-(const Counted3& a) { return {-a[0], -a[1], -a[2]}; }
 Counted3 operator*(const Counted3& a, const Counted3& b) {
   return {a[0] * b[0], a[1] * b[1], a[2] * b[2]};
@@ -41,10 +35,6 @@ Counted3 operator/(const Counted3& a, const Counted& s) { return {a[0] / s, a[1]
 Counted3 operator/(const Counted3& a, const Counted3& b) {
   return {a[0] / b[0], a[1] / b[1], a[2] / b[2]};
 }
-Counted dot(const Counted3& a, const Counted3& b) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-Counted norm(const Counted3& a) { return sqrt(dot(a, a)); }
 // The error of the matrix is counted elsewhere.
 Counted3 product(const Mat3& r, const Counted3& v) {
   Counted3 out;

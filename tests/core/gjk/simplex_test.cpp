@@ -38,6 +38,38 @@ TYPED_TEST(ClosestToOrigin, IsOnTheVertexEdgeOrTriangleThatClosedFormsSay) {
   for (const TypeParam& w : inside.weights) EXPECT_GT(leading(w), 0.0);
 }
 
+// After a reduction, the subsets of the points that it kept are left out.
+TYPED_TEST(ClosestToOrigin, IsTheSameToTheBitWithoutTheSubsetsOfAReducedSimplex) {
+  Random random(2);
+  int whole = 0;
+  for (int k = 0; k < 20'000; ++k) {
+    const double flat = random.chance(0.3) ? random.log_uniform(1e-14, 1.0) : 1.0;
+    const Vec3 middle = random.uniform(0.0, 2.0) * random.direction();
+    const auto point = [&] {
+      const Vec3 p = middle + random.in_box(1.0).cwiseProduct(Vec3(1, flat, 1));
+      return vector_of<TypeParam>(random.chance(0.1) ? Vec3(p.array().round()) : p);
+    };
+    std::array<Vector<TypeParam>, 4> points;
+    std::size_t size = 0;
+    for (int round = 0; round < 8; ++round) {
+      const std::size_t reduced = size;
+      points[size++] = point();
+      const auto all = closest_to_origin(points, size);
+      const auto found = closest_to_origin(points, size, reduced);
+      ASSERT_EQ(rounded(found.point), rounded(all.point)) << k;
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < size; ++i) {
+        ASSERT_EQ(leading(found.weights[i]), leading(all.weights[i])) << k;
+        if (leading(all.weights[i]) > 0.0) points[kept++] = points[i];
+      }
+      size = kept;
+      if (size == 4) break;  // the origin is inside
+      whole += size == 3;
+    }
+  }
+  EXPECT_GT(whole, 10'000);
+}
+
 TYPED_TEST(ClosestToOrigin, NoPointOfTheSimplexIsCloser) {
   Random random(1);
   for (int k = 0; k < 4000; ++k) {

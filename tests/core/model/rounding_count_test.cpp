@@ -13,7 +13,7 @@
 #include "core/feature_tracking/feature_tracking.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/shapes.hpp"
-#include "tests/core/model/counted.hpp"
+#include "tests/core/model/counted_vectors.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/random.hpp"
 
@@ -21,24 +21,14 @@ namespace clearance {
 namespace {
 
 using test::Counted;
+using test::counted;
+using test::Counted3;
 using test::made;
-using Counted3 = std::array<Counted, 3>;
 
-Counted3 counted(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Counted3 operator+(const Counted3& a, const Counted3& b) {
-  return {a[0] + b[0], a[1] + b[1], a[2] + b[2]};
-}
-Counted3 operator-(const Counted3& a, const Counted3& b) {
-  return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
-}
 Counted3 operator*(const Counted& s, const Counted3& a) { return {s * a[0], s * a[1], s * a[2]}; }
-Counted dot(const Counted3& a, const Counted3& b) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
 Counted3 cross(const Counted3& a, const Counted3& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-Counted norm(const Counted3& a) { return sqrt(dot(a, a)); }
 Counted inverse_norm_near_1(const Counted3& a) { return 1.5 - 0.5 * dot(a, a); }
 
 struct CountedQuaternion {

@@ -1,18 +1,15 @@
 // A daemon and programs of another version on one network: each side logs it, and none receives
 // garbage.
 #include <gtest/gtest.h>
-#include <spdlog/sinks/base_sink.h>
-#include <spdlog/spdlog.h>
 
 #include <cstring>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <string_view>
 
 #include "monitor/client/client.hpp"
 #include "monitor/dds/report_writer.hpp"
 #include "other_version.h"
+#include "tests/monitor/logged.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"

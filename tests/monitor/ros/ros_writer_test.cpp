@@ -1,12 +1,12 @@
 // The outputs of a cell for ROS 2, through real DDS on loopback. The test acts as the tick thread.
 #include "monitor/ros/ros_writer.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <map>
 
 #include "monitor/monitor.hpp"
+#include "tests/monitor/logged.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
 
@@ -99,6 +99,46 @@ TEST_F(RosWriterTest, NumbersAreTheLeastLowerBoundAndTheScalingOfTheZones) {
     tick(0.6);
     return scaling.take() && scaling.last().data == 0.0;
   }));
+}
+
+TEST_F(RosWriterTest, TheScalingOfZonesIsNothingWhileAPairOverlapsOrIsUnknown) {
+  RosReader<Float64> scaling(client, kRosFloat64, "rt/told/clearance/speed_scaling");
+  const auto comes = [&](double value, const auto& tick_once) {
+    return eventually([&] {
+      tick_once();
+      return scaling.take() && scaling.last().data == value;
+    });
+  };
+  EXPECT_TRUE(comes(1.0, [&] { tick(0.0); }));
+  EXPECT_TRUE(comes(0.0, [&] { tick(0.95); })) << "the ball is in the post";
+  EXPECT_TRUE(comes(1.0, [&] { tick(0.0); }));
+  now += 1'000'000'000;
+  EXPECT_TRUE(comes(0.0, [&] { hand_over(monitor.tick({}, now += test::kTick)); }));
+}
+
+TEST(RosWriter, PublishesNoScalingInACellWithoutZones) {
+  Cell cell = told_cell();
+  cell.scene.zones.clear();
+  const DdsOptions dds = test::own_dds();
+  Participant participant(dds), client(dds);
+  const PoseReader poses(cell, participant);
+  const ReportQueue published(cell.scene, {});
+  const RecordingHealth recording;
+  RosReader<Float64> minimum(client, kRosFloat64, "rt/told/clearance/minimum_distance");
+  RosReader<Float64> scaling(client, kRosFloat64, "rt/told/clearance/speed_scaling");
+  const auto log = std::make_shared<test::Logged>();
+  const test::LoggedTo logged(log);
+  RosWriter ros(cell, participant, poses, published, recording);
+  EXPECT_TRUE(log->has("[no-speed-scaling]"));
+  EXPECT_TRUE(log->has("/told/clearance/speed_scaling"));
+  Monitor monitor(cell.scene);
+  std::int64_t now = test::kStart;
+  ASSERT_TRUE(eventually([&] {
+    ros.report(monitor.tick({}, now += test::kTick), {});
+    return minimum.take();
+  }));
+  EXPECT_EQ(test::matched_writers(scaling.handle()), 0u);
+  EXPECT_FALSE(scaling.take());
 }
 
 TEST_F(RosWriterTest, MarkersAreTheBodiesOnceAReaderComesAndThenTheClosestPair) {

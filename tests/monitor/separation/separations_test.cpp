@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "monitor/separation/protective_distance.hpp"
 #include "tests/monitor/replay/report_bytes.hpp"
@@ -185,6 +186,72 @@ TEST(Separation, OfALateRobotHasItsLargestSpeedAndSaysSo) {
   EXPECT_NEAR(pair.protective_distance, 1.6 * (0.03 + 0.1 + 0.5) + 0.2 + 0.5, 1e-9);
   EXPECT_EQ(pair.age_robot_ns, 30'000'000);
   EXPECT_EQ(meeting.report->separated_zones[0].validity, SeparationValidity::kAssumed);
+}
+
+TEST(Separation, OfALatePersonCountsTheLargerOfTheMeasuredAndTheStatedSpeed) {
+  Separation terms = usual_terms();
+  terms.human_speed_is_measured = true;
+  terms.human_acceleration = 0.1;
+  Meeting meeting(terms);
+  meeting.scene.objects[0].max_speed = 3.0;
+  const double measured = meeting.tick(2.0, -2.5, 0.5).human_speed;
+  EXPECT_NEAR(measured, 2.5, 1e-12);
+  EXPECT_EQ(meeting.wait(25'000'000).human_speed, measured);
+  EXPECT_EQ(meeting.report->separated_pairs[0].validity, SeparationValidity::kAssumed);
+}
+
+TEST(Separation, OfALateRobotCountsTheLargerOfTheMeasuredAndTheStatedSpeed) {
+  Separation terms = usual_terms();
+  terms.robot_speed = 0.25;
+  Meeting meeting(terms);
+  meeting.scene.objects[0].age_limit_ns = 1'000'000'000;
+  const double measured = meeting.tick(2.0, 0.0, 1.0).robot_speed;
+  EXPECT_NEAR(measured, 1.0, 1e-12);
+  EXPECT_EQ(meeting.wait(30'000'000).robot_speed, measured);
+}
+
+// A person and a robot with random motions and stated figures, seen once.
+std::unique_ptr<Meeting> random_meeting(Random& random) {
+  Separation terms = usual_terms();
+  terms.human_speed = random.uniform(0.2, 2.5);
+  terms.human_speed_is_measured = random.chance(0.7);
+  if (terms.human_speed_is_measured) terms.human_acceleration = random.uniform(0.0, 3.0);
+  if (random.chance(0.5)) terms.robot_speed = random.uniform(0.1, 2.0);
+  if (random.chance(0.2)) terms.stopping_speed = 0.0;
+  if (random.chance(0.3)) terms.robot_acceleration = random.uniform(0.0, 3.0);
+  const double robot_max_speed = random.uniform(0.3, 3.0), max_speed = random.uniform(0.3, 4.0);
+  auto made = std::make_unique<Meeting>(terms, robot_max_speed);
+  Meeting& meeting = *made;
+  meeting.scene.evaluate_all = true;
+  meeting.scene.objects[0].max_speed = max_speed;
+  for (Object& object : meeting.scene.objects)
+    object.age_limit_ns = 1'000'000 * random.integer(8, 60);
+  if (random.chance(0.5)) meeting.robot_turn = random.uniform(0.0, 3.0) * random.direction();
+  meeting.tick(random.uniform(0.5, 4.0), max_speed * random.uniform(-1.4, 0.5),
+               robot_max_speed * random.uniform(-0.5, 1.4));
+  return made;
+}
+
+TEST(Separation, NeverAllowsMoreBecauseAPoseBecomesOlder) {
+  constexpr double kRounding = 1e-12;
+  Random random(23);
+  int late = 0, slower = 0;
+  for (int trial = 0; trial < 1000; ++trial) {
+    const std::unique_ptr<Meeting> made = random_meeting(random);
+    Meeting& meeting = *made;
+    PairSeparation before = meeting.report->separated_pairs[0];
+    for (int step = 0; step < 25; ++step) {
+      const PairSeparation now = meeting.wait(1'000'000 * random.integer(1, 9));
+      ASSERT_LE(now.speed_limit, before.speed_limit + kRounding) << trial << ", " << step;
+      ASSERT_LE(now.remaining, before.remaining + kRounding) << trial << ", " << step;
+      ASSERT_LE(now.scaling, before.scaling + kRounding) << trial << ", " << step;
+      late += now.validity == SeparationValidity::kAssumed;
+      slower += now.speed_limit < before.speed_limit;
+      before = now;
+    }
+  }
+  EXPECT_GT(late, 10'000);
+  EXPECT_GT(slower, 3'000);
 }
 
 void expect_unknown(const Report& report) {

@@ -51,6 +51,7 @@ Report numbered_report(const Scene& scene, std::uint64_t first) {
   report.separated_pairs.resize(2);
   report.gradients.rates.resize(rows.variables.size());
   report.gradients.drifts.resize(rows.rows.size());
+  report.gradients.alternatives.resize(rows.rows.size());
   for_each_field(Numbered{first}, report);
   return report;
 }
@@ -145,6 +146,7 @@ TEST_P(ReportFields, OfGradientsComeThroughTheWire) {
   const auto came = through_the_wire(message.of(report, 77));
   TickFields::for_each(ExpectSame{}, report, *came);
   EXPECT_EQ(77, came->publish_ns);
+  ExpectSame{}(Field{"alternatives"}, report.gradients.alternatives, came->alternatives);
   ASSERT_EQ(rows.rows.size(), came->pairs._length);
   ASSERT_GT(rows.rows.size(), 2u);
   for (std::uint32_t r = 0; r < came->pairs._length; ++r) {
@@ -167,11 +169,12 @@ const IdlTypes& our_idl() {
 
 template <class Record>
 class ListOf : public testing::Test {};
-using Records = testing::Types<clearance_msg_SourceUse, clearance_msg_PairDistance,
-                               clearance_msg_Distances, clearance_msg_ZoneState,
-                               clearance_msg_PairSeparation, clearance_msg_ZoneSeparation,
-                               clearance_msg_Separation, clearance_msg_JointGradient,
-                               clearance_msg_PairGradient, clearance_msg_Gradients>;
+using Records =
+    testing::Types<clearance_msg_SourceUse, clearance_msg_PairDistance, clearance_msg_Distances,
+                   clearance_msg_ZoneState, clearance_msg_PairSeparation,
+                   clearance_msg_ZoneSeparation, clearance_msg_Separation,
+                   clearance_msg_JointGradient, clearance_msg_PairGradient,
+                   clearance_msg_GradientAlternative, clearance_msg_Gradients>;
 TYPED_TEST_SUITE(ListOf, Records);
 
 TYPED_TEST(ListOf, NamesEveryFieldThatTheIdlHasOnce) {
@@ -250,6 +253,10 @@ TEST_P(ReportFields, AreTheMembersOfTheirNames) {
   expect_names_of_the_idl(message.pairs._buffer[0], gradients_cdr,
                           "@final struct Gradients { sequence<PairGradient> pairs; };", "Gradients",
                           true);
+  expect_names_of_the_idl(
+      message.alternatives._buffer[0], gradients_cdr,
+      "@final struct Gradients { sequence<GradientAlternative> alternatives; };", "Gradients",
+      true);
 }
 
 }  // namespace
