@@ -211,22 +211,29 @@ TEST(ErrorAccount, IsAppliedToDepths) {
   EXPECT_GT(overlapping, 200);
 }
 
-// B, of very many vertices, is in the middle of A. The facet on the right was found last and keeps
-// its place, although the one above is lower by 2 spacings: the bound is that of the one above.
+// B, of very many vertices, is in the middle of A. The facet x <= 1/2 was found last and keeps its
+// place, although y
+// <= 1/2 is lower by 4 spacings and is settled by the vertex that is deepest below the oblique
+// facet: the bound of the depth is that of y <= 1/2.
 TEST(ErrorAccount, CountsAFacetThatAVertexSettles) {
-  constexpr double kHalf = 0.5, kOut = 0.125, kLess = 4 * 0x1p-53;
-  std::vector<Vec3> points{{-kOut, -kOut, 0}, {0, 0, -kOut}};
+  constexpr double kOut = 0.125, kLess = 4 * 0x1p-53;
+  std::vector<Vec3> points{{-kOut, 0.03, 0}, {0, -kOut, 0}};
   Random random(4);
   for (int k = 0; k < 200; ++k) points.push_back(0.0625 * random.direction());
   const ConvexBody b = made(polyhedron_from_vertices(points));
-  const ConvexBody a = made(box(Vec3(kHalf, kHalf - kLess, kHalf)));
+  const HalfSpace rows[] = {{Vec3(0, 0.8, 0.6), 0.56},    {Vec3(1, 0, 0), 0.5},
+                            {Vec3(0, 1, 0), 0.5 - kLess}, {Vec3(0, 0, 1), 1.0},
+                            {Vec3(-1, 0, 0), 1.0},        {Vec3(0, -1, 0), 1.0},
+                            {Vec3(0, 0, -1), 1.0}};
+  const ConvexBody a = made(polyhedron_from_halfspaces(rows));
   const RelativePose pose = relative_pose(Pose{}, Pose{});
   const ActiveFeature side_a(a, nullptr), side_b(b, &pose);
   const Precision p = precision(a, b, pose, 0.0);
-  const double least = (kHalf - kLess) + kOut;
-  for (std::int32_t facet = 0; facet < 6; ++facet) {
+  const double least = (0.5 - kLess) + kOut;
+  for (std::int32_t facet = 0; facet < 7; ++facet) {
     const Separator guess{a.facets[static_cast<std::size_t>(facet)].normal, facet, kNone};
     const Depth found = depth(side_a, side_b, pose, &guess);
+    EXPECT_NEAR(found.lower, least, 1e-13);
     EXPECT_LE(found.lower, least - p.error_bound - ulps(12, p.size) + ulps(1, p.size)) << facet;
   }
 }
