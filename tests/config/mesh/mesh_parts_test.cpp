@@ -171,8 +171,8 @@ TEST_F(PartsOfMeshes, OfAScaleAlongOneAxisAreOthers) {
     const Eigen::AlignedBox3d scaled = extent(read(keys.str()));
     EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts")) << keys.str();
     const Vec3 a = plain.min().cwiseProduct(scale), b = plain.max().cwiseProduct(scale);
-    EXPECT_LT((scaled.min() - a.cwiseMin(b)).norm(), 1e-2) << keys.str();
-    EXPECT_LT((scaled.max() - a.cwiseMax(b)).norm(), 1e-2) << keys.str();
+    EXPECT_LT((scaled.min() - a.cwiseMin(b)).norm(), 3e-2) << keys.str();
+    EXPECT_LT((scaled.max() - a.cwiseMax(b)).norm(), 3e-2) << keys.str();
   }
 }
 
