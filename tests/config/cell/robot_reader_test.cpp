@@ -195,6 +195,26 @@ TEST_F(Robots, ABaseThatFollowsAFrameHasLimitsOfItsOwn) {
   EXPECT_EQ(stated[6].source, "/tf:bases");
 }
 
+// grip3 = 3 grip2 + 0.5, where grip2 = -2 grip + 0.25.
+TEST_F(Robots, AMimicOfAMimicFollowsTheLastOfTheChain) {
+  std::string urdf = kWalkerUrdf;
+  urdf.replace(
+      urdf.find("</robot>"), 8,
+      R"(<link name="tip"/><joint name="grip3" type="revolute"><parent link="right"/><child link="tip"/>
+  <limit lower="-1" upper="1" velocity="1"/><mimic joint="grip2" multiplier="3" offset="0.5"/></joint></robot>)");
+  test::write_text(folder_ / "walker_description/walker.urdf", urdf);
+  const Scene cell = scene(kWalker, kSelf);
+  const Robot& robot = cell.robots.at(0);
+  const auto named = [&](const std::string& name) {
+    return *std::ranges::find(robot.joints, name, &RobotJoint::name);
+  };
+  EXPECT_EQ(named("grip3").variable, named("grip").variable);
+  EXPECT_EQ(named("grip3").multiplier, -6.0);
+  EXPECT_EQ(named("grip3").offset, 1.25);
+  EXPECT_EQ(named("grip2").multiplier, -2.0);
+  EXPECT_EQ(named("grip2").offset, 0.25);
+}
+
 TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
   const Scene cell = scene(kWalker, kSelf);
   EXPECT_FALSE(watched(cell, "arm", "mast"));

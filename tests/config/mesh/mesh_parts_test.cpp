@@ -10,6 +10,7 @@
 #include <functional>
 #include <future>
 #include <memory>
+#include <sstream>
 #include <string>
 #include <thread>
 
@@ -210,6 +211,26 @@ TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
   test::write_text(folder_ / "l.obj", test::obj_of(test::degenerate_l()));
   read();
   EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts"));
+}
+
+// Each scale has parts of its own, whatever was kept before: along one axis, or mirrored.
+TEST_F(PartsOfMeshes, OfAScaleAlongOneAxisAreOthers) {
+  const auto extent = [](const Scene& scene) {
+    Eigen::AlignedBox3d box;
+    for (const Vec3& anchor : anchors(scene)) box.extend(anchor);
+    return box;
+  };
+  const Eigen::AlignedBox3d plain = extent(read());
+  for (const Vec3& scale : {Vec3(2, 1, 1), Vec3(1, 2, 1), Vec3(1, 1, 2), Vec3(-1, 1, 1),
+                            Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
+    std::ostringstream keys;
+    keys << ", scale: [" << scale.x() << ", " << scale.y() << ", " << scale.z() << "]";
+    const Eigen::AlignedBox3d scaled = extent(read(keys.str()));
+    EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts")) << keys.str();
+    const Vec3 a = plain.min().cwiseProduct(scale), b = plain.max().cwiseProduct(scale);
+    EXPECT_LT((scaled.min() - a.cwiseMin(b)).norm(), 3e-2) << keys.str();
+    EXPECT_LT((scaled.max() - a.cwiseMax(b)).norm(), 3e-2) << keys.str();
+  }
 }
 
 TEST_F(PartsOfMeshes, GoToTheUsersCacheWhereTheFolderOfTheCellCannotBeWritten) {

@@ -62,5 +62,25 @@ TEST(PosedPart, ATiltedFloorCostsABoundedPartOnlyRounding) {
   EXPECT_LT(placing_error(tilted, placed(other, random.pose(5.0))), 1e-12);
 }
 
+// Each error counts in full, and a rotation by the smaller one of two arms.
+TEST(PosedPart, ErrorOfTwoPartsIsTheSumOfTheirErrors) {
+  const auto error = [](const std::array<double, 2>& shift, const std::array<double, 2>& turn) {
+    std::array<PosedPart, 2> parts;
+    for (std::size_t i = 0; i < 2; ++i) {
+      parts[i].shift_error = shift[i];
+      parts[i].turn_error = turn[i];
+      parts[i].extent = i == 0 ? 2.0 : 8.0;
+      parts[i].world_from_part = test::at(3.0 * static_cast<double>(i), 0, 0);
+    }
+    return placing_error(parts[0], parts[1]);
+  };
+  EXPECT_GE(error({0.5, 0}, {0, 0}), 0.5);
+  EXPECT_GE(error({0, 0.25}, {0, 0}), 0.25);
+  EXPECT_GE(error({0, 0}, {0.125, 0}), 0.125 * 2.0);
+  EXPECT_GE(error({0, 0}, {0, 0.125}), 0.125 * (3.0 + 2.0)) << "about its origin, the other turns";
+  EXPECT_GE(error({0.5, 0.25}, {0.125, 0.125}), 0.5 + 0.25 + 0.25 + 0.625);
+  EXPECT_LE(error({0.5, 0.25}, {0.125, 0.125}), 1.0001 * (0.5 + 0.25 + 0.25 + 0.625));
+}
+
 }  // namespace
 }  // namespace clearance

@@ -209,6 +209,15 @@ TEST(TickLoop, LeavesWhatDoesNotFitForTheNextTick) {
   EXPECT_EQ(loop.reports.inputs, (std::vector<std::uint64_t>{1, 2, 3, 4}));
 }
 
+TEST(TickLoop, TakesInABatchThatFitsExactly) {
+  Loop loop;
+  loop.poses.add("arm", 1, 3);
+  loop.poses.add("arm", 2, 4);
+  loop.poses.add("arm", 3, 1);
+  loop.run({.max_ticks = 2, .max_samples = 7});
+  EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{2, 3}));
+}
+
 TEST(TickLoop, RefusesBatchesMadeForAnotherSceneAndCountsThem) {
   Loop loop;
   loop.poses.add("arm", 1, 2, loop.scene.revision + 1);

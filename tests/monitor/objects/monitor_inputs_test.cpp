@@ -192,6 +192,21 @@ TEST(MonitorInputs, AfterATimeThatGoesBackwardsEveryPoseIsLateUntilTheNextOne) {
   EXPECT_NEAR(next.minimum.distance, 0.7, 1e-12);
 }
 
+// This machine's clock was stepped meanwhile. A stamp of the next pose is by the new clock from the
+// first one on.
+TEST(MonitorInputs, AfterATimeThatGoesBackwardsEverySourceIsByThisMachinesClock) {
+  const Scene scene = two_balls();
+  Monitor monitor(scene);
+  tick_with(monitor, 0, test::at(0, 0, 0), kStart);
+  constexpr std::int64_t kStepped = 1000 * kTick;
+  const TickTime before(kStart - 100 * kTick, kStepped);
+  const PoseSample sample = test::sample(0, test::at(0.1, 0, 0), before.now_ns + kStepped);
+  const Report& report = monitor.tick(std::span(&sample, 1), {}, before);
+  EXPECT_EQ(report.rejected, (std::array<std::uint64_t, kRejects>{}));
+  EXPECT_EQ(report.pairs[0].age_a_ns, 0);
+  EXPECT_NEAR(report.minimum.distance, 0.7, 1e-12);
+}
+
 TEST(MonitorInputs, TheLastOfSeveralSamplesOfATickIsUsed) {
   const Scene scene = two_balls();
   Monitor monitor(scene);

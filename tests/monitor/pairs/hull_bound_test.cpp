@@ -88,6 +88,37 @@ TEST(HullBound, IsNeverAboveTheDistanceOfTheParts) {
   EXPECT_GT(apart, 30);
 }
 
+// The only part of the other object is far from its object's origin, so that the place of the part
+// is not exact.
+TEST(HullBound, IsLessThanTheDistanceOfTheHullByThePlacingError) {
+  Scene scene;
+  scene.objects.resize(2);
+  const ConvexBody cube = test::made(box(Vec3::Ones()));
+  scene.objects[0].parts = {{"a", cube, {}}, {"b", cube, {.position = Vec3(3, 0, 0)}}};
+  scene.objects[1].parts = {{"c", cube, {Vec3(1e4, 2e4, 3e4), Random(7).rotation()}}};
+  scene.pairs = {{0, 1, false}};
+  std::vector<PosedPart> parts = parts_of(scene);
+  PairTable table(scene, parts);
+  HullBound hulls(scene, parts);
+  std::vector<TrackedObject> objects(2);
+  for (TrackedObject& object : objects) object.input.has_value = object.moved = true;
+  objects[1].pose = {Vec3(-1e4, -2e4, -3e4), Random(8).rotation()};
+  for (PosedPart& part : parts) place(objects[part.object], part);
+  Budget budget(10);
+  const double lower = hulls.lower(0, TickView{objects, parts, 1, table}, budget);
+  const std::vector<BoundingHull> made = bounding_hulls(scene);
+  PosedPart hull;
+  hull.shape = made[0].get();
+  hull.extent = hull.shape->bounding_radius + hull.shape->position_error;
+  const PosedPart& other = parts[2];
+  ASSERT_GT(other.shift_error, 1e-11);
+  TrackingState cold;
+  const DistanceResult found =
+      distance(*hull.shape, *other.shape, relative_pose(Pose{}, other.world_from_part), cold,
+               {.depth = false});
+  EXPECT_LE(lower, found.lower - placing_error(hull, other));
+}
+
 TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   Scene scene;
   scene.objects.resize(5);

@@ -96,5 +96,38 @@ TEST_F(RefreshQueueTest, APairComesBackWhenBothOfItsObjectsHave) {
   EXPECT_EQ(queue.oldest(table), 1u);
 }
 
+// More pairs than one tick brings back: those that still wait are the oldest.
+TEST(RefreshQueue, RemembersTheAgeOfPairsThatComeBackLater) {
+  constexpr std::uint32_t kPairs = 2'100;
+  std::vector<Object> balls{test::moving("ball", {test::ball(0.1)})};
+  balls.resize(kPairs + 1, test::fixed("post", {test::ball(0.1)}, Pose{}));
+  const Scene scene = test::cell_of(std::move(balls));
+  const std::vector<PosedPart> parts = parts_of(scene);
+  PairTable table(scene, parts);
+  const PairsByObject by_object(scene);
+  std::vector<TrackedObject> objects(kPairs + 1);
+  for (TrackedObject& object : objects) object.input.has_value = true;
+  RefreshQueue queue(kPairs + 1, kPairs);
+  const std::span<const std::uint32_t> of_ball = by_object.pairs_of(0);
+  ASSERT_EQ(of_ball.size(), kPairs);
+  for (std::uint32_t i = 0; i < kPairs; ++i) {
+    table.refreshed_cycle[of_ball[i]] = kPairs - i;  // the last one is the oldest
+    queue.move_to_back(of_ball[i]);
+  }
+  for (const std::uint32_t pair : of_ball) queue.set_aside(pair, 0, table);
+  EXPECT_EQ(queue.stalest(), kNoIndex);
+  queue.regain(0);
+  queue.bring_back(by_object, TickView{objects, parts, 0, table});
+  EXPECT_NE(queue.stalest(), kNoIndex);
+  EXPECT_EQ(queue.oldest(table), 1u) << "it still waits";
+  queue.bring_back(by_object, TickView{objects, parts, 0, table});
+  EXPECT_EQ(queue.oldest(table), 1u);
+  std::uint32_t back = 0;
+  for (; queue.stalest() != kNoIndex && back <= kPairs; ++back) {
+    queue.set_aside(queue.stalest(), 0, table);
+  }
+  EXPECT_EQ(back, kPairs);
+}
+
 }  // namespace
 }  // namespace clearance

@@ -200,6 +200,28 @@ TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirRefresh) {
   }
 }
 
+// Twenty pairs in a zone want twice the budget in every tick. The others get their share all the
+// same.
+TEST(Scheduler, UrgentPairsLeaveTheOthersTheirRefresh) {
+  for (const std::size_t published : {0u, 8u}) {
+    Scene scene = side_by_side(150);
+    Zone zone = test::zone_over(scene, 1000.0, 1000.0);
+    zone.pairs.resize(20);
+    scene.zones = {zone};
+    for (std::size_t p = 20; p < 20 + published; ++p) scene.pairs[p].publish = true;
+    scene.refresh_s = 0.05;
+    scene.budget = 10;
+    ASSERT_LE(refresh_share(scene).queries(), scene.budget);
+    Monitor monitor(scene);
+    for (int t = 0; t < 300; ++t) {
+      const Report& report = tick_with_first_at(test::at(0, 1e-4 * t, 0), t, monitor);
+      if (t > 100) {
+        ASSERT_LE(report.oldest_evaluation_cycles, 50u) << published << ", tick " << t;
+      }
+    }
+  }
+}
+
 TEST(Scheduler, PublishedPairsAreEvaluatedAfterWhatIsUrgentWhenTheBudgetDoesNotCoverBoth) {
   Scene scene = far_apart(20);
   for (std::size_t p = 10; p < 14; ++p) scene.pairs[p].publish = true;

@@ -175,6 +175,33 @@ TEST(SweptSearch, AFloorThatTurnsIsBoundedAsSeenFromTheFloor) {
   EXPECT_LE(bounds.lower, 0.4);
 }
 
+// A pose between two ticks is rounded, and the bounds of that instant allow for it: per metre of
+// both positions.
+TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsPose) {
+  constexpr double kFar = 0x1p20;
+  const Motion2 past{{test::at(kFar, -1, 0), test::at(kFar + 0.5, 0, 0)},
+                     {test::at(kFar, 1, 0), test::at(kFar + 0.5, 0, 0)}};
+  TwoOnTheirWay balls(test::ball(0.1), test::ball(0.1), past);
+  const SweptBounds bounds = balls.decide(0.31);
+  EXPECT_LT(bounds.upper, 0.31);
+  EXPECT_GE(bounds.upper, balls.truth(0.5).upper + 0.9 * kInterpolationError * (4.0 * kFar));
+}
+
+// A long arm turns about its end. The error of its orientation counts at the other end.
+TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsOrientation) {
+  constexpr double kLong = 0x1p10;
+  const Part tip{"tip", test::made(point(Vec3(kLong, 0, 0), 0.1)), {}};
+  const auto turned = [](double angle) {
+    return Pose{Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ()))};
+  };
+  const Pose post = test::at(kLong + 0.5, 0, 0);
+  TwoOnTheirWay arm(tip, test::ball(0.1), {{turned(-1e-3), post}, {turned(1e-3), post}});
+  const SweptBounds bounds = arm.decide(0.301);
+  EXPECT_LT(bounds.upper, 0.301);
+  const double of_place = kInterpolationError * 2.0 * (kLong + 0.5);
+  EXPECT_GE(bounds.upper, arm.truth(0.5).upper + of_place + 0.9 * kInterpolationError * kLong);
+}
+
 TEST(SweptSearch, WithoutQueriesNothingIsTold) {
   Random random(92);
   TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));

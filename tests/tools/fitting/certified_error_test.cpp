@@ -40,6 +40,18 @@ TEST(CertifiedError, CountsPointsBetweenTwoBodies) {
   EXPECT_LE(found, 1.0 / 0.98);
 }
 
+// A thin bar past two balls. The point halfway between these is none of the points that a split
+// tries, so that the greatest distance tried is less than the truth.
+TEST(CertifiedError, IsNotOnlyWhatTheTriedPointsReach) {
+  Group group;
+  group.add({.rows = {}, .points = {Vec3(0, 0, 0)}, .radius = 0.05}, {});
+  group.add({.rows = {}, .points = {Vec3(1, 0, 0)}, .radius = 0.05}, {});
+  const ConvexBody bar = test::made(box({0.535, 1e-6, 1e-6}));
+  const double found = certified_error(bar, Pose{.position = Vec3(0.435, 0, 0)}, group.placed);
+  EXPECT_GE(found, 0.45);
+  EXPECT_LE(found, 0.46);
+}
+
 TEST(CertifiedError, OfOneBodyIsReachedAtAVertex) {
   Random random(103);
   for (int round = 0; round < 25; ++round) {
