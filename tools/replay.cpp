@@ -176,6 +176,10 @@ void add_expectations(CLI::App& app, CheckArguments& arguments) {
          "the reference as written, to half a unit of its last digit")
       ->needs(reference)
       ->check(number_from_zero());
+  app.add_flag("--true-meshes", arguments.true_meshes,
+               "The reference is of the meshes themselves: our distances may be smaller by the "
+               "stated errors of both objects' parts (clearance-scene report)")
+      ->needs(reference);
 }
 
 CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {

@@ -17,11 +17,12 @@ constexpr const char* kProgram = "clearance-scene";
 
 constexpr const char* kFooter = R"(Exit status:
   0  done; a cell that was written has no errors
-  1  a file could not be read or written
+  1  a file could not be read or written, or no model of 'reduce' is within --tolerance
   2  wrong usage
   3  the cell that was written or read has errors (printed)
 
 Examples:
+  clearance-scene import panda.urdf --srdf panda.srdf --joints -o panda.yaml
   clearance-scene import panda.urdf --srdf panda.srdf --max-speed 3 -o panda.yaml
   clearance-scene import panda.urdf --max-speed 3 --add shelf.scene -o panda.yaml
   clearance-scene allow panda.urdf -o panda.srdf
@@ -49,12 +50,15 @@ CLI::App* add_import(CLI::App& app, ImportArguments& arguments) {
       ->add_option("-o,--output", arguments.output,
                    "The cell file to write; mesh paths are relative to it")
       ->required();
-  import->add_option("--group", robot.group, "Group of all links; default: the robot's name");
-  import
-      ->add_option("--max-speed", robot.max_speed,
-                   "Speed that no point of the robot exceeds, m/s; without it, bounds are unknown "
-                   "while poses are late")
-      ->check(number_from_zero());
+  CLI::Option* const group =
+      import->add_option("--group", robot.group, "Group of all links; default: the robot's name");
+  CLI::Option* const max_speed =
+      import
+          ->add_option(
+              "--max-speed", robot.max_speed,
+              "Speed that no point of the robot exceeds, m/s; without it, bounds are unknown "
+              "while poses are late")
+          ->check(number_from_zero());
   import->add_option("--age-limit-ms", robot.age_limit_ms, "Maximum age of a pose, ms")
       ->check(positive_number())
       ->capture_default_str();
@@ -66,14 +70,22 @@ CLI::App* add_import(CLI::App& app, ImportArguments& arguments) {
       ->add_option("--max-parts", robot.max_parts,
                    "Largest number of parts per mesh; default 24; 1: one hull per mesh")
       ->check(CLI::Range(1u, 64u));
-  import->add_flag("--fixed-base", robot.fixed_base,
-                   "The root link stands at the world's origin, and no pose arrives for it");
+  CLI::Option* const joints = import->add_flag(
+      "--joints", arguments.joints,
+      "Write the cell of a robot that joint states drive, as clearanced --urdf runs it, to start "
+      "from. Without it, each link is an object, and its pose has to arrive");
+  joints->excludes(group)->excludes(max_speed);
+  import
+      ->add_flag("--fixed-base", robot.fixed_base,
+                 "The root link stands at the world's origin, and no pose arrives for it")
+      ->excludes(joints);
   import
       ->add_option("--add", robot.scenes,
                    "A planning scene of MoveIt (.scene) whose obstacles the robot is watched "
                    "against; repeatable")
       ->check(CLI::ExistingFile)
-      ->allow_extra_args(false);
+      ->allow_extra_args(false)
+      ->excludes(joints);
   add_force(*import, arguments.force);
   return import;
 }

@@ -36,7 +36,7 @@ std::string solid_needs(const std::string& kind) {
   if (kind == "polyhedron") {
     return "at least four vertices, not all in one plane, or half-spaces with a common interior";
   }
-  if (kind == "mesh") return "a mesh with at least four vertices, not all in one plane";
+  if (kind == "mesh") return "a mesh with at least three vertices, not all on one line";
   return fmt::format("a {} of ordinary size", kind);
 }
 
@@ -52,6 +52,10 @@ void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& 
     const auto most =
         read_integer(*node, 1, kMostParts, "parts of a mesh at most", quantities.diagnostics());
     if (most) limits.max_parts = static_cast<std::size_t>(*most);
+  }
+  if (const YamlNode* node = map.optional("plate_thickness")) {
+    limits.plate =
+        quantities.length(*node, "the thickness of a flat mesh", kPositive).value_or(limits.plate);
   }
 }
 

@@ -28,7 +28,8 @@ struct NamedShape {
   double mesh_error = 0.0;         // the largest distance by which these exceed the mesh, m
 };
 
-// Reads `tolerance` and `max_parts` of a map; stated values replace those of `limits`.
+// Reads `tolerance`, `max_parts` and `plate_thickness` of a map; stated values replace those of
+// `limits`.
 void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& limits);
 
 // Returns the name of part i of `count` parts of one shape: "palm.3".

@@ -1,9 +1,14 @@
 #include "config/decomposition/convex_parts.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 
+#include "config/decomposition/exact_parts.hpp"
 #include "config/decomposition/part_search.hpp"
+#include "config/decomposition/shells.hpp"
 #include "config/decomposition/surface_error.hpp"
 #include "config/decomposition/triangle_tree.hpp"
 
@@ -17,6 +22,14 @@ constexpr std::size_t kFacetsOfOne = 400;
 // exceeds the tolerance, it aims lower again.
 constexpr double kAim = 0.85, kLowerAim = 0.9;
 constexpr int kAims = 3;
+
+// Shares of the tolerance.
+constexpr double kBall = 0.75;     // openings narrower than such a ball count as closed
+constexpr double kPrecise = 2e-3;  // to which errors are found
+constexpr double kExact = 0.1;     // parts that come so near need no search for fewer
+constexpr std::size_t kMostShells = 100;
+// Relative to the size: vertices so near to a plane lie in it, up to single precision.
+constexpr double kInOnePlane = 1e-6;
 
 struct Bodies {
   std::vector<ConvexBody> parts;
@@ -33,32 +46,105 @@ ConvexParts vertices_of(const Bodies& bodies) {
   return result;
 }
 
-Bodies judged(std::vector<ConvexBody> parts, const TriangleTree& tree) {
-  const double error = surface_error(parts, tree);
+Bodies judged(std::vector<ConvexBody> parts, const TriangleTree& tree, double tolerance,
+              double enough = kInfinity) {
+  const double error = surface_error(parts, tree, kPrecise * tolerance, enough);
   return {std::move(parts), error, false};
 }
 
 // Returns one part, with as few facets as the tolerance allows.
 Bodies one_part(ConvexBody hull, const TriangleTree& tree, double tolerance) {
-  Bodies whole = judged({std::move(hull)}, tree);
+  Bodies whole = judged({std::move(hull)}, tree, tolerance);
   whole.is_hull = true;
   if (whole.parts[0].facets.size() <= kFacetsOfOne) return whole;
-  Bodies fewer = judged({with_fewer_facets(whole.parts[0], tolerance)}, tree);
+  Bodies fewer = judged({with_fewer_facets(whole.parts[0], tolerance)}, tree, tolerance);
   return fewer.error <= std::max(tolerance, whole.error) ? fewer : whole;
 }
 
-Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const PartLimits& limits) {
-  PartSearch search(mesh, limits);
+// A lower number of parts is tried as well where the error is too large: joining may leave less.
+void improve(PartSearch& search, const TriangleTree& tree, double tolerance, Bodies& best) {
+  while (best.error > tolerance && search.join_two()) {
+    Bodies found = judged(search.parts(), tree, tolerance, best.error);
+    if (found.error < best.error) best = std::move(found);
+  }
+}
+
+Bodies searched_parts(const TriangleMesh& mesh, const TriangleTree& tree, const OpenSpace& space,
+                      std::span<const ConvexCell> cells, const PartLimits& limits) {
+  PartSearch search(mesh, space, cells, limits);
   Bodies best;
   double aim = kAim * limits.tolerance;
   for (int round = 0; round < kAims && best.error > limits.tolerance; ++round) {
-    Bodies found = judged(search.parts(aim), tree);
+    search.search(aim);
+    Bodies found = judged(search.parts(), tree, limits.tolerance, best.error);
     const bool no_more = found.parts.size() >= limits.max_parts;
     aim *= std::clamp(kLowerAim * limits.tolerance / found.error, 0.5, 0.9);
     if (found.error < best.error) best = std::move(found);
+    if (no_more) improve(search, tree, limits.tolerance, best);
     if (no_more) break;
   }
   return best;
+}
+
+// Exact parts come first. A mesh of very many shells is searched as a whole.
+Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const PartLimits& limits) {
+  const OpenSpace space(mesh, kBall * limits.tolerance);
+  const std::vector<TriangleMesh> shells = shells_of(mesh);
+  if (shells.size() > kMostShells) {
+    const ConvexCell whole = ConvexCell::around(mesh);
+    return searched_parts(mesh, tree, space, {&whole, 1}, limits);
+  }
+  const ConvexPieces pieces = convex_pieces(shells, space, limits);
+  std::vector<ConvexBody> exact = exact_parts(pieces, mesh, space);
+  if (!exact.empty() && exact.size() <= limits.max_parts) {
+    Bodies bodies = judged(std::move(exact), tree, limits.tolerance);
+    if (bodies.error <= kExact * limits.tolerance) return bodies;
+  }
+  return searched_parts(mesh, tree, space, pieces.cells, limits);
+}
+
+// Returns the normal of the plane that all vertices lie in, up to single precision. Returns nothing
+// if they do not, or lie on one line.
+std::optional<Vec3> plane_of(const std::vector<Vec3>& vertices) {
+  const auto farthest = [&](const auto& distance) {
+    return *std::ranges::max_element(vertices, {}, distance);
+  };
+  const Vec3 a = vertices[0];
+  const Vec3 b = farthest([&](const Vec3& v) { return (v - a).squaredNorm(); });
+  const double size = (b - a).norm();
+  const Vec3 c = farthest([&](const Vec3& v) { return (b - a).cross(v - a).squaredNorm(); });
+  const Vec3 across = (b - a).cross(c - a);
+  if (!(across.norm() > kInOnePlane * size * size)) return std::nullopt;
+  const Vec3 normal = across.normalized();
+  const bool flat = std::ranges::all_of(
+      vertices, [&](const Vec3& v) { return std::abs(normal.dot(v - a)) <= kInOnePlane * size; });
+  return flat ? std::optional(normal) : std::nullopt;
+}
+
+// Returns a prism around each triangle. Prisms are shells, so no part divides one. If they are too
+// many for that, the flat mesh itself is added, so that the parts hold it in any case.
+TriangleMesh plate_of(const TriangleMesh& flat, const Vec3& normal, double thickness) {
+  const Vec3 up = 0.5 * thickness * normal;
+  TriangleMesh plate;
+  for (const Vec3& v : flat.vertices) {
+    plate.vertices.push_back(v - up);
+    plate.vertices.push_back(v + up);
+  }
+  for (const auto& [a, b, c] : flat.triangles) {
+    plate.triangles.push_back({2 * a, 2 * c, 2 * b});
+    plate.triangles.push_back({2 * a + 1, 2 * b + 1, 2 * c + 1});
+    for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)}) {
+      plate.triangles.push_back({2 * from, 2 * to, 2 * to + 1});
+      plate.triangles.push_back({2 * from, 2 * to + 1, 2 * from + 1});
+    }
+  }
+  if (flat.triangles.size() <= kMostShells) return plate;
+  const auto first = static_cast<std::uint32_t>(plate.vertices.size());
+  plate.vertices.insert(plate.vertices.end(), flat.vertices.begin(), flat.vertices.end());
+  for (const auto& [a, b, c] : flat.triangles) {
+    plate.triangles.push_back({first + a, first + b, first + c});
+  }
+  return plate;
 }
 
 }  // namespace
@@ -66,6 +152,12 @@ Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const P
 std::variant<ConvexParts, ShapeError> convex_parts(const TriangleMesh& mesh,
                                                    const PartLimits& limits,
                                                    const std::function<void()>& begin) {
+  if (const auto normal = plane_of(mesh.vertices)) {
+    auto parts = convex_parts(plate_of(mesh, *normal, limits.plate), limits, begin);
+    // The parts are as near to the plate as stated, and the plate to the mesh.
+    if (auto* made = std::get_if<ConvexParts>(&parts)) made->error += 0.5 * limits.plate;
+    return parts;
+  }
   ShapeResult hull = polyhedron_from_vertices(mesh.vertices);
   if (auto* error = std::get_if<ShapeError>(&hull)) return std::move(*error);
   const TriangleTree tree(mesh);

@@ -5,7 +5,8 @@
 // Wei and others, "Approximate convex decomposition for 3D meshes with collision-aware concavity",
 // 2022). The search is approximate, but its result is certified. Every triangle is clipped by the
 // planes of its cell, and each part is the exact hull of its points. The cells overlap. The error
-// is certified afterwards (surface_error.hpp). The same mesh gives the same parts.
+// is certified afterwards (surface_error.hpp). The same mesh gives the same parts. A flat mesh
+// becomes a plate: the solid between two copies of it.
 #pragma once
 
 #include <functional>
@@ -27,7 +28,8 @@ struct ConvexParts {
   bool is_hull = false;  // the only part is the mesh's hull: no search was needed
 };
 
-// Returns parts whose union holds every triangle of the mesh, or an error where the mesh is flat.
+// Returns parts whose union holds every triangle of the mesh, or an error where all vertices lie on
+// one line.
 // `begin` is called before a search that may take seconds.
 [[nodiscard]] std::variant<ConvexParts, ShapeError> convex_parts(
     const TriangleMesh& mesh, const PartLimits& limits = {},

@@ -5,6 +5,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "config/decomposition/in_parallel.hpp"
@@ -15,6 +16,10 @@ namespace {
 
 constexpr std::size_t kSlabs = 14;
 constexpr std::size_t kMostFaceCuts = 48;
+// Weights of an uneven cut and of a long one, as shares of the open space.
+constexpr double kUneven = 0.1, kLong = 2.0;
+constexpr double kGain = 0.85;  // a cut that leaves less of the open space is good as it is
+constexpr double kAtCut = 1.5;  // points so near to a plane are cut by it; times the spacing
 constexpr double kWithin = 0.8, kBeside = 0.6;  // of the tolerance
 constexpr std::size_t kMostOpen = 1500;         // points of the open space that compare cuts
 
@@ -27,6 +32,7 @@ struct Candidate {
   HalfSpace plane;  // one side: n.x <= d
   Outline sides[2];
   OpenSum open = {};
+  double uneven = 0.0;  // of two cuts that leave as much open space the one with less is better
 };
 
 double weight(const OpenPoint& point, double tolerance) {
@@ -46,6 +52,19 @@ void add_open(const Outline& outline, const std::vector<OpenPoint>& open, double
   }
   sum.all += here;
   if (farthest - 0.5 * spacing > kWithin * tolerance) sum.unfinished += here;
+}
+
+// Returns what speaks against a cut that is as good as others: uneven sides, and a long cut through
+// the mesh. A ring is cut across its wall.
+double unevenness(const Piece& piece, const HalfSpace& plane, double spacing) {
+  double above = 0.0, at = 0.0;
+  for (const Vec3& point : piece.points) {
+    const double height = plane.normal.dot(point) - plane.offset;
+    above += height > 0.0 ? 1.0 : 0.0;
+    at += std::abs(height) < kAtCut * spacing ? 1.0 : 0.0;
+  }
+  const auto all = static_cast<double>(piece.points.size());
+  return kUneven * std::abs(2.0 * above / all - 1.0) + kLong * at / all;
 }
 
 Mat3 principal_axes(const std::vector<Vec3>& points) {
@@ -127,17 +146,27 @@ std::optional<HalfSpace> best_cut(const Piece& piece, const std::vector<HalfSpac
   std::vector<OpenPoint> open;
   for (std::size_t i = 0; i < piece.open.size(); i += step) open.push_back(piece.open[i]);
   in_parallel(candidates.size(), [&](std::size_t i) {
+    candidates[i].uneven = unevenness(piece, candidates[i].plane, spacing);
     for (const Outline& side : candidates[i].sides) {
       add_open(side, open, tolerance, spacing, candidates[i].open);
     }
   });
+  OpenSum whole;
+  add_open(piece.outline, open, tolerance, spacing, whole);
   // Both sums count. No cut through a box of sheets makes the hulls smaller, but a cut that
-  // separates a finished side is a gain as well.
-  const auto best = std::ranges::min_element(candidates, {}, [](const Candidate& candidate) {
+  // separates a finished side is a gain as well. Where all cuts are alike, as for a ring, one
+  // through the middle is best: its halves can be cut further.
+  const auto plain = [](const Candidate& candidate) {
     return candidate.open.all + candidate.open.unfinished;
-  });
+  };
+  const auto best = std::ranges::min_element(candidates, {}, plain);
   if (best == candidates.end()) return std::nullopt;
-  return best->plane;
+  if (plain(*best) < kGain * (whole.all + whole.unfinished)) return best->plane;
+  return std::ranges::min_element(candidates, {},
+                                  [&](const Candidate& candidate) {
+                                    return plain(candidate) * (1.0 + candidate.uneven);
+                                  })
+      ->plane;
 }
 
 }  // namespace clearance

@@ -15,13 +15,14 @@ namespace clearance {
 namespace {
 
 // Shares of the tolerance.
-constexpr double kBall = 0.75;        // openings narrower than such a ball count as closed
 constexpr double kLeastOpen = 0.3;    // points nearer to the mesh are no error
 constexpr double kSimplified = 0.06;  // the largest distance by which vertices of a body with fewer
                                       // facets may exceed it
 
-constexpr std::size_t kFacets = 96;  // of a part, at most
+constexpr std::size_t kFacets = 96;         // of a part, at most
+constexpr std::size_t kFacetsOfShell = 32;  // of a whole shell's hull that is kept as it is
 constexpr std::size_t kPiecesAPart = 3;
+constexpr std::size_t kUsualParts = 24;  // the search does not depend on lower numbers allowed
 
 // A share of a body's size: more than clipping and rounding can move a point, and negligible as a
 // distance.
@@ -66,25 +67,21 @@ ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
   return hull;
 }
 
-PartSearch::PartSearch(const TriangleMesh& mesh, const PartLimits& limits)
-    : mesh_(mesh),
-      limits_(limits),
-      space_(mesh, kBall * limits.tolerance),
-      faces_(large_faces(mesh, limits.tolerance)) {
-  for (const Vec3& vertex : mesh.vertices) box_.extend(vertex);
-  pieces_ = {whole()};
-  open_ = pieces_[0].open;
+PartSearch::PartSearch(const TriangleMesh& mesh, const OpenSpace& space,
+                       std::span<const ConvexCell> cells, const PartLimits& limits)
+    : limits_(limits),
+      space_(space),
+      faces_(large_faces(mesh, limits.tolerance)),
+      open_(space.points(kLeastOpen * limits.tolerance)) {
+  for (const ConvexCell& cell : cells) pieces_.push_back(piece_of(cell));
 }
 
-// Returns the points of the mesh, one a cell of the open space's grid, and its box.
-Piece PartSearch::whole() const {
+// Returns the points of the mesh in the cell, one a cell of the open space's grid, and where it
+// crosses the cell's planes.
+Piece PartSearch::piece_of(const ConvexCell& cell) const {
   Piece piece;
-  piece.cells.emplace_back();
-  for (int axis = 0; axis < 3; ++axis) {
-    piece.cells[0].planes.push_back({Vec3::Unit(axis), box_.max()[axis]});
-    piece.cells[0].planes.push_back({-Vec3::Unit(axis), -box_.min()[axis]});
-  }
-  const double spacing = space_.spacing();
+  piece.cells = {cell};
+  const double spacing = space_.spacing(), overlap = kOverlap * limits_.tolerance;
   std::vector<std::pair<std::array<long, 3>, Vec3>> points;
   const auto add = [&](const Vec3& point) {
     points.emplace_back(
@@ -92,17 +89,22 @@ Piece PartSearch::whole() const {
                    std::lround(point.z() / spacing)},
         point);
   };
-  for (const Vec3& vertex : mesh_.vertices) add(vertex);
-  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-    subdivide(mesh_.triangle(i), 4.0 * spacing, [&](const Triangle& t) {
+  for (const Vec3& vertex : cell.mesh->vertices) add(vertex);
+  for (std::size_t i = 0; i < cell.mesh->triangles.size(); ++i) {
+    subdivide(cell.mesh->triangle(i), 4.0 * spacing, [&](const Triangle& t) {
       for (const Vec3& corner : t) add(corner);
     });
   }
   std::ranges::stable_sort(points, [](const auto& a, const auto& b) { return a.first < b.first; });
+  const std::span cuts = std::span(cell.planes).subspan(ConvexCell::kBoxPlanes);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    if (i == 0 || points[i].first != points[i - 1].first) piece.points.push_back(points[i].second);
+    if (i > 0 && points[i].first == points[i - 1].first) continue;
+    if (holds(cuts, points[i].second, overlap)) piece.points.push_back(points[i].second);
   }
-  piece.finish(space_.points(kLeastOpen * limits_.tolerance), spacing);
+  for (const HalfSpace& plane : cuts) add_rim(plane, piece);
+  const std::vector<Vec3> corners = cell.corners_within(space_, overlap);
+  piece.points.insert(piece.points.end(), corners.begin(), corners.end());
+  piece.finish(open_, spacing);
   return piece;
 }
 
@@ -111,8 +113,9 @@ Piece PartSearch::whole() const {
 void PartSearch::add_rim(const HalfSpace& plane, Piece& piece) const {
   const double near = 1e-6 * space_.spacing();
   const auto above = [&](const Vec3& point) { return plane.normal.dot(point) - plane.offset; };
-  for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-    const Triangle triangle = mesh_.triangle(i);
+  const TriangleMesh& mesh = *piece.cells[0].mesh;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle triangle = mesh.triangle(i);
     const double heights[] = {above(triangle[0]), above(triangle[1]), above(triangle[2])};
     const auto [low, high] = std::ranges::minmax(heights);
     if (low > 0.0 || high < 0.0) continue;
@@ -146,7 +149,7 @@ std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const
 
 // The worst piece is split first.
 void PartSearch::split(double aim) {
-  while (pieces_.size() < kPiecesAPart * limits_.max_parts) {
+  while (pieces_.size() < kPiecesAPart * std::max(kUsualParts, limits_.max_parts)) {
     const auto worst = std::ranges::max_element(
         pieces_, [](const Piece& a, const Piece& b) { return a.error < b.error; });
     if (worst->error <= aim) return;
@@ -157,9 +160,9 @@ void PartSearch::split(double aim) {
   }
 }
 
-// Returns the error of the hull of both. If that exceeds `enough`, returns any error above
-// `enough`.
-double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) const {
+// Returns the error of the hull of both, or a bound above `enough` where it is larger.
+PartSearch::JointError PartSearch::joint_error(const Piece& a, const Piece& b,
+                                               double enough) const {
   Outline outline = a.outline;
   outline.add(b.outline);
   const std::vector<Vec3> points = outline.points();
@@ -176,52 +179,74 @@ double PartSearch::joint_error(const Piece& a, const Piece& b, double enough) co
       continue;
     }
     error = point.distance - near;
-    if (error > enough) return error;
+    if (error > enough) return {error, false};
   }
-  return error;
+  return {error, true};
 }
 
-// Joins the two pieces whose common hull has the least error, repeatedly.
-void PartSearch::join(double aim, std::vector<Piece>& pieces) const {
-  constexpr double kUnknown = -1.0;
-  // Row i holds the errors of piece i with each earlier one. A row and a column are removed when
-  // two are joined.
-  std::vector<std::vector<double>> errors(pieces.size());
-  for (std::size_t i = 0; i < pieces.size(); ++i) errors[i].assign(i, kUnknown);
-  while (pieces.size() > 1) {
-    const bool too_many = pieces.size() > limits_.max_parts;
-    std::vector<std::pair<std::size_t, std::size_t>> unknown;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (errors[i][j] == kUnknown) unknown.emplace_back(i, j);
-      }
+// Estimates each pair of joined pieces of which nothing is known.
+void PartSearch::estimate_joints(double enough) {
+  std::vector<std::pair<std::size_t, std::size_t>> unknown;
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (!joints_[i][j].is_exact && joints_[i][j].error == 0.0) unknown.emplace_back(i, j);
     }
-    in_parallel(unknown.size(), [&](std::size_t k) {
-      const auto [i, j] = unknown[k];
-      errors[i][j] = joint_error(pieces[i], pieces[j], too_many ? kInfinity : aim);
-    });
-    std::size_t first = 0, second = 1;
-    for (std::size_t i = 0; i < pieces.size(); ++i) {
+  }
+  in_parallel(unknown.size(), [&](std::size_t k) {
+    const auto [i, j] = unknown[k];
+    joints_[i][j] = joint_error(joined_[i].piece, joined_[j].piece, enough);
+  });
+}
+
+// Joins the two pieces whose common hull has the least error, if that is at most `most`.
+bool PartSearch::join_best(double most) {
+  if (joined_.size() < 2) return false;
+  std::size_t first = 0, second = 1;
+  for (;;) {
+    for (std::size_t i = 0; i < joints_.size(); ++i) {
       for (std::size_t j = 0; j < i; ++j) {
-        if (errors[i][j] < errors[second][first]) {
+        if (joints_[i][j].error < joints_[second][first].error) {
           first = j;
           second = i;
         }
       }
     }
-    if (errors[second][first] > aim && !too_many) return;
-    Piece& joined = pieces[first];
-    Piece& other = pieces[second];
-    joined.cells.insert(joined.cells.end(), other.cells.begin(), other.cells.end());
-    joined.outline.add(other.outline);
-    joined.error = errors[second][first];
-    const auto gone = static_cast<std::ptrdiff_t>(second);
-    pieces.erase(pieces.begin() + gone);
-    errors.erase(errors.begin() + gone);
-    for (std::size_t i = second; i < pieces.size(); ++i) errors[i].erase(errors[i].begin() + gone);
-    std::ranges::fill(errors[first], kUnknown);
-    for (std::size_t i = first + 1; i < pieces.size(); ++i) errors[i][first] = kUnknown;
+    JointError& best = joints_[second][first];
+    if (best.error > most) return false;
+    if (best.is_exact) break;
+    best = joint_error(joined_[first].piece, joined_[second].piece, kInfinity);
   }
+  Joined& joined = joined_[first];
+  const Piece& other = joined_[second].piece;
+  joined.piece.cells.insert(joined.piece.cells.end(), other.cells.begin(), other.cells.end());
+  joined.piece.outline.add(other.outline);
+  joined.piece.error = joints_[second][first].error;
+  joined.has_body = false;
+  const auto gone = static_cast<std::ptrdiff_t>(second);
+  joined_.erase(joined_.begin() + gone);
+  joints_.erase(joints_.begin() + gone);
+  for (std::size_t i = second; i < joints_.size(); ++i) {
+    joints_[i].erase(joints_[i].begin() + gone);
+  }
+  std::ranges::fill(joints_[first], JointError());
+  for (std::size_t i = first + 1; i < joints_.size(); ++i) joints_[i][first] = {};
+  return true;
+}
+
+void PartSearch::search(double aim) {
+  split(aim);
+  joined_.clear();
+  for (const Piece& piece : pieces_) joined_.push_back({piece});
+  joints_.assign(joined_.size(), {});
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].resize(i);
+  do {
+    estimate_joints(aim);
+  } while (join_best(joined_.size() > limits_.max_parts ? kInfinity : aim));
+}
+
+bool PartSearch::join_two() {
+  estimate_joints(kInfinity);
+  return join_best(kInfinity);
 }
 
 // Returns the vertices of every triangle, clipped by the piece's cells, and those vertices of the
@@ -230,8 +255,12 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   const double overlap = kOverlap * limits_.tolerance;
   std::vector<Vec3> points;
   for (const ConvexCell& cell : piece.cells) {
-    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
-      const auto polygon = clipped(mesh_.triangle(i), cell, overlap);
+    if (cell.is_whole()) {
+      points.insert(points.end(), cell.mesh->vertices.begin(), cell.mesh->vertices.end());
+      continue;
+    }
+    for (std::size_t i = 0; i < cell.mesh->triangles.size(); ++i) {
+      const auto polygon = clipped(cell.mesh->triangle(i), cell, overlap);
       points.insert(points.end(), polygon.begin(), polygon.end());
     }
     const std::vector<Vec3> corners = cell.corners_within(space_, overlap);
@@ -240,21 +269,26 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   return points;
 }
 
-std::vector<ConvexBody> PartSearch::parts(double aim) {
-  split(aim);
-  std::vector<Piece> pieces = pieces_;
-  join(aim, pieces);
-  std::vector<std::optional<ConvexBody>> made(pieces.size());
-  in_parallel(pieces.size(), [&](std::size_t i) {
-    const std::vector<Vec3> points = points_of(pieces[i]);
-    if (points.empty()) return;
-    auto hull = body_of(points);
-    if (!hull) hull = body_of(thickened(points, kOverlap * limits_.tolerance));
-    if (hull) made[i] = with_fewer_facets(*std::move(hull), limits_.tolerance);
+// The hull of whole shells stays as it is, as long as it has few facets.
+std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece) const {
+  const std::vector<Vec3> points = points_of(piece);
+  if (points.empty()) return std::nullopt;
+  auto hull = body_of(points);
+  if (!hull) hull = body_of(thickened(points, kOverlap * limits_.tolerance));
+  if (!hull) return std::nullopt;
+  const bool is_whole = std::ranges::all_of(piece.cells, &ConvexCell::is_whole);
+  if (is_whole && hull->facets.size() <= kFacetsOfShell) return hull;
+  return with_fewer_facets(*std::move(hull), limits_.tolerance);
+}
+
+std::vector<ConvexBody> PartSearch::parts() {
+  in_parallel(joined_.size(), [&](std::size_t i) {
+    if (std::exchange(joined_[i].has_body, true)) return;
+    joined_[i].body = body_of_piece(joined_[i].piece);
   });
   std::vector<ConvexBody> parts;
-  for (auto& part : made) {
-    if (part) parts.push_back(*std::move(part));
+  for (const Joined& joined : joined_) {
+    if (joined.body) parts.push_back(*joined.body);
   }
   return parts;
 }

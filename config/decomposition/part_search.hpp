@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -12,31 +13,56 @@
 
 namespace clearance {
 
+// The pieces do not depend on the number of parts that is allowed, as long as that is at most
+// kUsualParts, and are joined in one order. So more parts are an earlier stage of the same search.
 class PartSearch {
  public:
-  PartSearch(const TriangleMesh& mesh, const PartLimits& limits);
+  // Begins with the pieces of a mesh in `cells`, which hold all of it. `space` is that of the mesh.
+  PartSearch(const TriangleMesh& mesh, const OpenSpace& space, std::span<const ConvexCell> cells,
+             const PartLimits& limits);
 
-  // Returns parts whose estimated error is at most `aim`, or as many parts as the limits allow.
-  // Together they hold every triangle. A call with a lower aim continues with the pieces of the
-  // call before.
-  std::vector<ConvexBody> parts(double aim);
+  // Splits pieces until the estimated error of each is at most `aim`, or there are too many. Then
+  // joins pieces as long as the error stays below `aim`, or as there are more than the limits
+  // allow. A call with a lower aim continues with the pieces of the call before.
+  void search(double aim);
+
+  // Joins two parts more. Returns false when one is left.
+  bool join_two();
+
+  // Returns the parts found. Together they hold every triangle.
+  [[nodiscard]] std::vector<ConvexBody> parts();
 
  private:
-  [[nodiscard]] Piece whole() const;
+  // The error of the hull of two pieces: a lower bound, or the estimate itself.
+  struct JointError {
+    double error = 0.0;
+    bool is_exact = false;
+  };
+  // A piece after joining, and its body once that was made.
+  struct Joined {
+    Piece piece;
+    std::optional<ConvexBody> body = {};
+    bool has_body = false;  // `body` is empty where the piece holds no triangle
+  };
+
+  [[nodiscard]] Piece piece_of(const ConvexCell& cell) const;
   void split(double aim);
   [[nodiscard]] std::optional<std::pair<Piece, Piece>> cut(const Piece& piece) const;
   void add_rim(const HalfSpace& plane, Piece& piece) const;
-  [[nodiscard]] double joint_error(const Piece& a, const Piece& b, double enough) const;
-  void join(double aim, std::vector<Piece>& pieces) const;
+  [[nodiscard]] JointError joint_error(const Piece& a, const Piece& b, double enough) const;
+  void estimate_joints(double enough);
+  bool join_best(double most);
   [[nodiscard]] std::vector<Vec3> points_of(const Piece& piece) const;
+  [[nodiscard]] std::optional<ConvexBody> body_of_piece(const Piece& piece) const;
 
-  const TriangleMesh& mesh_;
   PartLimits limits_;
-  OpenSpace space_;
-  Eigen::AlignedBox3d box_;
+  const OpenSpace& space_;
   std::vector<HalfSpace> faces_;  // candidates for cuts
   std::vector<OpenPoint> open_;   // in the hull of the whole
   std::vector<Piece> pieces_;     // before joining
+  std::vector<Joined> joined_;
+  // Row i holds the errors of joined piece i with each earlier one.
+  std::vector<std::vector<JointError>> joints_;
 };
 
 // Returns a body that holds `hull` and exceeds it by a small share of the tolerance.

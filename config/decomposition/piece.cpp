@@ -63,6 +63,17 @@ std::vector<Vec3> Outline::points() const {
   return points;
 }
 
+ConvexCell ConvexCell::around(const TriangleMesh& mesh) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& vertex : mesh.vertices) box.extend(vertex);
+  ConvexCell cell{&mesh, {}};
+  for (int axis = 0; axis < 3; ++axis) {
+    cell.planes.push_back({Vec3::Unit(axis), box.max()[axis]});
+    cell.planes.push_back({-Vec3::Unit(axis), -box.min()[axis]});
+  }
+  return cell;
+}
+
 // A vertex is an intersection of three planes that no other plane cuts off.
 std::vector<Vec3> ConvexCell::corners_within(const OpenSpace& space, double margin) const {
   std::vector<Vec3> corners;
@@ -71,7 +82,7 @@ std::vector<Vec3> ConvexCell::corners_within(const OpenSpace& space, double marg
     for (std::size_t j = i + 1; j < planes.size(); ++j) {
       const Vec3 line = planes[i].normal.cross(planes[j].normal);
       if (line.norm() < 1e-6) continue;
-      for (std::size_t k = j + 1; k < planes.size(); ++k) {
+      for (std::size_t k = std::max(j + 1, kBoxPlanes); k < planes.size(); ++k) {
         Mat3 normals;
         normals << planes[i].normal.transpose(), planes[j].normal.transpose(),
             planes[k].normal.transpose();

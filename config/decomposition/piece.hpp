@@ -31,12 +31,21 @@ class Outline {
   std::array<Vec3, kDirections> farthest_;
 };
 
-// A convex cell: the piece of the mesh, and of the space that it encloses, between these planes.
+// A convex cell: the piece of a mesh, and of the space that it encloses, between these planes.
 struct ConvexCell {
-  std::vector<HalfSpace> planes;  // n.x <= d; those of the mesh's box first
+  static constexpr std::size_t kBoxPlanes = 6;  // the first planes are those of the mesh's box
+
+  const TriangleMesh* mesh = nullptr;
+  std::vector<HalfSpace> planes;  // n.x <= d
+
+  // The cell of all of a mesh.
+  [[nodiscard]] static ConvexCell around(const TriangleMesh& mesh);
+
+  // Tells whether no plane cuts the mesh.
+  [[nodiscard]] bool is_whole() const { return planes.size() == kBoxPlanes; }
 
   // Returns those vertices of the cell, widened by `margin`, that lie in space which the mesh
-  // encloses. They belong to no triangle.
+  // encloses. They belong to no triangle. Vertices of the mesh's box are left out.
   [[nodiscard]] std::vector<Vec3> corners_within(const OpenSpace& space, double margin) const;
 };
 

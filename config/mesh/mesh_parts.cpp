@@ -19,7 +19,7 @@ namespace {
 
 // A version number. It is raised when the same mesh would be split differently, so that kept parts
 // are made anew.
-constexpr int kMethod = 3;
+constexpr int kMethod = 4;
 
 // s. A hull that took less time is not kept, but computed anew at every start.
 constexpr double kWorthKeeping = 0.1;
@@ -28,10 +28,10 @@ constexpr double kWorthKeeping = 0.1;
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
   hash.add(bytes);
-  hash.add(fmt::format("{} {} {:a} {:a} {:a} {} {:a} {:a} {}", kMethod,
+  hash.add(fmt::format("{} {} {:a} {:a} {:a} {} {:a} {:a} {} {:a}", kMethod,
                        std::filesystem::path(use.file).extension().string(), use.scale.x(),
                        use.scale.y(), use.scale.z(), static_cast<int>(use.unit), use.reach,
-                       use.limits.tolerance, use.limits.max_parts));
+                       use.limits.tolerance, use.limits.max_parts, use.limits.plate));
   return fmt::format("{:016x}", hash.value());
 }
 
@@ -208,7 +208,10 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
       "mm: raise {} in {}",
       path_of(use).filename().string(), counted(parts.shapes.size(), "part"), 1e3 * parts.error,
       1e3 * use.limits.tolerance, limits,
-      advice_ == Advice::kCell ? "the cell" : "a cell, which clearance-scene import writes"));
+      advice_ == Advice::kCell
+          ? "the cell"
+          : "a cell: 'clearance-scene import URDF --joints -o CELL.yaml' writes the one of this "
+            "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it"));
 }
 
 std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {

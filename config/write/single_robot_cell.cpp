@@ -19,8 +19,11 @@ std::string name_of(const std::filesystem::path& urdf) {
   return name.empty() ? "robot" : name;
 }
 
-std::string absolute_text(const std::filesystem::path& path) {
-  return std::filesystem::absolute(path).lexically_normal().string();
+std::string path_text(const std::filesystem::path& path, const SingleRobotOptions& options) {
+  const auto absolute = std::filesystem::absolute(path).lexically_normal();
+  if (options.directory.empty()) return absolute.string();
+  const auto from = std::filesystem::absolute(options.directory).lexically_normal();
+  return absolute.lexically_relative(from).string();
 }
 
 }  // namespace
@@ -33,18 +36,25 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
       << "length" << YAML::Value << "m" << YAML::Key << "angle" << YAML::Value << "rad"
       << YAML::EndMap;
   out << YAML::Key << "defaults" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
-      << "age_limit_ms" << YAML::Value << options.age_limit_ms << YAML::EndMap;
+      << "age_limit_ms" << YAML::Value << options.age_limit_ms;
+  if (options.mesh_tolerance) {
+    out << YAML::Key << "tolerance" << YAML::Value << shortest(*options.mesh_tolerance);
+  }
+  if (options.max_parts) out << YAML::Key << "max_parts" << YAML::Value << *options.max_parts;
+  out << YAML::EndMap;
   out << YAML::Key << "robots" << YAML::Value << YAML::BeginSeq << YAML::BeginMap;
   out << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted << name;
-  out << YAML::Key << "urdf" << YAML::Value << YAML::DoubleQuoted << absolute_text(options.urdf);
+  out << YAML::Key << "urdf" << YAML::Value << YAML::DoubleQuoted
+      << path_text(options.urdf, options);
   if (!options.srdf.empty()) {
-    out << YAML::Key << "srdf" << YAML::Value << YAML::DoubleQuoted << absolute_text(options.srdf);
+    out << YAML::Key << "srdf" << YAML::Value << YAML::DoubleQuoted
+        << path_text(options.srdf, options);
   }
   if (!options.packages.empty()) {
     out << YAML::Key << "packages" << YAML::Value << YAML::BeginMap;
     for (const auto& [package, directory] : options.packages) {
       out << YAML::Key << YAML::DoubleQuoted << package << YAML::Value << YAML::DoubleQuoted
-          << absolute_text(directory);
+          << path_text(directory, options);
     }
     out << YAML::EndMap;
   }

@@ -1,7 +1,9 @@
-// Makes the cell of one robot and nothing else, from a URDF without a cell file.
+// Makes the cell of one robot and nothing else, from a URDF without a cell file. The robot is
+// driven by joint states.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,10 +18,15 @@ struct SingleRobotOptions {
   // The same as `packages:` of a robot in a cell.
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
   double age_limit_ms = 20.0;  // of its joints
+  // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
+  std::optional<double> mesh_tolerance = {};
+  std::optional<unsigned> max_parts = {};
+  // Of the cell, if it is to be written: paths are relative to it. Empty: they are absolute.
+  std::filesystem::path directory = {};
 };
 
 // Returns the text of the cell. The robot stands in the world, under its URDF's name, and every
-// pair of its links is watched and published. Paths are absolute.
+// pair of its links is watched and published.
 [[nodiscard]] std::string single_robot_cell(const SingleRobotOptions& options);
 
 // Reads that text; the errors name the URDF, and its lines where they are of one.

@@ -32,7 +32,7 @@ std::int64_t whole_ns(double seconds) {
 std::optional<ReferenceCheck> reference_of(const Scene& scene,
                                            const OfflineReplayOptions& options) {
   if (options.reference.empty()) return std::nullopt;
-  return ReferenceCheck(scene, options.reference, options.tolerance);
+  return ReferenceCheck(scene, options.reference, options.tolerance, options.mesh_errors);
 }
 
 // Added to the text of a difference when another build may be the reason.

@@ -67,6 +67,9 @@ struct OfflineReplayOptions {
   // The tolerance of a reference, m: distances and bounds may differ by that much. Not stated:
   // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
   std::optional<double> tolerance = {};
+  // The reference is of the meshes themselves: by an object's name, the error of its parts, m
+  // (CellOptions::mesh_errors). Our distances may be smaller by it. Empty: it is of the parts.
+  std::map<std::string, double> mesh_errors = {};
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
   std::function<bool()> stop = {};  // asked before every tick: true ends the replay there

@@ -4,10 +4,14 @@
 // times not going back. Either object may come first. If the reference is 0, the bodies touch or
 // overlap, and a penetration depth of ours counts as 0. The reference is taken to be rounded to the
 // digits written.
+//
+// A reference may be of the meshes themselves, where ours is of parts that contain them. It may
+// then exceed ours by the stated errors of both objects' parts.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,8 +32,11 @@ inline constexpr double kReferenceTolerance = 1e-6;  // m
 class ReferenceCheck {
  public:
   // Reads the whole table; what is wrong with it is in error(). The scene must outlive this.
+  // `mesh_errors`: by an object's name, the distance by which a reference may exceed ours, m
+  // (CellOptions::mesh_errors); empty: the reference is of the parts.
   ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
-                 std::optional<double> tolerance = std::nullopt);
+                 std::optional<double> tolerance = std::nullopt,
+                 const std::map<std::string, double>& mesh_errors = {});
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
@@ -46,8 +53,13 @@ class ReferenceCheck {
     std::int64_t t_ns = 0;
     std::uint32_t pair = 0;
     double distance = 0.0, rounding = 0.0;  // m
+    double mesh_error = 0.0;                // m: the distance of the parts may be smaller by this
   };
 
+  // The least distance of ours that the reference and the errors of meshes allow, m.
+  [[nodiscard]] static double least_allowed(const Value& value);
+  // How far our distance is from what is allowed, m.
+  [[nodiscard]] static double difference_from(const Value& value, double ours);
   void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
 
   const Scene& scene_;

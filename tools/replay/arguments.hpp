@@ -51,6 +51,7 @@ struct CheckArguments {
   bool compare = false;
   std::string reference;            // a table of distances; empty: none
   std::optional<double> tolerance;  // m; of the reference
+  bool true_meshes = false;         // the reference is of meshes, not of their parts
   bool compare_bounds = false;
   std::optional<double> expect_min_distance;
   std::vector<std::string> expect_no_zone;

@@ -31,9 +31,9 @@ namespace {
 void say(const std::string& text) { print(stderr, "clearance-replay: {}\n", text); }
 
 // The robot of the command line, or the robot that the bag describes, as a cell.
-std::optional<CellResult> read_robot(const CheckArguments& arguments) {
+std::optional<CellResult> read_robot(const CheckArguments& arguments, const CellOptions& options) {
   SingleRobotOptions robot = arguments.robot;
-  if (!robot.urdf.empty()) return read_single_robot(robot);
+  if (!robot.urdf.empty()) return read_single_robot(robot, options);
   const std::optional<std::string> described = robot_description(arguments.recording());
   if (!described) {
     say(
@@ -43,21 +43,24 @@ std::optional<CellResult> read_robot(const CheckArguments& arguments) {
     return std::nullopt;
   }
   robot.urdf = keep_robot_description(*described);
-  return read_single_robot(robot);
+  return read_single_robot(robot, options);
 }
 
 // The cell of the command line, or the cell in the recording.
-std::optional<CellResult> find_cell(const CheckArguments& arguments) {
-  if (!arguments.cell.empty()) return read_cell(arguments.cell, told_on_stderr());
+std::optional<CellResult> find_cell(const CheckArguments& arguments,
+                                    std::map<std::string, double>& mesh_errors) {
+  CellOptions options = told_on_stderr();
+  options.mesh_errors = &mesh_errors;
+  if (!arguments.cell.empty()) return read_cell(arguments.cell, options);
   if (!arguments.robot.urdf.empty() || is_input_log(arguments.recording())) {
-    return read_robot(arguments);
+    return read_robot(arguments, options);
   }
   const RecordingOutline found = outline(arguments.recording());
   if (!found.error.empty()) {
     say(found.error);
     return std::nullopt;
   }
-  std::optional<CellResult> cell = recorded_cell(arguments.recording(), found, told_on_stderr());
+  std::optional<CellResult> cell = recorded_cell(arguments.recording(), found, options);
   if (!cell) say("the recording holds no cell: give one with --cell");
   return cell;
 }
@@ -165,7 +168,8 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
   return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
 }
 
-int replay_in(Cell& cell, const CheckArguments& arguments, StopSignal& stop) {
+int replay_in(Cell& cell, const CheckArguments& arguments,
+              const std::map<std::string, double>& mesh_errors, StopSignal& stop) {
   std::map<std::string, double> joints;
   if (const auto wrong = read_joint_positions(arguments.joints, joints); !wrong.empty()) {
     say(wrong);
@@ -188,6 +192,7 @@ int replay_in(Cell& cell, const CheckArguments& arguments, StopSignal& stop) {
   ProgressBar bar(arguments.span.progress);
   OfflineReplayOptions options = options_of(arguments);
   options.joints = joints;
+  options.mesh_errors = mesh_errors;
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
@@ -229,7 +234,8 @@ int check_recording(const CheckArguments& arguments, StopSignal& stop) {
     }
     if (!can_create("clearance-replay", output, arguments.force)) return kFailed;
   }
-  std::optional<CellResult> read = find_cell(arguments);
+  std::map<std::string, double> mesh_errors;
+  std::optional<CellResult> read = find_cell(arguments, mesh_errors);
   if (!read) return kFailed;
   std::optional<Cell> cell = cell_or_errors(std::move(*read));
   if (!cell) {
@@ -241,7 +247,8 @@ int check_recording(const CheckArguments& arguments, StopSignal& stop) {
     return kBadCell;
   }
   cell->scene.gradients = cell->scene.gradients || arguments.gradients;
-  return replay_in(*cell, arguments, stop);
+  if (!arguments.true_meshes) mesh_errors.clear();
+  return replay_in(*cell, arguments, mesh_errors, stop);
 }
 
 }  // namespace clearance

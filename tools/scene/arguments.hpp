@@ -13,6 +13,7 @@ namespace clearance {
 
 struct ImportArguments {
   RobotCellOptions robot;
+  bool joints = false;  // the cell of a robot that is driven by joint states
   std::string output;
   bool force = false;
 };

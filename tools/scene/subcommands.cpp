@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -43,6 +44,16 @@ int write_cell(const std::string& yaml, const std::string& output) {
   return kOk;
 }
 
+std::string joint_cell(const RobotCellOptions& robot) {
+  return single_robot_cell({.urdf = robot.urdf,
+                            .srdf = robot.srdf,
+                            .packages = robot.packages,
+                            .age_limit_ms = robot.age_limit_ms,
+                            .mesh_tolerance = robot.mesh_tolerance,
+                            .max_parts = robot.max_parts,
+                            .directory = robot.directory});
+}
+
 // kOk, or the exit code after the reason has gone to stderr.
 int check_output(const RobotCellOptions& robot, const std::string& output, bool force) {
   if (!output_is_not_an_input(kProgram, output, {robot.urdf, robot.srdf})) return kUsage;
@@ -57,6 +68,21 @@ std::vector<SampledPair> sample_with_progress(const Scene& scene, SamplingOption
 
 std::filesystem::path page_beside(std::filesystem::path svg) {
   return svg.replace_extension(".md");
+}
+
+// Tells of bodies for which no model keeps the tolerance.
+bool said_if_none_chosen(const std::vector<Reduction>& bodies, const ReductionOptions& options) {
+  bool said = false;
+  for (const Reduction& body : bodies) {
+    if (!options.tolerance || body.chosen) continue;
+    said = true;
+    const auto best = std::ranges::min_element(body.models, {}, &ReducedModel::error);
+    print(stderr,
+          "{}: no model is within the tolerance of {:g} m; the nearest is '{}', with {:.5f} m. "
+          "Raise --tolerance, or take its parts from a cell's mesh with more 'max_parts'\n",
+          body.name, *options.tolerance, best->name, rounded_up_error(best->error));
+  }
+  return said;
 }
 
 int write_picture(const std::vector<Reduction>& bodies, const ReduceArguments& arguments) {
@@ -75,6 +101,7 @@ int import_robot(ImportArguments arguments) {
   const int refused = check_output(arguments.robot, arguments.output, arguments.force);
   if (refused != kOk) return refused;
   arguments.robot.directory = std::filesystem::absolute(arguments.output).parent_path();
+  if (arguments.joints) return write_cell(joint_cell(arguments.robot), arguments.output);
   const auto result = robot_cell(arguments.robot);
   if (const auto* faults = std::get_if<UrdfFaults>(&result)) return print_faults(*faults);
   const RobotCell& cell = std::get<RobotCell>(result);
@@ -140,7 +167,8 @@ int reduce_bodies(const ReduceArguments& arguments) {
   print(stdout, "{}",
         arguments.json ? reduction_json(all.bodies, arguments.reduction)
                        : reduction_table(all.bodies, arguments.reduction));
-  return plot.empty() ? kOk : write_picture(all.bodies, arguments);
+  const int wrote = plot.empty() ? kOk : write_picture(all.bodies, arguments);
+  return said_if_none_chosen(all.bodies, arguments.reduction) ? kFailed : wrote;
 }
 
 }  // namespace clearance

@@ -148,14 +148,16 @@ TEST_P(ConvexPartsOf, AreNowhereFartherFromTheMeshThanTheirError) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Drawn, ConvexPartsOf,
-                         testing::Values(Drawn{"L", test::l_shape(), 2},
-                                         Drawn{"Torus", test::torus(), 24, 8e-3},
-                                         Drawn{"OpenBox", test::open_box(), 9},
-                                         Drawn{"NestedBoxes", test::nested_boxes(), 1},
-                                         Drawn{"DegenerateL", test::degenerate_l(), 2},
-                                         Drawn{"Slivers", test::slivers(), 6}),
-                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(
+    Drawn, ConvexPartsOf,
+    testing::Values(Drawn{"L", test::l_shape(), 2}, Drawn{"Torus", test::torus(), 24, 8e-3},
+                    Drawn{"OpenBox", test::open_box(), 9}, Drawn{"Crate", test::crate(), 5},
+                    Drawn{"CrateOfSolids", test::crate_of_solids(), 5},
+                    Drawn{"Bracket", test::bracket(), 3}, Drawn{"Cup", test::cup(), 24},
+                    Drawn{"NestedBoxes", test::nested_boxes(), 1},
+                    Drawn{"DegenerateL", test::degenerate_l(), 2},
+                    Drawn{"Slivers", test::slivers(), 6}),
+    [](const auto& tested) { return tested.param.name; });
 
 TEST(ConvexParts, AConvexMeshIsItsHullToTheBit) {
   const ConvexParts parts = parts_of_mesh(test::nested_boxes());
@@ -176,10 +178,39 @@ TEST(ConvexParts, OfALargerToleranceAreFewer) {
   EXPECT_LT(coarse.parts.size(), fine.parts.size());
 }
 
-TEST(ConvexParts, OfAFlatMeshAreNone) {
+TEST(ConvexParts, OfABoxOfFiveWallsAreTheseExactly) {
+  for (const TriangleMesh& mesh :
+       {test::crate_of_solids(), test::crate_of_overlapping_solids(), test::crate()}) {
+    const ConvexParts parts = parts_of_mesh(mesh);
+    EXPECT_EQ(5u, parts.parts.size());
+    EXPECT_LE(parts.error, 1e-9);
+    EXPECT_LE(sampled_error(bodies_of_parts(parts), mesh, 40), 1e-9);
+  }
+}
+
+TEST(ConvexParts, OfMoreAllowedAreNeverWorse) {
+  double before = kInfinity;
+  for (const std::size_t most : {1, 4, 5, 6}) {
+    const ConvexParts parts = parts_of_mesh(test::crate(), {.max_parts = most});
+    EXPECT_LE(parts.error, before) << most;
+    EXPECT_LE(parts.parts.size(), most);
+    before = parts.error;
+  }
+}
+
+TEST(ConvexParts, OfAFlatMeshAreAPlateOfTheStatedThickness) {
   TriangleMesh flat;
   test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
-  EXPECT_TRUE(std::holds_alternative<ShapeError>(convex_parts(flat)));
+  const ConvexParts parts = parts_of_mesh(flat, {.plate = 0.002});
+  ASSERT_EQ(1u, parts.parts.size());
+  EXPECT_NEAR(0.001, parts.error, 1e-9);
+  for (const Vec3& v : parts.parts[0]) EXPECT_NEAR(0.001, std::abs(v.z()), 1e-15);
+}
+
+TEST(ConvexParts, OfAMeshOnOneLineAreNone) {
+  TriangleMesh line;
+  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)}, line);
+  EXPECT_TRUE(std::holds_alternative<ShapeError>(convex_parts(line)));
 }
 
 }  // namespace

@@ -100,6 +100,100 @@ inline TriangleMesh slivers() {
   return mesh;
 }
 
+// An open box of five solid walls that touch: two long walls, two short ones between them, and a
+// floor below. Lengths are outer ones.
+inline TriangleMesh crate_of_solids(const Vec3& size = {0.6, 0.4, 0.3}, double wall = 0.01) {
+  TriangleMesh mesh;
+  add_box({0.0, 0.0, 0.0}, {size.x(), size.y(), wall}, mesh);
+  add_box({0.0, 0.0, wall}, {size.x(), wall, size.z()}, mesh);
+  add_box({0.0, size.y() - wall, wall}, size, mesh);
+  add_box({0.0, wall, wall}, {wall, size.y() - wall, size.z()}, mesh);
+  add_box({size.x() - wall, wall, wall}, {size.x(), size.y() - wall, size.z()}, mesh);
+  return mesh;
+}
+
+// The same with walls that cross at corners and reach the floor's underside.
+inline TriangleMesh crate_of_overlapping_solids(const Vec3& size = {0.6, 0.4, 0.3},
+                                                double wall = 0.01) {
+  TriangleMesh mesh;
+  add_box({0.0, 0.0, 0.0}, {size.x(), size.y(), wall}, mesh);
+  add_box({0.0, 0.0, 0.0}, {size.x(), wall, size.z()}, mesh);
+  add_box({0.0, size.y() - wall, 0.0}, size, mesh);
+  add_box({0.0, 0.0, 0.0}, {wall, size.y(), size.z()}, mesh);
+  add_box({size.x() - wall, 0.0, 0.0}, size, mesh);
+  return mesh;
+}
+
+// A solid of revolution around z: the outline's points are radius and height, counter-clockwise.
+// Points on the axis become fans.
+inline TriangleMesh turned(const std::vector<Vec2>& outline, int sides) {
+  TriangleMesh mesh;
+  const auto at = [&](const Vec2& p, int i) {
+    const double a = 2.0 * std::numbers::pi * (i % sides) / sides;
+    return Vec3(p.x() * std::cos(a), p.x() * std::sin(a), p.y());
+  };
+  for (std::size_t k = 0; k < outline.size(); ++k) {
+    const Vec2& from = outline[k];
+    const Vec2& to = outline[(k + 1) % outline.size()];
+    if (from.x() == 0.0 && to.x() == 0.0) continue;
+    for (int i = 0; i < sides; ++i) {
+      add_quad({at(from, i), at(from, i + 1), at(to, i + 1), at(to, i)}, mesh);
+    }
+  }
+  return mesh;
+}
+
+// An open box as one closed manifold.
+inline TriangleMesh crate(const Vec3& size = {0.6, 0.4, 0.3}, double wall = 0.01) {
+  TriangleMesh mesh;
+  const Vec3 low(wall, wall, wall), high(size.x() - wall, size.y() - wall, size.z());
+  add_box({0.0, 0.0, 0.0}, size, mesh, false);
+  add_box(low, high, mesh, false);
+  const auto rim = [&](bool inner, int i) {
+    const bool right = i == 1 || i == 2, back = i == 2 || i == 3;
+    const double x = right ? size.x() : 0.0, y = back ? size.y() : 0.0;
+    if (!inner) return Vec3(x, y, size.z());
+    return Vec3(right ? high.x() : low.x(), back ? high.y() : low.y(), size.z());
+  };
+  for (int i = 0; i < 4; ++i) {
+    const int next = (i + 1) % 4;
+    add_quad({rim(false, i), rim(false, next), rim(true, next), rim(true, i)}, mesh);
+  }
+  return mesh;
+}
+
+// A thin-walled cylinder with a bottom, of 80 mm and 100 mm.
+inline TriangleMesh cup(double radius = 0.04, double height = 0.1, double wall = 0.003,
+                        int sides = 64) {
+  const double inner = radius - wall;
+  return turned(
+      {{0.0, 0.0}, {radius, 0.0}, {radius, height}, {inner, height}, {inner, wall}, {0.0, wall}},
+      sides);
+}
+
+// An angle bracket with a rib: plates of 8 mm at a right angle, and a triangle between them.
+inline TriangleMesh bracket() {
+  TriangleMesh mesh;
+  add_box({0.0, 0.0, 0.0}, {0.12, 0.08, 0.008}, mesh);
+  add_box({0.0, 0.0, 0.0}, {0.008, 0.08, 0.1}, mesh);
+  const std::array<Vec2, 3> side = {Vec2(0.008, 0.008), Vec2(0.08, 0.008), Vec2(0.008, 0.08)};
+  const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+  for (const double y : {0.036, 0.044}) {
+    for (const Vec2& p : side) mesh.vertices.emplace_back(p.x(), y, p.y());
+  }
+  for (const std::array<std::uint32_t, 3>& t : {std::array<std::uint32_t, 3>{0, 1, 2},
+                                                {3, 5, 4},
+                                                {0, 3, 4},
+                                                {0, 4, 1},
+                                                {1, 4, 5},
+                                                {1, 5, 2},
+                                                {2, 5, 3},
+                                                {2, 3, 0}}) {
+    mesh.triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  return mesh;
+}
+
 // Returns the text of an OBJ file.
 inline std::string obj_of(const TriangleMesh& mesh) {
   std::string text;

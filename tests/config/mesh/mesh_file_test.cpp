@@ -114,13 +114,13 @@ TEST_F(MeshFile, RevisionFollowsItsBytes) {
 
 TEST_F(MeshFile, WhatIsNoMeshIsRefusedByName) {
   write("text.stl", "this is no mesh");
-  write("flat.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("line.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n");
   write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
   write("short.stl", binary_stl().substr(0, 200));
   write("mesh.xyz", "1 2 3");
   EXPECT_THAT(errors("file: text.stl"),
               HasSubstr("cell.yaml:5:28: found a mesh file that cannot be used: '"));
-  EXPECT_THAT(errors("file: flat.obj"), HasSubstr("found a mesh that is not a solid convex body"));
+  EXPECT_THAT(errors("file: line.obj"), HasSubstr("found a mesh that is not a solid convex body"));
   EXPECT_THAT(errors("file: points.obj"), HasSubstr("found a mesh file that cannot be used"));
   EXPECT_THAT(errors("file: short.stl"), HasSubstr("found a mesh file that cannot be used"));
   EXPECT_THAT(errors("file: mesh.xyz"), HasSubstr("found a mesh file that cannot be used"));

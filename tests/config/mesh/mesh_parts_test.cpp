@@ -331,7 +331,7 @@ TEST_F(PartsOfMeshes, OfAUrdfAloneComeWithTheAdviceToWriteACell) {
                         {.tell = [&told](const std::string& line) { told += line + "\n"; }});
   const auto* errors = std::get_if<std::vector<CellError>>(&result);
   EXPECT_EQ(nullptr, errors) << errors->front().text;
-  EXPECT_THAT(told, HasSubstr("in a cell, which clearance-scene import writes\n"));
+  EXPECT_THAT(told, HasSubstr("clearance-scene import URDF --joints"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {
