@@ -50,12 +50,12 @@ double area_of_all(const std::vector<Polygon>& polygons) {
 
 // Returns the planes of flat faces, the largest first. A plane is that of its largest triangle.
 std::vector<HalfSpace> planes_of(const TriangleMesh& mesh) {
-  struct Face {
+  struct FlatFace {
     double area = 0.0, largest = 0.0;
     HalfSpace plane{};
   };
   const double step = kSameOffset * size_of(mesh);
-  std::map<std::array<long, 4>, Face> faces;
+  std::map<std::array<long, 4>, FlatFace> faces;
   double all = 0.0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const Triangle t = mesh.triangle(i);
@@ -71,19 +71,19 @@ std::vector<HalfSpace> planes_of(const TriangleMesh& mesh) {
     const std::array key = {std::lround(normal.x() / kSameNormal),
                             std::lround(normal.y() / kSameNormal),
                             std::lround(normal.z() / kSameNormal), std::lround(offset / step)};
-    Face& face = faces[key];
+    FlatFace& face = faces[key];
     face.area += area;
     if (area <= face.largest) continue;
     face.largest = area;
     face.plane = {normal, offset};
   }
-  std::vector<Face> large;
+  std::vector<FlatFace> large;
   for (const auto& [key, face] : faces) {
     if (face.area >= kLeastFace * all) large.push_back(face);
   }
-  std::ranges::stable_sort(large, [](const Face& a, const Face& b) { return a.area > b.area; });
+  std::ranges::stable_sort(large, [](const FlatFace& a, const FlatFace& b) { return a.area > b.area; });
   std::vector<HalfSpace> planes;
-  for (const Face& face : large) planes.push_back(face.plane);
+  for (const FlatFace& face : large) planes.push_back(face.plane);
   return planes;
 }
 

@@ -62,7 +62,7 @@ class RosTransforms final : public Decoder {
   // A rival's claim of a frame on the path of a follower: follower, frame, suffix of the claim.
   using RivalPath = std::tuple<std::size_t, std::string, std::string>;
   struct Following {
-    HandedOver last;
+    HandedOver last = {};
     State state = State::kFine;
     std::int64_t since_ns = -1;  // monotonic; negative: not checked yet
     bool said = false;           // this state was reported
