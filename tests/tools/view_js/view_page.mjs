@@ -65,27 +65,31 @@ async function firstView() {
   return { largest, stays: moved === (await place()) };
 }
 
-// How the closest pair lies in the view by the key, and by two clicks on its row: the middle of its gap, and the gap's length.
+// How the closest pair lies in the view by the key, and by two clicks on its row: the middle of its gap, and the gap's
+// length. Each is measured at once, since the pair moves on.
 async function look() {
-  const lies = () => page.evaluate(() => {
-    const { view, state } = window.clearance, pair = state.minimum();
-    const at = ({ x, y, z }) => view.camera.position.clone().set(x, y, z).project(view.camera);
-    const [a, b] = [at(pair.witness_a), at(pair.witness_b)];
-    return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, length: Math.hypot(a.x - b.x, a.y - b.y) };
-  });
-  const found = {};
   await page.waitForFunction(() => document.querySelector("#pair-table tbody tr"));
-  await page.keyboard.press("v");
-  await frames(2);
-  found.key = await lies();
-  await page.keyboard.press("f");
-  await frames(2);
-  found.far = await lies();
-  await page.dblclick("#pair-table tbody tr:first-child");
-  await frames(2);
-  found.clicks = await lies();
-  found.chosen = await page.$$eval("tr.chosen", (rows) => rows.length);
-  return found;
+  return page.evaluate(() => {
+    const { view, state } = window.clearance;
+    const lies = () => {
+      view.controls.update();
+      view.camera.updateMatrixWorld();
+      const pair = state.minimum();
+      const at = ({ x, y, z }) => view.camera.position.clone().set(x, y, z).project(view.camera);
+      const [a, b] = [at(pair.witness_a), at(pair.witness_b)];
+      return { x: (a.x + b.x) / 2, y: (a.y + b.y) / 2, length: Math.hypot(a.x - b.x, a.y - b.y) };
+    };
+    const press = (key) => document.body.dispatchEvent(new KeyboardEvent("keydown", { key, bubbles: true }));
+    const found = {};
+    press("v");
+    found.key = lies();
+    press("f");
+    found.far = lies();
+    const row = [...document.querySelectorAll("#pair-table tbody tr")].find(({ dataset }) => Number(dataset.pair) === state.minimum().pair);
+    row.dispatchEvent(new MouseEvent("dblclick", { bubbles: true }));
+    found.clicks = lies();
+    return found;
+  });
 }
 
 // Whether labels cover the bodies that they name, or each other, and how many lines lead from them.
