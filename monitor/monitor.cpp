@@ -168,7 +168,9 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
           .follows_joints = state.follows_joints,
           .absent = state.absent,
           .source = state.input.owner.source(),
-          .other_source = state.input.owner.other_source()};
+          .other_source = state.input.owner.other_source(),
+          .takeovers = state.input.owner.takeovers(),
+          .former_source = state.input.owner.former_source()};
 }
 
 // The joints of a robot without any joint position are not advanced, so they are stale here.
@@ -178,7 +180,10 @@ InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
           .stale = !state.input.has_value || state.input.late,
           .contradicted = state.input.contradicted,
           .source = state.input.owner.source(),
-          .other_source = state.input.owner.other_source()};
+          .other_source = state.input.owner.other_source(),
+          .takeovers = state.input.owner.takeovers(),
+          .former_source = state.input.owner.former_source(),
+          .velocities_contradict = state.velocities_contradict};
 }
 
 const std::array<std::uint64_t, kRejects>& Monitor::rejected_joints(

@@ -25,6 +25,9 @@ struct InputAge {
   // PoseSample::source of the owner, and of the last source that was refused because it is not the
   // owner.
   std::uint32_t source = kNoSource, other_source = kNoSource;
+  // The number of times that another source took over, and the owner before the last of them.
+  std::uint32_t takeovers = 0, former_source = kNoSource;
+  bool velocities_contradict = false;  // of a joint: its sent velocities contradict its positions
 };
 
 class Monitor {

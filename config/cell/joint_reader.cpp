@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "config/cell/object_reader.hpp"
+#include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
@@ -13,6 +14,29 @@ namespace {
 
 // No joint is faster, in rad/s or m/s.
 constexpr Range kVelocities{.least = 1e-9, .most = 1e6};
+constexpr Range kPositions{.least = -1e6, .most = 1e6};
+
+void read_limits(const YamlNode& node, Diagnostics& diagnostics,
+                 const std::vector<JointVariable*>& of_joint) {
+  const std::string_view expected = "the lower and the upper limit of a joint in rad or m";
+  const std::vector<YamlNode>& items = read_list(node, std::string(expected), diagnostics);
+  if (items.size() != 2 || of_joint.size() != 1) {
+    diagnostics.add(node,
+                    fmt::format("found {} limits of a joint with {}; expected {}: [-1.5, 1.5]",
+                                items.size(), counted(of_joint.size(), "position"), expected));
+    return;
+  }
+  const auto lower = read_number(items[0], kPositions, "a lower limit in rad or m", diagnostics);
+  const auto upper = read_number(items[1], kPositions, "an upper limit in rad or m", diagnostics);
+  if (!lower || !upper) return;
+  if (!(*lower <= *upper)) {
+    diagnostics.add(node, fmt::format("found limits from {} to {}; expected the lower one first",
+                                      *lower, *upper));
+    return;
+  }
+  of_joint.front()->lower = *lower;
+  of_joint.front()->upper = *upper;
+}
 
 void read_joint(const YamlNode& node, const Quantities& quantities,
                 const std::vector<JointVariable*>& of_joint) {
@@ -34,6 +58,13 @@ void read_joint(const YamlNode& node, const Quantities& quantities,
       variable->max_speed = limit.value_or(variable->max_speed);
     }
   }
+  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
+    if (const auto limit = quantities.milliseconds(*frozen, "the frozen limit", kPositive)) {
+      for (JointVariable* variable : of_joint) variable->frozen_limit_ns = *limit;
+    }
+  }
+  if (const YamlNode* limits = map.optional("limits"))
+    read_limits(*limits, quantities.diagnostics(), of_joint);
   map.refuse_unknown_keys();
 }
 

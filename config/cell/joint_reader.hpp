@@ -10,8 +10,8 @@
 
 namespace clearance {
 
-// `joints: {NAME: {age_limit_ms, source, velocity}}`, by the names of the URDF, to which `prefix`
-// is added. Stated values replace those of `variables`.
+// `joints: {NAME: {age_limit_ms, source, velocity, limits, frozen_limit_ms}}`, by the names of the
+// URDF, to which `prefix` is added. Stated values replace those of `variables`.
 void read_joints(const YamlNode& node, const std::string& prefix, const Quantities& quantities,
                  std::vector<JointVariable>& variables);
 

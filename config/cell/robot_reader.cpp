@@ -14,6 +14,7 @@
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
+#include "config/scene/plausible_joints.hpp"
 #include "config/text/spelling.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -32,7 +33,9 @@ struct RobotKeys {
   RosStamps stamps = RosStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
-  std::int64_t base_age_limit_ns = 0;  // of the frame that the base follows
+  std::int64_t frozen_limit_ns = 0;        // of all joints
+  JointVariable base;                      // its limits and its source, if it follows a frame
+  double base_max_turn_speed = kInfinity;  // rad/s
 };
 
 class RobotReader {
@@ -57,6 +60,7 @@ class RobotReader {
   void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys, RobotBase& base);
+  void read_base_limits(MapReader& map, RobotKeys& keys);
   void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
   void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
   void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
@@ -129,6 +133,10 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   if (const YamlNode* age = map.optional("age_limit_ms")) {
     keys.limits.age_limit_ns =
         quantities_.milliseconds(*age, "the age limit", kPositive).value_or(defaults_.age_limit_ns);
+  }
+  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
+    keys.frozen_limit_ns =
+        quantities_.milliseconds(*frozen, "the frozen limit", kPositive).value_or(0);
   }
   if (const YamlNode* source = map.optional("source")) {
     keys.limits.source = read_source(*source, diagnostics_).value_or("");
@@ -216,15 +224,34 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKe
     if (on != nullptr) {
       diagnostics_.add(*on, "found 'on' of a base that follows a frame; expected one of the two");
     }
-    if (const YamlNode* age = map.optional("age_limit_ms")) {
-      keys.base_age_limit_ns =
-          quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
-    }
+    read_base_limits(map, keys);
   } else {
     base.base_from_root = pose;
     if (on != nullptr) stand_on(*on, list, base);
   }
   map.refuse_unknown_keys();
+}
+
+// What is said of a base that follows a frame.
+void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    keys.base.age_limit_ns = quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
+  }
+  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
+    keys.base.frozen_limit_ns =
+        quantities_.milliseconds(*frozen, "the frozen limit", kPositive).value_or(0);
+  }
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    keys.base.max_speed =
+        quantities_.speed(*speed, "the largest speed of the base").value_or(kInfinity);
+  }
+  if (const YamlNode* speed = map.optional("max_turn_speed")) {
+    keys.base_max_turn_speed =
+        quantities_.turn_speed(*speed, "the largest turning speed of the base").value_or(kInfinity);
+  }
+  if (const YamlNode* source = map.optional("source")) {
+    keys.base.source = read_source(*source, diagnostics_).value_or("");
+  }
 }
 
 // Joints are in an order in which the motion of the link before is known.
@@ -305,6 +332,21 @@ void RobotReader::account_for_rounding(const RobotList& list) {
   }
 }
 
+// The first seven variables are those of the floating joint that carries the base. An entry of a
+// quaternion changes at most at half the rate of the rotation.
+void limit_base(const RobotKeys& keys, std::vector<JointVariable>& variables) {
+  constexpr std::uint32_t kFirstOfQuaternion = 3;
+  for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
+    JointVariable& variable = variables[i];
+    variable.source = keys.base.source.empty() ? "" : base_source(keys.base.source);
+    if (keys.base.age_limit_ns > 0) variable.age_limit_ns = keys.base.age_limit_ns;
+    variable.frozen_limit_ns = keys.base.frozen_limit_ns;
+    variable.speed_tolerance = 1.0;
+    variable.max_speed =
+        i < kFirstOfQuaternion ? keys.base.max_speed : 0.5 * keys.base_max_turn_speed;
+  }
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   RobotKeys keys = read_keys(node);
   auto description = read_description({.urdf = keys.urdf_node,
@@ -331,18 +373,15 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   for (JointVariable& variable : variables) {
     variable.age_limit_ns = keys.limits.age_limit_ns;
     variable.source = keys.limits.source;
+    variable.frozen_limit_ns = keys.frozen_limit_ns;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
   }
-  if (!base.frame.empty()) {
-    for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
-      variables[i].source.clear();
-      if (keys.base_age_limit_ns > 0) variables[i].age_limit_ns = keys.base_age_limit_ns;
-    }
-  }
+  if (!base.frame.empty()) limit_base(keys, variables);
   if (keys.joints_node != nullptr)
     read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
+  set_plausible_motion(robot, list.variables);
   add_links(keys, *description, robot);
   allow(keys, *description, robot, list.may_touch);
   list.robots.push_back(std::move(robot));

@@ -19,7 +19,7 @@ struct LinkBound {
 // Returns the largest length that a position can have, m.
 double largest(const JointVariable& variable, double multiplier, double offset) noexcept {
   const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
-  const double way = std::isfinite(limit) ? limit : kSureWay;
+  const double way = std::isfinite(limit) ? limit + variable.limit_tolerance : kSureWay;
   return std::abs(multiplier) * way + std::abs(offset);
 }
 
@@ -37,9 +37,17 @@ double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& varia
   }
 }
 
-bool turns_by_an_angle(JointType type) noexcept {
-  return type == JointType::kRevolute || type == JointType::kContinuous ||
-         type == JointType::kPlanar;
+// Returns the largest angle of the joint that rounding errors depend on, rad.
+double angle_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
+  constexpr double kLargestAngle = 1e6;
+  const bool turns = joint.type == JointType::kRevolute || joint.type == JointType::kContinuous ||
+                     joint.type == JointType::kPlanar;
+  if (!turns) return 0.0;
+  if (!joint.rescales()) return kLeastSureAngle;
+  const JointVariable& variable = variables[joint.variable];
+  const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
+  const double angle = std::isfinite(limit) ? limit + variable.limit_tolerance : kLargestAngle;
+  return std::max(kLeastSureAngle, std::abs(joint.multiplier) * angle + std::abs(joint.offset));
 }
 
 LinkBound carried(const LinkBound& parent, double step, double slide, double angle) noexcept {
@@ -66,8 +74,7 @@ std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
     links.push_back(carried(parent, robot.base.base_from_root.position.norm(), 0.0, 0.0));
     for (const RobotJoint& joint : robot.joints) {
       links.push_back(carried(links[joint.parent], joint.parent_from_joint.position.norm(),
-                              slide_of(joint, variables),
-                              turns_by_an_angle(joint.type) ? kSureAngle : 0.0));
+                              slide_of(joint, variables), angle_of(joint, variables)));
     }
   }
   std::vector<ChainError> errors;

@@ -16,10 +16,12 @@ inline constexpr double kJointError = 0x1p-46;
 // A position that is scaled and shifted (mimic) is within this, for each radian or metre.
 inline constexpr double kPositionError = 0x1p-51;
 
-// The bounds hold up to these limits. Angles are in rad. Lengths are in m; they limit joints
-// without limits and the position of an object that carries a robot.
-inline constexpr double kSureAngle = 1e3;
-inline constexpr double kSureWay = 1e2;
+// The bounds hold for lengths up to this, m: those of joints without limits, and the distance of an
+// object that carries a robot.
+inline constexpr double kSureWay = 1e4;
+// They hold for all angles up to 1e6 rad. Joints are given the error of a rescaled angle of at
+// least this size, rad, although only those that mimic others have one.
+inline constexpr double kLeastSureAngle = 1e3;
 
 // No point within r of a link's origin is farther than shift + turn r from its place by forward
 // kinematics.

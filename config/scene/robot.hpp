@@ -2,6 +2,7 @@
 // it from URDF; monitor/kinematics places its links.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -49,9 +50,26 @@ struct JointVariable {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
-  std::int64_t age_limit_ns = 0;  // an older position is late
-  std::string source;             // the only source that is used; empty: the first that sends some
-  std::uint32_t robot = 0;        // index into Scene::robots
+  // The speed above which positions are not plausible, if `max_speed` is not stated. It bounds no
+  // motion that is not seen.
+  double unstated_speed = std::numeric_limits<double>::infinity();
+  // A sent velocity may exceed plausible_speed() by this factor: the limits of many descriptions
+  // are too low. Where the speed is the cell's, it holds as it is stated.
+  double speed_tolerance = 4.0;
+  // A position farther outside its limits than this contradicts it; rad or m.
+  double limit_tolerance = 0.0;
+  bool wraps = false;                // an angle that is the same after a full turn
+  std::int64_t age_limit_ns = 0;     // an older position is late
+  std::int64_t frozen_limit_ns = 0;  // the joint may keep its position for this long; 0: always
+  // Index into Scene::variables of the first variable of its joint.
+  std::uint32_t first_of_joint = 0;
+  std::string source;       // the only source that is used; empty: the first that sends some
+  std::uint32_t robot = 0;  // index into Scene::robots
+
+  // Positions that need a higher speed contradict it, per second.
+  [[nodiscard]] double plausible_speed() const noexcept {
+    return std::isfinite(max_speed) ? max_speed : unstated_speed;
+  }
 };
 
 // Joint i carries link i + 1, and `parent` is before that: a loop over joints meets parents first.
@@ -67,6 +85,11 @@ struct RobotJoint {
   // of that one: position = multiplier * variable + offset.
   std::uint32_t variable = 0;
   double multiplier = 1.0, offset = 0.0;
+
+  // False if the position is the variable itself, without any rounding.
+  [[nodiscard]] bool rescales() const noexcept {
+    return std::abs(multiplier) != 1.0 || offset != 0.0;
+  }
 };
 
 struct RobotLink {
@@ -87,6 +110,12 @@ struct RobotBase {
   std::string frame;
   Pose frame_from_root;
 };
+
+// The source name for the bases of robots. Sequence numbers count samples of one kind, so bases
+// need a source beside that of the poses.
+[[nodiscard]] inline std::string base_source(const std::string& source) {
+  return source + ":bases";
+}
 
 struct Robot {
   std::string name;

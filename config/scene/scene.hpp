@@ -23,6 +23,10 @@ struct Part {
   Pose object_from_part;
 };
 
+// The speed above which the poses of an object that states no max_speed are not plausible, m/s. It
+// bounds no motion that is not seen.
+inline constexpr double kFastestUnstated = 20.0;
+
 // A rigid body of one or more convex parts. Fixed objects have a pose; the poses of moving ones
 // arrive at run time.
 struct Object {
@@ -45,6 +49,11 @@ struct Object {
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none
+
+  // Poses that need a higher speed contradict it, m/s.
+  [[nodiscard]] double plausible_speed() const noexcept {
+    return max_speed < kInfinity ? max_speed : kFastestUnstated;
+  }
 };
 
 // Two objects that are watched. first < second; every pair stands once.

@@ -114,6 +114,12 @@ std::optional<double> Quantities::angle(const YamlNode& node, const std::string&
   return value ? std::optional(radians(*value, units_.angle)) : std::nullopt;
 }
 
+std::optional<double> Quantities::turn_speed(const YamlNode& node, const std::string& what) const {
+  const auto value = read_number(node, kPositive,
+                                 fmt::format("{} in {}/s", what, word(units_.angle)), diagnostics_);
+  return value ? std::optional(radians(*value, units_.angle)) : std::nullopt;
+}
+
 // Lengths per second in the cell's unit become m/s.
 std::optional<double> Quantities::speed(const YamlNode& node, const std::string& what) const {
   const auto value =

@@ -52,6 +52,9 @@ class Quantities {
                                              const Range& range = {}) const;  // m
   [[nodiscard]] std::optional<double> angle(const YamlNode& node,
                                             const std::string& what) const;  // rad
+  // Angles per second, positive; rad/s.
+  [[nodiscard]] std::optional<double> turn_speed(const YamlNode& node,
+                                                 const std::string& what) const;
   [[nodiscard]] std::optional<double> speed(const YamlNode& node,
                                             const std::string& what) const;  // m/s
   [[nodiscard]] std::optional<double> acceleration(const YamlNode& node,

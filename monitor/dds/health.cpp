@@ -119,6 +119,28 @@ void fill_joints(const Scene& scene, const LoopStatistics& statistics, clearance
   }
 }
 
+void add_note(const LoopStatistics& statistics, const InputAge& age, const std::string& input,
+              clearance_msg_Health& out) {
+  if (age.takeovers == 0 && !age.velocities_contradict) return;
+  if (out.notes._length == out.notes._maximum) return;
+  clearance_msg_InputNote& note = out.notes._buffer[out.notes._length++];
+  note.input = dds_string_dup(input.c_str());
+  note.takeovers = age.takeovers;
+  note.velocities_contradict = age.velocities_contradict;
+  copy_name(statistics, age.source, note.source);
+  copy_name(statistics, age.former_source, note.former_source);
+}
+
+void fill_notes(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
+  const std::size_t inputs = scene.objects.size() + scene.variables.size();
+  reserve_sequence(out.notes, std::min<std::size_t>(inputs, 4096));
+  for (std::size_t object = 0; object < scene.objects.size(); ++object)
+    add_note(statistics, statistics.ages[object], scene.objects[object].name, out);
+  for (std::size_t joint = 0; joint < scene.variables.size(); ++joint) {
+    add_note(statistics, statistics.joint_ages[joint], "joint " + scene.variables[joint].name, out);
+  }
+}
+
 // One entry per source, and sums that include the sources of earlier times.
 void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& departed,
                   clearance_msg_Health& out) {
@@ -154,6 +176,7 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   fill_rejections(scene, statistics, poses, *sample);
   fill_inputs(scene, statistics, *sample);
   fill_joints(scene, statistics, *sample);
+  fill_notes(scene, statistics, *sample);
   fill_sources(poses.tallies(), poses.departed(), *sample);
   return sample;
 }

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <utility>
+
+#include "config/text/sentences.hpp"
 #include "monitor/app/log_lines.hpp"
 
 namespace clearance {
@@ -49,20 +52,30 @@ void HealthLog::log_clock(const clearance_msg_Health& health) {
   clock_offset_ns_ = health.clock_offset_ns;
 }
 
-// Logs refusals, then late inputs, then the totals. The limit on lines is for a cell that loses all
+// Inputs that change together share one line: all joints of a robot have the same source.
+void HealthLog::log_notes(const clearance_msg_Health& health) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> changed;
+  std::vector<std::string> velocities;
+  for (std::uint32_t i = 0; i < health.notes._length; ++i) {
+    const clearance_msg_InputNote& note = health.notes._buffer[i];
+    Note& before = notes_[note.input];
+    if (note.takeovers > before.takeovers)
+      changed[{note.source, note.former_source}].emplace_back(note.input);
+    before.takeovers = note.takeovers;
+    if (note.velocities_contradict && !std::exchange(before.velocities_said, true))
+      velocities.emplace_back(note.input);
+  }
+  for (const auto& [sources, inputs] : changed) {
+    log_line(lines::kSourceChanged, listed(inputs, kNamesALine), sources.first, sources.second);
+  }
+  if (!velocities.empty()) log_line(lines::kVelocitiesContradict, listed(velocities, kNamesALine));
+}
+
+// Logs late inputs, then refusals, then the totals. The limit on lines is for a cell that loses all
 // its objects at once.
 void HealthLog::update(const clearance_msg_Health& health,
                        const std::function<std::string()>& senders_of_joints) {
   int logged = 0;
-  for (std::uint32_t i = 0; i < health.rejected._length; ++i) {
-    const clearance_msg_RejectCount& entry = health.rejected._buffer[i];
-    std::uint64_t& before = rejected_[fmt::format("{}: {}", entry.object, entry.cause)];
-    if (entry.count > before && logged++ < kLinesAtOnce) {
-      log_line(lines::kRefused, entry.count - before, samples_of(entry.object), entry.cause,
-               entry.count);
-    }
-    before = entry.count;
-  }
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
     // An object that was never known is no news. For links, the log of joints reports lateness.
@@ -81,11 +94,21 @@ void HealthLog::update(const clearance_msg_Health& health,
     }
     other = input.other_source;
   }
+  for (std::uint32_t i = 0; i < health.rejected._length; ++i) {
+    const clearance_msg_RejectCount& entry = health.rejected._buffer[i];
+    std::uint64_t& before = rejected_[fmt::format("{}: {}", entry.object, entry.cause)];
+    if (entry.count > before && logged++ < kLinesAtOnce) {
+      log_line(lines::kRefused, entry.count - before, samples_of(entry.object), entry.cause,
+               entry.count);
+    }
+    before = entry.count;
+  }
   if (logged > kLinesAtOnce) {
     log_line(lines::kMoreLeftOut,
              counted(static_cast<std::uint64_t>(logged - kLinesAtOnce), "more line"));
   }
   joints_.update(health.joints, senders_of_joints);
+  log_notes(health);
   log_clock(health);
   log_growth(lines::kBatchesLost, health.lost_batches, lost_, "batch", "batches");
   log_growth(lines::kUndecodable, health.undecodable_samples, undecodable_, "sample");

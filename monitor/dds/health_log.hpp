@@ -24,10 +24,17 @@ class HealthLog {
 
  private:
   void log_clock(const clearance_msg_Health& health);
+  void log_notes(const clearance_msg_Health& health);
 
   std::map<std::string, std::uint64_t> rejected_;  // by "object: cause"
   std::vector<bool> stale_;                        // by object
   std::vector<std::string> other_source_;          // by object
+  // By input: the takeovers, and whether its velocities were told of.
+  struct Note {
+    std::uint32_t takeovers = 0;
+    bool velocities_said = false;
+  };
+  std::map<std::string, Note> notes_;
   JointLog joints_;
   std::uint64_t clock_steps_ = 0;
   std::int64_t clock_offset_ns_ = 0;

@@ -10,12 +10,6 @@
 #include "monitor/app/log_lines.hpp"
 
 namespace clearance {
-namespace {
-
-constexpr std::size_t kNamesALine = 3;
-
-}  // namespace
-
 JointLog::JointLog(const Scene& scene)
     : scene_(scene),
       states_(scene.variables.size()),

@@ -12,6 +12,9 @@
 
 namespace clearance {
 
+// The most inputs that one line names.
+inline constexpr std::size_t kNamesALine = 3;
+
 class JointLog {
  public:
   // After this number of samples (seconds), the log names the joints that were never heard.

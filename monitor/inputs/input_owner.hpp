@@ -1,6 +1,7 @@
 // The source whose samples are used for one input: an object's poses or a joint's positions. It is
 // the source that the cell names, else the first one that was heard. Another source may replace the
-// latter after it has been silent for long enough.
+// latter after it has been silent for long enough. A source whose samples are refused is not
+// silent.
 #pragma once
 
 #include <algorithm>
@@ -17,30 +18,47 @@ inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 class InputOwner {
  public:
   InputOwner() = default;
+  // Another source may take over after this silence, or after the age limit if that is longer.
+  static constexpr std::int64_t kSilentNs = 1'000'000'000;
+
   // The cell states the source, and no other source may replace it.
   explicit InputOwner(std::uint32_t source) noexcept : source_(source), is_stated_(true) {}
 
-  // Returns true if samples of this source must be refused, and then stores the source.
-  // `age_limit_ns` is that of the input.
+  // Call this with every sample, also of those that will be refused. Returns true if samples of
+  // this source must be refused, and then stores the source. `age_limit_ns` is that of the input.
   [[nodiscard]] bool refuses(std::uint32_t source, std::int64_t now_ns,
                              std::int64_t age_limit_ns) noexcept {
-    constexpr std::int64_t kSilentNs = 1'000'000'000;  // then another may take over
-    if (source == source_ || source_ == kNoSource) return false;
-    if (!is_stated_ && elapsed(taken_ns_, now_ns) > std::max(age_limit_ns, kSilentNs)) return false;
+    if (source == source_) {
+      heard_ns_ = now_ns;
+      return false;
+    }
+    if (source_ == kNoSource) return false;
+    if (!is_stated_ && elapsed(heard_ns_, now_ns) > std::max(age_limit_ns, kSilentNs)) return false;
     other_ = source;
     return true;
   }
 
   // Call this when a sample of this source was taken into use.
   void take(std::uint32_t source, std::int64_t now_ns) noexcept {
-    if (source != source_) other_ = kNoSource;
+    if (source != source_) {
+      if (source_ != kNoSource && !is_stated_) {
+        former_ = source_;
+        ++takeovers_;
+      }
+      other_ = kNoSource;
+    }
     source_ = source;
-    taken_ns_ = now_ns;
+    heard_ns_ = now_ns;
   }
 
   // The age of the last sample is not known any more: it counts from now.
-  void forget_age(std::int64_t now_ns) noexcept { taken_ns_ = now_ns; }
+  void forget_age(std::int64_t now_ns) noexcept { heard_ns_ = now_ns; }
 
+  // True if the cell names the source: what others send is then no dispute.
+  [[nodiscard]] bool is_stated() const noexcept { return is_stated_; }
+  // The number of times that another source has taken over, and the owner before the last of them.
+  [[nodiscard]] std::uint32_t takeovers() const noexcept { return takeovers_; }
+  [[nodiscard]] std::uint32_t former_source() const noexcept { return former_; }
   [[nodiscard]] std::uint32_t source() const noexcept { return source_; }
   // The last source that was refused because it is not the owner. kNoSource after the owner
   // changed.
@@ -49,7 +67,9 @@ class InputOwner {
  private:
   std::uint32_t source_ = kNoSource;
   std::uint32_t other_ = kNoSource;
-  std::int64_t taken_ns_ = 0;  // in the tick's time
+  std::uint32_t former_ = kNoSource;
+  std::uint32_t takeovers_ = 0;
+  std::int64_t heard_ns_ = 0;  // last sample of the owner, in the tick's time
   bool is_stated_ = false;
 };
 

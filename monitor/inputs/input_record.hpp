@@ -2,6 +2,7 @@
 // variable. This file also has the only rule by which a sample is taken into use or refused.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -51,8 +52,11 @@ struct SampleOrigin {
 };
 
 // Takes a sample into use, or returns why it must not be used and updates the input's contradiction
-// state. A `Candidate` is one sample of one input, with these members:
+// state. Two sources that claim one input with values that exclude each other are a contradiction
+// too, whichever came first, unless the cell names the source. A `Candidate` is one sample of one
+// input, with these members:
 //   std::optional<Reject> malformed()    it is not a value at all, whichever source sent it
+//   bool disputes()                      it excludes the value in use, which another source sent
 //   std::optional<Reject> implausible()  it contradicts the values before it or the cell
 //   void use()                           makes it the value in use; the record is still the old one
 //   std::int64_t agree_for_ns()          after a refusal: how long later samples must agree
@@ -60,8 +64,14 @@ template <class Candidate>
 [[nodiscard]] std::optional<Reject> take(Candidate&& candidate, const SampleOrigin& origin,
                                          const SampleLimits& limits, std::int64_t age_limit_ns,
                                          InputRecord& input) noexcept {
+  const bool is_rival = input.owner.refuses(origin.source, limits.now_ns, age_limit_ns);
   if (const std::optional<Reject> cause = candidate.malformed()) return cause;
-  if (input.owner.refuses(origin.source, limits.now_ns, age_limit_ns)) return Reject::kOtherSource;
+  if (is_rival) {
+    if (input.owner.is_stated() || !input.has_value || !candidate.disputes())
+      return Reject::kOtherSource;
+    input.contradiction.meet(limits.now_ns, std::max(age_limit_ns, InputOwner::kSilentNs));
+    return Reject::kDisputed;
+  }
   std::optional<Reject> cause;
   bool reordered = false;
   if (elapsed(limits.now_ns, origin.stamp_ns) > limits.future_ns) {

@@ -24,6 +24,10 @@ const char* name(Reject cause) noexcept {
       return "frozen, but with a twist";
     case Reject::kOtherWay:
       return "elsewhere than its twist leads";
+    case Reject::kDisputed:
+      return "another source contradicts it";
+    case Reject::kOutsideLimits:
+      return "outside its position limits";
     case Reject::kCount:
       break;
   }

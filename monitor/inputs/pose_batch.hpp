@@ -43,7 +43,9 @@ enum class Reject : std::uint8_t {
   kOtherSource,    // another source sends this object's poses
   kTooFast,        // its distance from the pose in use, or its twist, exceeds the speed limit
   kFrozen,         // the same pose repeatedly, although its twist says that it moves
-  kOtherWay,       // not where the twists lead
+  kOtherWay,       // not where the twists or velocities lead
+  kDisputed,       // another source sends this input, and the two values exclude each other
+  kOutsideLimits,  // a joint's position is outside its limits
   kCount
 };
 inline constexpr auto kRejects = static_cast<std::size_t>(Reject::kCount);

@@ -113,9 +113,15 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
 }
 
 // Also counts the batches that are missing before this one.
-SourceTally* Intake::admit(const PoseBatch& batch, std::uint64_t writer, std::size_t size) {
-  const Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
+SourceTally* Intake::admit(PoseBatch& batch, std::uint64_t writer, std::size_t size) {
+  Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
   tell_of(admission, batch, writer);
+  if (admission.tally == nullptr && admission.cause == SourceRefusal::kOtherWriter &&
+      !sources_.is_named(batch.source)) {
+    batch.source = name_of_writer(batch.source.view(), 2);
+    admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
+    tell_of(admission, batch, writer);
+  }
   if (admission.tally == nullptr) return nullptr;
   admission.tally->note_sequence(batch.sequence_number);
   admission.tally->last_ns = monotonic_ns_;

@@ -92,8 +92,9 @@ class Intake final : public Outlet {
   const Kind* add(Arguments&&... arguments);
   void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) override;
   void tell(News news) override { news_.push_back(std::move(news)); }
-  // Returns null if the batch is refused.
-  [[nodiscard]] SourceTally* admit(const PoseBatch& batch, std::uint64_t writer, std::size_t size);
+  // Returns null if the batch is refused. The batch of a second writer of one name gets a source
+  // name of its own: the tick compares what the two say.
+  [[nodiscard]] SourceTally* admit(PoseBatch& batch, std::uint64_t writer, std::size_t size);
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
   const Scene& scene_;

@@ -1,6 +1,9 @@
 #include "monitor/intake/pose_sources.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
 #include <utility>
 
 namespace clearance {
@@ -12,6 +15,13 @@ constexpr std::uint64_t kCountsAnew = 1'000'000;
 constexpr std::uint64_t kNoIndex = 0;
 
 }  // namespace
+
+SourceName name_of_writer(std::string_view name, std::size_t number) {
+  const std::string suffix = number > 1 ? fmt::format("#{}", number) : "";
+  const std::size_t most = kMaxSourceLength - suffix.size();
+  if (name.size() > most) name.remove_prefix(name.size() - most);
+  return SourceName(std::string(name) + suffix);
+}
 
 const char* name(SourceRefusal cause) noexcept {
   switch (cause) {

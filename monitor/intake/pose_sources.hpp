@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "monitor/inputs/pose_batch.hpp"
@@ -26,6 +27,10 @@ struct SourceTally {
   // this one is smaller, or farther ahead than any plausible loss.
   void note_sequence(std::uint64_t number) noexcept;
 };
+
+// Returns the source name of the n-th writer that uses a name: NAME, "NAME#2" and so on. A name
+// that is too long is cut at its beginning, because the end of a topic is more distinctive.
+[[nodiscard]] SourceName name_of_writer(std::string_view name, std::size_t number);
 
 // Why the batches of a source are not used.
 enum class SourceRefusal : std::uint8_t {
@@ -66,6 +71,7 @@ class PoseSources {
   // next call.
   Admission admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
                   std::int64_t monotonic_ns);
+  [[nodiscard]] bool is_named(const SourceName& source) const noexcept;
   // `writers` are those that still exist. The names and places of all others become free.
   void keep(std::span<const std::uint64_t> writers);
 
@@ -75,7 +81,6 @@ class PoseSources {
   [[nodiscard]] const SourceTally& departed() const noexcept { return departed_; }
 
  private:
-  [[nodiscard]] bool is_named(const SourceName& source) const noexcept;
   [[nodiscard]] std::size_t places_for_others() const noexcept;
   [[nodiscard]] SourceTally* free_place(std::int64_t monotonic_ns);
   Admission refuse(const SourceName& source, SourceRefusal cause, std::size_t poses);

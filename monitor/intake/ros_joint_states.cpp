@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/intake/pose_sources.hpp"
 #include "monitor/intake/tf_tree.hpp"
 #include "monitor/wire/convert.hpp"
 
@@ -14,13 +15,6 @@ namespace {
 constexpr std::string_view kJointStatesType = "sensor_msgs/msg/JointState";
 constexpr std::string_view kLast = "/joint_states";
 constexpr std::size_t kMostUnknownNames = 64;
-
-// The end of a long topic name is more distinctive than its beginning.
-SourceName source_name(const std::string& topic, std::size_t writer) {
-  const std::string suffix = writer > 1 ? fmt::format("#{}", writer) : "";
-  const std::size_t most = kMaxSourceLength - suffix.size();
-  return SourceName((topic.size() > most ? topic.substr(topic.size() - most) : topic) + suffix);
-}
 
 }  // namespace
 
@@ -71,10 +65,10 @@ RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t ha
   if (known != topic.writers.end()) return known->second;
   std::size_t number = 1;
   const auto is_taken = [&](const auto& writer) {
-    return writer.second.source == source_name(topic.name, number);
+    return writer.second.source == name_of_writer(topic.name, number);
   };
   while (std::ranges::any_of(topic.writers, is_taken)) ++number;
-  return topic.writers.emplace(handle, Writer{.source = source_name(topic.name, number)})
+  return topic.writers.emplace(handle, Writer{.source = name_of_writer(topic.name, number)})
       .first->second;
 }
 

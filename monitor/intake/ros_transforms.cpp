@@ -17,10 +17,6 @@ constexpr std::string_view kTf = "/tf", kStatic = "_static";
 constexpr std::size_t kMostParentsSaid = 3;
 constexpr std::size_t kMostListed = 10;
 
-bool same_pose(const Pose& a, const Pose& b) noexcept {
-  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 // The existing frames, in a list that a person can read.
 std::string listed(const TfTree& tree) {
   std::string text;
@@ -79,12 +75,10 @@ std::int64_t RosTransforms::patience_ns() const {
 }
 
 void RosTransforms::keep(std::span<const std::uint64_t> writers) {
-  writers_.assign(writers.begin(), writers.end());
-  const auto is_gone = [&](std::uint64_t writer) {
-    return !std::ranges::binary_search(writers_, writer);
-  };
-  std::erase_if(owners_, [&](const auto& owner) { return is_gone(owner.second.writer); });
-  std::erase_if(stamps_, [&](const auto& publisher) { return is_gone(publisher.first); });
+  claims_.keep(writers);
+  std::erase_if(stamps_, [&](const auto& publisher) {
+    return !std::ranges::binary_search(writers, publisher.first);
+  });
 }
 
 bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const Now& now,
@@ -92,20 +86,21 @@ bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const 
   if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   const Topic& topic = topics_[port];
   for (std::uint32_t i = 0; i < message_->transforms._length; ++i) {
-    take(message_->transforms._buffer[i], topic, message, now, counts);
+    take(message_->transforms._buffer[i], port, message, now, counts);
   }
   if (from_ == TransformsFrom::kLog) hand_over(topic.source, now);
   return true;
 }
 
-void RosTransforms::take(const Transform& transform, const Topic& topic, const RawMessage& message,
+void RosTransforms::take(const Transform& transform, std::uint32_t port, const RawMessage& message,
                          const Now& now, TopicCounts& counts) {
+  const bool is_static = topics_[port].is_static;
   const std::string child = frame_name(transform.child_frame_id);
   TfTree::Link link{.parent = frame_name(transform.header.frame_id),
                     .parent_from_child = pose_of(transform.transform),
                     .stamp_ns = std::nullopt};
-  if (!is_usable(child, link) || !admits(child, link, message.writer, topic.is_static, now)) return;
-  if (!topic.is_static) {
+  if (!is_usable(child, link)) return;
+  if (!is_static) {
     const OtherClock other =
         from_ == TransformsFrom::kLog ? OtherClock::kReplaced : OtherClock::kTold;
     link.stamp_ns = stamps_[message.writer].time_of(
@@ -114,8 +109,19 @@ void RosTransforms::take(const Transform& transform, const Topic& topic, const R
           return {fmt::format("transforms of frame '{}'", child), "'stamps: sent' of 'ros2'"};
         });
   }
-  note_parent(child, link.parent);
-  tree_.set(child, std::move(link));
+  const FrameClaims::Publisher publisher{message.writer, port, is_static};
+  const auto claims = claims_.claims(child);
+  if (!claims.empty() && claims.front().publisher == publisher) note_parent(child, link.parent);
+  const bool is_disputed = claims_.set(child, publisher, std::move(link), now.monotonic_ns);
+  if (!is_disputed || rivals_said_.size() >= FrameClaims::kMostFrames ||
+      !rivals_said_.insert(child).second) {
+    return;
+  }
+  out_.tell({.cause = News::Cause::kFrameOfTwo,
+             .text = fmt::format("frame '{}' is sent by several publishers that contradict each "
+                                 "other: what follows it is unknown while they do, unless its "
+                                 "'source' is stated",
+                                 child)});
 }
 
 // A refused transform does not change its frame, which therefore becomes late.
@@ -125,7 +131,7 @@ bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link
                        std::abs(turn.norm() - 1.0) <= kSampleUnitTolerance;
   const bool has_names = !child.empty() && !link.parent.empty() && child != link.parent;
   if (!is_pose || !has_names) {
-    if (refused_said_.size() < kMostFrames && refused_said_.insert(child).second) {
+    if (refused_said_.size() < FrameClaims::kMostFrames && refused_said_.insert(child).second) {
       const char* const why = has_names ? "no pose (not finite, or a quaternion not of unit length)"
                                         : "a frame without a name, or its own parent";
       out_.tell({.cause = News::Cause::kFrameRefused,
@@ -134,44 +140,17 @@ bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link
     }
     return false;
   }
-  if (tree_.links().size() < kMostFrames || tree_.link(child) != nullptr) return true;
+  if (!claims_.is_one_too_many(child)) return true;
   if (!std::exchange(too_many_said_, true)) {
     out_.tell({.cause = News::Cause::kTooManyFrames,
                .text = fmt::format("frame '{}' is one too many: {} frames are heard", child,
-                                   kMostFrames)});
-  }
-  return false;
-}
-
-bool RosTransforms::admits(const std::string& child, const TfTree::Link& link, std::uint64_t writer,
-                           bool is_static, const Now& now) {
-  const auto [found, is_new] = owners_.try_emplace(child);
-  Owner& owner = found->second;
-  // Samples of a publisher may arrive after the notice that it has left.
-  const bool is_held = !is_new && owner.writer != writer &&
-                       std::ranges::binary_search(writers_, owner.writer) &&
-                       (owner.is_static || now.monotonic_ns - owner.last_ns < kFrameHeldNs);
-  if (!is_held) {
-    owner.writer = writer;
-    owner.is_static = is_static;
-    owner.last_ns = now.monotonic_ns;
-    return true;
-  }
-  const TfTree::Link* const known = tree_.link(child);
-  const bool says_the_same = known != nullptr && known->parent == link.parent &&
-                             same_pose(known->parent_from_child, link.parent_from_child);
-  if (!says_the_same && !std::exchange(owner.rival_said, true)) {
-    const char* const where = owner.is_static != is_static ? ", on tf and on tf_static" : "";
-    out_.tell({.cause = News::Cause::kFrameOfTwo,
-               .text = fmt::format("frame '{}' is sent by two publishers{}: transforms of the one "
-                                   "that came later are not used",
-                                   child, where)});
+                                   FrameClaims::kMostFrames)});
   }
   return false;
 }
 
 void RosTransforms::note_parent(const std::string& child, const std::string& parent) {
-  const TfTree::Link* const known = tree_.link(child);
+  const TfTree::Link* const known = claims_.tree().link(child);
   if (known == nullptr || known->parent == parent) return;
   if (++parents_said_[child] > kMostParentsSaid) return;
   const bool is_last = parents_said_[child] == kMostParentsSaid;
@@ -187,13 +166,13 @@ void RosTransforms::settle(const Now& now) {
 
 // Each base has its own batch, because all positions of a batch have one stamp.
 void RosTransforms::hand_over(const std::string& source, const Now& now) {
-  poses_.clear();
+  claims_.settle(now.monotonic_ns);
+  for (auto& [name, batch] : poses_) batch.clear();
   for (std::size_t i = 0; i < following_.size(); ++i) {
-    base_.clear();
-    note(i, follow(i, now), now);
-    give(base_, base_source(source));
+    note(i, follow(i, source, now), now);
+    follow_rivals(i, source, now);
   }
-  give(poses_, source);
+  for (auto& [name, batch] : poses_) give(batch, name);
 }
 
 void RosTransforms::give(PoseBatch& batch, const std::string& source) {
@@ -204,28 +183,56 @@ void RosTransforms::give(PoseBatch& batch, const std::string& source) {
 }
 
 bool RosTransforms::is_due(const TrackedFrames::Follower& of, const TfTree::Place& place,
-                           const Following& following, const Now& now) const {
+                           const HandedOver& last, const Now& now) const {
   if (from_ == TransformsFrom::kLog) return true;
-  return place.stamp_ns ? *place.stamp_ns != following.stamp_ns
-                        : now.monotonic_ns - following.handed_over_ns >= of.age_limit_ns / 3;
+  return place.stamp_ns ? *place.stamp_ns != last.stamp_ns
+                        : now.monotonic_ns - last.at_ns >= of.age_limit_ns / 3;
 }
 
-RosTransforms::State RosTransforms::follow(std::size_t follower, const Now& now) {
+void RosTransforms::add(std::size_t follower, const TfTree::Place& place, const std::string& source,
+                        HandedOver& last, const Now& now) {
   const TrackedFrames::Follower& of = frames_.followers()[follower];
-  Following& following = following_[follower];
+  if (!is_due(of, place, last, now)) return;
+  last = {.stamp_ns = place.stamp_ns.value_or(now.realtime_ns), .at_ns = now.monotonic_ns};
+  if (!of.is_base) {
+    frames_.add(follower, place, last.stamp_ns, poses_[source]);
+    return;
+  }
+  base_.clear();
+  frames_.add(follower, place, last.stamp_ns, base_);
+  give(base_, base_source(source));
+}
+
+RosTransforms::State RosTransforms::follow(std::size_t follower, const std::string& source,
+                                           const Now& now) {
+  const TrackedFrames::Follower& of = frames_.followers()[follower];
   std::string root;
-  const auto place = frames_.find(tree_, of.frame, &root);
+  const auto place = frames_.find(claims_.tree(), of.frame, &root);
   if (!place) {
     if (!root.empty()) return State::kElsewhere;
-    return tree_.link(of.frame) == nullptr ? State::kMissing : State::kCircle;
+    return claims_.tree().link(of.frame) == nullptr ? State::kMissing : State::kCircle;
   }
   if (from_ == TransformsFrom::kLog) roots_.insert(root);
-  if (!is_due(of, *place, following, now)) return State::kFine;
-  const std::int64_t stamp = place->stamp_ns.value_or(now.realtime_ns);
-  frames_.add(follower, place->root_from_frame, stamp, of.is_base ? base_ : poses_);
-  following.stamp_ns = stamp;
-  following.handed_over_ns = now.monotonic_ns;
+  std::string suffix;
+  for (const std::string& frame : claims_.disputed_on(of.frame)) {
+    if (suffix.empty()) suffix = claims_.claims(frame).front().suffix;
+  }
+  add(follower, *place, source + suffix, following_[follower].last, now);
   return State::kFine;
+}
+
+void RosTransforms::follow_rivals(std::size_t follower, const std::string& source, const Now& now) {
+  const TrackedFrames::Follower& of = frames_.followers()[follower];
+  for (const std::string& frame : claims_.disputed_on(of.frame)) {
+    for (const FrameClaims::Claim& rival : claims_.claims(frame).subspan(1)) {
+      if (!FrameClaims::is_live(rival, now.monotonic_ns)) continue;
+      const TfTree::Instead instead{frame, rival.link};
+      const auto place = frames_.find(claims_.tree(), of.frame, nullptr, &instead);
+      if (!place) continue;
+      add(follower, *place, source + rival.suffix, by_rivals_[{follower, frame, rival.suffix}],
+          now);
+    }
+  }
 }
 
 void RosTransforms::note(std::size_t follower, State state, const Now& now) {
@@ -245,7 +252,7 @@ void RosTransforms::note(std::size_t follower, State state, const Now& now) {
   }
   if (following.said || now.monotonic_ns - following.since_ns < kMissingNs) return;
   following.said = following.is_lost = true;
-  const bool none = state == State::kMissing && tree_.links().empty();
+  const bool none = state == State::kMissing && claims_.tree().links().empty();
   out_.tell({.cause = none ? News::Cause::kNoTransforms : News::Cause::kFrameMissing,
              .text = fmt::format("{} is not known: it follows the frame '{}', {}", of.name,
                                  of.frame, what_is_wrong(of, state))});
@@ -257,20 +264,20 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
     case State::kFine:
       return "";
     case State::kMissing: {
-      if (tree_.links().empty()) {
+      if (claims_.tree().links().empty()) {
         return "but no transform has come on rt/tf or rt/tf_static";
       }
       std::vector<std::string> frames;
-      for (const auto& [frame, link] : tree_.links()) frames.push_back(frame);
-      return fmt::format("which no transform leads to; there are {}{}", listed(tree_),
+      for (const auto& [frame, link] : claims_.tree().links()) frames.push_back(frame);
+      return fmt::format("which no transform leads to; there are {}{}", listed(claims_.tree()),
                          did_you_mean(follower.frame, frames));
     }
     case State::kCircle:
       return fmt::format("whose transforms go round in a circle ({})",
-                         circle_of(tree_, follower.frame));
+                         circle_of(claims_.tree(), follower.frame));
     case State::kElsewhere: {
       std::string root;
-      static_cast<void>(frames_.find(tree_, follower.frame, &root));
+      static_cast<void>(frames_.find(claims_.tree(), follower.frame, &root));
       return fmt::format("whose transforms lead to '{}' and not to the world_frame '{}'", root,
                          ros_.world_frame);
     }

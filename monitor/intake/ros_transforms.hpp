@@ -1,20 +1,22 @@
 // Converts the transforms of ROS 2, /tf and /tf_static, to poses of the cell's followers: the
 // objects and robot bases that follow frames.
 //
-// A frame belongs to the publisher that sent it first. It stays with that publisher as long as the
-// publisher exists and, on /tf, is not silent for a second or more. The stamp of a chain of
-// transforms is that of its oldest one. A follower's pose is handed over when that stamp changes. A
-// chain of static transforms is always valid: its pose is handed over again before it is late.
+// If several publishers send a frame, the poses by each of them are handed over, under source names
+// of their own (frame_claims.hpp). The stamp of a chain of transforms is that of its oldest one. A
+// follower's pose is handed over when that stamp changes. A chain of static transforms is always
+// valid: its pose is handed over again before it is late.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
+#include "monitor/intake/frame_claims.hpp"
 #include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tracked_frames.hpp"
 #include "monitor/wire/cdr.hpp"
@@ -30,9 +32,6 @@ class RosTransforms final : public Decoder {
   // The writer number of all these batches. A pose composed of several publishers' transforms has
   // no single writer.
   static constexpr std::uint64_t kWriter = ~std::uint64_t{0};
-  static constexpr std::size_t kMostFrames = 4096;
-  // A publisher loses its frames after it has been silent for this long.
-  static constexpr std::int64_t kFrameHeldNs = 1'000'000'000;
   // A transform that is missing for this long is reported.
   static constexpr std::int64_t kMissingNs = 5'000'000'000;
 
@@ -55,14 +54,15 @@ class RosTransforms final : public Decoder {
 
  private:
   enum class State : std::uint8_t { kFine, kMissing, kCircle, kElsewhere };
-  struct Owner {
-    std::uint64_t writer = 0;
-    std::int64_t last_ns = 0;  // monotonic
-    bool is_static = false, rival_said = false;
+  // The pose handed over last.
+  struct HandedOver {
+    std::int64_t stamp_ns = 0;
+    std::int64_t at_ns = 0;  // monotonic
   };
+  // A rival's claim of a frame on the path of a follower: follower, frame, suffix of the claim.
+  using RivalPath = std::tuple<std::size_t, std::string, std::string>;
   struct Following {
-    std::int64_t stamp_ns = 0;        // of the pose handed over last
-    std::int64_t handed_over_ns = 0;  // monotonic
+    HandedOver last;
     State state = State::kFine;
     std::int64_t since_ns = -1;  // monotonic; negative: not checked yet
     bool said = false;           // this state was reported
@@ -74,17 +74,19 @@ class RosTransforms final : public Decoder {
     bool is_static = false;
   };
 
-  void take(const Transform& transform, const Topic& topic, const RawMessage& message,
+  void take(const Transform& transform, std::uint32_t port, const RawMessage& message,
             const Now& now, TopicCounts& counts);
   [[nodiscard]] bool is_usable(const std::string& child, const TfTree::Link& link);
-  [[nodiscard]] bool admits(const std::string& child, const TfTree::Link& link,
-                            std::uint64_t writer, bool is_static, const Now& now);
   void note_parent(const std::string& child, const std::string& parent);
   void hand_over(const std::string& source, const Now& now);
   void give(PoseBatch& batch, const std::string& source);
-  [[nodiscard]] State follow(std::size_t follower, const Now& now);
+  [[nodiscard]] State follow(std::size_t follower, const std::string& source, const Now& now);
+  // Hands over where a follower would be by the claims of rivals.
+  void follow_rivals(std::size_t follower, const std::string& source, const Now& now);
+  void add(std::size_t follower, const TfTree::Place& place, const std::string& source,
+           HandedOver& last, const Now& now);
   [[nodiscard]] bool is_due(const TrackedFrames::Follower& of, const TfTree::Place& place,
-                            const Following& following, const Now& now) const;
+                            const HandedOver& last, const Now& now) const;
   void note(std::size_t follower, State state, const Now& now);
   [[nodiscard]] std::string what_is_wrong(const TrackedFrames::Follower& follower,
                                           State state) const;
@@ -96,17 +98,18 @@ class RosTransforms final : public Decoder {
   std::vector<Topic> topics_;  // by port
   CdrDecoder decoder_;
   Sample<tf2_msgs_msg_dds__TFMessage_> message_;
-  TfTree tree_;
-  std::vector<std::uint64_t> writers_;               // those that exist, sorted
-  std::map<std::string, Owner> owners_;              // by child frame
+  FrameClaims claims_;
+  std::set<std::string> rivals_said_;                // child frames
   std::map<std::uint64_t, StampCheck> stamps_;       // by publisher
   std::map<std::string, std::size_t> parents_said_;  // number of reported parents, by child frame
   std::set<std::string> refused_said_;               // child frames
   std::set<std::string> roots_;                      // ends of the followers' chains
   bool too_many_said_ = false;
-  std::vector<Following> following_;              // by follower
+  std::vector<Following> following_;  // by follower
+  std::map<RivalPath, HandedOver> by_rivals_;
   std::map<std::string, std::uint64_t> numbers_;  // sequence numbers of batches, by source
-  PoseBatch poses_, base_;
+  std::map<std::string, PoseBatch> poses_;        // by source
+  PoseBatch base_;
 };
 
 }  // namespace clearance

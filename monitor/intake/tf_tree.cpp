@@ -29,20 +29,41 @@ const TfTree::Link* TfTree::link(const std::string& child) const {
   return found == links_.end() ? nullptr : &found->second;
 }
 
+namespace {
+
+// The velocity of a frame in the parent of the link. `in_child` is its velocity, and `point` its
+// position, in the link's child.
+Twist carried(const TfTree::Link& link, const Vec3& point, const Twist& in_child) {
+  const Mat3 turn = link.parent_from_child.orientation.toRotationMatrix();
+  const Twist own = link.twist.value_or(Twist{});
+  return {.linear = own.linear + own.angular.cross(turn * point) + turn * in_child.linear,
+          .angular = own.angular + turn * in_child.angular};
+}
+
+}  // namespace
+
 // A path that is longer than the number of frames contains a cycle.
-std::optional<TfTree::Place> TfTree::find(const std::string& frame,
-                                          const std::string& world) const {
-  const Link* step = link(frame);
+std::optional<TfTree::Place> TfTree::find(const std::string& frame, const std::string& world,
+                                          const Instead* instead) const {
+  const auto step_from = [&](const std::string& child) {
+    return instead != nullptr && instead->child == child ? &instead->link : link(child);
+  };
+  const Link* step = step_from(frame);
   if (step == nullptr) return std::nullopt;
   Place place;
   for (std::size_t steps = 0; step != nullptr; ++steps) {
     if (steps > links_.size()) return std::nullopt;
+    const bool is_known = place.twist && (step->twist || !step->stamp_ns);
+    place.twist = is_known
+                      ? std::optional(carried(*step, place.root_from_frame.position, *place.twist))
+                      : std::nullopt;
+    place.interval_ns = std::max(place.interval_ns, step->interval_ns);
     place.root_from_frame = compose(step->parent_from_child, place.root_from_frame);
     if (step->stamp_ns) {
       place.stamp_ns = std::min(place.stamp_ns.value_or(*step->stamp_ns), *step->stamp_ns);
     }
     place.root = step->parent;
-    step = place.root == world ? nullptr : link(place.root);
+    step = place.root == world ? nullptr : step_from(place.root);
   }
   return place;
 }

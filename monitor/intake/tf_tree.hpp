@@ -20,22 +20,35 @@ class TfTree {
     Pose root_from_frame;
     // The stamp of the oldest transform on the path that may change; nothing if all are static.
     std::optional<std::int64_t> stamp_ns;
+    // The velocity of the frame in `root`; nothing: not known. Each transform contributes its own
+    // velocity: the transforms of a path have different stamps, so differences of poses give none.
+    std::optional<Twist> twist = Twist{};
+    std::int64_t interval_ns = 0;  // the longest time over which a part of `twist` is the mean
   };
   struct Link {
     std::string parent;
     Pose parent_from_child;
     std::optional<std::int64_t> stamp_ns;  // nothing: it is static
+    // The velocity of the child in its parent; nothing: not known.
+    std::optional<Twist> twist = std::nullopt;
+    std::int64_t interval_ns = 0;  // the time over which `twist` is the mean
   };
 
   // Replaces the transform of the child. `is_static` means that it came on /tf_static.
   void set(const geometry_msgs_msg_dds__TransformStamped_& transform, bool is_static);
   void set(const std::string& child, Link link) { links_[child] = std::move(link); }
 
+  // A transform that is used in the place of the tree's own.
+  struct Instead {
+    const std::string& child;
+    const Link& link;
+  };
+
   // Returns the pose of a frame in `world`, or in the root of its tree if the path does not contain
   // `world`. Returns nothing if no transform has this frame as child, or if the transforms form a
   // cycle.
-  [[nodiscard]] std::optional<Place> find(const std::string& frame,
-                                          const std::string& world = "") const;
+  [[nodiscard]] std::optional<Place> find(const std::string& frame, const std::string& world = "",
+                                          const Instead* instead = nullptr) const;
 
   // Returns null if no transform has this frame as child.
   [[nodiscard]] const Link* link(const std::string& child) const;

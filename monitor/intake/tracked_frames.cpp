@@ -33,13 +33,19 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
 }
 
 std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::string& frame,
-                                                 std::string* root) const {
-  auto place = tree.find(frame, world_frame_);
+                                                 std::string* root,
+                                                 const TfTree::Instead* instead) const {
+  auto place = tree.find(frame, world_frame_, instead);
   if (!place) return std::nullopt;
   if (root != nullptr) *root = place->root;
   if (const auto robot = world_from_root_link_.find(place->root);
       robot != world_from_root_link_.end()) {
     place->root_from_frame = compose(robot->second, place->root_from_frame);
+    if (place->twist) {
+      const Eigen::Quaterniond& turn = robot->second.orientation;
+      place->twist =
+          Twist{.linear = turn * place->twist->linear, .angular = turn * place->twist->angular};
+    }
     return place;
   }
   const bool is_world = world_frame_.empty() || place->root == world_frame_;
@@ -48,28 +54,42 @@ std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::
 
 // Both q and -q represent the orientation. The one nearer to the last is used, because velocities
 // come from differences of the variables.
-void TrackedFrames::add(std::size_t follower, const Pose& world_from_frame, std::int64_t stamp_ns,
+void TrackedFrames::add(std::size_t follower, const TfTree::Place& place, std::int64_t stamp_ns,
                         PoseBatch& batch) {
   const Follower& of = followers_[follower];
+  const bool has_twist = place.stamp_ns && place.twist && place.interval_ns / 2 <= of.age_limit_ns;
   if (!of.is_base) {
     PoseSample& sample = batch.samples.emplace_back();
     sample.object = of.index;
     sample.stamp_ns = stamp_ns;
-    sample.world_from_object = world_from_frame;
+    sample.world_from_object = place.root_from_frame;
+    sample.has_twist = has_twist;
+    if (has_twist) sample.twist = *place.twist;
     return;
   }
   const Robot& robot = scene_.robots[of.index];
-  const Pose root = compose(world_from_frame, robot.base.frame_from_root);
+  const Pose root = compose(place.root_from_frame, robot.base.frame_from_root);
   Eigen::Quaterniond turn = root.orientation;
   if (turn.dot(last_[follower]) < 0.0) turn.coeffs() = -turn.coeffs();
   last_[follower] = turn;
+  const Twist twist = has_twist ? *place.twist : Twist{};
+  const Vec3 velocity =
+      twist.linear + twist.angular.cross(root.position - place.root_from_frame.position);
+  // dq/dt = omega q / 2
+  const Eigen::Quaterniond rate(
+      Eigen::Quaterniond(0.0, twist.angular.x(), twist.angular.y(), twist.angular.z()) * turn);
   const std::array<double, variables_of(JointType::kFloating)> values = {
       root.position.x(), root.position.y(), root.position.z(), turn.x(),
       turn.y(),          turn.z(),          turn.w()};
+  const std::array<double, variables_of(JointType::kFloating)> rates = {
+      velocity.x(),   velocity.y(),   velocity.z(),  0.5 * rate.x(),
+      0.5 * rate.y(), 0.5 * rate.z(), 0.5 * rate.w()};
   for (std::uint32_t i = 0; i < values.size(); ++i) {
     JointSample& sample = batch.joints.emplace_back();
     sample.variable = robot.joints.front().variable + i;
     sample.position = values[i];
+    sample.velocity = rates[i];
+    sample.has_velocity = has_twist;
     sample.stamp_ns = stamp_ns;
   }
 }

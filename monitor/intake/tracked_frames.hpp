@@ -18,12 +18,6 @@
 
 namespace clearance {
 
-// The source name for the bases of robots. Sequence numbers count samples of one kind, so bases
-// need a source beside that of the poses.
-[[nodiscard]] inline std::string base_source(const std::string& source) {
-  return source + ":bases";
-}
-
 class TrackedFrames {
  public:
   // kYes: moving objects that name no frame, and are not links, follow the frame of their own name.
@@ -46,11 +40,13 @@ class TrackedFrames {
   // its transforms form a cycle, or if they do not lead to the cell's world. In the last case
   // `root` gets the frame to which they lead.
   [[nodiscard]] std::optional<TfTree::Place> find(const TfTree& tree, const std::string& frame,
-                                                  std::string* root = nullptr) const;
+                                                  std::string* root = nullptr,
+                                                  const TfTree::Instead* instead = nullptr) const;
 
   // Adds the sample of a follower's frame at this time: a pose of an object, or positions of a
   // robot. All positions of a batch have one stamp, so a batch of positions belongs to one robot.
-  void add(std::size_t follower, const Pose& world_from_frame, std::int64_t stamp_ns,
+  // Velocities are added if they are known and recent.
+  void add(std::size_t follower, const TfTree::Place& world_from_frame, std::int64_t stamp_ns,
            PoseBatch& batch);
 
   // True if the frame is the root link of a robot that stands in the world.

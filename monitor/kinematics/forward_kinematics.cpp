@@ -53,6 +53,7 @@ struct ForwardKinematics::Placement {
 // magnitude that rounding errors depend on.
 struct ForwardKinematics::Position {
   double value = 0.0, speed = 0.0, unseen = 0.0, largest = 0.0;
+  bool is_rescaled = false;  // value has rounding errors
 };
 
 ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std::uint32_t which,
@@ -69,17 +70,19 @@ ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std
   return {.value = scaled + joint.offset,
           .speed = joint.multiplier * state.velocity,
           .unseen = factor == 0.0 ? 0.0 : rounded_up(factor * state.may_have_moved),
-          .largest = std::abs(scaled) + std::abs(joint.offset)};
+          .largest = std::abs(scaled) + std::abs(joint.offset),
+          .is_rescaled = joint.rescales()};
 }
 
 void ForwardKinematics::turn(const Position& angle, const JointFrame& frame,
                              Placement& placed) noexcept {
   const SineCosine half = sine_cosine(0.5 * angle.value);
   placed.turn = sum(half.cosine, frame.turn, half.sine, frame.turn_axis);
-  placed.known = placed.known && angle.largest <= kLargestJoint;  // mimicry can multiply the angle
+  // Mimicry can multiply the angle.
+  placed.known = placed.known && angle.largest <= kLargestJoint;
   placed.angular = angle.speed * frame.axis;
   placed.unseen_turn = std::min(angle.unseen, kAcross);
-  placed.largest_angle = angle.largest;
+  placed.largest_angle = angle.is_rescaled ? angle.largest : 0.0;
 }
 
 void ForwardKinematics::slide(const Position& way, const Vec3& along, Placement& placed) noexcept {

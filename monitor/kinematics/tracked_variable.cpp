@@ -10,28 +10,33 @@
 namespace clearance {
 namespace {
 
-// The largest factor by which a sent velocity may exceed the velocity limit of the description.
-constexpr double kLimitTooLow = 4.0;
+// Measured velocities are noisy: they may exceed the largest speed by this factor.
+constexpr double kNoisy = 1.5;
 
 bool usable(double x) noexcept { return std::abs(x) <= kLargestJoint; }
+
+// True if the sample has a velocity that the joint can have. Drivers write NaN for what they do not
+// measure.
+bool has_usable_velocity(const JointVariable& variable, const JointSample& sample) noexcept {
+  return sample.has_velocity && usable(sample.velocity) &&
+         std::abs(sample.velocity) <=
+             std::max(variable.speed_tolerance, kNoisy) * variable.plausible_speed();
+}
 
 // The magnitude of the sent velocity; 0 if there is none, or if it is not a usable number.
 double speed_of(const JointSample& sample) noexcept {
   return sample.has_velocity && usable(sample.velocity) ? std::abs(sample.velocity) : 0.0;
 }
 
-// The age limit is the largest timing error that the cell accepts for a position. A sent velocity
-// may exceed the velocity limit, which is wrong in many descriptions. The excess is capped, so that
-// a leap cannot excuse itself by an arbitrary velocity. A velocity from positions does not count
-// here, because the positions are in question.
-bool can_reach(const JointVariable& variable, const JointSample& sample, std::int64_t stamp_ns,
-               const TrackedVariable& state) noexcept {
-  const double time =
-      seconds(elapsed(state.input.stamp_ns, stamp_ns)) + seconds(variable.age_limit_ns);
-  const double sent = std::max(state.sent_speed, speed_of(sample));
-  const double fastest =
-      std::max(variable.max_speed, std::min(sent, kLimitTooLow * variable.max_speed));
-  return std::abs(sample.position - state.position) <= rounded_up(fastest * time);
+// A sent velocity may exceed the velocity limit, which is wrong in many descriptions. The excess is
+// capped, so that a leap cannot excuse itself by an arbitrary velocity. A velocity from positions
+// does not count here, because the positions are in question.
+MotionLimits motion_limits(const JointVariable& variable, double sent) noexcept {
+  const double fastest = variable.plausible_speed();
+  return {.fastest = std::max(fastest, std::min(sent, variable.speed_tolerance * fastest)),
+          .usual = variable.max_speed < kInfinity ? variable.max_speed : kUsualSpeed,
+          .age_limit_ns = variable.age_limit_ns,
+          .frozen_limit_ns = variable.frozen_limit_ns};
 }
 
 // One sample of a variable, as a candidate for clearance::take.
@@ -40,49 +45,82 @@ struct PositionCandidate {
   const JointSample& sample;
   std::int64_t stamp_ns;
   TrackedVariable& state;
+  Repetition& of_joint;
+  JointMetric metric{variable.wraps};
+  MotionLimits limits = motion_limits(variable, std::max(state.sent_speed, speed_of(sample)));
 
   [[nodiscard]] std::optional<Reject> malformed() const noexcept {
     return usable(sample.position) ? std::nullopt : std::optional(Reject::kNonFinite);
   }
 
-  [[nodiscard]] std::optional<Reject> implausible() const noexcept {
-    const bool possible = !state.input.has_value || can_reach(variable, sample, stamp_ns, state);
-    return possible ? std::nullopt : std::optional(Reject::kTooFast);
+  [[nodiscard]] bool disputes() const noexcept {
+    return is_disputed(metric, state.position, state.input.stamp_ns, sample.position, stamp_ns,
+                       std::abs(state.velocity) + speed_of(sample), limits);
   }
 
-  // A velocity that is not a number counts as absent: drivers write NaN for what they do not
-  // measure. Two equal stamps give no velocity. A mean over a time is the velocity of half that
-  // time ago.
+  [[nodiscard]] std::optional<Reject> implausible() const noexcept {
+    if (sample.position < variable.lower - variable.limit_tolerance ||
+        sample.position > variable.upper + variable.limit_tolerance) {
+      state.outside_limits = true;
+      return Reject::kOutsideLimits;
+    }
+    const bool has_value = state.input.has_value;
+    const bool has_rate = has_usable_velocity(variable, sample);
+    if (!has_rate && speed_of(sample) > 0.0) state.plausibility.distrust_rates();
+    return state.plausibility.refuses({.value = sample.position,
+                                       .rate = has_rate ? &sample.velocity : nullptr,
+                                       .stamp_ns = stamp_ns},
+                                      has_value ? &state.position : nullptr, state.input.stamp_ns,
+                                      has_value && sample.position == state.position, of_joint,
+                                      limits, metric);
+  }
+
+  // Two equal stamps give no velocity. A mean over a time is the velocity of half that time ago.
   void use() const noexcept {
     const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
-    if (sample.has_velocity && usable(sample.velocity)) {
+    const bool sent = has_usable_velocity(variable, sample);
+    state.velocities_contradict = state.plausibility.rates_contradict();
+    if (sent && !state.velocities_contradict) {
       state.velocity = sample.velocity;
       state.velocity_known = true;
     } else if (state.input.has_value && apart_ns > 0) {
       state.velocity_known = apart_ns / 2 <= variable.age_limit_ns;
-      state.velocity =
-          state.velocity_known ? (sample.position - state.position) / seconds(apart_ns) : 0.0;
+      state.velocity = state.velocity_known
+                           ? metric.difference(state.position, sample.position) / seconds(apart_ns)
+                           : 0.0;
     }
     state.sent_speed = speed_of(sample);
     state.position = sample.position;
+    state.outside_limits = false;
+    state.plausibility.use(sample.position, stamp_ns, !state.input.has_value, limits);
   }
 
-  [[nodiscard]] std::int64_t agree_for_ns() const noexcept { return variable.age_limit_ns; }
+  [[nodiscard]] std::int64_t agree_for_ns() const noexcept {
+    return state.plausibility.agree_for_ns(limits);
+  }
 };
 
-// The larger distance to the two position limits; infinity if the position is outside them.
-double room(const JointVariable& variable, double position) noexcept {
-  if (position < variable.lower || position > variable.upper) return kInfinity;
-  return rounded_up(std::max(variable.upper - position, position - variable.lower));
+// The larger distance to the two position limits, m or rad; infinity if there are none, or if they
+// do not hold.
+double largest_way(const JointVariable& variable, const TrackedVariable& state) noexcept {
+  if (state.outside_limits) return kInfinity;
+  const double way = std::max(variable.upper - state.position, state.position - variable.lower);
+  return rounded_up(way + variable.limit_tolerance);
 }
 
 }  // namespace
 
 std::optional<Reject> take(const JointVariable& variable, const JointSample& sample,
                            std::int64_t stamp_ns, const SampleLimits& limits,
-                           TrackedVariable& state) noexcept {
-  return take(PositionCandidate{variable, sample, stamp_ns, state}, {sample.source, stamp_ns},
-              limits, variable.age_limit_ns, state.input);
+                           TrackedVariable& state, Repetition& of_joint) noexcept {
+  return take(PositionCandidate{variable, sample, stamp_ns, state, of_joint},
+              {sample.source, stamp_ns}, limits, variable.age_limit_ns, state.input);
+}
+
+void forget_age(std::int64_t now_ns, TrackedVariable& state) noexcept {
+  state.input.forget_age(now_ns);
+  state.plausibility.forget_age(state.position, state.input.stamp_ns);
+  state.repetition.add(false, now_ns);
 }
 
 void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state) noexcept {
@@ -94,7 +132,7 @@ void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable
   // The velocity limit does not bound a joint whose measured velocity exceeds it.
   const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
   const double way = input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns));
-  state.may_have_moved = std::min(way, room(variable, state.position));
+  state.may_have_moved = std::min(way, largest_way(variable, state));
 }
 
 }  // namespace clearance

@@ -43,8 +43,10 @@ std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs
   if (record_of(sample, inputs) == nullptr) return Reject::kUnknownObject;
   const JointVariable& variable = scene.variables[sample.variable];
   const std::int64_t stamp_ns = tick_stamp(sample, variable.age_limit_ns, scene, inputs);
-  const auto cause = take(variable, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
-                          inputs.robots.variables()[sample.variable]);
+  const std::span<TrackedVariable> variables = inputs.robots.variables();
+  const auto cause =
+      take(variable, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
+           variables[sample.variable], variables[variable.first_of_joint].repetition);
   if (!cause) inputs.robots.hear(sample.variable);
   return cause;
 }

@@ -45,7 +45,7 @@ RobotInputs::RobotInputs(const Scene& scene)
 
 void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
   for (TrackedVariable& variable : variables_) {
-    if (variable.input.has_value) variable.input.forget_age(now_ns);
+    if (variable.input.has_value) forget_age(now_ns, variable);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/mean_twist.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -26,16 +27,6 @@ bool usable(const Vec3& v) noexcept {
 bool usable(const PoseSample& sample) noexcept {
   return usable(sample.world_from_object.position) &&
          (!sample.has_twist || (usable(sample.twist.linear) && usable(sample.twist.angular)));
-}
-
-// The mean velocity from one pose to the next, with the smaller of the two possible rotations.
-Twist mean_twist(const Pose& from, const Pose& to, double seconds) noexcept {
-  const Eigen::Quaterniond turn =
-      to.orientation.normalized() * from.orientation.normalized().conjugate();
-  const double sine = turn.vec().norm();
-  const double angle = 2.0 * std::atan2(sine, std::abs(turn.w()));
-  const double per_sine = sine > 0.0 ? std::copysign(angle / sine, turn.w()) / seconds : 0.0;
-  return {.linear = (to.position - from.position) / seconds, .angular = turn.vec() * per_sine};
 }
 
 // Samples may be off unit length by 1e-3, distance queries accept 1e-6. The tolerance is half of
@@ -61,25 +52,13 @@ std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   return orientation.coeffs().allFinite() ? Reject::kNotUnit : Reject::kNonFinite;
 }
 
-// True if the object can have come to this pose, or if it has to be taken all the same.
-bool can_be_at(const Object& object, const Pose& pose, std::int64_t stamp_ns,
-               TrackedObject& state) noexcept {
-  const std::int64_t passed_ns = elapsed(state.input.stamp_ns, stamp_ns);
-  if (can_reach(object, state.landmarks, state.pose, pose, passed_ns) &&
-      state.anchor.allows(pose, stamp_ns, object, state.landmarks)) {
-    return true;
-  }
-  if (!state.other_place.add(pose, stamp_ns, object, state.landmarks)) return false;
-  state.anchor.set(pose, stamp_ns);
-  return true;
-}
-
 // One sample of an object, as a candidate for clearance::take.
 struct PoseCandidate {
   const Object& object;
   const PoseSample& sample;
   std::int64_t stamp_ns;
   TrackedObject& state;
+  MotionLimits limits = motion_limits(object);
   Pose pose = {};  // the sample's pose, normalised; set by malformed()
 
   [[nodiscard]] std::optional<Reject> malformed() noexcept {
@@ -87,29 +66,29 @@ struct PoseCandidate {
     if (!cause) pose = as_queries_take_it(sample.world_from_object);
     return cause;
   }
+  [[nodiscard]] bool disputes() const noexcept;
   [[nodiscard]] std::optional<Reject> implausible() noexcept;
   void use() noexcept;
-  // A stream whose twists led elsewhere must agree for longer.
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {
-    const std::int64_t age_limits =
-        state.reckoning.leads_elsewhere() ? Reckoning::kAgreesAfterAgeLimits : 1;
-    return age_limits * object.age_limit_ns;
+    return state.plausibility.agree_for_ns(limits);
   }
 };
+
+bool PoseCandidate::disputes() const noexcept {
+  const double speed = state.landmarks.length(state.twist) +
+                       (sample.has_twist ? state.landmarks.length(sample.twist) : 0.0);
+  return is_disputed(state.landmarks, state.pose, state.input.stamp_ns, pose, stamp_ns, speed,
+                     limits);
+}
 
 std::optional<Reject> PoseCandidate::implausible() noexcept {
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
   const bool same = state.input.has_value && same_pose(pose, state.pose);
-  state.repetition.add(same, stamp_ns);
-  if (same && state.repetition.frozen(object)) return Reject::kFrozen;
-  if (state.input.has_value && !same && !can_be_at(object, pose, stamp_ns, state)) {
-    return Reject::kTooFast;
-  }
-  if (!state.reckoning.follows(sample, pose, stamp_ns, same, object, state.landmarks)) {
-    return same ? Reject::kFrozen : Reject::kOtherWay;
-  }
-  return std::nullopt;
+  return state.plausibility.refuses(
+      {.value = pose, .rate = sample.has_twist ? &sample.twist : nullptr, .stamp_ns = stamp_ns},
+      state.input.has_value ? &state.pose : nullptr, state.input.stamp_ns, same, state.repetition,
+      limits, state.landmarks);
 }
 
 void PoseCandidate::use() noexcept {
@@ -126,9 +105,7 @@ void PoseCandidate::use() noexcept {
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
   state.pose = pose;
-  if (!state.input.has_value) state.anchor.set(state.pose, stamp_ns);
-  state.anchor.follow(state.pose, stamp_ns, object);
-  state.other_place.clear();
+  state.plausibility.use(pose, stamp_ns, !state.input.has_value, limits);
 }
 
 }  // namespace
@@ -167,10 +144,8 @@ void follow(const LinkState& link, const Object& object, TrackedObject& state) n
 
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.input.forget_age(now_ns);
-  state.anchor.set(state.pose, state.input.stamp_ns);
+  state.plausibility.forget_age(state.pose, state.input.stamp_ns);
   state.repetition.add(false, now_ns);
-  state.reckoning = {};
-  state.other_place = {};
 }
 
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {

@@ -6,12 +6,13 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/inputs/input_record.hpp"
+#include "monitor/inputs/plausibility.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/motion/displacement.hpp"
 #include "monitor/motion/interpolated_motion.hpp"
 #include "monitor/motion/relative_displacement.hpp"
-#include "monitor/objects/plausibility.hpp"
+#include "monitor/objects/landmarks.hpp"
 
 namespace clearance {
 
@@ -53,10 +54,8 @@ struct TrackedObject {
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;
   Landmarks landmarks;
-  Anchor anchor;
   Repetition repetition;
-  Reckoning reckoning;
-  OtherPlace other_place;
+  Plausibility<Landmarks> plausibility;
 
   Pose pose_last_tick;
   Pose pose_before;  // if moved: the pose of the last tick; after `first_seen`: `pose`

@@ -98,11 +98,16 @@ TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
     other.send({{"map", "box_link", {2, 0, 0}}});
   };
   EXPECT_TRUE(step_until(
-      5, both,
-      logged("frame 'box_link' is sent by two publishers: transforms of the one that came later "
-             "are not used")))
+      5, both, logged("frame 'box_link' is sent by several publishers that contradict each other")))
       << daemon->output();
-  EXPECT_TRUE(step_until(5, both, [&] { return is("box", PairStatus::kConverged); }));
+  EXPECT_TRUE(step_until(5, both, [&] { return is("box", PairStatus::kUnknown); }));
+  // One of them falls silent.
+  EXPECT_TRUE(step_until(
+      10,
+      [&] {
+        first.send({{"map", "box_link", {1, 0, 0}}});
+      },
+      [&] { return is("box", PairStatus::kConverged); }));
   EXPECT_TRUE(step_until(
       5,
       [&] {

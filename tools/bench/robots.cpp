@@ -51,8 +51,9 @@ class MovingRobots {
   void place(std::int64_t now_ns) noexcept {
     for (const JointSample& joint : joints_) {
       const JointVariable& variable = scene_.variables[joint.variable];
-      static_cast<void>(
-          take(variable, joint, now_ns, {.now_ns = now_ns}, variables_[joint.variable]));
+      static_cast<void>(take(variable, joint, now_ns, {.now_ns = now_ns},
+                             variables_[joint.variable],
+                             variables_[variable.first_of_joint].repetition));
       advance(variable, now_ns, variables_[joint.variable]);
     }
     kinematics_.place(variables_, bases_);

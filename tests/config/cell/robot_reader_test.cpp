@@ -165,6 +165,56 @@ TEST_F(Robots, AMimicOfAMimicFollowsTheLastOfTheChain) {
   EXPECT_EQ(named("grip2").offset, 0.25);
 }
 
+// Where nothing is stated, leaps are still not plausible.
+TEST_F(Robots, JointsHaveSpeedsThatArePlausibleAndTolerancesOfTheirLimits) {
+  const Scene cell = scene(
+      "  - {name: walker, urdf: walker_description/walker.urdf, frozen_limit_ms: 50, joints: "
+      "{slide: "
+      "{limits: [-0.1, 0.9], frozen_limit_ms: 70, velocity: 0.25}}}\n",
+      kSelf);
+  const std::vector<JointVariable>& all = cell.variables;
+  EXPECT_EQ(all[0].plausible_speed(), 1.5);
+  EXPECT_NEAR(all[0].limit_tolerance, 0.03, 1e-12) << "1 % of 3 rad";
+  EXPECT_EQ(all[0].frozen_limit_ns, 50'000'000);
+  EXPECT_FALSE(all[0].wraps);
+  EXPECT_EQ(all[1].plausible_speed(), 0.25);
+  EXPECT_EQ(all[1].lower, -0.1);
+  EXPECT_EQ(all[1].upper, 0.9);
+  EXPECT_NEAR(all[1].limit_tolerance, 0.01, 1e-12);
+  EXPECT_EQ(all[1].frozen_limit_ns, 70'000'000);
+  EXPECT_TRUE(all[2].wraps) << "grip2 mimics it by -2";
+  EXPECT_EQ(all[2].limit_tolerance, 0.0);
+  EXPECT_EQ(all[3].plausible_speed(), 20.0);
+  EXPECT_EQ(all[3].first_of_joint, 3u);
+  EXPECT_FALSE(all[4].wraps);
+  EXPECT_EQ(all[5].plausible_speed(), 100.0);
+  EXPECT_TRUE(all[5].wraps);
+  EXPECT_EQ(all[5].first_of_joint, 3u);
+  EXPECT_EQ(all[12].plausible_speed(), 50.0) << "an entry of a quaternion";
+  EXPECT_EQ(all[12].first_of_joint, 6u);
+}
+
+TEST_F(Robots, ABaseThatFollowsAFrameHasLimitsOfItsOwn) {
+  const auto with_base = [&](const std::string& base) {
+    return scene("  - {name: walker, urdf: walker_description/walker.urdf, source: driver, base: " +
+                     base + "}\n",
+                 "ros2: {world_frame: map}\n" + kSelf)
+        .variables;
+  };
+  const std::vector<JointVariable> unstated = with_base("{frame: base_link}");
+  EXPECT_EQ(unstated[0].plausible_speed(), 5.0);
+  EXPECT_EQ(unstated[0].max_speed, kInfinity) << "it bounds no motion that is not seen";
+  EXPECT_EQ(unstated[3].plausible_speed(), 3.15);
+  EXPECT_EQ(unstated[0].source, "");
+  EXPECT_EQ(unstated[7].source, "driver");
+  const std::vector<JointVariable> stated = with_base(
+      "{frame: base_link, max_speed: 1.5, max_turn_speed: 90, frozen_limit_ms: 300, source: /tf}");
+  EXPECT_EQ(stated[2].max_speed, 1.5);
+  EXPECT_NEAR(stated[6].max_speed, 0.25 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(stated[6].frozen_limit_ns, 300'000'000);
+  EXPECT_EQ(stated[6].source, "/tf:bases");
+}
+
 TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
   const Scene cell = scene(kWalker, kSelf);
   EXPECT_FALSE(watched(cell, "arm", "mast"));
@@ -225,6 +275,14 @@ TEST_F(Robots, MistakesOfTheCellAreNamedAtTheirPlaces) {
   EXPECT_THAT(
       errors("  - {name: walker, urdf: walker_description/walker.urdf, base: {on: cat}}\n", kSelf),
       HasSubstr("found the unknown name 'cat'; expected an object, or a link of a robot"));
+  for (const char* limits : {"[1]", "[1, 0]", "[0, high]", "3"}) {
+    EXPECT_THAT(errors(std::string("  - {name: walker, urdf: walker_description/walker.urdf, "
+                                   "joints: {hip: {limits: ") +
+                           limits + "}}}\n",
+                       kSelf),
+                HasSubstr("cell.yaml:4:"))
+        << limits;
+  }
   EXPECT_THAT(errors("  - {name: walker, urdf: walker_description/walker.urdf, srfd: x}\n", kSelf),
               HasSubstr("did you mean 'srdf'?"));
 }

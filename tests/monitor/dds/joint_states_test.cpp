@@ -69,14 +69,16 @@ TEST_F(JointStatesReader, HandsJointsOverBesidePosesOfOtherSources) {
 
 // A source name belongs to one writer across both topics, because batches are identified by name
 // and number.
-TEST_F(JointStatesReader, ANameThatSendsPosesCannotSendJointsAsWell) {
+TEST_F(JointStatesReader, AWriterOfPosesThatUsesTheNameOfOneOfJointsGetsAnother) {
   PoseBatch batch{SourceName("arm"), 1, 0, {}};
   batch.joints.push_back(test::joint(0, 0.1, test::kStart));
   send_joints(batch);
   ASSERT_TRUE(test::eventually([&] { return inputs.next() != nullptr; }));
   send_pose("arm");
   EXPECT_TRUE(test::eventually([&] { return inputs.refused_sources().size() == 1; }));
-  EXPECT_EQ(inputs.next(), nullptr);
+  const PoseBatch* const poses = inputs.next();
+  ASSERT_NE(poses, nullptr);
+  EXPECT_EQ(poses->source.view(), "arm#2");
 }
 
 }  // namespace

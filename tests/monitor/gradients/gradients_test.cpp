@@ -156,7 +156,7 @@ TEST(Gradients, CostATickNoAllocationAndAreTheSameBitsAgain) {
   for (int tick = 0; tick < 50; ++tick) {
     const std::int64_t now = kStart + tick * kTick;
     const std::array cart{cart_at({2.0, 0.01 * tick, 0.3}, {0.0, 10.0, 0.0}, now)};
-    const auto samples = joints(0.01 * tick, -0.02 * tick, 0.1, now);
+    const auto samples = joints(0.001 * tick, -0.001 * tick, 0.1, now);
     const std::uint64_t before = allocations();
     const Report& report = monitor.tick(cart, samples, now);
     EXPECT_EQ(allocations(), before);

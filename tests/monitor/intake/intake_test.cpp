@@ -70,19 +70,23 @@ TEST_F(IntakeTest, CountsWhatIsLostCutAndNotDecodable) {
   EXPECT_EQ(heard.intake.counts(poses).undecodable, 1u);
 }
 
-TEST_F(IntakeTest, AdmitsOneWriterOfANameAndTellsOnceOfEach) {
+// The tick compares what the two writers say, and trusts neither while they disagree.
+TEST_F(IntakeTest, GivesASecondWriterOfANameANameOfItsOwnAndTellsOnceOfEach) {
   take(1, 1);
   take(1, 2);
   take(2, 2);
-  EXPECT_EQ(heard.all().size(), 1u);
+  const std::vector<PoseBatch> both = heard.all();
+  ASSERT_EQ(both.size(), 3u);
+  EXPECT_EQ(both[0].source.view(), "arm");
+  EXPECT_EQ(both[2].source.view(), "arm#2");
   EXPECT_EQ(heard.intake.sources().refused().at(0).poses, 2u);
   heard.intake.keep({2});
   take(3, 2);
-  EXPECT_EQ(heard.all().size(), 1u);
+  EXPECT_EQ(heard.one().source.view(), "arm");
   std::vector<News::Cause> causes;
   for (const News& news : heard.intake.take_news()) causes.push_back(news.cause);
   EXPECT_EQ(causes, (std::vector{News::Cause::kNewSource, News::Cause::kSourceRefused,
-                                 News::Cause::kSourceTakenOver}));
+                                 News::Cause::kNewSource, News::Cause::kSourceTakenOver}));
 }
 
 TEST_F(IntakeTest, TellsOnceOfASourceWhosePosesAreOfAnotherScene) {

@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/scara_cell.hpp"
@@ -63,6 +65,19 @@ class RosTransformsTest : public testing::Test {
     return Vec3::Zero();
   }
 
+  // Where an object is along x, by the source that says so.
+  using Places = std::map<std::string, double>;
+  Places places_of(std::uint32_t object) {
+    Places places;
+    for (const PoseBatch& batch : settled()) {
+      for (const PoseSample& sample : batch.samples) {
+        if (sample.object == object)
+          places[std::string(batch.source.view())] = sample.world_from_object.position.x();
+      }
+    }
+    return places;
+  }
+
   Cell cell;
   Heard heard{cell};
 };
@@ -109,32 +124,46 @@ TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
   }
 }
 
-TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTheFirstOnes) {
+// Which of two publishers is right cannot be told: the tick gets both, as two sources.
+TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
-  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}, {"/tf#2", 2.0}}));
   EXPECT_EQ(heard.told(News::Cause::kFrameOfTwo), 1u);
   // The first publisher is silent for a second.
-  heard.pass(RosTransforms::kFrameHeldNs);
-  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
-  EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
+  heard.pass(FrameClaims::kSilentNs);
+  send({{"map", "cart_link", {2.1, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(places_of(0), (Places{{"/tf#2", 2.1}}));
   // The second publisher has left.
   heard.intake.keep({1});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
-  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}}));
 }
 
-// A static transform is not sent twice, so no silence makes its frame expire.
-TEST_F(RosTransformsTest, OfTfStaticBelongToTheirPublisherUntilThatOneLeaves) {
+// A static transform never ages, so its publisher may be one that was forgotten.
+TEST_F(RosTransformsTest, OnTfAndOnTfStaticAreTwoSourcesWhicheverCameFirst) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, kStatic, 1);
-  heard.pass(100 * RosTransforms::kFrameHeldNs);
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}}));
+  heard.pass(100 * FrameClaims::kSilentNs);
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
-  EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 2.0}, {"/tf_static", 1.0}}));
+  // The static one does not take over when the other falls silent.
+  heard.pass(100 * FrameClaims::kSilentNs);
+  EXPECT_EQ(places_of(0), (Places{{"/tf_static", 1.0}}));
   heard.intake.keep({2});
-  send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
-  EXPECT_EQ(place_of(0), Vec3(2, 0, 0));
+  send({{"map", "cart_link", {3, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 3.0}}));
+}
+
+// A rival may claim a frame in the middle of the path, and give it another parent.
+TEST_F(RosTransformsTest, OfARivalLeadThroughItsOwnParents) {
+  heard.intake.keep({1, 2});
+  send({{"map", "odom", {1, 0, 0}}, {"odom", "cart_link", {0.5, 0, 0}}}, "/tf", 1);
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 1.5}}));
+  send({{"map", "other", {7, 0, 0}}, {"other", "odom", {2, 0, 0}}}, "/tf", 2);
+  EXPECT_EQ(places_of(0), (Places{{"/tf#2", 9.5}}));
 }
 
 // An invalid pose leaves the frame where it was. Frames without names are also refused.

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -33,8 +34,9 @@ class Variable : public testing::Test {
   // Takes a sample in a tick at its stamp, or later.
   std::optional<Reject> take(const JointSample& sample, std::int64_t after_ns = 0) {
     const std::int64_t now = sample.stamp_ns + after_ns;
-    const auto cause = clearance::take(joint_, sample, sample.stamp_ns,
-                                       {.now_ns = now, .future_ns = 5 * kMs}, state_);
+    const auto cause =
+        clearance::take(joint_, sample, sample.stamp_ns, {.now_ns = now, .future_ns = 5 * kMs},
+                        state_, state_.repetition);
     advance(joint_, now, state_);
     return cause;
   }
@@ -93,10 +95,6 @@ TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
 }
 
 TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
-  EXPECT_EQ(take(at(0, 1.01)), std::nullopt);
-  advance(joint_, 10'000 * kMs, state_);
-  EXPECT_NEAR(state_.may_have_moved, 20.0, 1e-9);
-  state_ = {};
   JointSample fast = at(0, 0.0);
   fast.has_velocity = true;
   fast.velocity = -5.0;
@@ -176,11 +174,169 @@ TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
 
 TEST_F(Variable, AfterTimeThatNobodyCanTellItIsLate) {
   EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
-  state_.input.forget_age(-5 * kMs);
+  forget_age(-5 * kMs, state_);
   advance(joint_, -5 * kMs, state_);
   EXPECT_TRUE(state_.input.late);
   EXPECT_EQ(take(at(-4 * kMs, 0.9)), std::nullopt);
   EXPECT_FALSE(state_.input.late);
+}
+
+// A joint that swings, and what a driver that lies sends of it: positions and velocities.
+class LyingVariable : public Variable {
+ protected:
+  static constexpr double kAmplitude = 0.4, kRate = 3.0;  // rad, rad/s: at most 1.2 rad/s
+  static double truth(std::int64_t ns) { return kAmplitude * std::sin(kRate * 1e-9 * double(ns)); }
+  static double speed(std::int64_t ns) {
+    return kAmplitude * kRate * std::cos(kRate * 1e-9 * double(ns));
+  }
+  std::optional<Reject> take_both(std::int64_t ns, double position, double velocity) {
+    JointSample sample = at(ns, position);
+    sample.has_velocity = true;
+    sample.velocity = velocity;
+    return take(sample);
+  }
+  // The largest error of the position in use while the joint counts as known, from this time on.
+  template <class Position>
+  double largest_error(std::int64_t from_ms, std::int64_t to_ms, Position position) {
+    double largest = 0.0;
+    for (std::int64_t ms = from_ms; ms < to_ms; ++ms) {
+      static_cast<void>(take_both(ms * kMs, position(ms * kMs), speed(ms * kMs)));
+      if (!state_.input.late)
+        largest = std::max(largest, std::abs(state_.position - truth(ms * kMs)));
+    }
+    return largest;
+  }
+};
+
+TEST_F(LyingVariable, FrozenPositionsUnderVelocitiesThatMoveAreFoundOut) {
+  EXPECT_LT(largest_error(0, 1000, [](std::int64_t ns) { return truth(ns); }), 1e-12);
+  EXPECT_LT(largest_error(1000, 4000, [](std::int64_t) { return truth(1000 * kMs); }), 0.12);
+  // The true positions are taken at once, and known when they have agreed for long enough.
+  EXPECT_EQ(take_both(4001 * kMs, truth(4001 * kMs), speed(4001 * kMs)), std::nullopt);
+  EXPECT_TRUE(state_.input.late);
+  EXPECT_LT(largest_error(4002, 5200, [](std::int64_t ns) { return truth(ns); }), 1e-12);
+  EXPECT_FALSE(state_.input.late);
+}
+
+TEST_F(LyingVariable, PositionsAtHalfTheSpeedAreFoundOut) {
+  EXPECT_LT(largest_error(0, 4000, [](std::int64_t ns) { return 0.5 * truth(ns); }), 0.12);
+  EXPECT_TRUE(state_.input.late);
+}
+
+TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
+  bool is_told = false;
+  for (std::int64_t ms = 0; ms < 3000; ++ms) {
+    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 0.0), std::nullopt);
+    is_told = is_told || state_.velocities_contradict;
+    ASSERT_FALSE(state_.input.late);
+    if (ms > 20) ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+  }
+  EXPECT_TRUE(is_told);
+  // Velocities that move and agree are used again.
+  for (std::int64_t ms = 3000; ms < 4000; ++ms) {
+    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), speed(ms * kMs)), std::nullopt);
+  }
+  EXPECT_FALSE(state_.velocities_contradict);
+  EXPECT_EQ(state_.velocity, speed(3999 * kMs));
+}
+
+// The larger of the two speeds counts, in the direction of the positions.
+TEST_F(LyingVariable, VelocitiesOfTheWrongSignGiveWayToPositions) {
+  for (std::int64_t ms = 0; ms < 2000; ++ms) {
+    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), -speed(ms * kMs)), std::nullopt) << ms;
+    if (ms > 60) ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+  }
+}
+
+TEST_F(LyingVariable, VelocitiesThatTheJointCannotHaveAreNotUsed) {
+  for (std::int64_t ms = 0; ms < 1000; ++ms) {
+    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 1e3), std::nullopt);
+    if (ms > 0) ASSERT_LT(std::abs(state_.velocity), 1.3);
+  }
+  EXPECT_TRUE(state_.velocities_contradict);
+}
+
+TEST_F(Variable, OutsideItsLimitsItIsRefusedAndNothingBoundsIt) {
+  joint_.limit_tolerance = 0.02;
+  EXPECT_EQ(take(at(0, 1.015)), std::nullopt) << "encoders have offsets";
+  EXPECT_EQ(take(at(10 * kMs, 1.03)), Reject::kOutsideLimits);
+  EXPECT_EQ(state_.may_have_moved, kUnlimited);
+  EXPECT_EQ(take(at(20 * kMs, 1.0)), std::nullopt);
+  EXPECT_TRUE(state_.input.contradicted);
+  EXPECT_EQ(take(at(41 * kMs, 1.0)), std::nullopt);
+  EXPECT_FALSE(state_.input.late);
+}
+
+TEST_F(Variable, ThatWrapsMakesNoLeapWhereItsAngleDoes) {
+  joint_.lower = -kUnlimited;
+  joint_.upper = kUnlimited;
+  joint_.wraps = true;
+  EXPECT_EQ(take(at(0, 3.1406)), std::nullopt);
+  EXPECT_EQ(take(at(1 * kMs, -3.1416)), std::nullopt);
+  EXPECT_NEAR(state_.velocity, 1.0, 0.02);
+  EXPECT_EQ(take(at(2 * kMs, 3.1416 + 6.283185307179586 * 1000)), std::nullopt);
+  EXPECT_EQ(take(at(3 * kMs, 0.0)), Reject::kTooFast);
+  joint_.wraps = false;
+  EXPECT_EQ(take(at(4 * kMs, 3.1416)), Reject::kTooFast);
+}
+
+TEST_F(Variable, ThatDriftsFasterThanItMovesIsFoundOut) {
+  double position = -0.9;
+  std::int64_t ms = 0;
+  while (take(at(ms * kMs, position)) == std::nullopt) {
+    ASSERT_LT(++ms, 400);
+    position += 0.0045;  // 4.5 rad/s, of 2
+  }
+  EXPECT_LT(position + 0.9 - 2.0 * 1e-3 * double(ms), 0.05) << "no farther off than an age limit";
+}
+
+TEST_F(Variable, ThatMayNotStandStillIsFrozenWhenItDoes) {
+  joint_.frozen_limit_ns = 50 * kMs;
+  EXPECT_EQ(take(at(0, 0.1)), std::nullopt);
+  EXPECT_EQ(take(at(50 * kMs, 0.1)), std::nullopt);
+  EXPECT_EQ(take(at(51 * kMs, 0.1)), Reject::kFrozen);
+  EXPECT_TRUE(state_.input.contradicted);
+}
+
+// Whoever came first: two sources cannot both be right.
+TEST_F(Variable, ThatTwoSourcesContradictIsUnknownWhileTheyDo) {
+  for (std::int64_t ms = 0; ms < 500; ++ms) {
+    ASSERT_EQ(take(at(ms * kMs, 0.0)), std::nullopt);
+    JointSample other = at(ms * kMs, 0.5);
+    other.source = 3;
+    ASSERT_EQ(take(other), Reject::kDisputed);
+    ASSERT_TRUE(state_.input.contradicted);
+  }
+  // One of them ends. A second later, the other is trusted.
+  std::int64_t ms = 500;
+  for (; state_.input.contradicted; ++ms) {
+    ASSERT_LT(ms, 2000);
+    ASSERT_EQ(take(at(ms * kMs, 0.0)), std::nullopt);
+  }
+  EXPECT_NEAR(static_cast<double>(ms), 1500.0, 2.0);
+  // A source that the cell names is not disputed.
+  state_.input.owner = InputOwner(0);
+  JointSample other = at(ms * kMs, 0.5);
+  other.source = 3;
+  EXPECT_EQ(take(other), Reject::kOtherSource);
+  EXPECT_FALSE(state_.input.contradicted);
+}
+
+// The owner sends what cannot be, but it is not silent.
+TEST_F(Variable, ThatIsRefusedKeepsItsOwner) {
+  EXPECT_EQ(take(at(0, 0.0)), std::nullopt);
+  for (std::int64_t ms = 1; ms < 3000; ++ms) {
+    static_cast<void>(take(at(ms * kMs, ms % 2 == 0 ? kNotANumber : 5.0)));
+    JointSample other = at(ms * kMs, 0.0);
+    other.source = 3;
+    ASSERT_EQ(take(other), Reject::kOtherSource) << ms;
+  }
+  EXPECT_EQ(state_.input.owner.takeovers(), 0u);
+  JointSample other = at(4001 * kMs, 0.0);
+  other.source = 3;
+  EXPECT_EQ(take(other), std::nullopt);
+  EXPECT_EQ(state_.input.owner.takeovers(), 1u);
+  EXPECT_EQ(state_.input.owner.former_source(), 0u);
 }
 
 }  // namespace

@@ -20,18 +20,38 @@ std::uint64_t refused(const Monitor& monitor) {
   return monitor.rejected(0)[static_cast<std::size_t>(Reject::kOtherSource)];
 }
 
-TEST(Ownership, FirstSourceOfAnObjectKeepsItWhateverAnotherSends) {
+TEST(Ownership, FirstSourceOfAnObjectKeepsItWhileAnotherSendsTheSame) {
   const Scene scene = test::two_balls();
   Monitor monitor(scene);
   for (int tick = 0; tick < 500; ++tick) {
     const std::int64_t now = kStart + tick * kTick;
-    const std::array samples{from(3, 0.0, now), from(5, 0.5, now + 4'500'000)};
+    const std::array samples{from(3, 0.0, now), from(5, 0.001, now + 4'500'000)};
     const Report& report = monitor.tick(samples, now);
     ASSERT_NEAR(report.minimum.distance, 0.8, 1e-12);
+    ASSERT_TRUE(report.minimum_certified);
   }
   EXPECT_EQ(refused(monitor), 500u);
   EXPECT_EQ(monitor.input_age(0).source, 3u);
   EXPECT_EQ(monitor.input_age(0).other_source, 5u);
+}
+
+// Whoever came first: which of the two is right cannot be told.
+TEST(Ownership, ObjectOfTwoSourcesThatContradictIsUnknownUntilASecondAfter) {
+  const Scene scene = test::two_balls();
+  Monitor monitor(scene);
+  for (int tick = 0; tick < 500; ++tick) {
+    const std::int64_t now = kStart + tick * kTick;
+    const std::array samples{from(3, 0.0, now), from(5, 0.5, now)};
+    const Report& report = monitor.tick(samples, now);
+    ASSERT_EQ(report.pairs[0].status, PairStatus::kUnknown);
+    ASSERT_FALSE(report.minimum_certified);
+  }
+  for (int tick = 500; tick <= 1500; ++tick) {
+    const std::int64_t now = kStart + tick * kTick;
+    const PoseSample sample = from(3, 0.0, now);
+    const Report& report = monitor.tick(std::span(&sample, 1), now);
+    ASSERT_EQ(report.pairs[0].status == PairStatus::kConverged, tick >= 1500) << tick;
+  }
 }
 
 TEST(Ownership, AnotherSourceTakesOverAfterASecondOfSilence) {
@@ -41,7 +61,7 @@ TEST(Ownership, AnotherSourceTakesOverAfterASecondOfSilence) {
   monitor.tick(std::span(&first, 1), kStart);
   for (int tick = 1; tick <= 1001; ++tick) {
     const std::int64_t now = kStart + tick * kTick;
-    const PoseSample sample = from(5, 0.1, now);
+    const PoseSample sample = from(5, 0.001, now);
     const Report& report = monitor.tick(std::span(&sample, 1), now);
     ASSERT_EQ(report.pairs[0].status, tick <= 20     ? PairStatus::kConverged
                                       : tick <= 1000 ? PairStatus::kUnknown
@@ -49,6 +69,24 @@ TEST(Ownership, AnotherSourceTakesOverAfterASecondOfSilence) {
         << tick;
   }
   EXPECT_EQ(monitor.input_age(0).source, 5u);
+  EXPECT_EQ(monitor.input_age(0).takeovers, 1u);
+  EXPECT_EQ(monitor.input_age(0).former_source, 3u);
+}
+
+// An owner that sends what cannot be is refused, but it is not silent.
+TEST(Ownership, SourceThatIsRefusedLosesNothingToARival) {
+  Scene scene = test::two_balls();
+  scene.objects[0].may_jump = false;
+  scene.objects[0].max_speed = 0.1;
+  Monitor monitor(scene);
+  for (int tick = 0; tick <= 3000; ++tick) {
+    const std::int64_t now = kStart + tick * kTick;
+    const double owners = tick > 0 && tick < 2500 ? 3.0 : 0.0;
+    const std::array samples{from(3, owners, now), from(5, 0.0, now)};
+    monitor.tick(samples, now);
+    ASSERT_EQ(monitor.input_age(0).source, 3u) << tick;
+  }
+  EXPECT_FALSE(monitor.input_age(0).stale) << "it is right again";
 }
 
 TEST(Ownership, SourceThatTheCellNamesIsTheOnlyOne) {

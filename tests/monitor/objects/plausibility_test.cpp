@@ -1,5 +1,5 @@
 // Poses that contradict the cell or themselves, tested through the tick.
-#include "monitor/objects/plausibility.hpp"
+#include "monitor/inputs/plausibility.hpp"
 
 #include <gtest/gtest.h>
 

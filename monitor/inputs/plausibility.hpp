@@ -1,0 +1,351 @@
+// Checks whether an input can have a value, given its earlier values and the speed that the cell
+// states for it. One rule serves all inputs: poses of objects and positions of joints.
+//
+// An input with the speed limit v does not change by more than v (t + age limit) in the time t
+// between two stamps. The age limit is the largest timing error that the cell accepts. The bound is
+// checked against the value in use and against an older one, so that a series of steps cannot
+// exceed it either.
+//
+// If two values exclude each other, they do not tell which one is wrong. The later value is not
+// used. The input is unknown until a value agrees again and an age limit has passed since the last
+// contradiction.
+//
+// A `Metric` says what distance and velocity mean for one kind of value:
+//   Value, Rate                            a value, and its rate of change per second
+//   bool stay_within(limit, from, to)      is the distance of the two values at most `limit`?
+//   double length(rate)                    the speed of a rate, at least as large as the true one
+//   Value moved(value, step)               the value after a small step (a rate times a time)
+//   Rate scaled_sum(factor, a, b)          factor (a + b)
+//   double distance(from, to)              the distance of two values
+//   kRatesMayBeWrong                       true: values that move at least as far as their rates
+//                                          say are right, and the rates are wrong
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <optional>
+
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+
+namespace clearance {
+
+// The speed that is assumed during timing errors if the cell states none, m/s or rad/s.
+inline constexpr double kUsualSpeed = 1.0;
+
+// What the cell assumes of one input's motion. Speeds are in m/s, or in rad/s for angles.
+struct MotionLimits {
+  double fastest = 0.0;  // no faster
+  double usual = 0.0;    // the speed that is assumed during timing errors
+  std::int64_t age_limit_ns = 0;
+  std::int64_t frozen_limit_ns = 0;  // a value may repeat for this long; 0: without limit
+};
+
+// Whether values and sent rates agree, and if not, which of the two decides.
+enum class Agreement : std::uint8_t {
+  kAgree,
+  kValuesContradict,  // the value is not where the rates lead: it must not be used
+  kRatesContradict,   // the rates say less than the values show: the values decide
+};
+
+template <class Metric>
+[[nodiscard]] bool can_reach(const Metric& metric, const typename Metric::Value& from,
+                             const typename Metric::Value& to, std::int64_t elapsed_ns,
+                             const MotionLimits& limits) noexcept {
+  const double time = seconds(elapsed_ns) + seconds(limits.age_limit_ns);
+  return metric.stay_within(limits.fastest * time, from, to);
+}
+
+// Detects a value that is sent repeatedly, bit for bit.
+class Repetition {
+ public:
+  // `same` means that the sample has the value in use. `stamp_ns` is in the tick's time.
+  void add(bool same, std::int64_t stamp_ns) noexcept {
+    last_ns_ = stamp_ns;
+    if (!same) since_ns_ = stamp_ns;
+  }
+  // True when the value has repeated for longer than the cell permits.
+  [[nodiscard]] bool is_frozen(const MotionLimits& limits) const noexcept {
+    return limits.frozen_limit_ns > 0 && elapsed(since_ns_, last_ns_) > limits.frozen_limit_ns;
+  }
+
+ private:
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
+};
+
+// Dead reckoning: integrates the sent rates from an older value.
+//
+// A rate may have a timing error of the age limit and a relative error of one sixth. Over the whole
+// integration time, noise of up to a thirtieth of the usual speed accumulates to little. The same
+// holds for an offset of up to a fiftieth. Samples without a rate are left out. Nothing is checked
+// if rates come less often than every two age limits.
+template <class Metric>
+class Reckoning {
+ public:
+  using Value = typename Metric::Value;
+  using Rate = typename Metric::Rate;
+
+  // The integration time, in age limits. Over a longer time, noise would accumulate too much.
+  static constexpr std::int64_t kAgeLimits = 50;
+  // Over a longer gap, in age limits, the mean of two rates says nothing about the motion between.
+  static constexpr std::int64_t kGapAgeLimits = 2;
+  static constexpr double kRateError = 1.0 / 6.0;
+  // The share of the usual motion in an age limit that rates may leave out without being wrong.
+  static constexpr double kLeftOut = 0.125;
+
+  // Adds a sample. `same` is that of Repetition::add().
+  [[nodiscard]] Agreement add(const Value& value, const Rate& rate, std::int64_t stamp_ns,
+                              bool same, const MotionLimits& limits,
+                              const Metric& metric) noexcept {
+    const bool goes_on = any_ && elapsed(since_ns_, stamp_ns) <= kAgeLimits * limits.age_limit_ns &&
+                         elapsed(last_ns_, stamp_ns) <= kGapAgeLimits * limits.age_limit_ns;
+    if (!goes_on) {
+      start(value, rate, stamp_ns, metric);
+      return Agreement::kAgree;
+    }
+    integrate(rate, stamp_ns, metric);
+    const Agreement agreement = compare(value, stamp_ns, limits, metric);
+    if (agreement != Agreement::kAgree && !same) start(value, rate, stamp_ns, metric);
+    return agreement;
+  }
+
+  // True if the rates have moved by more than any error.
+  [[nodiscard]] bool has_moved(const MotionLimits& limits) const noexcept {
+    return path_ > 2.0 * largest_error(limits);
+  }
+
+ private:
+  // Farther than this, a value contradicts the rates. Rates that are an age limit late do not
+  // contain the last part of the motion yet. Instead they contain what preceded the first of them.
+  [[nodiscard]] double largest_error(const MotionLimits& limits) const noexcept {
+    return (std::max(limits.usual, fastest_) + fastest_) * seconds(limits.age_limit_ns) +
+           kRateError * path_;
+  }
+  // Closer than this, rates that say too little do not show.
+  [[nodiscard]] double least_error(const MotionLimits& limits) const noexcept {
+    return (kLeftOut * limits.usual + 2.0 * fastest_) * seconds(limits.age_limit_ns) +
+           kRateError * path_;
+  }
+
+  // A value that moves less than its rates say may be frozen. If it moves as far, but elsewhere,
+  // the rates are wrong, where that may be: many drivers of joints send 0.
+  [[nodiscard]] Agreement compare(const Value& value, std::int64_t stamp_ns,
+                                  const MotionLimits& limits, const Metric& metric) noexcept {
+    if constexpr (Metric::kRatesMayBeWrong) {
+      const double step = metric.distance(step_from_, value);
+      const bool moves_less = way_ + step < (1.0 - kRateError) * path_;
+      if (elapsed(step_ns_, stamp_ns) >= limits.age_limit_ns) {
+        way_ += step;
+        step_from_ = value;
+        step_ns_ = stamp_ns;
+      }
+      if (!moves_less) {
+        return metric.stay_within(least_error(limits), led_to_, value)
+                   ? Agreement::kAgree
+                   : Agreement::kRatesContradict;
+      }
+    }
+    return metric.stay_within(largest_error(limits), led_to_, value) ? Agreement::kAgree
+                                                                     : Agreement::kValuesContradict;
+  }
+
+  void start(const Value& value, const Rate& rate, std::int64_t stamp_ns,
+             const Metric& metric) noexcept {
+    any_ = true;
+    led_to_ = step_from_ = value;
+    path_ = way_ = 0.0;
+    last_ = rate;
+    last_speed_ = fastest_ = metric.length(rate);
+    since_ns_ = last_ns_ = step_ns_ = stamp_ns;
+  }
+
+  // Trapezoidal rule: integrates the mean of the last rate and this one.
+  void integrate(const Rate& rate, std::int64_t stamp_ns, const Metric& metric) noexcept {
+    const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));
+    const double speed = metric.length(rate);
+    led_to_ = metric.moved(led_to_, Metric::scaled_sum(half, last_, rate));
+    path_ += half * (last_speed_ + speed);
+    fastest_ = std::max(fastest_, speed);
+    last_ = rate;
+    last_speed_ = speed;
+    last_ns_ = stamp_ns;
+  }
+
+  bool any_ = false;
+  Value led_to_{};        // where the rates lead from the first value
+  double path_ = 0.0;     // length of the integrated path
+  double fastest_ = 0.0;  // the fastest speed since since_ns_
+  Rate last_{};
+  double last_speed_ = 0.0;
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
+  // How far the values have moved, in steps of an age limit: noise does not add up. The last step
+  // began at this value.
+  double way_ = 0.0;
+  Value step_from_{};
+  std::int64_t step_ns_ = 0;
+};
+
+// An older value of the stream in use. The input must be able to get from it to each new value.
+template <class Metric>
+class FormerValue {
+ public:
+  using Value = typename Metric::Value;
+  // The time for which a value stays, in age limits. It reveals an input whose speed always exceeds
+  // its limit by more than a sixth.
+  static constexpr std::int64_t kAgeLimits = 6;
+
+  // Starts from the first value of a stream.
+  void set(const Value& value, std::int64_t stamp_ns) noexcept {
+    value_ = value;
+    stamp_ns_ = stamp_ns;
+  }
+  [[nodiscard]] bool allows(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits,
+                            const Metric& metric) const noexcept {
+    return can_reach(metric, value_, value, elapsed(stamp_ns_, stamp_ns), limits);
+  }
+  // Call this with every later value that is taken.
+  void follow(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits) noexcept {
+    if (elapsed(stamp_ns_, stamp_ns) > kAgeLimits * limits.age_limit_ns) set(value, stamp_ns);
+  }
+
+ private:
+  Value value_{};
+  std::int64_t stamp_ns_ = 0;
+};
+
+// Detects values that stay at a place where the input cannot be.
+template <class Metric>
+class OtherPlace {
+ public:
+  using Value = typename Metric::Value;
+  // Values that stay there for this time are taken.
+  static constexpr std::int64_t kTakenAfterNs = 10'000'000'000;
+  // The largest time between two consecutive values that still counts as staying; two age limits if
+  // that is longer.
+  static constexpr std::int64_t kGapNs = 1'000'000'000;
+
+  // Returns true if the values have stayed long enough. Stamps are in the tick's time.
+  [[nodiscard]] bool add(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits,
+                         const Metric& metric) noexcept {
+    const std::int64_t passed_ns = elapsed(last_ns_, stamp_ns);
+    const bool stays = any_ && passed_ns <= std::max(kGapNs, 2 * limits.age_limit_ns) &&
+                       can_reach(metric, value_, value, passed_ns, limits);
+    if (!stays) since_ns_ = stamp_ns;
+    any_ = true;
+    value_ = value;
+    last_ns_ = stamp_ns;
+    return elapsed(since_ns_, stamp_ns) >= kTakenAfterNs;
+  }
+  void clear() noexcept { any_ = false; }
+
+ private:
+  bool any_ = false;
+  Value value_{};
+  std::int64_t since_ns_ = 0, last_ns_ = 0;
+};
+
+// All checks of one input.
+template <class Metric>
+class Plausibility {
+ public:
+  using Value = typename Metric::Value;
+  using Rate = typename Metric::Rate;
+  struct Sample {
+    const Value& value;
+    const Rate* rate = nullptr;  // null: none was sent
+    std::int64_t stamp_ns = 0;
+  };
+
+  // Returns why the sample cannot be true. `in_use` is the value in use, with its stamp; null if
+  // there is none. `same` means that the sample has it. `repetition` counts such samples.
+  [[nodiscard]] std::optional<Reject> refuses(const Sample& sample, const Value* in_use,
+                                              std::int64_t in_use_ns, bool same,
+                                              Repetition& repetition, const MotionLimits& limits,
+                                              const Metric& metric) noexcept {
+    value_contradicts_rates_ = false;
+    repetition.add(same, sample.stamp_ns);
+    if (same && repetition.is_frozen(limits)) return Reject::kFrozen;
+    if (in_use != nullptr && !same && !is_reachable(sample, *in_use, in_use_ns, limits, metric))
+      return Reject::kTooFast;
+    if (sample.rate == nullptr) return std::nullopt;
+    switch (reckoning_.add(sample.value, *sample.rate, sample.stamp_ns, same, limits, metric)) {
+      case Agreement::kAgree:
+        rates_contradict_ = rates_contradict_ && !reckoning_.has_moved(limits);
+        return std::nullopt;
+      case Agreement::kRatesContradict:
+        rates_contradict_ = true;
+        return std::nullopt;
+      case Agreement::kValuesContradict:
+        if (rates_contradict_) return std::nullopt;
+        break;
+    }
+    value_contradicts_rates_ = true;
+    return same ? Reject::kFrozen : Reject::kOtherWay;
+  }
+
+  // Call this when a sample is taken into use. `is_first`: there was no value before.
+  void use(const Value& value, std::int64_t stamp_ns, bool is_first,
+           const MotionLimits& limits) noexcept {
+    if (is_first) former_.set(value, stamp_ns);
+    former_.follow(value, stamp_ns, limits);
+    other_place_.clear();
+  }
+
+  // The age of the value in use is not known any more.
+  void forget_age(const Value& in_use, std::int64_t in_use_ns) noexcept {
+    *this = {};
+    former_.set(in_use, in_use_ns);
+  }
+
+  // After a refusal: the time for which later samples must agree. If the values were not where the
+  // rates lead, it is so long that a slow deviation would be detected again. An input that always
+  // lags behind is then not known in between.
+  [[nodiscard]] std::int64_t agree_for_ns(const MotionLimits& limits) const noexcept {
+    const std::int64_t age_limits =
+        value_contradicts_rates_ ? Reckoning<Metric>::kAgeLimits + 1 : 1;
+    return age_limits * limits.age_limit_ns;
+  }
+
+  // True if the sent rates contradict the values, which are right. It ends when rates that move
+  // agree. Until then no value is held against them.
+  [[nodiscard]] bool rates_contradict() const noexcept { return rates_contradict_; }
+  // Call this for a rate that the input cannot have.
+  void distrust_rates() noexcept { rates_contradict_ = true; }
+
+ private:
+  // True if the input can have come to this value, or if the value has to be taken all the same.
+  [[nodiscard]] bool is_reachable(const Sample& sample, const Value& in_use, std::int64_t in_use_ns,
+                                  const MotionLimits& limits, const Metric& metric) noexcept {
+    const std::int64_t passed_ns = elapsed(in_use_ns, sample.stamp_ns);
+    if (can_reach(metric, in_use, sample.value, passed_ns, limits) &&
+        former_.allows(sample.value, sample.stamp_ns, limits, metric)) {
+      return true;
+    }
+    if (!other_place_.add(sample.value, sample.stamp_ns, limits, metric)) return false;
+    former_.set(sample.value, sample.stamp_ns);
+    return true;
+  }
+
+  FormerValue<Metric> former_;
+  Reckoning<Metric> reckoning_;
+  OtherPlace<Metric> other_place_;
+  bool value_contradicts_rates_ = false;  // the sample checked last
+  bool rates_contradict_ = false;
+};
+
+// Two sources claim one input. Returns true if their values exclude each other: the input would
+// need more than `speed` to be at both, within timing errors of an age limit. A quarter of a usual
+// motion in an age limit is left for measuring errors.
+template <class Metric>
+[[nodiscard]] bool is_disputed(const Metric& metric, const typename Metric::Value& a,
+                               std::int64_t a_ns, const typename Metric::Value& b,
+                               std::int64_t b_ns, double speed,
+                               const MotionLimits& limits) noexcept {
+  constexpr double kMeasuringShare = 0.25;
+  const double age = seconds(limits.age_limit_ns);
+  const double time = seconds(std::max(elapsed(a_ns, b_ns), elapsed(b_ns, a_ns))) + age;
+  const double error = kMeasuringShare * std::min(limits.usual, kUsualSpeed) * age;
+  return !metric.stay_within(speed * time + error, a, b);
+}
+
+}  // namespace clearance

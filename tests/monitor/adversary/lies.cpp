@@ -1,0 +1,301 @@
+#include "tests/monitor/adversary/lies.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace clearance::test::lies {
+namespace {
+
+constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell silent
+constexpr double kOutOfReach = 8.0;                 // m, of a takeover
+
+std::int64_t age_limit(Channel channel) {
+  return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
+}
+
+double stated_speed(Channel channel) {
+  return channel == Channel::kOdom || channel == Channel::kBase ? kBaseSpeed : kBallSpeed;
+}
+
+bool has_velocities(Channel channel) { return is_ball(channel) || is_robot(channel); }
+
+double since(const Fault& fault, std::int64_t t) {
+  return 1e-9 * static_cast<double>(t - fault.from);
+}
+
+struct Span {
+  double shortest, longest;  // ms
+};
+
+// A leap may not last until the object can have got there.
+Span duration_of(const Fault& fault) {
+  switch (fault.lie) {
+    case Lie::kLeap:
+      return {1.0, is_robot(fault.channel) ? 400.0 : 700.0};
+    case Lie::kScaled:
+    case Lie::kParentFar:
+      return {1.0, 600.0};
+    case Lie::kRivalWhileRefused:
+      return {1500.0, 1700.0};
+    case Lie::kTakeover:
+      return {1300.0, 1500.0};
+    case Lie::kDrift:
+      return {300.0, 1000.0};
+    case Lie::kWrongQuaternion:
+      return {1.0, fault.flag ? 100.0 : 1000.0};
+    case Lie::kNotANumber:
+      return {1.0, 1000.0};
+    default:
+      return {200.0, 2000.0};
+  }
+}
+
+// Lengths in m and angles in rad; times in ns.
+double size_of(const Fault& fault, Random& random) {
+  switch (fault.lie) {
+    case Lie::kLeap:
+      if (is_robot(fault.channel)) return random.sign() * random.uniform(1.5, 2.0);
+      return random.uniform(3.0, 7.0);
+    case Lie::kWrongStamps:
+      return static_cast<double>(kMs) *
+             (fault.flag ? random.uniform(1.0, 4.0) : -random.uniform(5.0, 200.0));
+    case Lie::kRivalLater:
+    case Lie::kRivalFirst:
+      return random.uniform(1.0, 2.5);
+    case Lie::kRivalWhileRefused:
+      return random.uniform(0.8, 1.5);
+    case Lie::kTakeover:
+      return is_robot(fault.channel) ? random.sign() * 2.6 : kOutOfReach;
+    case Lie::kOutOfLimits:
+      return fault.joint == 3 ? random.uniform(0.6, 1.0) : random.sign() * random.uniform(4.0, 6.0);
+    default:
+      return 0.0;
+  }
+}
+
+std::size_t joint_of(Lie lie, Random& random) {
+  if (lie == Lie::kOutOfLimits) return std::array{0u, 1u, 3u}[random.next() % 3];
+  if (lie == Lie::kTakeover) return 0;
+  if (lie == Lie::kLeap) return random.next() % 3;
+  return random.next() % kJoints;
+}
+
+}  // namespace
+
+const char* name(Lie lie) {
+  constexpr std::array<const char*, kLies> kNames{
+      "FreezeInMotion", "FreezeAtRest", "Leap",       "Drift",       "HalfSpeed",
+      "ZeroVelocities", "WrongSign",    "WrongUnit",  "WrongStamps", "Silence",
+      "Reordered",      "Duplicated",   "RivalLater", "RivalFirst",  "RivalWhileRefused",
+      "Takeover",       "OutOfLimits",  "Wrapped",    "ParentFar",   "WrongQuaternion",
+      "NotANumber",     "Scaled"};
+  return kNames[static_cast<std::size_t>(lie)];
+}
+
+std::string described(const Fault& fault) {
+  return fmt::format("{} of {} from {} to {} ms, size {:.4g}{}{}", name(fault.lie),
+                     name(fault.channel), fault.from / kMs, fault.to / kMs, fault.size,
+                     is_robot(fault.channel) ? std::string(", ") + kJointNames[fault.joint] : "",
+                     fault.flag ? ", second form" : "");
+}
+
+bool strikes(Lie lie, Channel channel) {
+  switch (lie) {
+    case Lie::kFreezeInMotion:
+    case Lie::kHalfSpeed:
+    case Lie::kZeroVelocities:
+    case Lie::kWrongSign:
+    case Lie::kWrongUnit:
+      return has_velocities(channel);
+    case Lie::kFreezeAtRest:
+      if (is_robot(channel)) return *kJointFrozenKey != '\0';
+      return is_ball(channel);
+    case Lie::kOutOfLimits:
+    case Lie::kWrapped:
+      return is_robot(channel);
+    case Lie::kParentFar:
+      return is_frame(channel);
+    case Lie::kWrongQuaternion:
+      return !is_robot(channel);
+    default:
+      return true;
+  }
+}
+
+Fault drawn(Lie lie, Channel channel, Random& random) {
+  Fault fault{.lie = lie, .channel = channel};
+  fault.flag = random.chance(0.5);
+  fault.joint = joint_of(lie, random);
+  fault.direction = random.direction();
+  fault.size = size_of(fault, random);
+  const Span span = duration_of(fault);
+  fault.from = static_cast<std::int64_t>(random.uniform(1000.0, 1500.0)) * kMs;
+  fault.to =
+      fault.from + static_cast<std::int64_t>(random.uniform(span.shortest, span.longest)) * kMs;
+  if (lie == Lie::kRivalFirst || lie == Lie::kOutOfLimits) {
+    fault.from = 0;
+    fault.to = static_cast<std::int64_t>(random.uniform(1800.0, 2500.0)) * kMs;
+  }
+  return fault;
+}
+
+std::vector<Fault> drawn_mix(std::uint64_t seed) {
+  Random random(seed);
+  std::vector<Fault> mix;
+  const int count = random.integer(1, 3);
+  while (static_cast<int>(mix.size()) < count) {
+    const auto lie = static_cast<Lie>(mix.empty() ? seed % kLies : random.next() % kLies);
+    const auto channel = static_cast<Channel>(random.next() % kChannels);
+    const bool is_free =
+        std::ranges::none_of(mix, [&](const Fault& fault) { return fault.channel == channel; });
+    if (is_free && strikes(lie, channel)) mix.push_back(drawn(lie, channel, random));
+  }
+  return mix;
+}
+
+Admissible admissible(const Fault& fault) {
+  switch (fault.lie) {
+    // A velocity may be wrong by a sixth, over at most 50 age limits. With the true speed u below
+    // the stated v, the values contradict it after (v + u) age limits and a sixth of the path.
+    case Lie::kFreezeInMotion:
+    case Lie::kHalfSpeed:
+      return {0, 10.5};
+    // The frozen limit is the time that the cell grants. The next sample shows that it has passed.
+    case Lie::kFreezeAtRest:
+      return {kFrozenLimit + 5 * kMs, 0.0};
+    // Positions are compared with one that is up to six age limits old, with one in hand.
+    case Lie::kDrift:
+      return {7 * age_limit(fault.channel), 1.0};
+    // Stamps ahead by less than the cell's limit for the future claim an age of zero.
+    case Lie::kWrongStamps:
+      return {0, fault.size > 0.0 ? 1.0 : 0.0};
+    // Where an angle passes through zero, it is right in any unit.
+    case Lie::kScaled:
+      return {0, is_robot(fault.channel) ? 1.0 : 0.0};
+    // Only the lie is heard, until the owner speaks for the first time and its message has come.
+    case Lie::kRivalFirst:
+      return {kOwnerStarts + 5 * kMs, 0.0};
+    // All others can be noticed in the tick that hears them.
+    default:
+      return {};
+  }
+}
+
+Told told(const Fault& fault, std::int64_t t) {
+  Told told{.value_at = t};
+  if (fault.lie == Lie::kRivalFirst) told.is_silent = t < kOwnerStarts;
+  // A velocity that is contradicted has to be sent before, too.
+  constexpr std::array kOfVelocities{Lie::kFreezeInMotion, Lie::kHalfSpeed, Lie::kZeroVelocities,
+                                     Lie::kWrongSign, Lie::kWrongUnit};
+  if (std::ranges::count(kOfVelocities, fault.lie) != 0) told.velocities = true;
+  if (t < fault.from || t >= fault.to) return told;
+  switch (fault.lie) {
+    case Lie::kFreezeInMotion:
+      told.value_at = fault.from;
+      break;
+    case Lie::kFreezeAtRest:
+      told.value_at = fault.from;
+      told.velocity_scale = 0.0;
+      told.velocities = fault.flag;
+      break;
+    case Lie::kLeap:
+    case Lie::kRivalWhileRefused:
+      if (fault.lie == Lie::kLeap || !is_robot(fault.channel)) {
+        told.offset = (fault.lie == Lie::kLeap ? fault.size : kOutOfReach) * fault.direction;
+        told.joint_offset[fault.joint] = fault.size;
+      } else {
+        told.joint_offset[0] = 5.0;
+      }
+      break;
+    case Lie::kDrift: {
+      const double way = 2.5 * since(fault, t);
+      // What rests on odom is held against a limit of its own.
+      const double stated =
+          fault.channel == Channel::kOdom ? kBallSpeed : stated_speed(fault.channel);
+      told.offset = way * stated * fault.direction;
+      told.joint_offset[fault.joint] = way * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
+      break;
+    }
+    case Lie::kHalfSpeed:
+      told.value_at = fault.from + (t - fault.from) / 2;
+      break;
+    case Lie::kZeroVelocities:
+    case Lie::kWrongSign:
+    case Lie::kWrongUnit:
+      told.velocity_scale = fault.lie == Lie::kZeroVelocities ? 0.0
+                            : fault.lie == Lie::kWrongSign    ? -1.0
+                                                              : 57.29577951308232;
+      break;
+    case Lie::kWrongStamps:
+      told.stamp_offset = static_cast<std::int64_t>(fault.size);
+      break;
+    case Lie::kSilence:
+    case Lie::kTakeover:
+      told.is_silent = true;
+      break;
+    case Lie::kReordered:
+      told.longest_delay = 30 * kMs;
+      break;
+    case Lie::kDuplicated:
+      told.is_repeated = true;
+      break;
+    case Lie::kOutOfLimits:
+      told.joint_offset[fault.joint] = fault.size;
+      break;
+    case Lie::kWrapped:
+      told.is_wrapped = true;
+      break;
+    case Lie::kParentFar:
+      told.is_far = true;
+      break;
+    case Lie::kWrongQuaternion:
+      told.is_turned = fault.flag;
+      told.quaternion_scale = fault.flag ? 1.0 : 1.5;
+      break;
+    case Lie::kNotANumber:
+      told.is_nan = true;
+      break;
+    case Lie::kScaled:
+      told.length_scale = 1000.0;
+      told.angle_scale = 57.29577951308232;
+      break;
+    case Lie::kRivalLater:
+    case Lie::kRivalFirst:
+    case Lie::kCount:
+      break;
+  }
+  return told;
+}
+
+Rival rival(const Fault& fault, std::int64_t t) {
+  Rival rival{.value_at = t};
+  if (t < fault.from || t >= fault.to) return rival;
+  switch (fault.lie) {
+    case Lie::kRivalLater:
+      rival.is_matched = rival.speaks = true;
+      break;
+    case Lie::kRivalFirst:
+      rival.is_matched = true;
+      rival.is_zero = is_robot(fault.channel);
+      rival.is_static = is_frame(fault.channel);
+      // A latched transform comes once.
+      rival.speaks = !rival.is_static || t < fault.from + kMs;
+      break;
+    case Lie::kRivalWhileRefused:
+      rival.is_matched = rival.speaks = t >= fault.from + 100 * kMs;
+      break;
+    case Lie::kTakeover:
+      rival.is_matched = rival.speaks = t >= fault.from + kTakeoverFrom;
+      rival.value_at = fault.from;
+      rival.is_of_one_joint = true;
+      break;
+    default:
+      return rival;
+  }
+  rival.offset = fault.size * fault.direction;
+  rival.joint_offset[is_robot(fault.channel) ? 0 : fault.joint] = fault.size;
+  return rival;
+}
+
+}  // namespace clearance::test::lies

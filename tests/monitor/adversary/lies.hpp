@@ -1,0 +1,120 @@
+// Faults of inputs: what is told instead of the truth, by whom, from when to when, and how soon a
+// monitor can notice it.
+//
+// Some lies cannot be told from the truth by anyone who hears only them. They are left out:
+// - One source alone lies smoothly within the stated speeds and limits, and its velocities agree.
+//   So does one that is a constant time late, or that is off by a constant from the start.
+// - Positions stop or slow down, and neither a velocity nor a frozen limit contradicts them. So do
+//   frames of tf, which have no velocities. The frozen limit of an object that follows a frame does
+//   not, either: its pose in the world changes with the frames above.
+// - A source falls silent, and another one claims what the object can have reached meanwhile.
+// - A source leaps, and stays there until the object can have got there.
+// - A value is wrong by less than the object moves within its age limit. The cell accepts that as
+//   an error of timing.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/monitor/adversary/lying_cell.hpp"
+#include "tests/monitor/adversary/true_motion.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance::test::lies {
+
+enum class Lie : std::uint8_t {
+  kFreezeInMotion,     // the value stays, with fresh stamps and true velocities
+  kFreezeAtRest,       // the value stays, with velocities of zero or without any
+  kLeap,               // metres or radians away, and back
+  kDrift,              // away at 2.5 times the stated speed
+  kHalfSpeed,          // half of the true speed, with true velocities
+  kZeroVelocities,     // true values
+  kWrongSign,          // velocities of the wrong sign with true values
+  kWrongUnit,          // velocities in degrees with true values
+  kWrongStamps,        // ahead or behind
+  kSilence,            //
+  kReordered,          // messages arrive up to 30 ms late and in any order
+  kDuplicated,         // each message arrives several times, at once and later
+  kRivalLater,         // a second source tells other values
+  kRivalFirst,         // another source was there before: zeros, or a latched tf_static
+  kRivalWhileRefused,  // the owner leaps, and a rival tells smoothly what is false, too
+  kTakeover,           // the owner is silent, and a rival says what cannot have been reached
+  kOutOfLimits,        // a joint beyond its limits, from the start
+  kWrapped,            // no lie: a continuous joint within plus or minus pi
+  kParentFar,          // a frame hangs on another parent, 50 m away
+  kWrongQuaternion,    // not of unit length, or half a turn away
+  kNotANumber,         //
+  kScaled,             // lengths in mm, angles in degrees
+  kCount
+};
+inline constexpr auto kLies = static_cast<std::size_t>(Lie::kCount);
+[[nodiscard]] const char* name(Lie lie);
+
+struct Fault {
+  Lie lie = Lie::kSilence;
+  Channel channel = Channel::kBall0;
+  std::int64_t from = 0, to = 0;  // ns since the start; `to` is not included
+  double size = 0.0;              // of the lie: m, rad, ns; by its kind
+  Vec3 direction = Vec3::UnitX();
+  std::size_t joint = 0;
+  bool flag = false;  // chooses between two forms
+};
+[[nodiscard]] std::string described(const Fault& fault);
+
+// True if the fault can strike that channel at all.
+[[nodiscard]] bool strikes(Lie lie, Channel channel);
+[[nodiscard]] Fault drawn(Lie lie, Channel channel, Random& random);
+// Up to three faults of different channels. The first kind is `seed` modulo the number of kinds.
+[[nodiscard]] std::vector<Fault> drawn_mix(std::uint64_t seed);
+
+// How soon a lie can be noticed, and how wrong a value may be that nobody can notice.
+struct Admissible {
+  std::int64_t delay = 0;  // ns from its beginning, during which nothing is judged
+  // In units of (stated speed x age limit), from its beginning until kSlackEnds after its end.
+  double slack = 0.0;
+};
+[[nodiscard]] Admissible admissible(const Fault& fault);
+// A value within the slack may be in use at the end of a lie. The next true one replaces it.
+inline constexpr std::int64_t kSlackEnds = 100 * kMs;
+// The owner of a RivalFirst begins then; before, only the lie is heard.
+inline constexpr std::int64_t kOwnerStarts = 300 * kMs;
+// Velocities are compared with positions over some age limits: 3 (v/u + 1) for a speed that is
+// wrong by a half, where u is the true speed and v the stated one, and twice that if the
+// comparison has just begun.
+inline constexpr std::int64_t kSpeedDelay = 16 * kAgeLimit;
+
+// What the owner of a channel does with the truth at an instant.
+struct Told {
+  std::int64_t value_at = 0;  // the instant of the told value
+  Vec3 offset = Vec3::Zero();
+  std::array<double, kJoints> joint_offset{};
+  double length_scale = 1.0, angle_scale = 1.0;
+  double velocity_scale = 1.0;
+  std::optional<bool> velocities = {};  // sent or not; nothing: as the channel does otherwise
+  bool is_nan = false, is_far = false, is_silent = false, is_wrapped = false;
+  double quaternion_scale = 1.0;
+  bool is_turned = false;          // by half a turn about z
+  std::int64_t stamp_offset = 0;   // ns
+  std::int64_t longest_delay = 0;  // ns
+  bool is_repeated = false;
+};
+[[nodiscard]] Told told(const Fault& fault, std::int64_t t);
+
+// What a rival tells, if it is there at all.
+struct Rival {
+  bool is_matched = false;  // its writer exists
+  bool speaks = false;
+  std::int64_t value_at = 0;
+  Vec3 offset = Vec3::Zero();
+  std::array<double, kJoints> joint_offset{};
+  bool is_zero = false;  // joints at zero
+  // Only the first joint is told: the others can be where they were.
+  bool is_of_one_joint = false;
+  bool is_static = false;  // a frame on tf_static
+};
+[[nodiscard]] Rival rival(const Fault& fault, std::int64_t t);
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,87 @@
+#include "tests/monitor/adversary/lying_cell.hpp"
+
+#include <string>
+
+#include "tests/config/cells.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance::test::lies {
+namespace {
+
+// Reach of the arm: 2.1 m from its shoulder.
+const std::string kBallRobot = R"(<robot name="balls">
+  <link name="foot"><collision><geometry><sphere radius="0.12"/></geometry></collision></link>
+  <link name="upper"><collision><origin xyz="0.4 0 0"/><geometry><sphere radius="0.1"/></geometry></collision></link>
+  <link name="lower"><collision><origin xyz="0.3 0 0"/><geometry><sphere radius="0.09"/></geometry></collision></link>
+  <link name="wrist"><collision><origin xyz="0.1 0.15 0"/><geometry><sphere radius="0.08"/></geometry></collision></link>
+  <link name="tip"><collision><origin xyz="0.1 0.1 0"/><geometry><sphere radius="0.06"/></geometry></collision></link>
+  <joint name="shoulder" type="revolute"><origin xyz="0 0 0.4"/><parent link="foot"/><child link="upper"/><axis xyz="0 0 1"/><limit lower="-2.5" upper="2.5" velocity="1.5"/></joint>
+  <joint name="elbow" type="revolute"><origin xyz="0.7 0 0"/><parent link="upper"/><child link="lower"/><axis xyz="0 1 0"/><limit lower="-2" upper="2" velocity="1.5"/></joint>
+  <joint name="spin" type="continuous"><origin xyz="0.6 0 0"/><parent link="lower"/><child link="wrist"/><axis xyz="1 0 0"/><limit velocity="2"/></joint>
+  <joint name="push" type="prismatic"><origin xyz="0.2 0 0"/><parent link="wrist"/><child link="tip"/><axis xyz="1 0 0"/><limit lower="0" upper="0.4" velocity="0.5"/></joint>
+</robot>
+)";
+
+std::string key(const char* name, const std::string& value) {
+  return *name == '\0' ? "" : std::string(", ") + name + ": " + value;
+}
+
+std::string cell_text_of_lies() {
+  const std::string frozen = key(kJointFrozenKey, std::to_string(kFrozenLimit / kMs));
+  const std::string ball =
+      ", groups: [balls], frozen_limit_ms: 100, sphere: {radius: 0.1, centre: [0.15, 0, 0]}}\n";
+  return "name: lies\nunits: {length: m, angle: rad}\nbudget: 4000\n"
+         "ros2: {world_frame: map}\n"
+         "defaults: {age_limit_ms: 20, max_speed: 2}\n"
+         "robots:\n"
+         "  - {name: arm, urdf: balls.urdf, prefix: arm_, joint_states: /arm/joint_states, base: "
+         "{frame: base_link, age_limit_ms: 40" +
+         key(kBaseSpeedKey, std::to_string(kBaseSpeed)) + "}" + frozen +
+         "}\n"
+         "  - {name: post, urdf: balls.urdf, prefix: post_, joint_states: /post/joint_states, "
+         "base: {pose: {xyz: [2.6, 0.4, 0]}}" +
+         frozen +
+         "}\n"
+         "objects:\n  - {name: ball0" +
+         ball + "  - {name: ball1" + ball + "  - {name: ball2" + ball +
+         "  - {name: follower, frame: follower_link" + ball +
+         "  - {name: rock, fixed: true, pose: {xyz: [1.0, 1.3, 0.3]}, sphere: {radius: 0.2}}\n"
+         "pairs:\n"
+         "  - between: [arm, balls]\n  - between: [post, balls]\n  - between: [balls, balls]\n"
+         "  - between: [balls, rock]\n  - between: [arm, post]\n  - between: [arm, rock]\n"
+         "  - between: [arm, arm]\n"
+         "zones:\n"
+         "  - {name: people, between: [ball0, arm], enter_below: 0.5, leave_above: 0.6, "
+         "separation: "
+         "{human: ball0, human_speed_measured: true, human_acceleration: 3, reaction_time_ms: 40, "
+         "stopping_time_ms: 250, stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: "
+         "0.1}}\n"
+         "  - {name: arm, between: [arm, balls], enter_below: 0.3, leave_above: 0.35}\n"
+         "  - {name: post, between: [post, balls], enter_below: 0.3, leave_above: 0.35}\n"
+         "  - {name: robots, between: [arm, post], enter_below: 0.4, leave_above: 0.45}\n"
+         "  - {name: rock, between: [balls, rock], enter_below: 0.3, leave_above: 0.35}\n"
+         "  - {name: balls, between: [balls, balls], enter_below: 0.4, leave_above: 0.45}\n";
+}
+
+}  // namespace
+
+const char* name(Channel channel) {
+  constexpr std::array kNames{"ball0", "ball1", "ball2", "arm", "post", "odom", "base", "follower"};
+  return kNames[static_cast<std::size_t>(channel)];
+}
+
+const char* body_name(std::size_t body) {
+  constexpr std::array<const char*, kBodies> kNames{
+      "ball0",     "ball1",      "ball2",      "follower",   "rock",
+      "arm_foot",  "arm_upper",  "arm_lower",  "arm_wrist",  "arm_tip",
+      "post_foot", "post_upper", "post_lower", "post_wrist", "post_tip"};
+  return kNames[body];
+}
+
+Cell lying_cell() {
+  const ScratchFolder folder;
+  write_text(folder / "balls.urdf", kBallRobot);
+  return read_good(cell_text_of_lies(), folder / "cell.yaml");
+}
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,52 @@
+// A cell for inputs that lie: balls by poses, a ball by tf, a robot whose base follows tf, and a
+// robot that stands in the world. Every body is a ball, so the true distance has a closed form.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "config/cell/cell.hpp"
+
+namespace clearance::test::lies {
+
+inline constexpr std::int64_t kMs = 1'000'000;
+inline constexpr std::int64_t kSecond = 1000 * kMs;
+
+// What a program of its own sends. A fault strikes one of these.
+enum class Channel : std::uint8_t { kBall0, kBall1, kBall2, kArm, kPost, kOdom, kBase, kFollower };
+inline constexpr std::size_t kChannels = 8;
+[[nodiscard]] constexpr bool is_ball(Channel c) { return c <= Channel::kBall2; }
+[[nodiscard]] constexpr bool is_robot(Channel c) {
+  return c == Channel::kArm || c == Channel::kPost;
+}
+[[nodiscard]] constexpr bool is_frame(Channel c) { return c >= Channel::kOdom; }
+[[nodiscard]] const char* name(Channel channel);
+
+// Limits that the cell states.
+inline constexpr double kBallSpeed = 2.0;            // m/s, also of the ball that follows tf
+inline constexpr double kBaseSpeed = 1.0;            // m/s, of the base and its parent frame
+inline constexpr std::int64_t kAgeLimit = 20 * kMs;  // of balls and joints
+inline constexpr std::int64_t kBaseAgeLimit = 40 * kMs;
+inline constexpr std::int64_t kFrozenLimit = 100 * kMs;
+// Joints in their order: shoulder, elbow (revolute), spin (continuous), push (prismatic).
+inline constexpr std::size_t kJoints = 4;
+inline constexpr std::array<const char*, kJoints> kJointNames{"shoulder", "elbow", "spin", "push"};
+inline constexpr std::array<double, kJoints> kJointSpeed{1.5, 1.5, 2.0, 0.5};  // rad/s, m/s
+
+// Keys of the robot that a cell may not know yet; empty: left out, and so are faults that need it.
+inline constexpr const char* kBaseSpeedKey = "max_speed";  // of `base`, with the value kBaseSpeed
+inline constexpr const char* kJointFrozenKey =
+    "frozen_limit_ms";  // of a robot, with the value kFrozenLimit
+
+// A body, in the order of the true motion: balls 0 to 2, the follower, the rock, the links of the
+// arm from its foot to its tip, and those of the post.
+inline constexpr std::size_t kLinks = 5;
+inline constexpr std::size_t kFollowerBody = 3, kRockBody = 4, kArmBody = 5,
+                             kPostBody = kArmBody + kLinks, kBodies = kPostBody + kLinks;
+[[nodiscard]] const char* body_name(std::size_t body);
+
+// Reads the cell. All pairs are published.
+[[nodiscard]] Cell lying_cell();
+
+}  // namespace clearance::test::lies

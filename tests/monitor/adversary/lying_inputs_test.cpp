@@ -1,0 +1,98 @@
+// Inputs that lie, one fault at a time and in random mixes, judged by the true motion.
+//
+// The long campaign: CLEARANCE_LYING_SEEDS=45 monitor_tests --gtest_filter='*LyingInputs*'.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "tests/monitor/adversary/lying_run.hpp"
+
+namespace clearance::test::lies {
+namespace {
+
+// Pairs rest on inputs that are lost or late now and then.
+constexpr double kAvailable = 0.99;
+
+std::uint64_t seeds_of(std::uint64_t usual) {
+  const char* const asked = std::getenv("CLEARANCE_LYING_SEEDS");
+  return asked != nullptr ? std::strtoull(asked, nullptr, 10) : usual;
+}
+
+void expect_truth(const Cell& cell, const LyingRun& run) {
+  const Verdict verdict = judged(cell, run);
+  EXPECT_TRUE(verdict.is_true() && verdict.least_certified >= kAvailable)
+      << explained(cell, run, verdict);
+}
+
+class LyingInputs : public testing::TestWithParam<Lie> {};
+
+std::vector<Lie> all_kinds() {
+  std::vector<Lie> all;
+  for (std::size_t i = 0; i < kLies; ++i) all.push_back(static_cast<Lie>(i));
+  return all;
+}
+std::string name_of(const testing::TestParamInfo<Lie>& tested) { return name(tested.param); }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, LyingInputs, testing::ValuesIn(all_kinds()), name_of);
+
+// The channels that the kind strikes: all in the long campaign, else a ball, a robot and a frame.
+std::vector<Channel> struck_by(Lie lie) {
+  const bool is_long = seeds_of(1) > 1;
+  std::vector<Channel> struck;
+  for (std::size_t i = 0; i < kChannels; ++i) {
+    const auto channel = static_cast<Channel>(i);
+    const bool is_chosen =
+        is_long || channel == Channel::kBall0 || channel == Channel::kArm ||
+        channel == (static_cast<std::size_t>(lie) % 2 == 0 ? Channel::kBase : Channel::kOdom);
+    if (is_chosen && strikes(lie, channel)) struck.push_back(channel);
+  }
+  return struck;
+}
+
+// Until all pairs have to be certified again, and a little longer.
+std::int64_t long_enough(const Fault& fault) {
+  return fault.to + TruthJudge::kRecovers + kSecond / 4;
+}
+
+TEST_P(LyingInputs, OfOneKindGiveNoFalseBoundAndMissNoZone) {
+  const Cell cell = lying_cell();
+  const std::vector<Channel> struck = struck_by(GetParam());
+  ASSERT_FALSE(struck.empty());
+  for (const Channel channel : struck) {
+    for (std::uint64_t seed = 1; seed <= seeds_of(1); ++seed) {
+      Random random(100 * seed + static_cast<std::uint64_t>(channel));
+      LyingRun run{.sending = {.seed = seed, .faults = {}}};
+      run.sending.faults = {drawn(GetParam(), channel, random)};
+      run.length = long_enough(run.sending.faults.front());
+      expect_truth(cell, run);
+    }
+  }
+}
+
+TEST(LyingInputsMixed, GiveNoFalseBoundAndMissNoZone) {
+  const Cell cell = lying_cell();
+  for (std::uint64_t seed = 1; seed <= seeds_of(3); ++seed) {
+    LyingRun run{.sending = {.seed = seed, .faults = drawn_mix(seed)}};
+    run.sending.loss = seed % 3 == 0 ? 0.1 : 0.0;
+    run.sending.jitter = seed % 2 == 0 ? 2 * kMs : 0;
+    expect_truth(cell, run);
+  }
+}
+
+// Lost and late messages, joints that wrap, and joints that have turned 40,000 times are no
+// faults.
+TEST(TrueInputs, AreCertifiedNearlyAlways) {
+  const Cell cell = lying_cell();
+  for (const bool wraps : {false, true}) {
+    for (const bool far : {false, true}) {
+      LyingRun run{.sending = {.seed = 5, .faults = {}, .loss = 0.1, .jitter = 2 * kMs}};
+      run.sending.wraps = wraps;
+      run.joints_went_far = far;
+      SCOPED_TRACE(std::string(wraps ? "wrapped" : "not wrapped") + (far ? ", far" : ""));
+      expect_truth(cell, run);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance::test::lies

@@ -1,0 +1,82 @@
+#include "tests/monitor/adversary/lying_run.hpp"
+
+#include <fmt/format.h>
+
+#include <deque>
+
+#include "monitor/loop/tick_loop.hpp"
+
+namespace clearance::test::lies {
+namespace {
+
+constexpr std::int64_t kStartOfLies = 1'700'000'000 * kSecond;  // CLOCK_REALTIME
+
+// The ports of the loop. The time is that of its only clock.
+class LyingWorld final : public Clock, public PoseSource, public ReportSink {
+ public:
+  LyingWorld(const Cell& cell, const LyingRun& run)
+      : truth_(run.sending.seed, run.joints_went_far),
+        intake_(cell, {.admits_sources = true, .most_samples = 4096, .most_joints = 4096},
+                [this](PoseBatch& batch) {
+                  batches_.push_back(batch);
+                  return true;
+                }),
+        senders_(cell.scene, truth_, run.sending, kStartOfLies, intake_),
+        judge_(cell.scene, truth_, run.sending.faults) {}
+
+  std::int64_t realtime_ns() noexcept override { return kStartOfLies + now_; }
+  std::int64_t monotonic_ns() noexcept override { return kSecond + now_; }
+  std::int64_t steady_ns() noexcept override { return kSecond + now_; }
+  void sleep_until(std::int64_t monotonic_ns) noexcept override {
+    while (kSecond + now_ < monotonic_ns) senders_.send(now_ += kMs);
+  }
+  const PoseBatch* next() noexcept override {
+    if (batches_.empty()) return nullptr;
+    given_ = std::move(batches_.front());
+    batches_.pop_front();
+    return &given_;
+  }
+  void input(const PoseBatch&) noexcept override {}
+  void statistics(const LoopStatistics&) noexcept override {}
+  void report(const Report& report, std::span<const SourceUse>) noexcept override {
+    judge_.judge(report, now_);
+  }
+  [[nodiscard]] Verdict verdict() const { return judge_.verdict(); }
+
+ private:
+  std::int64_t now_ = -kMs;  // ns since the start
+  TrueMotion truth_;
+  std::deque<PoseBatch> batches_;
+  PoseBatch given_;
+  Intake intake_;
+  LyingSenders senders_;
+  TruthJudge judge_;
+};
+
+}  // namespace
+
+Verdict judged(const Cell& cell, const LyingRun& run) {
+  LyingWorld world(cell, run);
+  TickLoop loop(cell.scene, world, {&world}, world,
+                {.max_ticks = static_cast<std::uint64_t>(run.length / kMs)});
+  const std::atomic<bool> stop = false;
+  loop.run(stop);
+  return world.verdict();
+}
+
+std::string explained(const Cell& cell, const LyingRun& run, const Verdict& verdict) {
+  std::string text = fmt::format("seed {}\n{}", run.sending.seed, verdict.text());
+  for (const Fault& fault : run.sending.faults) {
+    text += "  fault: " + described(fault);
+    if (run.sending.faults.size() > 1) {
+      LyingRun alone = run;
+      alone.sending.faults = {fault};
+      const Verdict of_one = judged(cell, alone);
+      text += of_one.is_true() ? " (true if alone)" : " (false if alone)";
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,153 @@
+#include "tests/monitor/adversary/true_motion.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <numbers>
+
+#include "tests/shared/random.hpp"
+
+namespace clearance::test::lies {
+namespace {
+
+using Real = long double;
+constexpr Real kYawRate = 1.0L;   // of balls, rad/s
+constexpr Real kSpinRate = 1.2L;  // of continuous joints, rad/s
+// position = centre + amplitude sin(rate t + phase), but for the continuous joint
+constexpr std::array<Real, kJoints> kCentre{0.0L, 0.2L, 0.0L, 0.2L};
+constexpr std::array<Real, kJoints> kAmplitude{0.9L, 0.8L, 0.0L, 0.18L};
+constexpr std::array<Real, kJoints> kRate{1.3L, 1.4L, 0.0L, 2.1L};
+
+Real in_seconds(std::int64_t t) { return static_cast<Real>(t) * 1e-9L; }
+
+TruePose translation(Real x, Real y, Real z) {
+  TruePose pose = TruePose::Identity();
+  pose.col(3) << x, y, z, 1;
+  return pose;
+}
+
+// A rotation about the coordinate axis 0, 1 or 2.
+TruePose rotation(int axis, Real angle) {
+  TruePose pose = TruePose::Identity();
+  const int i = (axis + 1) % 3, j = (axis + 2) % 3;
+  pose(i, i) = pose(j, j) = std::cos(angle);
+  pose(i, j) = -std::sin(angle);
+  pose(j, i) = std::sin(angle);
+  return pose;
+}
+
+TruePoint moved(const TruePose& pose, Real x, Real y, Real z) {
+  return (pose * Eigen::Matrix<Real, 4, 1>(x, y, z, 1)).head<3>();
+}
+
+// The centres of a robot's links, by the origins of its description.
+void add_links(const TruePose& world_from_foot, const std::array<TrueJoint, kJoints>& joints,
+               std::size_t first, std::array<TruePoint, kBodies>& centres) {
+  TruePose link = world_from_foot;
+  centres[first] = moved(link, 0, 0, 0);
+  link = link * translation(0, 0, 0.4L) * rotation(2, joints[0].position);
+  centres[first + 1] = moved(link, 0.4L, 0, 0);
+  link = link * translation(0.7L, 0, 0) * rotation(1, joints[1].position);
+  centres[first + 2] = moved(link, 0.3L, 0, 0);
+  link = link * translation(0.6L, 0, 0) * rotation(0, joints[2].position);
+  centres[first + 3] = moved(link, 0.1L, 0.15L, 0);
+  link = link * translation(0.2L + joints[3].position, 0, 0);
+  centres[first + 4] = moved(link, 0.1L, 0.1L, 0);
+}
+
+}  // namespace
+
+TrueMotion::TrueMotion(std::uint64_t seed, bool far) {
+  Random random(seed + 1000);
+  const auto around = [&](Real x, Real y, Real z) {
+    const Vec3 off = random.in_box(0.25);
+    return TruePoint(x + off.x(), y + off.y(), z + 0.3L * off.z());
+  };
+  const auto phase = [&] { return static_cast<Real>(random.uniform(0.0, 6.28)); };
+  const auto tilt = [&] { return static_cast<Real>(random.uniform(-0.5, 0.5)); };
+  // Speeds of 1.3 to 1.55 m/s, and 0.15 m/s more by the turning.
+  orbits_[0] = {around(1.3L, -0.8L, 0.6L), 1.0L, 1.5L, phase(), tilt()};
+  orbits_[1] = {around(2.2L, 1.7L, 0.7L), 1.1L, -1.4L, phase(), tilt()};
+  orbits_[2] = {around(-1.3L, 1.1L, 0.5L), 0.9L, 1.6L, phase(), tilt()};
+  orbits_[3] = {around(-0.6L, -1.9L, 0.5L), 0.8L, -1.65L, phase(), tilt()};
+  for (auto& robot : phases_) {
+    for (Real& each : robot) each = phase();
+  }
+  base_phase_ = phase();
+  turned_ = far ? 80000.0L * std::numbers::pi_v<Real> : 0.0L;
+}
+
+TruePoint TrueMotion::on(const Orbit& orbit, std::int64_t t) const {
+  const Real angle = orbit.rate * in_seconds(t) + orbit.phase;
+  const Real x = orbit.radius * std::cos(angle), y = orbit.radius * std::sin(angle);
+  return orbit.centre + TruePoint(x, y * std::cos(orbit.tilt), y * std::sin(orbit.tilt));
+}
+
+TruePose TrueMotion::pose(Channel channel, std::int64_t t) const {
+  const Real s = in_seconds(t);
+  if (channel == Channel::kOdom) {
+    return translation(0.05L * std::sin(0.7L * s), 0.05L * std::cos(0.6L * s), 0) *
+           rotation(2, 0.03L * std::sin(0.5L * s));
+  }
+  if (channel == Channel::kBase) {
+    return translation(0.3L * std::sin(0.9L * s + base_phase_), 0.3L * std::cos(0.7L * s), 0.05L) *
+           rotation(2, 0.2L * std::sin(0.8L * s + base_phase_));
+  }
+  const std::size_t orbit = is_ball(channel) ? static_cast<std::size_t>(channel) : kFollowerBody;
+  const TruePoint p = on(orbits_[orbit], t);
+  return translation(p.x(), p.y(), p.z()) * rotation(2, kYawRate * s);
+}
+
+Twist TrueMotion::twist(Channel channel, std::int64_t t) const {
+  const Orbit& orbit = orbits_[static_cast<std::size_t>(channel)];
+  const Real angle = orbit.rate * in_seconds(t) + orbit.phase;
+  const Real x = -orbit.radius * orbit.rate * std::sin(angle);
+  const Real y = orbit.radius * orbit.rate * std::cos(angle);
+  const TruePoint linear(x, y * std::cos(orbit.tilt), y * std::sin(orbit.tilt));
+  return {.linear = linear.cast<double>(), .angular = {0, 0, static_cast<double>(kYawRate)}};
+}
+
+std::array<TrueJoint, kJoints> TrueMotion::joints(Channel robot, std::int64_t t) const {
+  const auto& phases = phases_[robot == Channel::kArm ? 0 : 1];
+  std::array<TrueJoint, kJoints> joints;
+  for (std::size_t i = 0; i < kJoints; ++i) {
+    const Real angle = kRate[i] * in_seconds(t) + phases[i];
+    joints[i] = {kCentre[i] + kAmplitude[i] * std::sin(angle),
+                 kAmplitude[i] * kRate[i] * std::cos(angle)};
+  }
+  joints[2] = {turned_ + phases[2] + kSpinRate * in_seconds(t), kSpinRate};
+  return joints;
+}
+
+std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
+  std::array<TruePoint, kBodies> centres;
+  for (std::size_t i = 0; i < 3; ++i) {
+    centres[i] = moved(pose(static_cast<Channel>(i), t), 0.15L, 0, 0);
+  }
+  const TruePose odom = pose(Channel::kOdom, t);
+  centres[kFollowerBody] = moved(odom * pose(Channel::kFollower, t), 0.15L, 0, 0);
+  centres[kRockBody] = {1.0L, 1.3L, 0.3L};
+  add_links(odom * pose(Channel::kBase, t), joints(Channel::kArm, t), kArmBody, centres);
+  add_links(translation(2.6L, 0.4L, 0), joints(Channel::kPost, t), kPostBody, centres);
+  return centres;
+}
+
+double TrueMotion::radius(std::size_t body) {
+  constexpr std::array<double, kLinks> kRadii{0.12, 0.1, 0.09, 0.08, 0.06};
+  if (body < kRockBody) return 0.1;
+  return body == kRockBody ? 0.2 : kRadii[(body - kArmBody) % kLinks];
+}
+
+// Sums of the speeds of what carries a link: the base, and each joint by its lever.
+double TrueMotion::fastest(std::size_t body) {
+  constexpr std::array<double, kLinks> kByJoints{0.0, 0.5, 2.3, 3.7, 4.7};
+  if (body < kRockBody) return kBallSpeed;
+  if (body == kRockBody || body == kPostBody) return 0.0;
+  return (body < kPostBody ? kBaseSpeed : 0.0) + kByJoints[(body - kArmBody) % kLinks];
+}
+
+Pose as_pose(const TruePose& pose) {
+  const Eigen::Quaternion<Real> q(Eigen::Matrix<Real, 3, 3>(pose.topLeftCorner<3, 3>()));
+  return {pose.col(3).head<3>().cast<double>(), q.cast<double>()};
+}
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,55 @@
+// The true motion of the cell of inputs that lie: smooth, within every stated speed and limit, and
+// never at rest. Its kinematics are products of 4x4 matrices in long double, which share nothing
+// with the monitor.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+
+#include "core/pose.hpp"
+#include "tests/monitor/adversary/lying_cell.hpp"
+
+namespace clearance::test::lies {
+
+using TruePose = Eigen::Matrix<long double, 4, 4>;
+using TruePoint = Eigen::Matrix<long double, 3, 1>;
+
+struct TrueJoint {
+  long double position = 0.0L, velocity = 0.0L;  // rad or m, per second
+};
+
+class TrueMotion {
+ public:
+  // `far`: the continuous joints have turned 40,000 times before.
+  TrueMotion(std::uint64_t seed, bool far);
+
+  // Times are ns since the start.
+  // World from ball 0 to 2, or parent from child of a frame.
+  [[nodiscard]] TruePose pose(Channel channel, std::int64_t t) const;
+  // The twist of a ball's frame, in world coordinates.
+  [[nodiscard]] Twist twist(Channel channel, std::int64_t t) const;
+  // `robot` is kArm or kPost.
+  [[nodiscard]] std::array<TrueJoint, kJoints> joints(Channel robot, std::int64_t t) const;
+
+  // The centres of all bodies in the world, m.
+  [[nodiscard]] std::array<TruePoint, kBodies> centres(std::int64_t t) const;
+  [[nodiscard]] static double radius(std::size_t body);
+  // No centre of the body is faster, m/s.
+  [[nodiscard]] static double fastest(std::size_t body);
+
+ private:
+  struct Orbit {
+    TruePoint centre;
+    long double radius = 0, rate = 0, phase = 0, tilt = 0;  // m, rad/s, rad, rad
+  };
+  [[nodiscard]] TruePoint on(const Orbit& orbit, std::int64_t t) const;
+
+  std::array<Orbit, 4> orbits_;  // three balls and the follower
+  std::array<std::array<long double, kJoints>, 2> phases_{};
+  long double base_phase_ = 0, turned_ = 0;
+};
+
+[[nodiscard]] Pose as_pose(const TruePose& pose);
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,263 @@
+#include "tests/monitor/adversary/truth_judge.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/pair_name.hpp"
+
+namespace clearance::test::lies {
+namespace {
+
+constexpr double kRounding = 1e-9;  // m
+// Between two ticks a body is taken to move straight from one pose to the next. The way bends: an
+// acceleration of 20 m/s2 over 10 ms departs by a quarter of a millimetre.
+constexpr double kBend = 2.5e-4;  // m
+// A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No
+// body accelerates by more than 8 m/s2.
+constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
+// What the furthest point of a robot moves when its joint turns by a radian, m.
+constexpr double kLever = 2.1;
+
+bool is_link_of(Channel robot, std::size_t body) {
+  const std::size_t foot = robot == Channel::kPost ? kPostBody : kArmBody;
+  return body >= foot && body < foot + kLinks;
+}
+
+bool rests_on(std::size_t body, Channel channel) {
+  if (is_ball(channel)) return body == static_cast<std::size_t>(channel);
+  if (channel == Channel::kFollower) return body == kFollowerBody;
+  if (channel == Channel::kBase) return is_link_of(Channel::kArm, body);
+  if (channel == Channel::kOdom) return body == kFollowerBody || is_link_of(Channel::kArm, body);
+  return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
+}
+
+// The length of stated speed x age limit, m.
+double slack_of(Channel channel) {
+  if (is_robot(channel)) return kLever * kJointSpeed[0] * 1e-9 * static_cast<double>(kAgeLimit);
+  if (channel == Channel::kOdom || channel == Channel::kBase)
+    return kBaseSpeed * 1e-9 * static_cast<double>(kBaseAgeLimit);
+  return kBallSpeed * 1e-9 * static_cast<double>(kAgeLimit);
+}
+
+std::int64_t age_limit_of(std::size_t body) {
+  return is_link_of(Channel::kArm, body) ? kBaseAgeLimit : kAgeLimit;
+}
+
+}  // namespace
+
+const char* name(Claim claim) {
+  constexpr std::array<const char*, kClaims> kNames{"lower", "upper",      "swept lower", "minimum",
+                                                    "zone",  "separation", "speed"};
+  return kNames[static_cast<std::size_t>(claim)];
+}
+
+bool Verdict::is_true() const {
+  return std::ranges::all_of(claims, [](const False& each) { return each.times == 0; });
+}
+
+std::string Verdict::text() const {
+  std::string text;
+  for (std::size_t i = 0; i < kClaims; ++i) {
+    if (claims[i].times == 0) continue;
+    text +=
+        fmt::format("  {}: false {} times, by {:.4f} at worst; first: {}\n",
+                    name(static_cast<Claim>(i)), claims[i].times, claims[i].worst, claims[i].first);
+  }
+  return text + fmt::format("  certified in {:.2f} % of pairs and ticks, {} in {:.2f} %\n",
+                            100.0 * certified, least_pair, 100.0 * least_certified);
+}
+
+TruthJudge::TruthJudge(const Scene& scene, const TrueMotion& truth,
+                       const std::vector<Fault>& faults)
+    : scene_(scene),
+      truth_(truth),
+      faults_(faults),
+      was_known_(scene.pairs.size(), 0),
+      used_(scene.pairs.size(), 0.0),
+      used_since_(scene.pairs.size(), 0.0),
+      certified_(scene.pairs.size(), 0),
+      judged_(scene.pairs.size(), 0) {
+  for (const Object& object : scene.objects) {
+    std::size_t body = 0;
+    while (object.name != body_name(body)) ++body;
+    body_.push_back(body);
+  }
+  for (const Fault& fault : faults) {
+    if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
+    available_from_ = std::max(available_from_, fault.to + kRecovers);
+  }
+}
+
+void TruthJudge::judge(const Report& report, std::int64_t t) {
+  t_ = t;
+  centres_[2] = t > 0 ? centres_[0] : truth_.centres(t - kMs);
+  centres_[1] = truth_.centres(t - kMs / 2);
+  centres_[0] = truth_.centres(t);
+  find_allowed(t);
+  for (const PairReport& pair : report.pairs) judge_pair(pair);
+  judge_minimum(report);
+  for (std::size_t zone = 0; zone < report.zones.size(); ++zone) judge_zone(report, zone);
+  for (const PairSeparation& pair : report.separated_pairs) judge_separation(pair);
+}
+
+void TruthJudge::find_allowed(std::int64_t t) {
+  allowed_ = {};
+  for (const Fault& fault : faults_) {
+    const Admissible admitted = admissible(fault);
+    for (std::size_t body = 0; body < kBodies; ++body) {
+      if (!rests_on(body, fault.channel)) continue;
+      Allowed& of = allowed_[body];
+      if (t >= fault.from && t < fault.to + kSlackEnds)
+        of.error += admitted.slack * slack_of(fault.channel);
+      of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
+      of.is_speed_excused |= t >= fault.from && t < fault.from + kSpeedDelay;
+      of.is_speed_excused |= t >= fault.to && t < fault.to + kSpeedDelay;
+    }
+  }
+}
+
+// Bounds hold for the poses in use, whose ages the report states. Those of a late object include
+// its motion until the tick.
+double TruthJudge::allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t age_b) const {
+  const auto of = [&](std::uint32_t object, std::int64_t age) {
+    const std::size_t body = body_[object];
+    const double aged = age > 0 && age <= age_limit_of(body)
+                            ? TrueMotion::fastest(body) * 1e-9 * static_cast<double>(age)
+                            : 0.0;
+    return aged + allowed_[body].error;
+  };
+  return kRounding + of(scene_.pairs[pair].first, age_a) + of(scene_.pairs[pair].second, age_b);
+}
+
+bool TruthJudge::is_excused(std::uint32_t pair) const {
+  return allowed_[body_[scene_.pairs[pair].first]].is_excused ||
+         allowed_[body_[scene_.pairs[pair].second]].is_excused;
+}
+
+long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) const {
+  const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
+  return (centres[a] - centres[b]).norm() - TrueMotion::radius(a) - TrueMotion::radius(b);
+}
+
+long double TruthJudge::least_since(std::uint32_t pair) const {
+  long double least = distance(pair, centres_[0]);
+  for (const Centres& centres : centres_) least = std::min(least, distance(pair, centres));
+  return least;
+}
+
+void TruthJudge::judge_pair(const PairReport& pair) {
+  const bool is_known = pair.status <= PairStatus::kStale;
+  const double before = used_[pair.pair];
+  used_[pair.pair] = allowed(pair.pair, pair.age_a_ns, pair.age_b_ns);
+  used_since_[pair.pair] = std::max(before, used_[pair.pair]);
+  if (t_ >= available_from_) {
+    ++judged_[pair.pair];
+    certified_[pair.pair] += pair.status <= PairStatus::kCarried;
+  }
+  const bool was_known = std::exchange(was_known_[pair.pair], is_known);
+  if (!is_known || is_excused(pair.pair)) return;
+  const auto truth = static_cast<double>(distance(pair.pair, centres_[0]));
+  const double error = used_[pair.pair];
+  const auto said = [&](double since) {
+    return fmt::format(
+        "{} is {}: {:.4f} to {:.4f}, swept {:.4f}; true {:.4f}, since {:.4f}; "
+        "ages {} and {} ms, allowed {:.4f}",
+        pair_name(scene_, pair.pair), name(pair.status), pair.lower, pair.upper, pair.swept_lower,
+        truth, since, pair.age_a_ns / kMs, pair.age_b_ns / kMs, error);
+  };
+  const auto since = static_cast<double>(least_since(pair.pair));
+  if (pair.lower > truth + error)
+    note_false(Claim::kLower, pair.lower - truth - error, said(since));
+  if (pair.upper < truth - error)
+    note_false(Claim::kUpper, truth - error - pair.upper, said(since));
+  const double error_since = used_since_[pair.pair] + kBend;
+  if (was_known && pair.swept_lower > since + error_since)
+    note_false(Claim::kSwept, pair.swept_lower - since - error_since, said(since));
+}
+
+void TruthJudge::judge_minimum(const Report& report) {
+  for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+    if (is_excused(pair)) continue;
+    const auto truth = static_cast<double>(distance(pair, centres_[0]));
+    double claimed = report.lower_all;
+    if (report.minimum_certified) claimed = std::max(claimed, report.minimum.lower);
+    const double by = claimed - truth - used_[pair];
+    if (by > 0.0) {
+      note_false(Claim::kMinimum, by,
+                 fmt::format("all pairs are above {:.4f}, {} is at {:.4f}", claimed,
+                             pair_name(scene_, pair), truth));
+    }
+  }
+}
+
+void TruthJudge::judge_zone(const Report& report, std::size_t zone) {
+  if (report.zones[zone].active) return;
+  const Zone& levels = scene_.zones[zone];
+  for (const std::uint32_t pair : levels.pairs) {
+    if (is_excused(pair)) continue;
+    const double inside = levels.enter_below - static_cast<double>(least_since(pair));
+    const double by = inside - used_since_[pair] - kBend;
+    if (by > 0.0) {
+      note_false(Claim::kZone, by,
+                 fmt::format("zone '{}' is not active, {} is inside by {:.4f}", levels.name,
+                             pair_name(scene_, pair), inside));
+    }
+  }
+}
+
+void TruthJudge::judge_separation(const PairSeparation& pair) {
+  if (pair.validity == SeparationValidity::kUnknown || is_excused(pair.pair)) return;
+  const auto truth = static_cast<double>(distance(pair.pair, centres_[0]));
+  const double by = pair.clearance - truth - used_[pair.pair];
+  if (by > 0.0) {
+    note_false(Claim::kSeparation, by,
+               fmt::format("{} has a clearance of {:.4f}, true {:.4f}",
+                           pair_name(scene_, pair.pair), pair.clearance, truth));
+  }
+  if (pair.validity != SeparationValidity::kMeasured) return;
+  const std::size_t first = body_[scene_.pairs[pair.pair].first];
+  const std::size_t second = body_[scene_.pairs[pair.pair].second];
+  if (allowed_[first].is_speed_excused || allowed_[second].is_speed_excused) return;
+  const std::size_t human = first == 0 ? first : second, robot = first == 0 ? second : first;
+  const TruePoint between = centres_[0][robot] - centres_[0][human];
+  const TruePoint way = between / between.norm();
+  const long double per_second = 1e9L / static_cast<long double>(kMs);
+  const auto human_speed =
+      static_cast<double>((centres_[0][human] - centres_[2][human]).dot(way) * per_second);
+  const auto robot_speed =
+      static_cast<double>((centres_[2][robot] - centres_[0][robot]).dot(way) * per_second);
+  const double slower = std::max(human_speed - pair.human_speed, robot_speed - pair.robot_speed);
+  if (slower > kSpeedError) {
+    note_false(Claim::kSpeed, slower - kSpeedError,
+               fmt::format("{}: measured {:.3f} and {:.3f} m/s, true {:.3f} and {:.3f}",
+                           pair_name(scene_, pair.pair), pair.human_speed, pair.robot_speed,
+                           human_speed, robot_speed));
+  }
+}
+
+void TruthJudge::note_false(Claim claim, double by, const std::string& what) {
+  Verdict::False& found = verdict_.claims[static_cast<std::size_t>(claim)];
+  if (found.times++ == 0) found.first = fmt::format("at {} ms, {}", t_ / kMs, what);
+  found.worst = std::max(found.worst, by);
+}
+
+Verdict TruthJudge::verdict() const {
+  Verdict verdict = verdict_;
+  std::uint64_t certified = 0, judged = 0;
+  for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+    if (judged_[pair] == 0) continue;
+    certified += certified_[pair];
+    judged += judged_[pair];
+    const double share = static_cast<double>(certified_[pair]) / static_cast<double>(judged_[pair]);
+    if (verdict.least_pair.empty() || share < verdict.least_certified) {
+      verdict.least_certified = share;
+      verdict.least_pair = pair_name(scene_, pair);
+    }
+  }
+  if (judged > 0) verdict.certified = static_cast<double>(certified) / static_cast<double>(judged);
+  return verdict;
+}
+
+}  // namespace clearance::test::lies

@@ -1,0 +1,100 @@
+// Compares reports with the true motion: bounds of pairs, the minimum, zones, and what separation
+// says. It knows the faults only to allow the time and the error that nobody can notice.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "monitor/report.hpp"
+#include "tests/monitor/adversary/lies.hpp"
+#include "tests/monitor/adversary/true_motion.hpp"
+
+namespace clearance::test::lies {
+
+// What is false in a report.
+enum class Claim : std::uint8_t {
+  kLower,       // a pair's lower bound is above the truth
+  kUpper,       // its upper bound is below the truth
+  kSwept,       // its bound since the last tick is above the truth at some instant
+  kMinimum,     // the certified minimum, or the bound of all pairs
+  kZone,        // a zone is not active
+  kSeparation,  // the clearance of a separation
+  kSpeed,       // a speed that is said to be measured
+  kCount
+};
+inline constexpr auto kClaims = static_cast<std::size_t>(Claim::kCount);
+[[nodiscard]] const char* name(Claim claim);
+
+struct Verdict {
+  struct False {
+    std::uint64_t times = 0;
+    double worst = 0.0;  // m, or m/s of kSpeed: beyond what is admissible
+    std::string first;   // tick, pair, bounds, truth
+  };
+  std::array<False, kClaims> claims;
+  // Of all pairs, from the time when they have to be known again: the share of ticks in which they
+  // are certified, in all and of the worst pair.
+  double certified = 1.0, least_certified = 1.0;
+  std::string least_pair;
+
+  [[nodiscard]] bool is_true() const;
+  [[nodiscard]] std::string text() const;
+};
+
+class TruthJudge {
+ public:
+  // Pairs have to be certified again this long after the last fault has ended. A hold after a
+  // contradiction of velocities takes 51 age limits, which is a second, and a source that was there
+  // first is given up after one.
+  static constexpr std::int64_t kRecovers = 2 * kSecond;
+  // The time from the start after which a cell without faults has heard everything.
+  static constexpr std::int64_t kStarts = kSecond / 2;
+
+  // All must outlive this.
+  TruthJudge(const Scene& scene, const TrueMotion& truth, const std::vector<Fault>& faults);
+
+  // `t` is the time of the tick, ns since the start.
+  void judge(const Report& report, std::int64_t t);
+  [[nodiscard]] Verdict verdict() const;
+
+ private:
+  // What the judge allows of a body in this tick.
+  struct Allowed {
+    bool is_excused = false;
+    double error = 0.0;  // m
+    bool is_speed_excused = false;
+  };
+  using Centres = std::array<TruePoint, kBodies>;
+
+  void find_allowed(std::int64_t t);
+  [[nodiscard]] double allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t age_b) const;
+  [[nodiscard]] bool is_excused(std::uint32_t pair) const;
+  [[nodiscard]] long double distance(std::uint32_t pair, const Centres& centres) const;
+  [[nodiscard]] long double least_since(std::uint32_t pair) const;
+  void judge_pair(const PairReport& pair);
+  void judge_minimum(const Report& report);
+  void judge_zone(const Report& report, std::size_t zone);
+  void judge_separation(const PairSeparation& pair);
+  void note_false(Claim claim, double by, const std::string& what);
+
+  const Scene& scene_;
+  const TrueMotion& truth_;
+  const std::vector<Fault>& faults_;
+  std::vector<std::size_t> body_;  // by object
+  std::int64_t t_ = 0, available_from_ = kStarts;
+  // The bodies in this tick, in the middle of the time since the last one, and in the last one.
+  std::array<Centres, 3> centres_{};
+  std::array<Allowed, kBodies> allowed_{};
+  std::vector<std::uint8_t> was_known_;  // by pair
+  // By pair: what is allowed at its ages, m, in this tick; and in the last one, if that is more.
+  std::vector<double> used_, used_since_;
+  std::vector<std::uint64_t> certified_, judged_;  // ticks by pair
+  Verdict verdict_;
+};
+
+}  // namespace clearance::test::lies
