@@ -81,7 +81,8 @@ std::vector<HalfSpace> planes_of(const TriangleMesh& mesh) {
   for (const auto& [key, face] : faces) {
     if (face.area >= kLeastFace * all) large.push_back(face);
   }
-  std::ranges::stable_sort(large, [](const FlatFace& a, const FlatFace& b) { return a.area > b.area; });
+  std::ranges::stable_sort(large,
+                           [](const FlatFace& a, const FlatFace& b) { return a.area > b.area; });
   std::vector<HalfSpace> planes;
   for (const FlatFace& face : large) planes.push_back(face.plane);
   return planes;

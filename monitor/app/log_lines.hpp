@@ -68,8 +68,8 @@ inline constexpr LogLine<Text> kPosesContradict{
 inline constexpr LogLine<Text> kPosesBack{"poses-back", kInfo, "poses of {} are back"};
 inline constexpr LogLine<Text, Text, Text> kTwoSources{
     "two-sources", kWarn, "{} is sent by '{}' and by '{}': poses of the latter are not used"};
-inline constexpr LogLine<Text, Text, Text> kSourceChanged{
-    "source-changed", kWarn, "{}: sent by '{}' now, before by '{}'"};
+inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWarn,
+                                                          "{}: sent by '{}' now, before by '{}'"};
 inline constexpr LogLine<Text> kVelocitiesContradict{
     "velocities-contradict", kWarn,
     "{}: the velocities that are sent contradict the positions, which are used instead"};

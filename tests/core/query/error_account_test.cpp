@@ -166,20 +166,6 @@ TEST(ErrorAccount, GrowsWithThePlaceOnAnUnboundedBody) {
   }
 }
 
-// Unbounded columns that lean by a rounding take GJK's method. Only its points bound their
-// distance.
-TEST(ErrorAccount, IsAppliedByGjk) {
-  const HalfSpace sides[] = {{Vec3(1, 1, 0), 0.5}, {Vec3(-1, 1, 0), 0.5}, {Vec3(0, -1, 0), 0.5}};
-  const ConvexBody column = made(polyhedron_from_halfspaces(sides));
-  const RelativePose pose = relative_pose(Pose{}, {{3, 1, 0}, {1.0, 1e-14, 0, 0}});
-  TrackingState state;
-  const DistanceResult r = distance(column, column, pose, state);
-  ASSERT_EQ(r.path, DistancePath::kGjk);
-  const Precision p = precision(column, column, pose, r.distance);
-  EXPECT_LE(r.lower, r.distance - 0.9 * p.error_bound);
-  EXPECT_GE(r.upper, r.distance + 0.9 * p.error_bound);
-}
-
 // The search for the depth has 12 roundings of the size more, and the rotation may stretch the
 // depth up to B's extent.
 TEST(ErrorAccount, IsAppliedToDepths) {

@@ -229,7 +229,9 @@ TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
     ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 0.0), std::nullopt);
     is_told = is_told || state_.velocities_contradict;
     ASSERT_FALSE(state_.input.late);
-    if (ms > 20) ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+    if (ms > 20) {
+      ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+    }
   }
   EXPECT_TRUE(is_told);
   // Velocities that move and agree are used again.
@@ -244,14 +246,18 @@ TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
 TEST_F(LyingVariable, VelocitiesOfTheWrongSignGiveWayToPositions) {
   for (std::int64_t ms = 0; ms < 2000; ++ms) {
     ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), -speed(ms * kMs)), std::nullopt) << ms;
-    if (ms > 60) ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+    if (ms > 60) {
+      ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+    }
   }
 }
 
 TEST_F(LyingVariable, VelocitiesThatTheJointCannotHaveAreNotUsed) {
   for (std::int64_t ms = 0; ms < 1000; ++ms) {
     ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 1e3), std::nullopt);
-    if (ms > 0) ASSERT_LT(std::abs(state_.velocity), 1.3);
+    if (ms > 0) {
+      ASSERT_LT(std::abs(state_.velocity), 1.3);
+    }
   }
   EXPECT_TRUE(state_.velocities_contradict);
 }
