@@ -90,17 +90,17 @@ Bodies searched_parts(const TriangleMesh& mesh, const TriangleTree& tree, const 
 Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const PartLimits& limits) {
   const OpenSpace space(mesh, kBall * limits.tolerance);
   const std::vector<TriangleMesh> shells = shells_of(mesh);
-  if (shells.size() > kMostShells) {
-    const ConvexCell whole = ConvexCell::around(mesh);
-    return searched_parts(mesh, tree, space, {&whole, 1}, limits);
-  }
+  const ConvexCell whole = ConvexCell::around(mesh);
+  if (shells.size() > kMostShells) return searched_parts(mesh, tree, space, {&whole, 1}, limits);
   const ConvexPieces pieces = convex_pieces(shells, space, limits);
   std::vector<ConvexBody> exact = exact_parts(pieces, mesh, space);
   if (!exact.empty() && exact.size() <= limits.max_parts) {
     Bodies bodies = judged(std::move(exact), tree, limits.tolerance);
     if (bodies.error <= kExact * limits.tolerance) return bodies;
   }
-  return searched_parts(mesh, tree, space, pieces.cells, limits);
+  // Shells that are not convex often lie within each other, and are better cut together.
+  const bool together = shells.size() > 1 && pieces.convex < pieces.cells.size();
+  return searched_parts(mesh, tree, space, together ? std::span(&whole, 1) : pieces.cells, limits);
 }
 
 // Returns the normal of the plane that all vertices lie in, up to single precision. Returns nothing
