@@ -77,9 +77,9 @@ TEST_F(JointStatesReader, AWriterOfPosesThatUsesTheNameOfOneOfJointsGetsAnother)
   ASSERT_TRUE(test::eventually([&] { return inputs.next() != nullptr; }));
   send_pose("arm");
   EXPECT_TRUE(test::eventually([&] { return inputs.refused_sources().size() == 1; }));
-  const PoseBatch* const poses = inputs.next();
-  ASSERT_NE(poses, nullptr);
-  EXPECT_EQ(poses->source.view(), "arm#2");
+  const PoseBatch* const other = inputs.next();
+  ASSERT_NE(other, nullptr);
+  EXPECT_EQ(other->source.view(), "arm#2");
 }
 
 }  // namespace

@@ -9,7 +9,6 @@
 #include "monitor/client/client.hpp"
 #include "monitor/dds/report_writer.hpp"
 #include "other_version.h"
-#include "tests/monitor/logged.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"

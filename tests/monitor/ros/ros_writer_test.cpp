@@ -6,8 +6,8 @@
 #include <map>
 
 #include "monitor/monitor.hpp"
-#include "tests/monitor/logged.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
