@@ -6,6 +6,8 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <thread>
@@ -73,7 +75,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->default_str(kRosJointStates)
       ->option_text("[TOPIC]")
       ->check([](const std::string& topic) {
-        return topic.starts_with('/') && topic.size() > 1
+        // ROS 2 permits no other characters: the path of a cell has a dot.
+        const auto is_allowed = [](char c) {
+          return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
+        };
+        return topic.starts_with('/') && topic.size() > 1 && std::ranges::all_of(topic, is_allowed)
                    ? std::string()
                    : fmt::format(
                          "found '{}'; expected a topic with its namespace: "

@@ -128,7 +128,7 @@ TEST(Daemon, EndsWithStatusZeroAndASummaryOnEitherSignal) {
     ASSERT_TRUE(eventually([&] { return daemon.told("started", {"'small'"}); })) << daemon.output();
     daemon.signal(signal);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
-    EXPECT_TRUE(daemon.wrote(" ticks in ")) << daemon.output();
+    EXPECT_TRUE(daemon.wrote(" overruns, ")) << daemon.output();
     EXPECT_TRUE(daemon.wrote("minimum  none")) << daemon.output();
   }
 }

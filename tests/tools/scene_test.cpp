@@ -61,8 +61,7 @@ std::string chain_urdf() {
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   EXPECT_EQ(run({"import", file("chain.urdf"), "-o", file("cell.yaml")}), 0) << output_;
-  EXPECT_NE(output_.find("note: no SRDF: neighbours are left out, and every other pair of links is "
-                         "watched: a - b, b - c"),
+  EXPECT_NE(output_.find("note: no SRDF: these neighbours are not watched: a - b, b - c"),
             std::string::npos)
       << output_;
   EXPECT_NE(output_.find("1 pair"), std::string::npos) << output_;

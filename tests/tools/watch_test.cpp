@@ -65,7 +65,7 @@ TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
   ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced is silent"); })) << watch.output();
   watch.signal(SIGTERM);
   EXPECT_EQ(watch.wait(), 0);
-  EXPECT_TRUE(watch.wrote(" 1 restarts")) << watch.output();
+  EXPECT_TRUE(watch.wrote(", 1 restart")) << watch.output();
 }
 
 TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {

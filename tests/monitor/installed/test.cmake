@@ -12,7 +12,7 @@ pairs:
   - {between: [hand, box]}
 ")
 file(WRITE "${FOLDER}/poses.csv" "t_ns,object,px,py,pz,qw,qx,qy,qz
-1000000,hand,0,0,1,1,0,0,0
+1000000,hand,0,0,0.51,1,0,0,0
 2000000,hand,0,0,0.5,1,0,0,0
 ")
 run("${BUILD}/bin/clearance-record" --from-csv "${FOLDER}/poses.csv" -o "${FOLDER}/run.mcap" --cell "${FOLDER}/cell.yaml")
