@@ -17,16 +17,17 @@ namespace clearance {
 using CellResult = std::variant<Cell, std::vector<CellError>>;
 
 struct CellOptions {
-  // Called with lines, without their ends, for a person who waits: the mesh that is being split,
-  // and warnings. Empty: the lines are dropped.
+  // Receives progress messages and warnings, one line a call and without a line end: for example,
+  // which mesh is being split. If empty, the messages are dropped.
   std::function<void(const std::string&)> tell = {};
-  // If not null: filled, for each object with meshes, by its name, with the largest distance of the
-  // surface of its parts from the meshes, m.
+  // If not null, receives for each object with meshes, by name, the largest distance (m) between
+  // the surface of its parts and the meshes.
   std::map<std::string, double>* mesh_errors = nullptr;
-  // The text was made from a URDF: advice tells how to get a cell.
+  // True when the text was generated from a URDF. Advice in error messages then says how to get a
+  // cell.
   bool is_of_urdf = false;
-  // The directory that holds the files of another machine, the cell among them, at their paths
-  // there; empty: they are this machine's.
+  // A directory with the files of another machine, including the cell, at the paths that they have
+  // there. If empty, the files are this machine's own.
   std::filesystem::path root = {};
 };
 

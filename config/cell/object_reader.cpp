@@ -135,8 +135,8 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
     object.frame = read_frame(*frame, diagnostics_).value_or("");
 }
 
-// A group that cannot be read may be one that a rule names. Names then count as unknown, and
-// unknown ones are not reported.
+// A rule may name a group that could not be read. So, after a fault, `names_known` is set to false,
+// and rules with unknown names are not reported.
 void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
   if (node.kind != YamlNode::Kind::kSequence) names_known = false;
   for (const YamlNode& item : read_list(node, "group names", diagnostics_)) {

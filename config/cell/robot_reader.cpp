@@ -232,7 +232,7 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKe
   map.refuse_unknown_keys();
 }
 
-// What is said of a base that follows a frame.
+// Reads the keys that apply to a base that follows a frame of tf.
 void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* age = map.optional("age_limit_ms")) {
     keys.base.age_limit_ns = quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
@@ -254,7 +254,7 @@ void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
   }
 }
 
-// Joints are in an order in which the motion of the link before is known.
+// Joints are sorted so that a parent link precedes its children: whether it moves is then known.
 void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
                             Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
@@ -320,8 +320,8 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
   }
 }
 
-// Treats the robot that was read last. A link that nothing moves is exactly where the cell places
-// it.
+// Adds the rounding of forward kinematics to the errors of the links of the robot that was read
+// last. Fixed links have none: they are exactly where the cell places them.
 void RobotReader::account_for_rounding(const RobotList& list) {
   const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
   const std::vector<RobotLink>& links = list.robots.back().links;

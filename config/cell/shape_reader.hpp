@@ -42,8 +42,8 @@ class ShapeReader {
   // map's own node.
   [[nodiscard]] std::optional<NamedShape> read(MapReader& map, const YamlNode& at);
 
-  // Returns the parts of a mesh; nothing after a diagnostic. The file is named at `file_node`, and
-  // its size stated at `node`.
+  // Returns the parts of a mesh, or nothing if a fault was reported. Faults of the file are
+  // reported at `file_node`, and faults of its size at `node`.
   [[nodiscard]] std::optional<std::variant<MeshParts, ShapeError>> mesh_parts(
       const MeshUse& use, const YamlNode& file_node, const YamlNode& node);
 

@@ -1,5 +1,5 @@
-// Makes indices of watched pairs of the two groups of a zone. A pair that is neither watched nor
-// allowed to touch is a mistake, since it could never enter the zone.
+// Finds the watched pairs between the two groups of a zone. A pair that is neither watched nor
+// allowed to touch is reported as a mistake, since it could never make the zone active.
 #include "config/cell/zone_reader.hpp"
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, Pair
 }
 
 // Fills in the watched pairs between the two sides of a zone. A pair that is neither watched nor
-// allowed is refused: it could never enter the zone.
+// allowed to touch is refused, since it could never make the zone active.
 void fill_zone(const YamlNode& node, const Between& between, const ObjectList& objects,
                const PairList& list, const GroupIndex& group_index, Diagnostics& diagnostics,
                Zone& zone) {

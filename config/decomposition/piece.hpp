@@ -13,8 +13,9 @@ namespace clearance {
 
 inline constexpr std::size_t kDirections = 160;
 
-// The overlap of neighbouring cells, as a share of the tolerance: no gap between them, not even a
-// point, is surface of the union. A face along which a cut runs is thus in the cells on both sides.
+// Each cut makes two cells that overlap by this share of the tolerance. Without the overlap,
+// rounding could leave a gap between them. If a cut runs along a face of the mesh, both cells
+// contain the face.
 inline constexpr double kOverlap = 0.01;
 
 // The support point of a set in each of some directions, which approximates the set's hull. The

@@ -161,7 +161,8 @@ std::optional<MeshParts> MeshLibrary::kept(const std::string& key) const {
   return parts ? bodies_of(*parts) : std::nullopt;
 }
 
-// A mesh that cannot be read, or is too large, is refused at once.
+// Postpones the split and returns a stand-in. A mesh that cannot be read, or is too large, is
+// refused now.
 std::variant<MeshParts, MeshRefusal> MeshLibrary::put_off(const MeshUse& use, File& file) {
   auto mesh = mesh_of(use, file);
   if (auto* refusal = std::get_if<MeshRefusal>(&mesh)) return std::move(*refusal);

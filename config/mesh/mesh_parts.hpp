@@ -63,9 +63,10 @@ class MeshLibrary {
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
 
-  // Tells whether parts() has returned a stand-in for a mesh that has to be split.
+  // Tells whether parts() has returned a stand-in, because the split of a mesh was postponed.
   [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
-  // Prepares for reading the cell again, into a revision that begins anew: meshes are now split.
+  // Call this before the cell is read a second time, with a fresh revision. From then on parts()
+  // splits meshes instead of returning stand-ins.
   void split_from_here();
 
  private:

@@ -1,4 +1,5 @@
-// Bounds the sums of ForwardKinematics::carry with the largest lengths that can stand in them.
+// Bounds the rounding error of the sums in ForwardKinematics::carry by the largest lengths that can
+// occur in them.
 #include "config/scene/chain_rounding.hpp"
 
 #include <algorithm>

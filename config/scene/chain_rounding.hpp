@@ -16,11 +16,11 @@ inline constexpr double kJointError = 0x1p-46;
 // A position that is scaled and shifted (mimic) is within this, for each radian or metre.
 inline constexpr double kPositionError = 0x1p-51;
 
-// The bounds hold for lengths up to this, m: those of joints without limits, and the distance of an
-// object that carries a robot.
+// The bounds hold up to this length, m. It limits the positions of joints that state no limits, and
+// the distance of an object that carries a robot.
 inline constexpr double kSureWay = 1e4;
-// They hold for all angles up to 1e6 rad. Joints are given the error of a rescaled angle of at
-// least this size, rad, although only those that mimic others have one.
+// The bounds hold for all angles up to 1e6 rad. Every joint gets the error of a rescaled angle of
+// at least this size, rad, although only joints that mimic others rescale angles.
 inline constexpr double kLeastSureAngle = 1e3;
 
 // No point within r of a link's origin is farther than shift + turn r from its place by forward

@@ -50,11 +50,11 @@ struct JointVariable {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
-  // The speed above which positions are not plausible, if `max_speed` is not stated. It bounds no
-  // motion that is not seen.
+  // The speed above which positions are not plausible, if `max_speed` is not stated. It does not
+  // bound the unobserved motion of late inputs.
   double unstated_speed = std::numeric_limits<double>::infinity();
   // A sent velocity may exceed plausible_speed() by this factor: the limits of many descriptions
-  // are too low. Where the speed is the cell's, it holds as it is stated.
+  // are too low. A speed that the cell states has no such tolerance.
   double speed_tolerance = 4.0;
   // A position farther outside its limits than this contradicts it; rad or m.
   double limit_tolerance = 0.0;

@@ -73,9 +73,9 @@ class Quantities {
   // Numbers without a unit, not all zero; not normalised.
   [[nodiscard]] std::optional<Vec3> direction(const YamlNode& node, const std::string& what) const;
 
-  // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each may be
-  // absent. rpy rotates about the fixed axes x, then y, then z, as in URDF. Right angles in degrees
-  // are exact.
+  // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each key may
+  // be absent. rpy rotates about the fixed axes x, then y, then z, as in URDF. Right angles in
+  // degrees are exact.
   [[nodiscard]] std::optional<Pose> pose(const YamlNode& node) const;
 
  private:
