@@ -154,8 +154,8 @@ CutVertex judged(const Vec3& vertex, const std::vector<HalfSpace>& planes) {
   return result;
 }
 
-// The planes to cut with next, at most `most_cuts`: no vertex twice when one cut takes most of it
-// off.
+// Returns the planes to cut with next, at most `most_cuts`. A vertex gets no plane of its own if an
+// earlier cut already removes at least half of what sticks out there.
 std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfSpace>& planes,
                                  double tolerance, std::size_t most_cuts) {
   std::vector<std::pair<CutVertex, Vec3>> vertices;

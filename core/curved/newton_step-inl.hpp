@@ -84,8 +84,8 @@ class NewtonStep {
     return value;
   }
 
-  // The curvature of the unit sphere adds d, the distance. While the direction is far from the
-  // best, d is half the length of the gap vector.
+  // On the unit sphere, the curvature adds the distance d to the Hessian, which regularises it.
+  // While the direction is far from the best one, half the length of the gap vector replaces d.
   HWY_INLINE void set_regularisation(const PlacedParts& parts) {
     regularisation_ = least * per_square_;
     const double gap = dot(parts.gap[0], parts.gap[0]);
