@@ -62,7 +62,7 @@ class Sink : public spdlog::sinks::sink {
 };
 
 // The far end of the queue. Only the log's thread calls it. spdlog's own sinks to stderr hold the
-// lock of the FILE while they write, and print() and exit() would wait for that lock.
+// lock of the FILE while they write. print() and exit() would then wait for that lock.
 class StderrSink final : public Sink {
  public:
   explicit StderrSink(spdlog::details::thread_pool& queue)

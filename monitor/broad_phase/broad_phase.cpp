@@ -120,8 +120,10 @@ void BroadPhase::activate(std::uint32_t pair) noexcept {
   activated_.push_back(pair);
 }
 
-// Every pair is met once: in the turn of the first of its objects, if the other has arrived by
-// then. So pairs are met in the order in which they lie in memory when all objects arrive at once.
+// Activates the pairs of objects that have become known, each pair once. Objects take turns in the
+// order of their arrival. A pair is activated in the first turn of one of its objects at which the
+// other has arrived as well. When all objects arrive at once, pairs are thus visited in memory
+// order.
 void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];

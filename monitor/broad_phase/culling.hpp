@@ -20,12 +20,12 @@ namespace clearance {
 
 class Culling {
  public:
-  // `urgent` and `left_out` are those of BroadPhase.
+  // `urgent` and `left_out` are passed on to BroadPhase, whose constructor explains them.
   Culling(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
           const ZoneLevels& zone_levels, std::vector<double> urgent,
           std::span<const std::uint32_t> left_out, const RefreshShare& share);
 
-  // To be called between ticks when an object is not there any more.
+  // Call this between ticks when an object has become absent.
   void forget_object(std::uint32_t object, PairTable& table) noexcept {
     broad_phase_.forget_object(object, table);
   }

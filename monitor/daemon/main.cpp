@@ -172,7 +172,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   return run_daemon(*cell, arguments, signal);
 }
 
-// The exit codes of kFooter.
+// Maps an exception to its exit code in kFooter, the text of --help.
 ExitCode exit_code_of(const std::exception& error) {
   return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
 }

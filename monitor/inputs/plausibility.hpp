@@ -33,7 +33,7 @@ namespace clearance {
 // The speed that is assumed during timing errors if the cell states none, m/s or rad/s.
 inline constexpr double kUsualSpeed = 1.0;
 
-// What the cell assumes of one input's motion. Speeds are in m/s, or in rad/s for angles.
+// The cell's assumptions about the motion of one input. Speeds are in m/s, or in rad/s for angles.
 struct MotionLimits {
   double fastest = 0.0;  // no faster
   double usual = 0.0;    // the speed that is assumed during timing errors
@@ -178,8 +178,8 @@ class Reckoning {
   Rate last_{};
   double last_speed_ = 0.0;
   std::int64_t since_ns_ = 0, last_ns_ = 0;
-  // How far the values have moved, in steps of an age limit: noise does not add up. The last step
-  // began at this value.
+  // The length of the values' path, in steps of at least an age limit, so that noise does not add
+  // up. The last step began at step_from_.
   double way_ = 0.0;
   Value step_from_{};
   std::int64_t step_ns_ = 0;
@@ -333,9 +333,9 @@ class Plausibility {
   bool rates_contradict_ = false;
 };
 
-// Two sources claim one input. Returns true if their values exclude each other: the input would
-// need more than `speed` to be at both, within timing errors of an age limit. A quarter of a usual
-// motion in an age limit is left for measuring errors.
+// Two sources claim one input. Returns true if their values exclude each other. This is so if the
+// input would need more than `speed` to be at both, within timing errors of an age limit. A quarter
+// of a usual motion in an age limit is left for measuring errors.
 template <class Metric>
 [[nodiscard]] bool is_disputed(const Metric& metric, const typename Metric::Value& a,
                                std::int64_t a_ns, const typename Metric::Value& b,

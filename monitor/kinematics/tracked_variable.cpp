@@ -75,7 +75,8 @@ struct PositionCandidate {
                                       limits, metric);
   }
 
-  // Two equal stamps give no velocity. A mean over a time is the velocity of half that time ago.
+  // Without a sent velocity, the mean since the last position is used; two equal stamps give none.
+  // A mean over an interval is the velocity of half an interval ago, so it is late when that is.
   void use() const noexcept {
     const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
     const bool sent = has_usable_velocity(variable, sample);

@@ -294,8 +294,9 @@ dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const s
                    fmt::format("making topic {}", name));
 }
 
-// Latched topics keep the depth of the table: a reader with a greater depth would not get more. The
-// filter belongs to the topic entity, of which this reader has one of its own.
+// `depth` is ignored for latched topics, because a greater depth than the table's would not get a
+// reader more. In Cyclone a filter belongs to the topic entity, so this reader has an entity of its
+// own.
 dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
                                  const dds_listener_t* listener, const dds_topic_filter* filter) {
   const Topic& row = topic(kind);

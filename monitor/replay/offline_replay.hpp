@@ -1,6 +1,6 @@
 // Runs Monitor::tick on a recording, a ROS 2 bag or a joint log, without a clock and without DDS.
-// It makes the same reports again as fast as they can be computed. This is for a user's own tests,
-// which find_package(clearance) and link clearance::replay:
+// It makes the same reports again as fast as they can be computed. It is meant for a user's own
+// tests. These call find_package(clearance) and link clearance::replay:
 //
 //   #include <config/cell/cell_file.hpp>
 //   #include <monitor/replay/offline_replay.hpp>
@@ -45,9 +45,9 @@ struct OfflineReplayOptions {
   // The further files of a recording of several files, in their order.
   std::vector<std::filesystem::path> continued_in = {};
 
-  // Ticks a second, used where the recording holds no reports with the times of its ticks. 0: a
-  // tick only when something came. Not stated: the cell's rate for a bag or a joint log, 0 for
-  // recordings of ours.
+  // Ticks a second. It is used only if the recording holds no reports, which state the times of the
+  // ticks. 0: one tick for each time at which something came. If not set, it is the cell's rate for
+  // a bag or a joint log, and 0 for Clearance's own recordings.
   std::optional<double> tick_hz = {};
   // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};

@@ -232,14 +232,15 @@ void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   }
 }
 
-// The daemon did not use a batch that no report has named in time.
+// Drops batches that have waited longer than the feed reads ahead. No report has named them, so the
+// daemon did not use them.
 void TickFeed::forget_unused(std::int64_t log_ns) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
     batches_waiting_.pop_front();
   }
 }
 
-// All batches of one log time are one tick.
+// Makes one tick of all batches with the same log time.
 bool TickFeed::next_by_time(TickInput& tick) {
   while (batches_waiting_.empty()) {
     if (!read_one()) return false;

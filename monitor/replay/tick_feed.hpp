@@ -2,10 +2,10 @@
 // daemon took in, and its time.
 //
 // If the recording holds reports, each report is a tick. The tick gets the report's time and the
-// batches that the report names as used (by source and sequence number), wherever they stand in the
-// file. If it holds none, ticks are at a fixed rate, as the daemon's are, from the first batch on.
-// Each gets the batches that came since the tick before. Without a rate, each distinct log time is
-// a tick and gets the batches of that time in file order.
+// batches that the report names as used, wherever they stand in the file. The names are source and
+// sequence number. If it holds none, ticks are at a fixed rate, as the daemon's are, from the first
+// batch on. Each gets the batches that came since the tick before. Without a rate, each distinct
+// log time is a tick and gets the batches of that time in file order.
 #pragma once
 
 #include <cstdint>
@@ -76,11 +76,11 @@ class TickMessages {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  // A recording of ours, in one file or several. `tick_hz` is used unless it holds reports; 0:
-  // ticks at log times.
+  // Reads one of Clearance's own recordings, in one file or several. `tick_hz` is used only if the
+  // recording holds no reports. 0: a tick at each log time.
   TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
            const RecordingOutline& outline, double tick_hz = 0.0);
-  // A log of another program.
+  // Reads a log of another program.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 
   // The next tick; its content is valid until the next call. False at the end or the damage.

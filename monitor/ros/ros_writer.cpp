@@ -24,7 +24,8 @@ dds_entity_t make_writer(Participant& participant, const RosType& type, const st
   return topic.empty() ? 0 : participant.ros_writer(type, ros_dds_name(topic));
 }
 
-// The smallest scaling of separation monitoring. In a cell without it, zones stand for two speeds.
+// Returns the smallest scaling that separation monitoring asks for. In a cell without it, zones
+// switch between two speeds: 0 if any zone is active, otherwise 1.
 double speed_scaling(const Report& report) noexcept {
   if (!report.separated_zones.empty())
     return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;

@@ -12,9 +12,9 @@ struct Clearance {
   double since = kInfinity;  // at every instant since the last tick
 };
 
-// Takes a zone's report from the last tick to this one, pair by pair. The zone becomes active when
-// some pair's clearance since the last tick is below enter_below. It becomes inactive when every
-// pair's is above leave_above.
+// Updates a zone's report from the last tick's to this tick's, pair by pair. The zone becomes
+// active when some pair's clearance since the last tick is below enter_below. It becomes inactive
+// when every pair's is above leave_above.
 class ZoneHysteresis {
  public:
   ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept;
@@ -22,8 +22,8 @@ class ZoneHysteresis {
   // Takes in one of the zone's pairs. `margins`: of both objects, rounded up, m.
   void add(std::uint32_t pair, const PairBounds& bounds, double margins) noexcept;
 
-  // Takes in pairs that are not added one by one: each has at least this clearance. `pair` is one
-  // of them.
+  // Adds pairs together that are not added one by one. Each of them has at least this clearance.
+  // `pair` is one of them.
   void add_rest(const Clearance& clearance, std::uint32_t pair) noexcept;
 
   // `report`: that of the last tick becomes that of this one.

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kAnyObject = ~0u;
 
-// Why a pair with this object is inside a zone, as far as the object is the reason.
+// Returns the cause that this object alone would give for a pair of it being inside a zone.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
   if (!object.input.has_value) return ZoneCause::kUnknown;
   if (object.unseen_since > 0.0)
