@@ -9,9 +9,9 @@
 
 namespace clearance {
 
-// Each stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells,
-// which begin as Cell{}. merge(later, into) joins two Heads or Cells; it is found in their
-// namespace.
+// Each stretch has a Head and a row of Cells. Head::begin_ns is the time of the first entry, and
+// each Cell begins as Cell{}. Head and Cell each need a function merge(later, into) in their own
+// namespace, which joins two of them when stretches are joined.
 template <class Head, class Cell>
 class Stretches {
  public:

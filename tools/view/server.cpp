@@ -44,7 +44,8 @@ struct ServerState {
   std::set<Viewer*> viewers;
   std::map<std::pair<ChannelId, std::uint32_t>, Message> latest;
   std::map<std::string, std::string> statuses;  // by id: the JSON that is sent
-  // Last, since its operations use all of the above and end with it.
+  // These members are last, so that they are destroyed first: pending operations end with the
+  // context, and they use the members above.
   asio::io_context context{1};
   tcp::acceptor acceptor{context};
 

@@ -120,7 +120,8 @@ class ActiveSetQp {
     return false;
   }
 
-  // Lambda: releases the row with the most negative multiplier; false if there is none.
+  // Releases the active row with the most negative multiplier (lambda), or by Bland's rule the one
+  // with the smallest index. Returns false if no multiplier is negative.
   bool release(const Vec3& residual, bool smallest_index) {
     if (active_.empty()) return false;
     const Vec6 gradient = jacobian_.transpose() * residual;
