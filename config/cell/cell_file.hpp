@@ -36,7 +36,8 @@ struct CellOptions {
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file,
                                    const CellOptions& options = {});
 
-// The same from text. Messages name `file`, and its folder is that of mesh paths and kept parts.
+// Reads a cell from text. `file` stands for the file in messages; mesh paths are relative to its
+// folder, and parts are kept there.
 [[nodiscard]] CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                                     const CellOptions& options = {});
 

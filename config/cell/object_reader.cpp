@@ -51,7 +51,8 @@ class ObjectReader {
         diagnostics_(quantities.diagnostics()),
         shapes_(shapes) {}
 
-  // Adds to `list`; its names are not known when the name or a group cannot be read.
+  // Adds an object to `list`. If its name or a group cannot be read, it notes that the names in
+  // `list` are incomplete.
   void read(const YamlNode& node, ObjectList& list);
 
  private:
@@ -175,7 +176,8 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
   }
 }
 
-// Compares the parts from `first` on, whose name is at `node`, with all before.
+// Reports a part whose name another part of the object has. Only parts from `first` on are new;
+// their name is at `node`.
 void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t first,
                                           const Object& object) {
   for (std::size_t i = first; i < object.parts.size(); ++i) {
@@ -242,7 +244,7 @@ std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagno
   return std::nullopt;
 }
 
-// The ranges are those of the objects themselves.
+// The values have the same ranges as the keys of the objects.
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
   MapReader map(node, "the defaults", quantities.diagnostics());

@@ -76,7 +76,7 @@ class RobotReader {
   ObjectList& objects_;
   std::map<std::string, int> names_;         // of robots, with their lines
   std::set<std::string> links_, variables_;  // of all robots
-  // The place in the world of every link of every robot that nothing moves.
+  // The poses in the world of all links that nothing moves, of all robots.
   std::map<std::string, Pose> at_rest_;
 };
 
@@ -94,7 +94,8 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   }
 }
 
-// Reads the topic of its joint states on ROS 2, and which of their times counts.
+// Reads the robot's joint-state topic on ROS 2, and whether its stamps or its times of sending
+// count.
 void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* node = map.optional("joint_states")) {
     const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
@@ -172,7 +173,8 @@ bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& 
   return true;
 }
 
-// Reads the base: a link of an earlier robot, or an object. A base at rest is a place in the world.
+// Reads the base: a link of an earlier robot, or an object. If nothing moves it, the base becomes a
+// pose in the world.
 void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBase& base) {
   const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
   if (!name) return;

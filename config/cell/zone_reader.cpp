@@ -15,9 +15,9 @@
 namespace clearance {
 namespace {
 
-// The bound of the sequence in the catalogue.
+// The largest number of zones that fit into the catalogue message.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
-// The same bound for pairs: those in zones with `separation`, and those that are published.
+// The same for pairs: those in zones with `separation`, and those that are published.
 constexpr std::size_t kMaxPairs = 4096;
 
 // Returns the place of a pair in the scene's list, which is sorted by key.
@@ -131,7 +131,8 @@ class ZoneReader {
   std::map<std::string, const YamlNode*> names_;
 };
 
-// Published terms of a pair need a distance of the same tick, so the pair is published.
+// Publishes every pair of a zone with `separation`, because its published terms need a distance of
+// the same tick.
 void publish_separated_pairs(const YamlNode& node, const std::vector<Zone>& zones,
                              std::vector<ObjectPair>& pairs, Diagnostics& diagnostics) {
   std::size_t separated = 0;

@@ -46,7 +46,8 @@ struct Piece {
   std::vector<Vec3> points;       // of the mesh, and enclosed vertices of the cell
   Outline outline;                // of the points
   std::vector<HalfSpace> hull;    // of the outline
-  // The open points in the hull, or so near to it that a thin hull holds some.
+  // The open points in the hull. Points just outside are included, since a thin hull would contain
+  // no grid point.
   std::vector<OpenPoint> open;
   double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
 

@@ -23,7 +23,8 @@ constexpr int kMethod = 3;
 // s. A hull that took less time is not kept, but computed anew at every start.
 constexpr double kWorthKeeping = 0.1;
 
-// Hashes all that decides on the parts: neither the mesh file's name nor the cell's is in it.
+// Hashes everything on which the parts depend. The names of the mesh file and of the cell are not
+// among it.
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
   hash.add(bytes);
@@ -41,7 +42,7 @@ void scale(const MeshUse& use, TriangleMesh& mesh) {
   }
 }
 
-// A body of 1 cm in the place of a mesh that is not split yet.
+// Returns a body of 1 cm, which takes the place of a mesh that is not split yet.
 MeshParts stand_in() {
   MeshParts parts;
   parts.shapes.push_back(std::get<ConvexBody>(point(Vec3::Zero(), 0.01)));
@@ -52,8 +53,7 @@ std::string_view bytes_of(const std::vector<Vec3>& vertices) {
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(Vec3)};
 }
 
-// Returns nothing where a part is no body, because then the file does not hold the parts that were
-// made.
+// Returns nothing if a part makes no valid body: the kept file is then damaged.
 std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
   MeshParts bodies{{}, parts.error};
   for (const auto& vertices : parts.parts) {

@@ -17,8 +17,8 @@ namespace clearance {
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
-// No coordinate of a cell may be larger, nor the path of a speed in one second: larger ones are
-// mistakes of units.
+// The largest coordinate of a cell, and the longest way that a stated speed may cover in one
+// second. Larger ones are mistakes of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
 // The `units:` section.
