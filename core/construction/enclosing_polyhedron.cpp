@@ -26,7 +26,8 @@ class Outline {
     for (const PlacedShape& body : bodies) add(body);
   }
 
-  // An offset d with n.x <= d for every point x of the bodies; n as the doubles are, about unit.
+  // Returns an offset d such that n.x <= d for every point x of the bodies. It holds for exactly
+  // these doubles of n, which has about unit length.
   [[nodiscard]] double support_value(const Vec3& n) const {
     const double length = n.norm() * kRoundedUp;
     double farthest = -kInfinity;
@@ -43,8 +44,8 @@ class Outline {
   // No point of the bodies is farther from the frame's origin, m.
   [[nodiscard]] double size() const { return size_; }
 
-  // Points of the bodies, up to rounding, with those around round ends: their hull has about the
-  // facets of the bodies' hull.
+  // Returns sample points of the bodies, up to rounding, including round ends. Their hull has about
+  // the same facets as the bodies' hull.
   [[nodiscard]] std::vector<Vec3> samples() const {
     std::vector<Vec3> points;
     for (const Sphere& sphere : spheres_) {

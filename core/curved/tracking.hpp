@@ -54,7 +54,7 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
   return b_is_curved ? PartPair{p, q} : PartPair{q, p};
 }
 
-// Any state gives a CurvedTrackingState that fits these two bodies.
+// Reads any state, even that of another pair, as a CurvedTrackingState that fits these two bodies.
 [[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexBody& a,
                                               const ConvexBody& b) noexcept {
   CurvedTrackingState found;
