@@ -14,7 +14,7 @@ namespace {
 constexpr double kSumError = 1e-9;
 constexpr double kSmoothing = 0.125;   // of the usual displacement: over eight ticks
 constexpr double kStandstill = 1e-12;  // m a tick: less counts as no motion
-// The slower object's share of the allowance is at least this, in case it darts.
+// The slower object's share of the allowance is at least this, in case it suddenly moves fast.
 constexpr double kLeastShare = 0.125;
 
 double share_of_a(double usual_a, double usual_b) noexcept {
@@ -142,7 +142,8 @@ void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   }
 }
 
-// Takes the pairs that are due by these objects; no other object has timers that are due.
+// Activates the pairs whose timers on these objects' wheels are due. No other object has timers
+// that are due.
 void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
     return wheels_.take_due(object, most_activated_, activated_);

@@ -45,8 +45,8 @@ class BroadPhase {
   // objects that have moved, or whose unobserved motion is not what it was.
   void begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept;
 
-  // To be called before begin() when an object is not there any more. Forgets its pairs, and
-  // activates them when it is known again.
+  // Call this before begin() when an object has become absent. It forgets the object's pairs, and
+  // activates them when the object is known again.
   void forget_object(std::uint32_t object, PairTable& table) noexcept;
 
   // Pairs that are activated and not decided about, in this tick's order.
@@ -64,13 +64,14 @@ class BroadPhase {
   [[nodiscard]] DistanceBounds by_spheres(std::uint32_t pair) noexcept;
 
   [[nodiscard]] double horizon() const noexcept { return horizon_; }
-  // Lowering is free; raising activates the pairs that it overtakes. In m; -infinity: not set.
+  // Sets the horizon, m; -infinity means none. Lowering it activates no pair. Raising it activates
+  // the pairs whose allowance this uses up.
   void move_horizon(double to) noexcept;
 
   // W: the lower bound of all pairs that wait, for the poses in use, m. Infinity: no pair waits.
   [[nodiscard]] double waiting_lower() const noexcept;
   [[nodiscard]] bool any_waits() const noexcept { return overdue_ || !everyone_met(); }
-  // No pair waits to be met for the first time.
+  // True if all pairs of known objects have been activated once.
   [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
 
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }

@@ -160,7 +160,8 @@ void Recording::watch() {
   logged_ns_ = now_ns;
 }
 
-// Goes to stdout at the end of a run. A thread that still waits reveals nothing more.
+// Returns the lines for stdout at the end of a run. If the thread still waits for the disk, the
+// recorder's state is not known.
 std::string Recording::summary() const {
   if (complete_) {
     const std::string last =

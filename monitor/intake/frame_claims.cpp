@@ -103,7 +103,7 @@ void FrameClaims::keep(std::span<const std::uint64_t> writers) {
   });
 }
 
-// A cycle ends when it comes back to a frame that was met.
+// The frames may form a cycle, so the number of steps is limited.
 std::vector<std::string> FrameClaims::disputed_on(const std::string& frame) const {
   std::vector<std::string> disputed;
   if (disputed_.empty()) return disputed;

@@ -96,7 +96,7 @@ struct PairTable {
 // Forgets a pair's bounds, because the displacement of its objects is not known.
 void forget_bounds(std::uint32_t pair, PairTable& table) noexcept;
 
-// Forgets bounds and evaluations, because one of the objects is not there any more.
+// Forgets bounds and evaluations, because one of the objects has become absent.
 void forget_pair(std::uint32_t pair, PairTable& table) noexcept;
 
 }  // namespace clearance

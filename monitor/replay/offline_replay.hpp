@@ -64,8 +64,9 @@ struct OfflineReplayOptions {
   // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
   // not count as met, so let the scene evaluate all pairs, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
-  // The tolerance of a reference, m: distances and bounds may differ by that much. Not stated:
-  // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
+  // The tolerance of a reference, m: distances and bounds may differ by that much. If not set,
+  // distances may differ by 1e-6 m, and the reference must lie within the bounds exactly as it is
+  // written.
   std::optional<double> tolerance = {};
 
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times

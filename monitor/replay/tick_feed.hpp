@@ -38,8 +38,8 @@ struct TickInput {
   std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
-  // Messages of the same tick; null: the scene asks for none, or the recording has none of this
-  // tick.
+  // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
+  // this tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
   bool restart = false;  // the daemon had been started anew, so its monitor had no history
@@ -60,9 +60,10 @@ class TickMessages {
   // or none.
   template <class ReadAhead>
   [[nodiscard]] const Message* of_tick(std::int64_t now_ns, const ReadAhead& read_ahead);
-  // The number that came, though the scene asks for none.
+  // The number of messages that came although the scene asks for none.
   [[nodiscard]] std::uint64_t unwanted() const noexcept { return unwanted_; }
-  // The number that belong to no report; those from before the first report do not count.
+  // The number of messages that belong to no report. Those from before the first report do not
+  // count.
   [[nodiscard]] std::uint64_t unmatched() const noexcept { return unmatched_; }
 
  private:
@@ -97,7 +98,7 @@ class TickFeed {
   [[nodiscard]] double progress() const noexcept {
     return log_ ? log_->progress() : reader_->progress();
   }
-  // Null: a recording of ours.
+  // Null if this reads one of Clearance's own recordings.
   [[nodiscard]] const InputLog* log() const noexcept { return log_.get(); }
 
   // Counts of what could not be used.

@@ -29,7 +29,8 @@ class SweptSearch {
   struct Instant {
     double s = 0.0;  // share of the motion
     double lower = -kInfinity, upper = kInfinity;
-    // In the frame of the object relative to which the other moves:
+    // The motion is that of one object relative to the other. These two are in the frame of the
+    // latter.
     Vec3 normal = Vec3::Zero();  // towards the other; zero: it need not separate after more motion
     Vec3 centre = Vec3::Zero();  // of the other's sphere
   };

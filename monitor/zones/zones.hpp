@@ -20,7 +20,7 @@ class Zones {
   // States after the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }
 
-  // The pair has a zone.
+  // True if the pair belongs to a zone.
   [[nodiscard]] bool watch(std::uint32_t pair) const noexcept { return levels_.has(pair); }
 
   // Considers the zones of the pair that it is outside by `lower` but not by `swept_lower`. Returns
@@ -32,7 +32,7 @@ class Zones {
   // while one of its objects is absent.
   void count_absent(std::span<const TrackedObject> objects) noexcept;
 
-  // Takes in an updated pair, each once a tick.
+  // Adds an updated pair. Call it once a tick for each.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
   // Ends the tick. A pair that was not added is in one of three states. It is absent or unknown; or
