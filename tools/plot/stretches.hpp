@@ -1,5 +1,5 @@
-// A run of any length in a bounded number of stretches of time, for curves. When all are in use,
-// each becomes twice as long, and those that fall together are joined.
+// Summarises a run of any length in a bounded number of stretches of time, for plotting. When all
+// stretches are in use, their length is doubled, and neighbours are joined.
 #pragma once
 
 #include <cstddef>

@@ -184,7 +184,7 @@ class EllipsoidPatches {
     }
   }
 
-  // At the midpoint of its longest side.
+  // Splits a patch into two at the midpoint of its longest side.
   void split(const Cell& patch) {
     std::size_t from = 0;
     double longest = -1.0;
