@@ -44,8 +44,8 @@ struct MeshRefusal {
   std::string reason;
 };
 
-// What messages advise a person who has to raise the limits of a mesh. Limits are in the cell. A
-// person who gave a URDF has to write a cell first.
+// The advice in messages for a person who has to raise the limits of a mesh. Limits are in the
+// cell. A person who gave a URDF has to write a cell first.
 enum class Advice : std::uint8_t { kCell, kUrdf };
 
 // Files are read once, and parts of the same use are made once, as long as this lives.
