@@ -10,9 +10,8 @@
 namespace clearance {
 namespace {
 
-// Errors that Precision::error_bound does not count, in multiples of Precision::size: 6 roundings
-// for a direction that is not exactly on its arc, and 6 for a vertex that is not exactly on its
-// plane.
+// Errors that Precision::error_bound does not count, in multiples of Precision::size. A direction
+// may miss its arc by 6 roundings, and a vertex may miss its plane by 6.
 constexpr double kOnArc = 12 * kUlp;
 // Two bounds of h that differ by no more than this count as equal, in multiples of Precision::size.
 constexpr double kGapTolerance = 8 * kUlp;

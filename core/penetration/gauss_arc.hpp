@@ -31,8 +31,8 @@ struct OnArc {
 
 // Returns a lower bound of h along the arc in three spans. From l, `first` gives the bound until
 // its height falls to `enough`. Towards r, `last` does so from where its height reaches `enough`.
-// In between, a sphere does so, whose centre has the heights `middle`. Its centre is higher inside
-// the arc than linear interpolation says, since 1 / N >= 1 + s (1 - s) |l - r|^2 / 2. chord2: |l -
+// In between, a sphere does so, whose centre has the heights `middle`. Inside the arc, the centre
+// is higher than linear interpolation says: 1 / N >= 1 + s (1 - s) |l - r|^2 / 2. chord2: |l -
 // r|^2.
 [[nodiscard]] inline double least_with_sphere(const OnArc& first, const OnArc& middle,
                                               double radius, const OnArc& last, double chord2,
