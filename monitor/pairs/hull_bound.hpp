@@ -33,8 +33,8 @@ class HullBound {
 
   std::vector<BoundingHull> hulls_;  // by object; null: no hull, but perhaps a single part
   std::vector<PosedPart> placed_;    // by object: its hull, placed when it is queried
-  // By object: the index of its part if it has only one, which then serves as the model of an
-  // object without a hull; kNoModel if it has several.
+  // By object: the index of its part if it has only one, and kNoModel if it has several. A single
+  // part is the model of an object without a hull.
   std::vector<std::uint32_t> only_part_;
 };
 

@@ -46,8 +46,8 @@ struct OfflineReplayOptions {
   std::vector<std::filesystem::path> continued_in = {};
 
   // Ticks a second. It is used only if the recording holds no reports, which state the times of the
-  // ticks. 0: one tick for each time at which something came. If not set, it is the cell's rate for
-  // a bag or a joint log, and 0 for Clearance's own recordings.
+  // ticks. Zero means one tick for each time at which something came. If not set, it is the cell's
+  // rate for a bag or a joint log, and 0 for Clearance's own recordings.
   std::optional<double> tick_hz = {};
   // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
@@ -118,9 +118,9 @@ struct OfflineReplay {
   [[nodiscard]] std::string text() const;
 };
 
-// The same recording and cell give the same ticks, bit for bit. `recording` is one of ours, a bag
-// of ROS 2 (MCAP, SQLite 3, or the folder of either), or joint positions as CSV (t_ns and one
-// column per joint).
+// The same recording and cell give the same ticks, bit for bit. `recording` is one of Clearance's
+// own, a bag of ROS 2, or a CSV file of joint positions. A bag is MCAP, SQLite 3, or the folder of
+// either. The CSV has t_ns and one column per joint.
 [[nodiscard]] OfflineReplay replay_offline(
     const Cell& cell, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},
