@@ -32,8 +32,8 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 struct Facet {
   Vec3 normal;    // outward, unit
   double offset;  // d, m
-  // facet_edges[first_side, first_side + sides): its boundary. A half-space's plane has none. After
-  // them, up to first_side + limits, the sides that end at a sharp vertex are repeated.
+  // The boundary is facet_edges[first_side, first_side + sides); a half-space's plane has none. The
+  // range goes on up to first_side + limits, where sides that end at a sharp vertex are repeated.
   std::int32_t first_side;
   std::int32_t sides;
   std::int32_t limits;

@@ -51,9 +51,9 @@ enum class DistancePath : std::uint8_t {
 // which directions neither body is unbounded, lower is -infinity and the status kIterationLimit.
 //
 // One rule holds here and in reports: an unknown bound is infinite, any other unknown figure is
-// NaN. A bad pose leaves everything unknown. A pose is bad if it is not finite, if its quaternion
-// is off unit length by more than kUnitTolerance, or if the frames are more than kLargestCoordinate
-// from each other. Nothing else makes a NaN.
+// NaN. A bad pose leaves everything unknown. A pose is bad if it is not finite or if its quaternion
+// is off unit length by more than kUnitTolerance. It is also bad if the frames are more than
+// kLargestCoordinate from each other. Nothing else makes a NaN.
 struct DistanceResult {
   double distance = 0.0;  // best estimate, within the bounds
   double lower = 0.0, upper = 0.0;

@@ -25,8 +25,8 @@ inline constexpr double kUnitTolerance = 1e-6;
 // take a thirtieth longer.
 struct alignas(64) Pose {
   Vec3 position = Vec3::Zero();  // m
-  // Eigen aligns it to 8, 16 or 32 bytes, by the switches of each compilation. 32 covers them all,
-  // so that a library and its users agree on its place.
+  // Eigen aligns it to 8, 16 or 32 bytes, depending on compiler switches. 32 covers them all, so a
+  // library and its users agree on the layout.
   alignas(32) Eigen::Quaterniond orientation = Eigen::Quaterniond(1.0, 0.0, 0.0,
                                                                   0.0);  // Eigen's order: w,x,y,z
 };
@@ -72,11 +72,11 @@ struct RelativePose {
 };
 static_assert(sizeof(RelativePose) == 112 && alignof(RelativePose) == 8);
 
-// Errors: the result has NaNs if a quaternion is not of unit length, the frames are more than
-// kLargestCoordinate from each other, or a number is not finite. distance() then returns kBadPose.
-// Equal orientations (up to the quaternions' sign) give exactly the identity. Orientations that
-// permute axes give exactly that permutation. Both have rotation_error 0, so that parallel features
-// stay parallel.
+// On an error, the result has NaNs. An error is a quaternion that is not of unit length, a number
+// that is not finite, or frames more than kLargestCoordinate from each other. distance() then
+// returns kBadPose. Equal orientations (up to the quaternions' sign) give exactly the identity.
+// Orientations that permute axes give exactly that permutation. Both have rotation_error 0, so that
+// parallel features stay parallel.
 [[nodiscard]] RelativePose relative_pose(const Pose& world_from_a,
                                          const Pose& world_from_b) noexcept;
 

@@ -63,7 +63,7 @@ struct RecessionCone {
   std::array<Vec3, 2> lines{Vec3::Zero(), Vec3::Zero()};
   std::size_t line_count = 0;
   std::vector<Vec3> rays;  // unit
-  // One direction at right angles to the lines has a derivative of at least this along every ray,
+  // Some direction at right angles to the lines has at least this derivative along every ray,
   // rounding included. 0 or less: no such direction is known.
   double least = 0.0;
   // Unit: a direction of the cone that leads away from every facet; zero: there is none.

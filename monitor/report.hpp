@@ -75,7 +75,8 @@ struct PairReport {
 enum class ZoneCause : std::uint8_t {
   kInactive = 0,
   kNear = 1,  // by distance, or not yet proved to be farther away
-  // By the unobserved motion of a late object. With poses on time the pair would be outside.
+  // An object is late and may have moved unobserved. If its poses were on time, the pair would be
+  // outside.
   kLate = 2,
   kUnknown = 3,        // an object has no pose
   kDiscontinuous = 4,  // the motion between the last two poses of an object is not known
@@ -131,8 +132,8 @@ struct PairSeparation {
   // The largest speed of the robot towards the person that keeps `remaining` at 0 or above. It is 0
   // if no speed does, and infinity if the speed does not matter.
   double speed_limit = 0.0;
-  // The largest factor of the robot's present speed, 0 to 1, that does so. It is 0 if nothing is
-  // known.
+  // The largest factor, 0 to 1, by which the robot may scale its present speed so that `remaining`
+  // stays at 0 or above. It is 0 if nothing is known.
   double scaling = 0.0;
   std::int64_t age_human_ns = 0, age_robot_ns = 0;  // like PairReport::age_a_ns
 };

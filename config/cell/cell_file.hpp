@@ -17,16 +17,17 @@ namespace clearance {
 using CellResult = std::variant<Cell, std::vector<CellError>>;
 
 struct CellOptions {
-  // Called with lines, without their ends, for a person who waits: the mesh that is being split,
-  // and warnings. Empty: the lines are dropped.
+  // Receives progress messages and warnings, one line a call and without a line end: for example,
+  // which mesh is being split. If empty, the messages are dropped.
   std::function<void(const std::string&)> tell = {};
-  // If not null: filled, for each object with meshes, by its name, with the largest distance of the
-  // surface of its parts from the meshes, m.
+  // If not null, receives for each object with meshes, by name, the largest distance (m) between
+  // the surface of its parts and the meshes.
   std::map<std::string, double>* mesh_errors = nullptr;
-  // The text was made from the URDF `file`: mistakes name its lines; advice: how to get a cell.
+  // True when the text was generated from the URDF `file`. Mistakes then name its lines, and advice
+  // says how to get a cell.
   bool is_of_urdf = false;
-  // The directory that holds the files of another machine, the cell among them, at their paths
-  // there; empty: they are this machine's.
+  // A directory with the files of another machine, including the cell, at the paths that they have
+  // there. If empty, the files are this machine's own.
   std::filesystem::path root = {};
 };
 
@@ -35,7 +36,8 @@ struct CellOptions {
 [[nodiscard]] CellResult read_cell(const std::filesystem::path& file,
                                    const CellOptions& options = {});
 
-// The same from text. Messages name `file`, and its folder is that of mesh paths and kept parts.
+// Reads a cell from text. `file` stands for the file in messages; mesh paths are relative to its
+// folder, and parts are kept there.
 [[nodiscard]] CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
                                     const CellOptions& options = {});
 

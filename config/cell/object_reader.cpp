@@ -51,7 +51,8 @@ class ObjectReader {
         diagnostics_(quantities.diagnostics()),
         shapes_(shapes) {}
 
-  // Adds to `list`; its names are not known when the name or a group cannot be read.
+  // Adds an object to `list`. If its name or a group cannot be read, it notes that the names in
+  // `list` are incomplete.
   void read(const YamlNode& node, ObjectList& list);
 
  private:
@@ -135,8 +136,8 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
     object.frame = read_frame(*frame, diagnostics_).value_or("");
 }
 
-// A group that cannot be read may be one that a rule names. Names then count as unknown, and
-// unknown ones are not reported.
+// A rule may name a group that could not be read. So, after a fault, `names_known` is set to false,
+// and rules with unknown names are not reported.
 void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
   if (node.kind != YamlNode::Kind::kSequence) names_known = false;
   for (const YamlNode& item : read_list(node, "group names", diagnostics_)) {
@@ -175,7 +176,8 @@ void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& obje
   }
 }
 
-// Compares the parts from `first` on, whose name is at `node`, with all before.
+// Reports a part whose name another part of the object has. Only parts from `first` on are new;
+// their name is at `node`.
 void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t first,
                                           const Object& object) {
   for (std::size_t i = first; i < object.parts.size(); ++i) {
@@ -242,7 +244,7 @@ std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagno
   return std::nullopt;
 }
 
-// The ranges are those of the objects themselves.
+// The values have the same ranges as the keys of the objects.
 ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities) {
   ObjectDefaults defaults;
   MapReader map(node, "the defaults", quantities.diagnostics());

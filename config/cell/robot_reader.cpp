@@ -76,7 +76,7 @@ class RobotReader {
   ObjectList& objects_;
   std::map<std::string, int> names_;         // of robots, with their lines
   std::set<std::string> links_, variables_;  // of all robots
-  // The place in the world of every link of every robot that nothing moves.
+  // The poses in the world of all links that nothing moves, of all robots.
   std::map<std::string, Pose> at_rest_;
 };
 
@@ -94,7 +94,8 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
   }
 }
 
-// Reads the topic of its joint states on ROS 2, and which of their times counts.
+// Reads the robot's joint-state topic on ROS 2, and whether its stamps or its times of sending
+// count.
 void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* node = map.optional("joint_states")) {
     const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
@@ -172,7 +173,8 @@ bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& 
   return true;
 }
 
-// Reads the base: a link of an earlier robot, or an object. A base at rest is a place in the world.
+// Reads the base: a link of an earlier robot, or an object. If nothing moves it, the base becomes a
+// pose in the world.
 void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBase& base) {
   const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
   if (!name) return;
@@ -232,7 +234,7 @@ void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKe
   map.refuse_unknown_keys();
 }
 
-// What is said of a base that follows a frame.
+// Reads the keys that apply to a base that follows a frame of tf.
 void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
   if (const YamlNode* age = map.optional("age_limit_ms")) {
     keys.base.age_limit_ns = quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
@@ -254,7 +256,7 @@ void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
   }
 }
 
-// Joints are in an order in which the motion of the link before is known.
+// Joints are sorted so that a parent link precedes its children: whether it moves is then known.
 void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
                             Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
@@ -320,8 +322,8 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
   }
 }
 
-// Treats the robot that was read last. A link that nothing moves is exactly where the cell places
-// it.
+// Adds the rounding of forward kinematics to the errors of the links of the robot that was read
+// last. Fixed links have none: they are exactly where the cell places them.
 void RobotReader::account_for_rounding(const RobotList& list) {
   const std::vector<ChainError> errors = chain_rounding(list.robots, list.variables);
   const std::vector<RobotLink>& links = list.robots.back().links;

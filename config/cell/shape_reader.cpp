@@ -134,7 +134,7 @@ std::optional<double> ShapeReader::read_rounding(MapReader& map) const {
   return quantities_.length(*node, "the radius around the body", kPositive);
 }
 
-// Adds that radius around the body.
+// Adds the radius that `rounding:` states around the body.
 std::optional<ShapeResult> ShapeReader::rounded(std::optional<double> rounding, ShapeResult made) {
   auto* body = std::get_if<ConvexBody>(&made);
   if (!rounding) return std::nullopt;

@@ -1,5 +1,5 @@
-// Makes indices of watched pairs of the two groups of a zone. A pair that is neither watched nor
-// allowed to touch is a mistake, since it could never enter the zone.
+// Finds the watched pairs between the two groups of a zone. A pair that is neither watched nor
+// allowed to touch is reported as a mistake, since it could never make the zone active.
 #include "config/cell/zone_reader.hpp"
 
 #include <fmt/format.h>
@@ -15,9 +15,9 @@
 namespace clearance {
 namespace {
 
-// The bound of the sequence in the catalogue.
+// The largest number of zones that fit into the catalogue message.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
-// The same bound for pairs: those in zones with `separation`, and those that are published.
+// The same for pairs: those in zones with `separation`, and those that are published.
 constexpr std::size_t kMaxPairs = 4096;
 
 // Returns the place of a pair in the scene's list, which is sorted by key.
@@ -30,7 +30,7 @@ std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, Pair
 }
 
 // Fills in the watched pairs between the two sides of a zone. A pair that is neither watched nor
-// allowed is refused: it could never enter the zone.
+// allowed to touch is refused, since it could never make the zone active.
 void fill_zone(const YamlNode& node, const Between& between, const ObjectList& objects,
                const PairList& list, const GroupIndex& group_index, Diagnostics& diagnostics,
                Zone& zone) {
@@ -131,7 +131,8 @@ class ZoneReader {
   std::map<std::string, const YamlNode*> names_;
 };
 
-// Published terms of a pair need a distance of the same tick, so the pair is published.
+// Publishes every pair of a zone with `separation`, because its published terms need a distance of
+// the same tick.
 void publish_separated_pairs(const YamlNode& node, const std::vector<Zone>& zones,
                              std::vector<ObjectPair>& pairs, Diagnostics& diagnostics) {
   std::size_t separated = 0;

@@ -1,6 +1,6 @@
-// The space around a mesh, on a grid: the distance of the grid's points from the mesh, and the
-// points that a ball from outside can touch. It is approximate: it guides the search for parts, and
-// certifies nothing.
+// The space around a mesh, sampled on a grid. It has the distance of each grid point from the mesh,
+// and says which points a ball from outside can get to. It is approximate: it guides the search for
+// parts, and certifies nothing.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ class OpenSpace {
   [[nodiscard]] double spacing() const { return spacing_; }
   // Returns the open points of the grid at least this far from the mesh.
   [[nodiscard]] std::vector<OpenPoint> points(double least) const;
-  // Tells whether the point is closed to every such ball. The point may be outside the grid.
+  // Tells whether no such ball can get to this point. The point may be outside the grid, and is
+  // then open.
   [[nodiscard]] bool encloses(const Vec3& point) const;
 
  private:

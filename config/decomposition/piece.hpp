@@ -13,8 +13,9 @@ namespace clearance {
 
 inline constexpr std::size_t kDirections = 160;
 
-// The overlap of neighbouring cells, as a share of the tolerance: no gap between them, not even a
-// point, is surface of the union. A face along which a cut runs is thus in the cells on both sides.
+// Each cut makes two cells that overlap by this share of the tolerance. Without the overlap,
+// rounding could leave a gap between them. If a cut runs along a face of the mesh, both cells
+// contain the face.
 inline constexpr double kOverlap = 0.01;
 
 // The support point of a set in each of some directions, which approximates the set's hull. The
@@ -54,7 +55,8 @@ struct Piece {
   std::vector<Vec3> points;       // of the mesh, and enclosed vertices of the cell
   Outline outline;                // of the points
   std::vector<HalfSpace> hull;    // of the outline
-  // The open points in the hull, or so near to it that a thin hull holds some.
+  // The open points in the hull. Points just outside are included, since a thin hull would contain
+  // no grid point.
   std::vector<OpenPoint> open;
   double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
 

@@ -8,8 +8,8 @@
 namespace clearance {
 namespace {
 
-// Points are moved by up to this share of the extent, so that no four lie in one plane, as they
-// often do in designed parts (Qhull's option QJ). For a link that is a few hundredths of a
+// Designed parts often have four or more points in one plane. To avoid that, points are moved by up
+// to this share of the extent (Qhull's option QJ). For a link that is a few hundredths of a
 // millimetre.
 constexpr double kJoggle = 1e-4;
 constexpr double kFlat = 1e-12;  // of the extent: points nearer to a plane lie in it

@@ -11,7 +11,8 @@
 
 namespace clearance {
 
-// Returns planes with unit normals; none for fewer than four points, or where all are one.
+// Returns planes with unit normals. There are none if the points are fewer than four, or all the
+// same.
 [[nodiscard]] std::vector<HalfSpace> rough_hull(std::span<const Vec3> points);
 
 [[nodiscard]] inline bool holds(std::span<const HalfSpace> planes, const Vec3& point,

@@ -24,7 +24,8 @@ constexpr int kMethod = 4;
 // s. A hull that took less time is not kept, but computed anew at every start.
 constexpr double kWorthKeeping = 0.1;
 
-// Hashes all that decides on the parts: neither the mesh file's name nor the cell's is in it.
+// Hashes everything on which the parts depend. The names of the mesh file and of the cell are not
+// among it.
 std::string key_of(const MeshUse& use, const std::string& bytes) {
   Revision hash;
   hash.add(bytes);
@@ -42,7 +43,7 @@ void scale(const MeshUse& use, TriangleMesh& mesh) {
   }
 }
 
-// A body of 1 cm in the place of a mesh that is not split yet.
+// Returns a body of 1 cm, which takes the place of a mesh that is not split yet.
 MeshParts stand_in() {
   MeshParts parts;
   parts.shapes.push_back(std::get<ConvexBody>(point(Vec3::Zero(), 0.01)));
@@ -53,8 +54,7 @@ std::string_view bytes_of(const std::vector<Vec3>& vertices) {
   return {reinterpret_cast<const char*>(vertices.data()), vertices.size() * sizeof(Vec3)};
 }
 
-// Returns nothing where a part is no body, because then the file does not hold the parts that were
-// made.
+// Returns nothing if a part makes no valid body: the kept file is then damaged.
 std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
   MeshParts bodies{{}, parts.error};
   for (const auto& vertices : parts.parts) {
@@ -173,7 +173,8 @@ std::optional<MeshParts> MeshLibrary::kept(const MeshUse& use, const std::string
   return std::nullopt;
 }
 
-// A mesh that cannot be read, or is too large, is refused at once.
+// Postpones the split and returns a stand-in. A mesh that cannot be read, or is too large, is
+// refused now.
 std::variant<MeshParts, MeshRefusal> MeshLibrary::put_off(const MeshUse& use, File& file) {
   auto mesh = mesh_of(use, file);
   if (auto* refusal = std::get_if<MeshRefusal>(&mesh)) return std::move(*refusal);

@@ -24,7 +24,7 @@ struct MeshUse {
   std::string file;  // relative to the cell's folder
   Vec3 scale = Vec3::Ones();
   LengthUnit unit = LengthUnit::kMetre;
-  // No vertex may be farther from the mesh's origin along an axis, m. A wrong number in a file, or
+  // The largest coordinate that a vertex may have along an axis, m. A wrong number in a file, or
   // another unit, would make a body that contains the whole cell.
   double reach = 100.0;
   PartLimits limits = {};
@@ -44,8 +44,8 @@ struct MeshRefusal {
   std::string reason;
 };
 
-// The place where a person can raise the limits of a mesh: the cell. If a program was given a URDF,
-// a cell has to be written first.
+// The advice in messages for a person who has to raise the limits of a mesh. Limits are in the
+// cell. A person who gave a URDF has to write a cell first.
 enum class Advice : std::uint8_t { kCell, kUrdf };
 
 // Files are read once, and parts of the same use are made once, as long as this lives.
@@ -63,9 +63,10 @@ class MeshLibrary {
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
 
-  // Tells whether parts() has returned a stand-in for a mesh that has to be split.
+  // Tells whether parts() has returned a stand-in, because the split of a mesh was postponed.
   [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
-  // Prepares for reading the cell again, into a revision that begins anew: meshes are now split.
+  // Call this before the cell is read a second time, with a fresh revision. From then on parts()
+  // splits meshes instead of returning stand-ins.
   void split_from_here();
 
  private:

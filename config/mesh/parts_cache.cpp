@@ -97,8 +97,8 @@ std::string text_of(const std::string& key, const ConvexParts& parts) {
   return text + kChecksum + checksum(text) + "\n";
 }
 
-// Reads the text word by word. A text with a correct checksum is hardly wrong, but it must not
-// crash the reader.
+// Reads the text word by word. A text whose checksum is correct is hardly ever malformed, but even
+// then it must not crash the reader.
 class PartsText {
  public:
   explicit PartsText(const std::string& text) : words_(text) {}

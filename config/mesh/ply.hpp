@@ -1,5 +1,5 @@
-// Reads PLY, ASCII and binary. Assimp is not used here: it never finishes a file that is cut off in
-// its header, and reads one that is cut off later as if it were whole.
+// Reads PLY, ASCII and binary. Assimp is not used here. It never finishes a file whose header is
+// cut off. If a file is cut off later, assimp reads it as if it were complete.
 #pragma once
 
 #include <string>

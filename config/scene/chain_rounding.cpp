@@ -1,4 +1,5 @@
-// Bounds the sums of ForwardKinematics::carry with the largest lengths that can stand in them.
+// Bounds the rounding error of the sums in ForwardKinematics::carry by the largest lengths that can
+// occur in them.
 #include "config/scene/chain_rounding.hpp"
 
 #include <algorithm>
@@ -23,7 +24,7 @@ double largest(const JointVariable& variable, double multiplier, double offset) 
   return std::abs(multiplier) * way + std::abs(offset);
 }
 
-// Returns the largest slide of the joint, as ForwardKinematics does.
+// Returns the largest length by which the joint moves its link, as ForwardKinematics computes it.
 double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
   switch (joint.type) {
     case JointType::kPrismatic:

@@ -8,19 +8,19 @@
 
 namespace clearance {
 
-// A joint's rotation is within this of the exact one, rad, and its step within this for each metre.
-// The origin's quaternion, made of three angles by some forty operations, is within 2^-48 of its
-// half. The half angle's sine and cosine are within 2^-50, and two products of quaternions round
-// eight times more.
+// A joint's rotation is within this of the exact one, rad. Its translation is within this share of
+// its length. The origin's quaternion, made of three angles by some forty operations, is within
+// 2^-48 of its half. The half angle's sine and cosine are within 2^-50, and two products of
+// quaternions round eight times more.
 inline constexpr double kJointError = 0x1p-46;
 // A position that is scaled and shifted (mimic) is within this, for each radian or metre.
 inline constexpr double kPositionError = 0x1p-51;
 
-// The bounds hold for lengths up to this, m: those of joints without limits, and the distance of an
-// object that carries a robot.
+// The bounds hold up to this length, m. It limits the positions of joints that state no limits, and
+// the distance of an object that carries a robot.
 inline constexpr double kSureWay = 1e4;
-// They hold for all angles up to 1e6 rad. Joints are given the error of a rescaled angle of at
-// least this size, rad, although only those that mimic others have one.
+// The bounds hold for all angles up to 1e6 rad. Every joint gets the error of a rescaled angle of
+// at least this size, rad, although only joints that mimic others rescale angles.
 inline constexpr double kLeastSureAngle = 1e3;
 
 // No point within r of a link's origin is farther than shift + turn r from its place by forward
@@ -30,8 +30,8 @@ struct ChainError {
   double turn = 0.0;   // rad
 };
 
-// Returns the error of every link of the last of these robots, as Robot::links. It may stand on the
-// robots before it.
+// Returns the error of every link of the last robot, in the order of Robot::links. The robots
+// before it are needed because it may stand on them.
 [[nodiscard]] std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
                                                      const std::vector<JointVariable>& variables);
 

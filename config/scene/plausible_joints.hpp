@@ -1,5 +1,5 @@
-// What counts as plausible of a joint's positions: it follows from the joint's type and limits, and
-// where these state nothing, from defaults.
+// Decides which positions of a joint are plausible, from its type and its limits. Defaults replace
+// limits that are not stated.
 #pragma once
 
 #include <vector>
@@ -8,8 +8,9 @@
 
 namespace clearance {
 
-// Above these speeds, positions are not plausible where the cell and the description state none.
-// They bound no motion that is not seen. The base is one that follows a frame of tf.
+// If neither the cell nor the description states a speed, positions that need more than these are
+// not plausible. These speeds do not bound the unobserved motion of late inputs. `Base` is a robot
+// base that follows a frame of tf.
 inline constexpr double kFastestTurnUnstated = 100.0;  // rad/s
 inline constexpr double kFastestSlideUnstated = 20.0;  // m/s
 inline constexpr double kFastestBase = 5.0;            // m/s

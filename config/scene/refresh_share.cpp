@@ -1,5 +1,6 @@
-// Part pairs are counted once, when a cell is loaded. If they are kept separate, published and
-// other pairs each have a share. Together they need less, since the largest pair counts once.
+// Part pairs are counted once, when a cell is loaded. If published and other pairs are refreshed
+// separately, each kind has a share of its own. Together they need a smaller budget, because the
+// share covers the largest pair only once.
 #include "config/scene/refresh_share.hpp"
 
 #include <algorithm>

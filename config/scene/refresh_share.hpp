@@ -32,8 +32,9 @@ struct RefreshShare {
   }
 };
 
-// Published pairs stay separate if all their part pairs fit into the budget of one tick, unless
-// only a common round-robin fits. The caller compares queries() with Scene::budget.
+// If all part pairs of the published pairs fit into the budget of one tick, published pairs are
+// kept separate. The exception is a budget that is enough only for one common round-robin. The
+// caller compares queries() with Scene::budget.
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
 
 // Tells whether a pair is published: it is then evaluated in every tick as long as the budget

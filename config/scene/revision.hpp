@@ -11,9 +11,9 @@
 
 namespace clearance {
 
-// Returns the path of a file that a file in the folder `base` calls `name`. A `root` holds the
-// files of another machine at their paths there: absolute names then lead into it as well. Names
-// that lie in it already stay as they are.
+// Returns the path of a file that is called `name` by a file in the folder `base`. A `root` holds a
+// copy of another machine's files, at the paths that they have there. With a root, absolute names
+// are taken relative to it, unless they are in it already.
 [[nodiscard]] inline std::filesystem::path path_in(const std::filesystem::path& root,
                                                    const std::filesystem::path& base,
                                                    const std::filesystem::path& name) {

@@ -50,13 +50,13 @@ struct JointVariable {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
-  // The speed above which positions are not plausible, if `max_speed` is not stated. It bounds no
-  // motion that is not seen.
+  // The speed above which positions are not plausible, if `max_speed` is not stated. It does not
+  // bound the unobserved motion of late inputs.
   double unstated_speed = std::numeric_limits<double>::infinity();
   // A sent velocity may exceed plausible_speed() by this factor: the limits of many descriptions
-  // are too low. Where the speed is the cell's, it holds as it is stated.
+  // are too low. A speed that the cell states has no such tolerance.
   double speed_tolerance = 4.0;
-  // A position farther outside its limits than this contradicts it; rad or m.
+  // A position that is farther outside its limits than this is not plausible; rad or m.
   double limit_tolerance = 0.0;
   bool wraps = false;                // an angle that is the same after a full turn
   std::int64_t age_limit_ns = 0;     // an older position is late
@@ -66,7 +66,7 @@ struct JointVariable {
   std::string source;       // the only source that is used; empty: the first that sends some
   std::uint32_t robot = 0;  // index into Scene::robots
 
-  // Positions that need a higher speed contradict it, per second.
+  // A position that needs a higher speed than this, per second, contradicts the one before.
   [[nodiscard]] double plausible_speed() const noexcept {
     return std::isfinite(max_speed) ? max_speed : unstated_speed;
   }
@@ -105,8 +105,9 @@ struct RobotBase {
   std::uint32_t object = 0;           // index into Scene::objects: a moving one
   std::uint32_t robot = 0, link = 0;  // an earlier robot
   Pose base_from_root;                // in the frame of the world, object or link
-  // The frame of tf that the base follows, and the root link's pose in it. Its first joint is then
-  // floating, and stands in no description. Empty: none.
+  // The frame of tf that the base follows, and the root link's pose in it. The robot then gets an
+  // additional first joint, a floating one, that no description contains. Empty if the base follows
+  // no frame.
   std::string frame;
   Pose frame_from_root;
 };

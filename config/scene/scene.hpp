@@ -24,7 +24,7 @@ struct Part {
 };
 
 // The speed above which the poses of an object that states no max_speed are not plausible, m/s. It
-// bounds no motion that is not seen.
+// does not bound the unobserved motion of late objects.
 inline constexpr double kFastestUnstated = 20.0;
 
 // A rigid body of one or more convex parts. Fixed objects have a pose; the poses of moving ones

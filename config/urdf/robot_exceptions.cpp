@@ -109,8 +109,8 @@ std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shape
   return useful;
 }
 
-// A link and the next one above it that has shapes overlap by design. Nothing is known of links
-// that merely share a frame, so they stay watched.
+// A link and its nearest ancestor that has shapes overlap by design. Links that merely share a
+// frame need not overlap, so they stay watched.
 std::vector<SrdfDisabled> neighbours_of(const UrdfRobot& robot, const LinkNames& shaped,
                                         const LinkNames& fixed, std::vector<std::string>& notes) {
   std::map<std::string, std::string> parents;

@@ -40,9 +40,10 @@ struct RobotCell {
 };
 
 // Each link that has collision shapes becomes an object of the link's name in the link's frame.
-// Every pair of them is watched, except the SRDF's disabled ones, or, without an SRDF, a link and
-// the next above it that has shapes. Exceptions stand in the cell with their reasons. An SRDF with
-// another robot's name, or with links that the URDF does not have, is refused.
+// Every pair of them is watched, except those that the SRDF disables. Without an SRDF, the
+// exceptions are each link and its nearest ancestor that has shapes. The cell lists exceptions with
+// their reasons. An SRDF with another robot's name, or with links that the URDF does not have, is
+// refused.
 [[nodiscard]] std::variant<RobotCell, UrdfFaults> robot_cell(const RobotCellOptions& options);
 
 }  // namespace clearance

@@ -17,8 +17,8 @@ namespace clearance {
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
-// No coordinate of a cell may be larger, nor the path of a speed in one second: larger ones are
-// mistakes of units.
+// The largest coordinate of a cell, and the longest way that a stated speed may cover in one
+// second. Larger ones are mistakes of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
 // The `units:` section.
@@ -73,9 +73,9 @@ class Quantities {
   // Numbers without a unit, not all zero; not normalised.
   [[nodiscard]] std::optional<Vec3> direction(const YamlNode& node, const std::string& what) const;
 
-  // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each may be
-  // absent. rpy rotates about the fixed axes x, then y, then z, as in URDF. Right angles in degrees
-  // are exact.
+  // {xyz: [x, y, z], rpy: [roll, pitch, yaw]} or {xyz: ..., quaternion: [x, y, z, w]}; each key may
+  // be absent. rpy rotates about the fixed axes x, then y, then z, as in URDF. Right angles in
+  // degrees are exact.
   [[nodiscard]] std::optional<Pose> pose(const YamlNode& node) const;
 
  private:

@@ -22,7 +22,8 @@
 namespace clearance {
 namespace {
 
-// Aliases of aliases can make a short file enormous: together they may add so many values.
+// Aliases of aliases can make a short file enormous, so this limits how many values they add in
+// total.
 constexpr std::size_t kMaxCopies = 1'000'000;
 
 // Faults that the parser does not find.

@@ -67,9 +67,9 @@ bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
   return false;
 }
 
-// On an unbounded body the point of another pair may be so far out that rounding takes it off its
-// feature. If one of the bodies is bounded, the closest points are no farther out than `farthest`,
-// because no two points are closer.
+// A hint on an unbounded body may come from another pair. Its point may be so far out that rounding
+// takes it off its feature. If one of the bodies is bounded, the closest points are no farther out
+// than `farthest`, so hints beyond that are not used.
 void ActiveFeature::place_near(const TrackingState::Side& hint, const ActiveFeature& other,
                                double between_origins) noexcept {
   const double farthest =

@@ -102,8 +102,8 @@ Dqp3Outcome iterate(ActiveFeature& a, ActiveFeature& b, double contact) noexcept
 }
 
 // At a sharp edge or vertex, a point may be past the edge by far more than it is outside either
-// plane. A point is certainly inside if its gap to every plane exceeds this part of a length: the
-// bounding radius plus the point's distance from the origin.
+// plane. A point is inside beyond rounding if its gap to every plane exceeds this share of a
+// length. The length is the bounding radius plus the point's distance from the origin.
 constexpr double kInsideBeyondRounding = 16 * kUlp;
 
 // Moves a point to the nearest facet unless it is inside by more than rounding.

@@ -160,8 +160,8 @@ class DistanceBatch::Rounds {
     return std::isnan(poses_[a].position.x()) || std::isnan(poses_[b].position.x());
   }
 
-  // Queries in the order of the pairs. After more than one transition a pair has other features, or
-  // vector code cannot answer it.
+  // Queries the unassigned pairs one by one, in order. More than one transition counts as a change:
+  // the pair has other features, or vector code cannot answer it.
   void query_unassigned() noexcept {
     for (std::uint32_t word = 0; word < unassigned_.size(); ++word) {
       for (std::uint64_t bits = unassigned_[word]; bits != 0; bits &= bits - 1) {

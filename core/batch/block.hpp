@@ -85,8 +85,9 @@ struct alignas(64) BatchBlock {
 // The neighbour that takes over when the features are no longer the closest.
 enum NextFeature : std::int32_t {
   kNextUnknown = -1,  // rounding cannot tell, or lanes do not decide it
-  // 0 and more: an index. For a vertex and an edge it is that of an edge of the vertex, for a facet
-  // and a vertex that of a side of the facet. For two vertices it is that of an edge of A's vertex.
+  // 0 and more: an index. For a vertex and an edge, it is the index of an edge of the vertex. For a
+  // facet and a vertex, it is that of a side of the facet. For two vertices it is that of an edge
+  // of A's vertex.
   kNextOfOther = kMostRepeats,     // + i: the edge of a vertex at a facet, of B's of two
   kNextBeside = 2 * kMostRepeats,  // + k: of an edge at a vertex, its facet
   kNextEnd = kNextBeside + 2,      // + k: of an edge (A's of two) its vertex

@@ -1,6 +1,6 @@
-// The straight-line part of core/feature_tracking/parallel_transitions-inl.hpp for as many pairs as
-// a vector has lanes. More than one point of these features is closest, within tolerance. Compiled
-// once an instruction set.
+// The straight-line part of core/feature_tracking/parallel_transitions-inl.hpp, for one pair in
+// each lane of a vector. It treats parallel features, where more than one point is closest within
+// tolerance. Compiled once an instruction set.
 #if defined(CLEARANCE_BATCH_LEVEL_INL_HPP_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_BATCH_LEVEL_INL_HPP_
 #undef CLEARANCE_BATCH_LEVEL_INL_HPP_

@@ -26,7 +26,8 @@ class Outline {
     for (const PlacedShape& body : bodies) add(body);
   }
 
-  // An offset d with n.x <= d for every point x of the bodies; n as the doubles are, about unit.
+  // Returns an offset d such that n.x <= d for every point x of the bodies. It holds for exactly
+  // these doubles of n, which has about unit length.
   [[nodiscard]] double support_value(const Vec3& n) const {
     const double length = n.norm() * kRoundedUp;
     double farthest = -kInfinity;
@@ -43,8 +44,8 @@ class Outline {
   // No point of the bodies is farther from the frame's origin, m.
   [[nodiscard]] double size() const { return size_; }
 
-  // Points of the bodies, up to rounding, with those around round ends: their hull has about the
-  // facets of the bodies' hull.
+  // Returns sample points of the bodies, up to rounding, including round ends. Their hull has about
+  // the same facets as the bodies' hull.
   [[nodiscard]] std::vector<Vec3> samples() const {
     std::vector<Vec3> points;
     for (const Sphere& sphere : spheres_) {
@@ -154,8 +155,8 @@ CutVertex judged(const Vec3& vertex, const std::vector<HalfSpace>& planes) {
   return result;
 }
 
-// The planes to cut with next, at most `most_cuts`: no vertex twice when one cut takes most of it
-// off.
+// Returns the planes to cut with next, at most `most_cuts`. A vertex gets no plane of its own if an
+// earlier cut already removes at least half of what sticks out there.
 std::vector<HalfSpace> next_cuts(const ConvexBody& body, const std::vector<HalfSpace>& planes,
                                  double tolerance, std::size_t most_cuts) {
   std::vector<std::pair<CutVertex, Vec3>> vertices;

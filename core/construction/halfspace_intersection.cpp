@@ -174,7 +174,8 @@ Solid parallel_planes(const std::vector<Integer4>& planes, const Integer4& centr
   Solid solid;
   solid.interior = centre;
   const Integer3 up = head(planes[0]);
-  // For each sense of the normal only the nearest plane is a facet.
+  // All planes are parallel. For each of the two senses of the normal, only the nearest plane is a
+  // facet.
   std::array<int, 2> tightest{kNone, kNone};  // by side
   for (std::size_t row = 0; row < planes.size(); ++row) {
     int& best = tightest[sgn(dot(up, head(planes[row]))) > 0 ? 0 : 1];

@@ -66,7 +66,7 @@ bool is_zero(std::span<const Integer> vector) {
 
 Integer3 head(const Integer4& vector) { return {vector[0], vector[1], vector[2]}; }
 
-// With w = 1, n = a x b + b x c + c x a = (b - a) x (c - a), and h.p = n.p - n.a.
+// With w = 1, h.p = n.p - n.a, where n = a x b + b x c + c x a = (b - a) x (c - a).
 Integer4 plane_through(const Integer4& a, const Integer4& b, const Integer4& c) {
   const Integer3 bc = cross(head(b), head(c));
   const Integer3 ca = cross(head(c), head(a));

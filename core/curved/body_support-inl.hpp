@@ -118,9 +118,9 @@ HWY_INLINE double ascent(const ConvexBody& body, std::int32_t number, const Side
   return steepest;
 }
 
-// The support vertex is the active vertex with the greatest m.x if all edges of all active vertices
-// recede, except those that join two of them. This is the vertex test of feature tracking (Lin and
-// Canny 1991).
+// Consider all edges of the active vertices, except those that join two of them. If all recede, the
+// support vertex is the active vertex with the greatest m.x. This is the vertex test of feature
+// tracking (Lin and Canny 1991).
 HWY_INLINE BodySupport polyhedron_support(const ConvexBody& body, const SideParts& active, Vec4 m) {
   BodySupport found;
   found.known = true;

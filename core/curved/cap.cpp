@@ -28,7 +28,7 @@ struct CapView {
     const Vec3 at(on_cap.x(), on_cap.y(), disc.height);
     of_a ? pair.add_points(at, on_other) : pair.add_points(on_other, at);
   }
-  // The point with the least v.x in the other body's support set along the axis.
+  // The point x with the least v.x among the other body's support points along the axis.
   [[nodiscard]] PointOfPart support_set_point(const Vec2& v) const noexcept {
     const Vec3 m = of_a ? Vec3(-pair.direction_to_b(normal)) : normal;
     const Vec3 towards = direction_to_other(Vec3(-v.x(), -v.y(), 0.0));

@@ -156,8 +156,9 @@ class DirectionSearch {
     return found;
   }
 
-  // Adds the mean support points of the active parts, moved to their places for n + step. `again`:
-  // repeats the move by the rest of the gap vector across that direction, since rims are curved.
+  // Adds the weighted mean of the active parts' support points, moved by the Hessians to where they
+  // would be for n + step. Rims are curved, so a gap across the direction remains. `again` says how
+  // often the move is repeated for that rest.
   PointPair add_points(const PlaneStep& found, int again = 0) noexcept {
     PointPair points;
     for (std::size_t i = 0; i < count_; ++i) {

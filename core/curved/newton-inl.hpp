@@ -31,7 +31,8 @@ inline constexpr double kLongStep = 0x1p-10;
 inline constexpr double kFinalStep = 0x1p-52;
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 
-// Certified bounds and their witnesses, without rounding errors and radii.
+// Bounds and their witness points. They do not yet account for rounding errors or for the radii of
+// the bodies.
 struct NewtonEnd {
   double lower, upper;
   Vec4 normal;                 // frame A, unit

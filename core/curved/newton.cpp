@@ -1,4 +1,5 @@
-// The fast effort as one query. Compiled once a vector width.
+// Newton's method as a complete query: the fast one of the two efforts in README.md. Compiled once
+// a vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/curved/newton.cpp"
 #include "core/numerics/simd_targets.hpp"

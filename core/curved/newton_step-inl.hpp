@@ -84,8 +84,8 @@ class NewtonStep {
     return value;
   }
 
-  // The curvature of the unit sphere adds d, the distance. While the direction is far from the
-  // best, d is half the length of the gap vector.
+  // On the unit sphere, the curvature adds the distance d to the Hessian, which regularises it.
+  // While the direction is far from the best one, half the length of the gap vector replaces d.
   HWY_INLINE void set_regularisation(const PlacedParts& parts) {
     regularisation_ = least * per_square_;
     const double gap = dot(parts.gap[0], parts.gap[0]);
@@ -128,7 +128,8 @@ class NewtonStep {
     if (parts.count() == 2 && meet(parts, x, c)) return;
     set_next(x, c.matrix * (parts.gap[0] + lift_), c);
   }
-  // The regularisation along x becomes `along`.
+  // Sets the regularisation along x to `along`, and lift_ to the vector that the gap vector needs
+  // in return.
   HWY_INLINE void lift(Symmetric4& m, Vec4 x, double along, double distance) {
     const Vec4 more = spread((along - regularisation_) * per_square_) * x;
     m = {m.main + more * x, m.beside + more * yzx(x)};

@@ -55,7 +55,8 @@ enum class FaceEnd { kClosest, kBeside, kUnknown };
 struct FaceMeeting {
   FaceEnd end = FaceEnd::kUnknown;
   double lower, upper;  // the distance of the other body from the face's plane
-  // The other body's nearest point in its own frame, and in the face's frame; its projection there.
+  // The other body's nearest point, in its own frame and in the face's frame, and its projection
+  // onto the face.
   Vec4 on_other, above, below;
   std::int32_t part;          // of the other body
   std::int32_t edge = kNone;  // the nearest point lies past this edge of a facet

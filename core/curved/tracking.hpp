@@ -33,13 +33,15 @@ inline void forget_nonsense(CurvedTrackingState& state, const ConvexBody& a,
   if (!usable || faces > 1 || (faces == 1 && active.count > 1)) active.count = 0;
 }
 
-// A pair of parts is one number, because at most one body is a polyhedron, and the other one has at
-// most two parts and two planar faces. The two features hold three such numbers of 21 bits. With
-// one pair only, a tracked query on an edge or a generator would take one more step.
+// A pair of parts is stored as one number. This is possible because at most one body is a
+// polyhedron, and the other has at most two parts and two planar faces. The two features hold three
+// such numbers of 21 bits. With one pair only, a tracked query on an edge or a generator would take
+// one more step.
 inline constexpr unsigned kPartBits = 21;
 inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
 
-// 4 p + q + 1, where q is the part of a curved body: of A if B is a polyhedron, else of B. 0: none.
+// 4 p + q + 1, or 0 for none. q is the part of a curved body: A's if B is a polyhedron, otherwise
+// B's.
 [[nodiscard]] inline std::uint64_t packed(const PartPair& pair, bool b_is_curved) noexcept {
   const std::int32_t p = b_is_curved ? pair.a : pair.b, q = b_is_curved ? pair.b : pair.a;
   const std::uint64_t number =
@@ -52,7 +54,7 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
   return b_is_curved ? PartPair{p, q} : PartPair{q, p};
 }
 
-// Any state gives a CurvedTrackingState that fits these two bodies.
+// Reads any state, even that of another pair, as a CurvedTrackingState that fits these two bodies.
 [[nodiscard]] inline CurvedTrackingState read(const TrackingState& state, const ConvexBody& a,
                                               const ConvexBody& b) noexcept {
   CurvedTrackingState found;

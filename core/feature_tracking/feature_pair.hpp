@@ -22,7 +22,8 @@ enum class FeaturePair : int {
 };
 inline constexpr std::size_t kFeaturePairs = 9;
 
-// For features that the bodies have. If a kind is kUnknown, the value has no name.
+// Requires features that the bodies have, or kUnknown. With kUnknown the value is none of the
+// enumerators.
 [[nodiscard]] constexpr FeaturePair feature_pair(FeatureKind on_a, FeatureKind on_b) noexcept {
   return static_cast<FeaturePair>(3 * static_cast<int>(on_a) + static_cast<int>(on_b));
 }

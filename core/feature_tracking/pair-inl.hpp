@@ -149,8 +149,8 @@ struct FacetPlane {
 };
 
 // An edge of this body and a vertex of the other, in frame A. The rotation in doubles is not quite
-// rigid, so B's unit vectors are not quite of unit length there. In frame B, A would be stretched,
-// however far away it is.
+// rigid, so B's unit vectors are not quite of unit length in frame A. Work in frame B instead would
+// stretch A, and the error would grow with its distance.
 template <bool kIsB, class Relative, class Vector, class Number>
 struct EdgeAndVertex {
   HWY_INLINE EdgeAndVertex(const Relative& pose, const Vector& edge_start, const Vector& direction,

@@ -1,5 +1,5 @@
-// The extent of a curved shape, and points that stand for it, without the radius around it, in the
-// local frame.
+// The extent of a curved shape, and sample points that represent it. Both are in the local frame
+// and leave out the radius around the shape.
 #pragma once
 
 #include <vector>

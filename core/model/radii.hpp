@@ -17,9 +17,9 @@ namespace clearance {
   return sum == 0.0 ? 0.0 : kRadiusRounding * (sum + std::abs(distance - sum));
 }
 
-// `gap` is the difference of the bounds of the polyhedra's distance. Will it be that of a converged
-// answer when the radii are subtracted? The subtraction widens each bound by its rounding error,
-// and rounds it by at most as much. `size`: Precision::size.
+// Tells whether the answer will have converged once the radii are subtracted. `gap` is upper less
+// lower bound of the polyhedra's distance. The subtraction widens each bound by the rounding error,
+// and rounds it by at most as much again. `size`: Precision::size.
 [[nodiscard]] inline bool converges_with_radii(const ConvexBody& a, const ConvexBody& b,
                                                double size, double distance, double gap) noexcept {
   const double sum = radii(a, b);

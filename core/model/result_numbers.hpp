@@ -12,7 +12,8 @@ static_assert(offsetof(DistanceResult, distance) == 0);
 static_assert(offsetof(DistanceResult, normal) == 3 * sizeof(double));
 static_assert(offsetof(DistanceResult, point_on_b) == 9 * sizeof(double));
 static_assert(offsetof(DistanceResult, status) == 12 * sizeof(double));
-// So that four numbers may be stored from point_on_b on, before the status is written.
+// Four numbers are stored at point_on_b, which has three. The fourth must still lie in the result;
+// the status is written after it.
 static_assert(sizeof(DistanceResult) >= 13 * sizeof(double));
 
 // The address of number i in the storage of the whole result. A pointer to a member is valid only

@@ -89,8 +89,8 @@ inline constexpr double kSlender = 0x1p-20;
 
 // A directional derivative larger than this in magnitude, per unit length, has the sign that exact
 // arithmetic would give with the doubles of R. The body's unit vector takes 1 of these 8 ulps, the
-// rotated direction 4, and their product 2. The last sum of the product is exact there, or its
-// rounding as small as the derivative.
+// rotated direction 4, and their product 2. The last sum of the product is exact for so small a
+// derivative, or its rounding is as small as the derivative.
 inline constexpr double kDerivativeError = 0x1p-50;
 
 // The error of a slope: the rounding of its direction, its product and its sum.

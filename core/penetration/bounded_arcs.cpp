@@ -38,8 +38,9 @@ void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
   }
 }
 
-// The vertex of Y that was looked up below a facet, or the deepest of those compared with all
-// facets, if it is deep enough. For a facet that a sphere has settled, a vertex is looked up now.
+// Returns a vertex of Y below a facet of X. This is usually the one that was looked up for the
+// facet. A facet that a sphere has settled has none. For it, the deepest of the points that were
+// compared with all facets is taken, if it is deep enough. Otherwise a vertex is looked up now.
 Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
   if (of_y.vertex(facet) == DeepestPoints::kNoVertex) {
     const Facet& here = body_.x().facets[facet];

@@ -10,10 +10,10 @@
 namespace clearance {
 namespace {
 
-// Errors that Precision::error_bound does not count, in roundings of Precision::size. A direction
-// of an arc is off the exact arc by 6, and a vertex off its plane by 6.
+// Errors that Precision::error_bound does not count, in multiples of Precision::size. A direction
+// may miss its arc by 6 roundings, and a vertex may miss its plane by 6.
 constexpr double kOnArc = 12 * kUlp;
-// Two bounds of h are the same within this, in the same unit.
+// Two bounds of h that differ by no more than this count as equal, in multiples of Precision::size.
 constexpr double kGapTolerance = 8 * kUlp;
 
 using Source = NormalSearch::Source;

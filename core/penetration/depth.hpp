@@ -27,9 +27,9 @@ namespace clearance {
 
 struct Depth {
   // m, rounding included. lower > 0: the bodies penetrate, and no shorter translation separates
-  // them. lower < 0: they penetrate, or their distance is at most -lower. upper: if B is moved by
-  // this along `normal`, it is clear of A. upper < 0: their distance is at least -upper. The search
-  // then ends without a lower bound. Nothing is known of two unbounded bodies.
+  // them. lower < 0: they penetrate, or their distance is at most -lower. upper: B, moved by this
+  // along `normal`, is clear of A. upper < 0: their distance is at least -upper. The search then
+  // ends without a lower bound. Nothing is known of two unbounded bodies.
   double lower = -kInfinity, upper = kInfinity;
   double value = kInfinity;    // m: best estimate
   Vec3 normal = Vec3::Zero();  // unit, frame A, from A towards B

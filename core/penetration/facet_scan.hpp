@@ -50,7 +50,7 @@ class DeepestVertices {
   // Marks which vertices are so deep (m) below which facets, and lists those that vertex `main` is
   // not.
   [[nodiscard]] std::span<const std::int32_t> mark(double enough, std::size_t main) noexcept;
-  // Is this vertex marked? Is any vertex marked for both?
+  // Is the vertex `main` marked for this facet? Is some vertex marked for both facets?
   [[nodiscard]] bool main_is(std::int32_t facet) const noexcept {
     return (marks_[static_cast<std::size_t>(facet)] & main_) != 0;
   }

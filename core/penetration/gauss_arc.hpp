@@ -29,10 +29,11 @@ struct OnArc {
   return std::max(alone, std::min({first.l, first.at(s), last.at(s), last.r}));
 }
 
-// One point covers the arc up to the place at which its height falls to `enough`. The other covers
-// it from the place at which its height has risen to that. A sphere covers what lies between:
-// `middle` is the height of its centre. chord2: |l - r|^2. Between the ends the height of the
-// centre grows, as 1 / N >= 1 + s (1 - s) |l - r|^2 / 2.
+// Returns a lower bound of h along the arc in three spans. From l, `first` gives the bound until
+// its height falls to `enough`. Towards r, `last` does so from where its height reaches `enough`.
+// In between, a sphere does so, whose centre has the heights `middle`. Inside the arc, the centre
+// is higher than linear interpolation says: 1 / N >= 1 + s (1 - s) |l - r|^2 / 2. chord2: |l -
+// r|^2.
 [[nodiscard]] inline double least_with_sphere(const OnArc& first, const OnArc& middle,
                                               double radius, const OnArc& last, double chord2,
                                               double enough) noexcept {

@@ -31,8 +31,8 @@ class NormalSearch {
         within_rounding_(0x1p-46 + direction_error),
         beyond_rounding_(kDerivativeError + direction_error) {}
 
-  // Any unit n. It is only a target to beat: the values of facets and arcs are found again there.
-  // The search begins on the arc of `edge_of_x`, unless that is kNone.
+  // Starts the search from a guess, any unit n, on the arc of `edge_of_x` unless that is kNone. A
+  // wrong guess does no harm: it sets a value to beat, and run() still visits all facets and arcs.
   void guess(const Vec3& n, std::int32_t edge_of_x) noexcept;
   // Each of these stays the best unless another is better by more than rounding.
   void guess_facet_of_x(std::int32_t facet) noexcept {
@@ -160,8 +160,8 @@ class NormalSearch {
   Best best_;
   double lower_ = kInfinity;
 
-  // Vertices found so far, by the directions for which they were found: six axes by the signs of
-  // the other two components.
+  // Caches the last vertex found in each of 24 cells of directions. A cell is one of the six signed
+  // axes, and the signs of the other two components.
   static std::size_t cell(const Vec3& n) noexcept;
   [[nodiscard]] const Vec3* cached(const Vec3& n) const noexcept {
     return is_cached_[cell(n)] ? &cached_[cell(n)] : nullptr;

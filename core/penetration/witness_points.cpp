@@ -33,8 +33,8 @@ std::uint16_t closest_when_moved(const ConvexBody& a, const ConvexBody& b,
   return iterations;
 }
 
-// Takes the state's points for the witness points. Returns the part of their difference across the
-// normal, m.
+// Makes the state's points the witness points. Returns by how much they miss each other: the length
+// of their difference less distance * normal, m.
 double take_points(const RelativePose& a_from_b, const TrackingState& state,
                    DistanceResult& r) noexcept {
   r.point_on_a = state.a.point;

@@ -54,7 +54,7 @@ bool write_all(int descriptor, std::string_view text) {
   return true;
 }
 
-// The sinks keep their pattern.
+// Ignores changes of the pattern: each sink keeps the one that it was made with.
 class Sink : public spdlog::sinks::sink {
   void flush() override {}
   void set_pattern(const std::string&) override {}
@@ -62,7 +62,7 @@ class Sink : public spdlog::sinks::sink {
 };
 
 // The far end of the queue. Only the log's thread calls it. spdlog's own sinks to stderr hold the
-// lock of the FILE while they write, and print() and exit() would wait for that lock.
+// lock of the FILE while they write. print() and exit() would then wait for that lock.
 class StderrSink final : public Sink {
  public:
   explicit StderrSink(spdlog::details::thread_pool& queue)
@@ -92,7 +92,7 @@ class StderrSink final : public Sink {
     if (write(next, spdlog::level::warn, text)) told_ = left_out;
   }
 
-  // False: stderr refuses it.
+  // Returns false if stderr refuses the line.
   bool write(const log_msg& event, spdlog::level::level_enum level, const std::string& text) {
     const log_msg line(event.time, {}, event.logger_name, level, text);
     spdlog::memory_buf_t formatted;
@@ -112,7 +112,7 @@ class StderrSink final : public Sink {
   std::atomic<std::uint64_t> written_{0};
 };
 
-// The pool that a thread hanging in write() still uses when the program ends.
+// The pool that the log's thread still uses if it hangs in write() when the program ends.
 std::shared_ptr<spdlog::details::thread_pool>* left_behind = nullptr;
 
 // The near end of the queue. It counts lines, because spdlog does not tell whether all of them are

@@ -24,7 +24,7 @@ struct BagMessage {
   std::span<const std::byte> payload;  // valid until the next call
 };
 
-// Not for several threads at once. error() tells the fault of a file.
+// Only one thread may use a bag at a time. error() says what is wrong with the file.
 class Bag {
  public:
   virtual ~Bag() = default;

@@ -29,7 +29,8 @@ bool holds_topics_of_ours(const std::filesystem::path& path) {
   return met == 0;
 }
 
-// Unlike these tables, pose logs name an object in every row.
+// Distinguishes a table of joint positions from a pose log. Both have a column t_ns, but only a
+// pose log has a column `object`.
 bool is_joint_table(const std::filesystem::path& path) {
   const std::vector<std::string> columns = csv_column_names(path);
   return columns.size() > 1 && std::ranges::find(columns, "t_ns") != columns.end() &&

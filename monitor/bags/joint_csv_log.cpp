@@ -71,7 +71,7 @@ void JointCsvLog::choose_columns() {
   }
 }
 
-// The batch of given joints follows each row, with the same time.
+// After each row comes a batch with the positions of joints that the user gave, at the same time.
 bool JointCsvLog::next(LoggedBatch& batch) {
   if (given_batch_) {
     batch = std::move(*given_batch_);

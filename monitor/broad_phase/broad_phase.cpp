@@ -14,7 +14,7 @@ namespace {
 constexpr double kSumError = 1e-9;
 constexpr double kSmoothing = 0.125;   // of the usual displacement: over eight ticks
 constexpr double kStandstill = 1e-12;  // m a tick: less counts as no motion
-// The slower object's share of the allowance is at least this, in case it darts.
+// The slower object's share of the allowance is at least this, in case it suddenly moves fast.
 constexpr double kLeastShare = 0.125;
 
 double share_of_a(double usual_a, double usual_b) noexcept {
@@ -120,8 +120,10 @@ void BroadPhase::activate(std::uint32_t pair) noexcept {
   activated_.push_back(pair);
 }
 
-// Every pair is met once: in the turn of the first of its objects, if the other has arrived by
-// then. So pairs are met in the order in which they lie in memory when all objects arrive at once.
+// Activates the pairs of objects that have become known, each pair once. Objects take turns in the
+// order of their arrival. A pair is activated in the first turn of one of its objects at which the
+// other has arrived as well. When all objects arrive at once, pairs are thus visited in memory
+// order.
 void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
@@ -140,7 +142,8 @@ void BroadPhase::meet_arrivals(std::size_t most) noexcept {
   }
 }
 
-// Takes the pairs that are due by these objects; no other object has timers that are due.
+// Activates the pairs whose timers on these objects' wheels are due. No other object has timers
+// that are due.
 void BroadPhase::take_due(std::span<const std::uint32_t> objects) noexcept {
   const bool all = std::all_of(objects.begin(), objects.end(), [this](std::uint32_t object) {
     return wheels_.take_due(object, most_activated_, activated_);

@@ -29,23 +29,24 @@ class BroadPhase {
   static constexpr double kLeastAllowance = 16.0 * MotionWheels::kUnit;  // 4 mm
   static constexpr double kLeastTicks = 4.0;
 
-  // `urgent`: by object, m. A pair is active when its distance, to zero or to its zone level, is
-  // less than the sum over its two objects. `left_out`: pairs that every tick updates anyway, in
-  // ascending order. `most_activated`: how many pairs a tick may activate, half of them by meeting
-  // for the first time. The others wait, and only waiting_lower() is known of them.
+  // `urgent`: by object, m. A pair is active when its distance, or its distance less its zone
+  // level, is below the sum of this value over its two objects. `left_out`: pairs that every tick
+  // updates anyway, in ascending order. `most_activated`: how many pairs a tick may activate, half
+  // of them by meeting for the first time. The others wait, and only waiting_lower() is known of
+  // them.
   BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, const ZoneLevels& zone_levels,
              std::vector<double> urgent, std::span<const std::uint32_t> left_out,
              std::size_t most_activated);
 
-  // Takes in how the objects have moved. Afterwards activated() has the pairs whose allowance may
-  // be used up, whose objects are new, or whose objects have made a discontinuity. The bounds of
-  // pairs with a discontinuity are forgotten. The tick's objects stay where they are until the next
-  // tick. `changed`: at least the objects that have moved, or whose unobserved motion is not what
-  // it was.
+  // Updates the timers by how the objects have moved. Afterwards activated() has the pairs whose
+  // allowance may be used up, whose objects are new, or whose objects have made a discontinuity.
+  // The bounds of pairs with a discontinuity are forgotten. Pointers to the tick's objects are
+  // kept, so these must stay where they are in memory until the next tick. `changed`: at least the
+  // objects that have moved, or whose unobserved motion is not what it was.
   void begin(const OpenTick& tick, std::span<const std::uint32_t> changed) noexcept;
 
-  // To be called before begin() when an object is not there any more. Forgets its pairs, and
-  // activates them when it is known again.
+  // Call this before begin() when an object has become absent. It forgets the object's pairs, and
+  // activates them when the object is known again.
   void forget_object(std::uint32_t object, PairTable& table) noexcept;
 
   // Pairs that are activated and not decided about, in this tick's order.
@@ -63,13 +64,14 @@ class BroadPhase {
   [[nodiscard]] DistanceBounds by_spheres(std::uint32_t pair) noexcept;
 
   [[nodiscard]] double horizon() const noexcept { return horizon_; }
-  // Lowering is free; raising activates the pairs that it overtakes. In m; -infinity: not set.
+  // Sets the horizon, m; -infinity means none. Lowering it activates no pair. Raising it activates
+  // the pairs whose allowance this uses up.
   void move_horizon(double to) noexcept;
 
   // W: the lower bound of all pairs that wait, for the poses in use, m. Infinity: no pair waits.
   [[nodiscard]] double waiting_lower() const noexcept;
   [[nodiscard]] bool any_waits() const noexcept { return overdue_ || !everyone_met(); }
-  // No pair waits to be met for the first time.
+  // True if all pairs of known objects have been activated once.
   [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
 
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
@@ -78,12 +80,13 @@ class BroadPhase {
   // Returns true when the invariant holds for this pair, whose distance is at most `upper`, m: it
   // is not culled, or it may be.
   [[nodiscard]] bool may_be_culled(std::uint32_t pair, double upper) const noexcept;
-  // Checks a few pairs, others in each tick, by the spheres around their objects.
+  // Checks the invariant of a few culled pairs by the spheres around their objects. Successive
+  // ticks check different pairs.
   void check_some() noexcept;
 
  private:
-  // When an object was first known, among all objects: its pairs with those that came before it
-  // are to be met.
+  // The place of an object in the order in which objects became known. Its pairs with objects that
+  // came earlier are still to be activated.
   struct Arrival {
     std::uint32_t rank = ~0u;
     std::uint32_t met = 0;  // in its turn it met the objects of a lower rank than this

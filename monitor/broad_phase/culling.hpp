@@ -20,12 +20,12 @@ namespace clearance {
 
 class Culling {
  public:
-  // `urgent` and `left_out` are those of BroadPhase.
+  // `urgent` and `left_out` are passed on to BroadPhase, whose constructor explains them.
   Culling(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
           const ZoneLevels& zone_levels, std::vector<double> urgent,
           std::span<const std::uint32_t> left_out, const RefreshShare& share);
 
-  // To be called between ticks when an object is not there any more.
+  // Call this between ticks when an object has become absent.
   void forget_object(std::uint32_t object, PairTable& table) noexcept {
     broad_phase_.forget_object(object, table);
   }
@@ -37,7 +37,7 @@ class Culling {
   // The end of the tick's evaluations: culls the active pairs whose bounds are good enough now.
   void cull_active(const TickView& view) noexcept;
 
-  // No untouched pair can be closer than `minimum`, m, or there is no horizon to raise.
+  // True if no untouched pair can be closer than `minimum`, m, or if there is no horizon to raise.
   [[nodiscard]] bool covers(double minimum) const noexcept;
   // Raises the horizon to just above `minimum`, by no more than `step`, m, and decides about the
   // pairs that this activates, as the stage does.
@@ -54,9 +54,9 @@ class Culling {
   [[nodiscard]] bool prove_far(std::uint32_t pair, std::uint32_t kept, const OpenTick& tick,
                                Budget& budget) noexcept;
 
-  // The pairs whose bounds are of this tick, each once;
+  // The pairs whose bounds are of this tick, each once.
   [[nodiscard]] std::span<const std::uint32_t> updated() const noexcept { return updated_; }
-  // and the bounds of all other known pairs.
+  // The bounds of all other known pairs.
   [[nodiscard]] UntouchedPairs untouched(const Displacements& displaced) const noexcept;
   // Pairs that are not culled and not left out: updated if they are known.
   [[nodiscard]] std::span<const std::uint32_t> active() const noexcept { return active_; }

@@ -20,14 +20,15 @@ struct UntouchedPairs {
   bool any = false;                  // a pair is culled or waiting
   double horizon = -kInfinity;       // H, m
   double waiting_lower = kInfinity;  // W, m; infinity: no pair waits
-  // The largest values of any two objects together, m: U, and the distance from where they are now
-  // at any instant since the last tick.
+  // Both are the largest sum over any two objects, m. The first sums unobserved motion (U). The
+  // second sums how far the objects were, at any instant since the last tick, from where they are
+  // now.
   double most_unobserved = 0.0, most_displaced = 0.0;
 
-  // Lower bounds for where the objects may be, margins not subtracted: of the pairs that wait,
-  // which may be in zones, ...
+  // Lower bounds of distances, for all places where the objects may be; margins are not subtracted.
+  // This one is for the pairs that wait, which may be in zones.
   [[nodiscard]] Clearance waiting() const noexcept { return less_motion(waiting_lower); }
-  // ... and of all.
+  // This one is for all culled and waiting pairs.
   [[nodiscard]] Clearance all() const noexcept {
     return less_motion(std::min(horizon, waiting_lower));
   }

@@ -84,7 +84,8 @@ class Stream {
 
   dds_entity_t reader_;
   std::unique_ptr<DataWait> wait_;
-  // Messages are taken into the second sample, since Cyclone clears a sample when a writer leaves.
+  // Messages are read into scratch_ first. If a writer leaves, Cyclone clears the sample that it
+  // reads into, and message_ must keep the last message.
   Sample<Message> message_, scratch_;
   ReportChecker checker_;
   ReportCheck check_;

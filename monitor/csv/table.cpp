@@ -46,7 +46,8 @@ std::string joined(std::span<const std::string_view> names) {
 
 }  // namespace
 
-// The usual length of a line. A file that is no table shows it within that length.
+// Reads at most kLongestLine bytes of the first line, because a file that is no table may have no
+// line end.
 std::vector<std::string> csv_column_names(const std::filesystem::path& file) {
   constexpr std::size_t kUsualLine = 65536;
   std::vector<std::string> names;

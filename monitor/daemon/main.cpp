@@ -59,7 +59,8 @@ std::string is_ros_output(const std::string& text) {
   return fmt::format("found '{}'; expected {}", text, one_of(keys));
 }
 
-// A topic that the cell names is kept.
+// Adds the ROS 2 outputs that the command line asks for, under their standard topics. A topic that
+// the cell names stays.
 void add_ros_outputs(const std::vector<std::string>& asked, RosOutputs& outputs) {
   for (const RosOutput& output : kRosOutputs) {
     const bool is_asked = std::ranges::find(asked, output.key) != asked.end() ||
@@ -143,7 +144,8 @@ bool take_robot_description(Arguments& arguments, StopSignal& signal) {
   return true;
 }
 
-// All mistakes are refused before the program joins DDS, unless DDS has the robot's description.
+// All mistakes in the input are reported before the program joins DDS. The exception is a robot
+// description that has to come over DDS.
 int run(int argc, char** argv, StopSignal& signal) {
   CLI::App app(
       "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
@@ -183,7 +185,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   return run_daemon(*cell, arguments, signal);
 }
 
-// The exit codes of kFooter.
+// Maps an exception to its exit code in kFooter, the text of --help.
 ExitCode exit_code_of(const std::exception& error) {
   return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
 }

@@ -130,8 +130,8 @@ void Recording::tell_of_new_files() {
   log_line(lines::kRecordingContinues, recorder_.file().string());
 }
 
-// Called after every `messages` reports or batches that the recorder took: after its failure they
-// are missing.
+// Called after the recorder was given so many reports or batches. If it has failed by then, they
+// count as missing.
 void Recording::count(std::uint64_t messages) {
   ++steps_;
   if (recorder_.ok()) return;
@@ -160,7 +160,8 @@ void Recording::watch() {
   logged_ns_ = now_ns;
 }
 
-// Goes to stdout at the end of a run. A thread that still waits reveals nothing more.
+// Returns the lines for stdout at the end of a run. If the thread still waits for the disk, the
+// recorder's state is not known.
 std::string Recording::summary() const {
   if (complete_) {
     const std::string last =

@@ -45,8 +45,8 @@ void add_rejection(clearance_msg_Health& out, const std::string& object, const c
 // The causes of Reject, spelt for people.
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
 
-// Refusals by source, by object and, for unknown ids, by cause alone: the totals minus the objects'
-// counts.
+// Lists refusals by source and by object. Refusals of unknown ids have no object, so they are
+// listed by cause: the totals minus the objects' counts.
 void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
                      clearance_msg_Health& out) {
   const std::vector<RefusedSource> refused = poses.refused_sources();

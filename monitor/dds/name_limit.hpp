@@ -29,7 +29,7 @@ class NameLimit {
   [[nodiscard]] bool admits(std::uint64_t writer, std::uint64_t name, std::int64_t monotonic_ns);
   // Call this when the name's last writer has unregistered it, because Cyclone has then freed it.
   void forget_name(std::uint64_t name);
-  // `writers` are those that still exist.
+  // Forgets the names of all writers except these, which still exist.
   void keep(std::span<const std::uint64_t> writers);
   [[nodiscard]] std::uint64_t refused() const;
 

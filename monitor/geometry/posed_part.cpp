@@ -66,8 +66,8 @@ double extent_of(const ConvexBody& shape) noexcept {
   return rounded_up(shape.bounding_radius + shape.position_error + shape.radius);
 }
 
-// turn * point + origin, one coordinate after the other. Vector code would wait 7 ns, because the
-// rotation and the position have not left the store buffer yet.
+// Computes turn * point + origin, one coordinate after the other. Vector code would wait 7 ns,
+// because the rotation and the position have just been written and are still in the store buffer.
 inline void put(const Mat3& turn, const Vec3& point, const Vec3& origin, Vec3& placed) noexcept {
   for (int i = 0; i < 3; ++i) {
     placed[i] =

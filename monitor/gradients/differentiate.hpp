@@ -1,9 +1,9 @@
 // Stage 'differentiate' of a tick: the derivatives of the distances of published pairs by the
 // positions of joints.
 //
-// A distance changes by n . (v_b - v_a), with the normal n from A to B and the velocities v of the
-// two witness points, each fixed to its object. If the closest points are unique, their motion on
-// the surfaces makes no difference (the envelope theorem). So
+// A distance changes at the rate n . (v_b - v_a). The normal n points from A to B, and v is the
+// velocity of a witness point that is fixed to its object. If the closest points are unique, their
+// motion on the surfaces makes no difference (the envelope theorem). So
 //
 //   d distance / d q = n . (J_b - J_a),   J dq: how q moves the object at its witness point.
 //

@@ -33,7 +33,7 @@ namespace clearance {
 // The speed that is assumed during timing errors if the cell states none, m/s or rad/s.
 inline constexpr double kUsualSpeed = 1.0;
 
-// What the cell assumes of one input's motion. Speeds are in m/s, or in rad/s for angles.
+// The cell's assumptions about the motion of one input. Speeds are in m/s, or in rad/s for angles.
 struct MotionLimits {
   double fastest = 0.0;  // no faster
   double usual = 0.0;    // the speed that is assumed during timing errors
@@ -93,7 +93,7 @@ class Reckoning {
   // The share of the usual motion in an age limit that rates may leave out without being wrong.
   static constexpr double kLeftOut = 0.125;
 
-  // Adds a sample. `same` is that of Repetition::add().
+  // Adds a sample. `same` means the same as in Repetition::add().
   [[nodiscard]] Agreement add(const Value& value, const Rate& rate, std::int64_t stamp_ns,
                               bool same, const MotionLimits& limits,
                               const Metric& metric) noexcept {
@@ -121,14 +121,15 @@ class Reckoning {
     return (std::max(limits.usual, fastest_) + fastest_) * seconds(limits.age_limit_ns) +
            kRateError * path_;
   }
-  // Closer than this, rates that say too little do not show.
+  // A value at most this far from where the rates lead does not show that the rates are too small.
   [[nodiscard]] double least_error(const MotionLimits& limits) const noexcept {
     return (kLeftOut * limits.usual + 2.0 * fastest_) * seconds(limits.age_limit_ns) +
            kRateError * path_;
   }
 
-  // A value that moves less than its rates say may be frozen. If it moves as far, but elsewhere,
-  // the rates are wrong, where that may be: many drivers of joints send 0.
+  // A value that moves less than its rates say may be frozen. If it moves at least as far, but to
+  // another place, the rates are wrong, provided that Metric::kRatesMayBeWrong. Many drivers of
+  // joints, for example, send rates of 0.
   [[nodiscard]] Agreement compare(const Value& value, std::int64_t stamp_ns,
                                   const MotionLimits& limits, const Metric& metric) noexcept {
     if constexpr (Metric::kRatesMayBeWrong) {
@@ -178,8 +179,8 @@ class Reckoning {
   Rate last_{};
   double last_speed_ = 0.0;
   std::int64_t since_ns_ = 0, last_ns_ = 0;
-  // How far the values have moved, in steps of an age limit: noise does not add up. The last step
-  // began at this value.
+  // The length of the values' path, in steps of at least an age limit, so that noise does not add
+  // up. The last step began at step_from_.
   double way_ = 0.0;
   Value step_from_{};
   std::int64_t step_ns_ = 0;
@@ -306,14 +307,15 @@ class Plausibility {
     return age_limits * limits.age_limit_ns;
   }
 
-  // True if the sent rates contradict the values, which are right. It ends when rates that move
-  // agree. Until then no value is held against them.
+  // True if the sent rates contradict the values, which are right. This ends when the values agree
+  // with rates that have moved. Until then no value is refused because of the rates.
   [[nodiscard]] bool rates_contradict() const noexcept { return rates_contradict_; }
   // Call this for a rate that the input cannot have.
   void distrust_rates() noexcept { rates_contradict_ = true; }
 
  private:
-  // True if the input can have come to this value, or if the value has to be taken all the same.
+  // True if the input can have come to this value, or if values have stayed there for so long that
+  // it is taken anyway.
   [[nodiscard]] bool is_reachable(const Sample& sample, const Value& in_use, std::int64_t in_use_ns,
                                   const MotionLimits& limits, const Metric& metric) noexcept {
     const std::int64_t passed_ns = elapsed(in_use_ns, sample.stamp_ns);
@@ -333,9 +335,9 @@ class Plausibility {
   bool rates_contradict_ = false;
 };
 
-// Two sources claim one input. Returns true if their values exclude each other: the input would
-// need more than `speed` to be at both, within timing errors of an age limit. A quarter of a usual
-// motion in an age limit is left for measuring errors.
+// Two sources claim one input. Returns true if their values exclude each other. This is so if the
+// input would need more than `speed` to be at both, within timing errors of an age limit. A quarter
+// of a usual motion in an age limit is left for measuring errors.
 template <class Metric>
 [[nodiscard]] bool is_disputed(const Metric& metric, const typename Metric::Value& a,
                                std::int64_t a_ns, const typename Metric::Value& b,

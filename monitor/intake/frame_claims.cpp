@@ -42,7 +42,8 @@ std::span<const FrameClaims::Claim> FrameClaims::claims(const std::string& child
   return found == claims_.end() ? std::span<const Claim>() : std::span(found->second);
 }
 
-// A suffix that no other claim of the frame has. The first claim on tf gets none.
+// Adds a claim with a suffix that no other claim of the frame has. The first claim on tf gets an
+// empty one, so earlier claims on tf_static get new suffixes.
 FrameClaims::Claim& FrameClaims::add(const Publisher& publisher, Claims& claims) {
   const auto is_moving = [](const Claim& claim) { return !claim.publisher.is_static; };
   const bool has_rivals_on_tf = std::ranges::any_of(claims, is_moving);
@@ -58,8 +59,8 @@ FrameClaims::Claim& FrameClaims::add(const Publisher& publisher, Claims& claims)
   return claims.emplace_back(Claim{.publisher = publisher, .suffix = suffix, .link = {}});
 }
 
-// The claim that is used comes first: live before silent, tf before tf_static, then by number. A
-// silent publisher on tf is not replaced by tf_static, which never ages.
+// Sorts the claim that is used to the front: tf before tf_static, then live before silent, then by
+// number. A silent publisher on tf is not replaced by tf_static, which never ages.
 void FrameClaims::choose(Claims& claims, std::int64_t monotonic_ns) {
   const auto rank = [&](const Claim& claim) {
     return std::tuple(claim.publisher.is_static, !is_live(claim, monotonic_ns), claim.suffix);
@@ -102,7 +103,7 @@ void FrameClaims::keep(std::span<const std::uint64_t> writers) {
   });
 }
 
-// A cycle ends when it comes back to a frame that was met.
+// The frames may form a cycle, so the number of steps is limited.
 std::vector<std::string> FrameClaims::disputed_on(const std::string& frame) const {
   std::vector<std::string> disputed;
   if (disputed_.empty()) return disputed;

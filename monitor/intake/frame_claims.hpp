@@ -7,7 +7,7 @@
 //
 // Claims on tf go before those on tf_static, whichever came first: "source: /tf" in a cell then
 // means the same at every start. Among claims of one kind the first one that was heard is used, as
-// long as its publisher exists and, on tf, is not silent for a second or more.
+// long as its publisher exists. A publisher on tf must also not be silent for a second or more.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,9 @@ class FrameClaims {
   };
   struct Claim {
     Publisher publisher;
-    // What the source name of its poses ends with: nothing for the first claim, "_static" for one
-    // on tf_static that has rivals on tf, else "#2" and so on.
+    // Appended to the source name of the poses that follow from this claim. The first claim has an
+    // empty suffix. One on tf_static that has rivals on tf has "_static". Further claims have "#2"
+    // and so on.
     std::string suffix;
     TfTree::Link link;
     std::int64_t heard_ns = 0;  // monotonic

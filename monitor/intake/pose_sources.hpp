@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-// Counts of one source since it got its place.
+// Counts of one source since it was given one of the places.
 struct SourceTally {
   SourceName source;
   std::uint64_t writer = 0;     // the writer to which the name belongs

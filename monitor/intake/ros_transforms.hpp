@@ -81,7 +81,8 @@ class RosTransforms final : public Decoder {
   void hand_over(const std::string& source, const Now& now);
   void give(PoseBatch& batch, const std::string& source);
   [[nodiscard]] State follow(std::size_t follower, const std::string& source, const Now& now);
-  // Hands over where a follower would be by the claims of rivals.
+  // For every rival claim on the path to the follower's frame: hands over the pose that the
+  // follower would have if that claim were used.
   void follow_rivals(std::size_t follower, const std::string& source, const Now& now);
   void add(std::size_t follower, const TfTree::Place& place, const std::string& source,
            HandedOver& last, const Now& now);

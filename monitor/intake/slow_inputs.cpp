@@ -71,7 +71,7 @@ void SlowInputs::note_poses(const PoseBatch& batch, Outlet& out) {
   }
 }
 
-// Tells one sentence for all slow joints that a batch reveals at once.
+// Reports all joints that one batch reveals as slow in one sentence.
 void SlowInputs::note_joints(const PoseBatch& batch, Outlet& out) {
   std::size_t found = 0;
   std::int64_t interval_ns = 0;

@@ -75,7 +75,8 @@ struct PositionCandidate {
                                       limits, metric);
   }
 
-  // Two equal stamps give no velocity. A mean over a time is the velocity of half that time ago.
+  // Without a sent velocity, the mean since the last position is used; two equal stamps give none.
+  // A mean over an interval is the velocity of half an interval ago, so it is late when that is.
   void use() const noexcept {
     const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
     const bool sent = has_usable_velocity(variable, sample);
@@ -100,8 +101,8 @@ struct PositionCandidate {
   }
 };
 
-// The larger distance to the two position limits, m or rad; infinity if there are none, or if they
-// do not hold.
+// The distance to the farther one of the two position limits, m or rad. Infinity if there are no
+// limits, or if the joint has been found outside of them.
 double largest_way(const JointVariable& variable, const TrackedVariable& state) noexcept {
   if (state.outside_limits) return kInfinity;
   const double way = std::max(variable.upper - state.position, state.position - variable.lower);
@@ -129,7 +130,7 @@ void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable
   input.advance(now_ns, variable.age_limit_ns);
   state.may_have_moved = 0.0;
   if (!input.late) return;
-  // The velocity limit does not bound a joint whose measured velocity exceeds it.
+  // If the measured velocity exceeds the velocity limit, the limit does not bound the joint.
   const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
   const double way = input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns));
   state.may_have_moved = std::min(way, largest_way(variable, state));

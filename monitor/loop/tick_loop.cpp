@@ -124,7 +124,7 @@ void TickLoop::note_minimum(const Report& report) noexcept {
   seen = {.known = true, .pair = report.minimum, .cycle = report.cycle, .now_ns = report.now_ns};
 }
 
-// Called once a second; the figures of that second start anew afterwards.
+// Called once a second. Figures that cover one second are reset afterwards.
 void TickLoop::hand_over_statistics() noexcept {
   for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
     statistics_.rejected[object] = monitor_.rejected(object);

@@ -19,7 +19,7 @@ struct InterpolatedMotion {
 
 // The pose after the share `s` of the motion, 0 to 1. It is exact at both ends. In between, the
 // error of the orientation is at most kInterpolationError. The error of the position is at most
-// kInterpolationError times the lengths that take part.
+// kInterpolationError times the lengths that are added up.
 [[nodiscard]] Pose pose_at(const InterpolatedMotion& motion, double s) noexcept;
 
 // A logarithm, a sine, a cosine, a product of quaternions and a sum of positions each have an error

@@ -31,8 +31,8 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
 }
 
 // Writes a query's answer into the table. Returns a lower bound of the distance since the last
-// tick, by the directions of this evaluation and of one in the last tick. -infinity: they prove
-// none.
+// tick. It follows from the directions of this evaluation and of one in the last tick. -infinity:
+// they prove none.
 //
 // `point_on_b` is the witness point in B's local frame, without B's radius. A point in A's frame
 // would have a rounding error that grows with the distance between the two. `known`: bounds of the

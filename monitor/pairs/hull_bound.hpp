@@ -33,7 +33,8 @@ class HullBound {
 
   std::vector<BoundingHull> hulls_;  // by object; null: no hull, but perhaps a single part
   std::vector<PosedPart> placed_;    // by object: its hull, placed when it is queried
-  // By object: its single part, the model of an object without a hull; kNoModel: several parts.
+  // By object: the index of its part if it has only one, and kNoModel if it has several. A single
+  // part is the model of an object without a hull.
   std::vector<std::uint32_t> only_part_;
 };
 

@@ -68,8 +68,8 @@ DistanceBounds pair_bounds_now(std::uint32_t pair, const TickView& view) noexcep
   return least;
 }
 
-// The status that this tick's evaluations give the pair; kCarried where one that matters is
-// missing.
+// Returns the pair's status by this tick's evaluations. It is kCarried if a part pair that could be
+// the closest was not evaluated in this tick.
 PairStatus evaluated_status(const PairEntry& entry, std::uint32_t closest,
                             const TickView& view) noexcept {
   const PairTable& table = view.pairs;

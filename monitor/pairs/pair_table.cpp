@@ -53,7 +53,7 @@ void forget_bounds(std::uint32_t pair, PairTable& table) noexcept {
   table.entries[pair].least_lower = table.entries[pair].lower_before = -kInfinity;
 }
 
-// Tracking states stay: they are hints.
+// Tracking states are kept. They are only hints, so stale ones do no harm.
 void forget_pair(std::uint32_t pair, PairTable& table) noexcept {
   forget_bounds(pair, table);
   PairEntry& entry = table.entries[pair];

@@ -57,8 +57,8 @@ struct PairTable {
   // By pair, m: a lower bound of its distance from the tick before its last evaluation up to that
   // evaluation. The directions of two evaluations prove it. -infinity: they prove none.
   std::vector<double> lower_between;
-  // By pair. The tick in which its bound was last found afresh from poses: by an evaluation, or by
-  // models of its objects that proved it far; 0: never.
+  // By pair. The tick in which its bound was last found afresh from poses, or 0 if never. An
+  // evaluation does so, and so do models of its objects that prove it far.
   std::vector<std::uint64_t> refreshed_cycle;
 
   // By part pair.
@@ -96,7 +96,7 @@ struct PairTable {
 // Forgets a pair's bounds, because the displacement of its objects is not known.
 void forget_bounds(std::uint32_t pair, PairTable& table) noexcept;
 
-// Forgets bounds and evaluations, because one of the objects is not there any more.
+// Forgets bounds and evaluations, because one of the objects has become absent.
 void forget_pair(std::uint32_t pair, PairTable& table) noexcept;
 
 }  // namespace clearance

@@ -42,7 +42,7 @@ Qos partition_qos(const std::string& partition) {
   return qos;
 }
 
-// The same for readers and writers, so that both sides of a topic always match.
+// Readers and writers get the same QoS, so that both sides of a topic always match.
 Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
   Qos qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
@@ -107,7 +107,8 @@ std::string element(const char* name, const std::string& content) {
   return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
 }
 
-// The text for clients does not set the sizes of their datagrams.
+// Says how other programs reach this one, for the log. The proposed settings leave out datagram
+// sizes, which clients need not share.
 std::string reach(const DdsOptions& options) {
   const std::string on = fmt::format(
       "in domain {} (ROS_DOMAIN_ID){}", options.domain,
@@ -283,7 +284,8 @@ void Participant::make_publisher_and_subscriber(const std::string& partition) {
       check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
 }
 
-// Deletes topics, readers and writers too; in another owner's participant, all except the topics.
+// Deletes readers and writers too. Topics are deleted with the participant, but only if it is our
+// own.
 Participant::~Participant() {
   if (is_own_) {
     dds_delete(participant_);
@@ -299,8 +301,9 @@ dds_entity_t Participant::make_topic(const dds_topic_descriptor_t& type, const s
                    fmt::format("making topic {}", name));
 }
 
-// Latched topics keep the depth of the table: a reader with a greater depth would not get more. The
-// filter belongs to the topic entity, of which this reader has one of its own.
+// `depth` is ignored for latched topics, because a greater depth than the table's would not get a
+// reader more. In Cyclone a filter belongs to the topic entity, so this reader has an entity of its
+// own.
 dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::int32_t depth,
                                  const dds_listener_t* listener, const dds_topic_filter* filter) {
   const Topic& row = topic(kind);

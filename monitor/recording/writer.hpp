@@ -38,7 +38,8 @@ class RecordingWriter {
   [[nodiscard]] std::string attach(const Cell& cell);
 
   // The catalogue maps ids to names and is also kept as metadata. It belongs in front of all
-  // messages that use the ids. `build`: the one that makes the reports; empty: not known.
+  // messages that use the ids. `build`: the build of the daemon that makes the reports; empty if
+  // not known.
   void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
                  const std::string& build = {});
   // Only the metadata.

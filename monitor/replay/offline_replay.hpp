@@ -1,6 +1,6 @@
 // Runs Monitor::tick on a recording, a ROS 2 bag or a joint log, without a clock and without DDS.
-// It makes the same reports again as fast as they can be computed. This is for a user's own tests,
-// which find_package(clearance) and link clearance::replay:
+// It makes the same reports again as fast as they can be computed. It is meant for a user's own
+// tests. These call find_package(clearance) and link clearance::replay:
 //
 //   #include <config/cell/cell_file.hpp>
 //   #include <monitor/replay/offline_replay.hpp>
@@ -45,9 +45,9 @@ struct OfflineReplayOptions {
   // The further files of a recording of several files, in their order.
   std::vector<std::filesystem::path> continued_in = {};
 
-  // Ticks a second, used where the recording holds no reports with the times of its ticks. 0: a
-  // tick only when something came. Not stated: the cell's rate for a bag or a joint log, 0 for
-  // recordings of ours.
+  // Ticks a second. It is used only if the recording holds no reports, which state the times of the
+  // ticks. Zero means one tick for each time at which something came. If not set, it is the cell's
+  // rate for a bag or a joint log, and 0 for Clearance's own recordings.
   std::optional<double> tick_hz = {};
   // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
@@ -64,8 +64,9 @@ struct OfflineReplayOptions {
   // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
   // not count as met, so let the scene evaluate all pairs, with a budget for that.
   std::filesystem::path reference = {};  // empty: none
-  // The tolerance of a reference, m: distances and bounds may differ by that much. Not stated:
-  // distances may differ by 1e-6 m, and bounds hold the reference as it is written.
+  // The tolerance of a reference, m: distances and bounds may differ by that much. If not set,
+  // distances may differ by 1e-6 m, and the reference must lie within the bounds exactly as it is
+  // written.
   std::optional<double> tolerance = {};
   // The reference is of the meshes themselves: by an object's name, the error of its parts, m
   // (CellOptions::mesh_errors). Our distances may be smaller by it. Empty: it is of the parts.
@@ -120,9 +121,9 @@ struct OfflineReplay {
   [[nodiscard]] std::string text() const;
 };
 
-// The same recording and cell give the same ticks, bit for bit. `recording` is one of ours, a bag
-// of ROS 2 (MCAP, SQLite 3, or the folder of either), or joint positions as CSV (t_ns and one
-// column per joint).
+// The same recording and cell give the same ticks, bit for bit. `recording` is one of Clearance's
+// own, a bag of ROS 2, or a CSV file of joint positions. A bag is MCAP, SQLite 3, or the folder of
+// either. The CSV has t_ns and one column per joint.
 [[nodiscard]] OfflineReplay replay_offline(
     const Cell& cell, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},

@@ -95,7 +95,7 @@ bool TickFeed::read_one() {
   return true;
 }
 
-// Into the queue of its kind.
+// Puts the message into the queue of its kind.
 void TickFeed::read_message(const RecordedMessage& message) {
   if (message.kind == TopicKind::kPoses || message.kind == TopicKind::kJointStates) {
     read_inputs(message);
@@ -123,7 +123,8 @@ void TickFeed::read_inputs(const RecordedMessage& message) {
     ++undecodable_;
     return;
   }
-  // The daemon took such a batch in, but not its poses.
+  // This is a batch of another scene. The daemon counted it as used too, but used none of its
+  // poses.
   if (!objects_.translate(*batch)) {
     batch->samples.clear();
     ++of_other_scenes_;
@@ -167,7 +168,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
 // Reads on after the report of the tick, as far as topics may overtake each other.
 bool TickFeed::read_ahead() { return read_to_ns_ < current_.log_ns + kReadAheadNs && read_one(); }
 
-// The place among the waiting batches; their count when it is not there.
+// Returns the batch's index among the waiting batches, or their number if it is not there.
 std::size_t TickFeed::place_of(const SourceUse& use) const {
   const auto found = std::ranges::find_if(batches_waiting_, [&use](const Waiting& waiting) {
     return waiting.batch.sequence_number == use.sequence_number &&
@@ -232,14 +233,15 @@ void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   }
 }
 
-// The daemon did not use a batch that no report has named in time.
+// Drops batches that have waited longer than the feed reads ahead. No report has named them, so the
+// daemon did not use them.
 void TickFeed::forget_unused(std::int64_t log_ns) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
     batches_waiting_.pop_front();
   }
 }
 
-// All batches of one log time are one tick.
+// Makes one tick of all batches with the same log time.
 bool TickFeed::next_by_time(TickInput& tick) {
   while (batches_waiting_.empty()) {
     if (!read_one()) return false;
@@ -275,7 +277,7 @@ bool TickFeed::next_by_rate(TickInput& tick) {
   return true;
 }
 
-// In the order in which they came.
+// Moves all batches up to the tick's time into the tick, in the order in which they came.
 void TickFeed::take_until_now(TickInput& tick) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns <= tick.time.now_ns) {
     last_batch_ns_ = batches_waiting_.front().log_ns;

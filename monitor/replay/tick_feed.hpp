@@ -2,10 +2,10 @@
 // daemon took in, and its time.
 //
 // If the recording holds reports, each report is a tick. The tick gets the report's time and the
-// batches that the report names as used (by source and sequence number), wherever they stand in the
-// file. If it holds none, ticks are at a fixed rate, as the daemon's are, from the first batch on.
-// Each gets the batches that came since the tick before. Without a rate, each distinct log time is
-// a tick and gets the batches of that time in file order.
+// batches that the report names as used, wherever they stand in the file. The names are source and
+// sequence number. If it holds none, ticks are at a fixed rate, as the daemon's are, from the first
+// batch on. Each gets the batches that came since the tick before. Without a rate, each distinct
+// log time is a tick and gets the batches of that time in file order.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ struct TickInput {
   std::vector<JointSample> joints;
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
-  // Messages of the same tick; null: the scene asks for none, or the recording has none of this
-  // tick.
+  // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
+  // this tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
   bool restart = false;  // the daemon had been started anew, so its monitor had no history
@@ -60,9 +60,10 @@ class TickMessages {
   // or none.
   template <class ReadAhead>
   [[nodiscard]] const Message* of_tick(std::int64_t now_ns, const ReadAhead& read_ahead);
-  // The number that came, though the scene asks for none.
+  // The number of messages that came although the scene asks for none.
   [[nodiscard]] std::uint64_t unwanted() const noexcept { return unwanted_; }
-  // The number that belong to no report; those from before the first report do not count.
+  // The number of messages that belong to no report. Those from before the first report do not
+  // count.
   [[nodiscard]] std::uint64_t unmatched() const noexcept { return unmatched_; }
 
  private:
@@ -76,11 +77,11 @@ class TickMessages {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  // A recording of ours, in one file or several. `tick_hz` is used unless it holds reports; 0:
-  // ticks at log times.
+  // Reads one of Clearance's own recordings, in one file or several. `tick_hz` is used only if the
+  // recording holds no reports. 0: a tick at each log time.
   TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
            const RecordingOutline& outline, double tick_hz = 0.0);
-  // A log of another program.
+  // Reads a log of another program.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
 
   // The next tick; its content is valid until the next call. False at the end or the damage.
@@ -97,7 +98,7 @@ class TickFeed {
   [[nodiscard]] double progress() const noexcept {
     return log_ ? log_->progress() : reader_->progress();
   }
-  // Null: a recording of ours.
+  // Null if this reads one of Clearance's own recordings.
   [[nodiscard]] const InputLog* log() const noexcept { return log_.get(); }
 
   // Counts of what could not be used.

@@ -33,8 +33,9 @@ dds_entity_t make_speed_scaling_writer(Participant& participant, const Cell& cel
   return 0;
 }
 
-// The smallest scaling of separation monitoring. In a cell without it, zones stand for two speeds.
-// Both are 0 while a pair is unknown or overlaps: it makes its zone active.
+// Returns the smallest scaling that separation monitoring asks for. In a cell without it, zones
+// switch between two speeds: 0 if any zone is active, otherwise 1. It is 0 while a
+// pair is unknown or overlaps, because that makes its zone active.
 double speed_scaling(const Report& report) noexcept {
   if (!report.separated_zones.empty())
     return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;

@@ -40,9 +40,9 @@ class RefreshQueue {
   // Brings such pairs back, as many as one tick has time for.
   void bring_back(const PairsByObject& by_object, const TickView& view) noexcept;
 
-  // The tick in which the stalest known pair was last refreshed, provided that the pair at the head
-  // is known. While pairs are coming back it may be too early, but no pair is older. The largest
-  // number: there is no pair.
+  // Returns a tick before which no known pair was last refreshed; the largest number if there is no
+  // pair. It is exactly that of the stalest pair unless pairs are coming back or an object of the
+  // pair at the head is not known.
   [[nodiscard]] std::uint64_t oldest(const PairTable& table) const noexcept;
 
  private:

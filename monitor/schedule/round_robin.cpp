@@ -55,7 +55,7 @@ void RoundRobin::refresh(const PublishedPairs& published, bool all_published,
   if (!covered) evaluate_published(published, evaluator);
 }
 
-// Goes on where the budget ended in the last tick.
+// Evaluates published pairs as far as the budget goes, starting where it ended in the last tick.
 void RoundRobin::evaluate_published(const PublishedPairs& published,
                                     const Evaluator& evaluator) noexcept {
   const OpenTick& tick = evaluator.tick;

@@ -18,9 +18,10 @@ class SweptSearch {
   // For the parts of `part_pair`, whose objects were known at the last tick.
   SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept;
 
-  // Queries further instants, always in the gap with the lowest bound, until `level`, m, is
-  // decided: the distance was never below it, or it was at some instant. Ends undecided when the
-  // budget is used up, after kMostQueries, or when the gap is too short to divide.
+  // Queries further instants, always in the gap with the lowest bound, until `level` (m) is
+  // decided. That is, the distance was never below it, or it was below at some instant. Ends
+  // undecided when the budget is used up, after kMostQueries, or when the gap is too short to
+  // divide.
   [[nodiscard]] SweptBounds decide(double level, Budget& budget) noexcept;
 
  private:
@@ -28,7 +29,8 @@ class SweptSearch {
   struct Instant {
     double s = 0.0;  // share of the motion
     double lower = -kInfinity, upper = kInfinity;
-    // In the frame of the object relative to which the other moves:
+    // The motion is that of one object relative to the other. These two are in the frame of the
+    // latter.
     Vec3 normal = Vec3::Zero();  // towards the other; zero: it need not separate after more motion
     Vec3 centre = Vec3::Zero();  // of the other's sphere
   };

@@ -29,8 +29,8 @@ class ZoneCrossings {
   void find(std::span<const std::uint32_t> updated, const Zones& zones,
             const TickView& view) noexcept;
 
-  // The largest number of queries that the sweep of the pairs found so far takes, if all but one
-  // part pair of each are clear.
+  // The number of queries to keep for the sweep of the pairs found so far. It is the most that they
+  // take if in each pair only one part pair needs a search.
   [[nodiscard]] std::uint32_t queries() const noexcept;
 
   // Stage 'sweep' of a tick: adds the pairs that have been updated since find(), and decides all of

@@ -29,16 +29,17 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
 void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
              clearance_msg_ZoneState& out) noexcept;
 
-// Makes a sample for the zones with `separation` of every report of this scene, and fills it.
+// make_separation() makes a sample that can hold the zones with `separation` of any report of this
+// scene. to_wire() fills it.
 [[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
 // Names, pairs, zones, joints and the text of the cell. It allocates.
 [[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
 
-// The batch as the tick takes it, its poses in their order and unchecked: the tick refuses unknown
-// ids, non-finite numbers and the rest. Allocates only while the capacity of `out` is smaller than
-// the number of poses in the batch.
+// Converts a batch for the tick. The poses keep their order and are not checked, because the tick
+// refuses unknown ids, non-finite numbers and the rest. Allocates only while the capacity of `out`
+// is smaller than the number of poses in the batch.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out);
 
 // The same for joint states. Names that the cell does not use are left out. Names that it does not

@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// Pairs and joints are always the same. For each report only the numbers are filled in, which
-// allocates nothing.
+// Lists the scene's pairs and joints once, at construction. Each report then only overwrites the
+// numbers, which allocates nothing.
 class GradientMessage {
  public:
   explicit GradientMessage(const Scene& scene);

@@ -2,7 +2,7 @@
 // depths.
 //
 // DDS endpoints, recordings and tools take everything about a topic from here. idl/README.md says
-// why each topic has its QoS, and a test compares its table with this one.
+// why each topic has its QoS. A test compares the table there with this one.
 #pragma once
 
 #include <array>

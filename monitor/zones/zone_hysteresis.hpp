@@ -12,21 +12,21 @@ struct Clearance {
   double since = kInfinity;  // at every instant since the last tick
 };
 
-// Takes a zone's report from the last tick to this one, pair by pair. The zone becomes active when
-// some pair's clearance since the last tick is below enter_below. It becomes inactive when every
-// pair's is above leave_above.
+// Updates a zone's report from the last tick's to this tick's, pair by pair. The zone becomes
+// active when some pair's clearance since the last tick is below enter_below. It becomes inactive
+// when every pair's is above leave_above.
 class ZoneHysteresis {
  public:
   ZoneHysteresis(const Zone& zone, const ZoneReport& before) noexcept;
 
-  // Takes in one of the zone's pairs. `margins`: of both objects, rounded up, m.
+  // Adds one of the zone's pairs. `margins`: the sum for both objects, rounded up, m.
   void add(std::uint32_t pair, const PairBounds& bounds, double margins) noexcept;
 
-  // Takes in pairs that are not added one by one: each has at least this clearance. `pair` is one
-  // of them.
+  // Adds pairs together that are not added one by one. Each of them has at least this clearance.
+  // `pair` is one of them.
   void add_rest(const Clearance& clearance, std::uint32_t pair) noexcept;
 
-  // `report`: that of the last tick becomes that of this one.
+  // Changes `report` from the last tick's to this tick's.
   void finish(std::uint64_t cycle, ZoneReport& report) const noexcept;
 
   // A pair with this clearance or more is outside, m.

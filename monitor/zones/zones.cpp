@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kAnyObject = ~0u;
 
-// Why a pair with this object is inside a zone, as far as the object is the reason.
+// Returns the cause that this object alone would give for a pair of it being inside a zone.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
   if (!object.input.has_value) return ZoneCause::kUnknown;
   if (object.unseen_since > 0.0)
@@ -52,8 +52,8 @@ void Zones::count_absent(std::span<const TrackedObject> objects) noexcept {
   }
 }
 
-// A pair of the zone with this object and no absent one (kAnyObject: with any object), `preferred`
-// if it is one.
+// Finds a pair of the zone that has this object (kAnyObject: any object) and no absent one. Returns
+// `preferred` if that is such a pair.
 std::optional<std::uint32_t> Zones::present_pair(
     std::uint32_t zone, std::uint32_t preferred, std::uint32_t object,
     std::span<const TrackedObject> objects) const noexcept {
@@ -114,8 +114,8 @@ void Zones::finish(std::span<const TrackedObject> objects, const Clearance& wait
   begin_tick();
 }
 
-// Objects that are not known may be anywhere, and so may those that have made a discontinuity have
-// been since the last tick.
+// An object that is not known may be anywhere now. One that has made a discontinuity may have been
+// anywhere since the last tick.
 void Zones::add_lost(std::uint32_t zone, std::span<const TrackedObject> objects) noexcept {
   for (const ZoneLevels::Member& member : levels_.members_of(zone)) {
     const TrackedObject& object = objects[member.object];

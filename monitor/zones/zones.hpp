@@ -20,19 +20,19 @@ class Zones {
   // States after the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }
 
-  // The pair has a zone.
+  // True if the pair belongs to a zone.
   [[nodiscard]] bool watch(std::uint32_t pair) const noexcept { return levels_.has(pair); }
 
-  // The largest threshold, m, among those zones of the pair that it is outside with `lower` but not
-  // with `swept_lower`. -infinity: there is no such zone.
+  // Considers the zones of the pair that it is outside by `lower` but not by `swept_lower`. Returns
+  // the largest of their thresholds, m, or -infinity if there is no such zone.
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
                                  double swept_lower) const noexcept;
 
-  // Between ticks: the presence of objects has changed. A pair with an absent object belongs to no
-  // zone while that is so.
+  // Call this between ticks when objects have become absent or present. A pair belongs to no zone
+  // while one of its objects is absent.
   void count_absent(std::span<const TrackedObject> objects) noexcept;
 
-  // Takes in an updated pair, each once a tick.
+  // Adds an updated pair. Call it once a tick for each.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
   // Ends the tick. A pair that was not added is in one of three states. It is absent or unknown; or

@@ -1,4 +1,5 @@
-// The rows of a solver, ours or a peer's, in clearance-bench and in clearance-thesis.
+// Names and registers the rows of a solver, Clearance's own or a peer's, in clearance-bench and in
+// clearance-thesis.
 #pragma once
 
 #include <fmt/format.h>
@@ -40,7 +41,8 @@ void register_facet_balls(const std::string& prefix) {
   }
 }
 
-// peer/WHO/... in either program. `lacking`: kinds of bodies for which the solver has no shape.
+// Registers the rows peer/WHO/... of a solver, in the program that `set` says. `lacking`: the kinds
+// of bodies for which the solver has no shape.
 template <class Solver>
 void register_peer(RowSet set, const std::string& who,
                    std::initializer_list<std::string_view> lacking = {}) {

@@ -11,10 +11,11 @@ namespace clearance {
 
 class CurvedAnswerer {
  public:
-  // The arguments have the same meaning as in Answerer.
+  // The parameters are those of Answerer.
   CurvedAnswerer(bool cold, int repeat) : cold_(cold), repeat_(repeat) {}
 
-  // The same as in Answerer, without the deepest points. Overlapping parts have no depth.
+  // Answers like Answerer, but without the deepest points, and without a depth for overlapping
+  // parts.
   [[nodiscard]] nlohmann::ordered_json answer(const CurvedCase& question);
 
   // Prints to stderr if there were any answers.

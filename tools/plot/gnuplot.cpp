@@ -18,7 +18,7 @@ namespace bp = boost::process;
 std::string plot_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
-    // One backslash is for the string, one for the markup.
+    // gnuplot removes one backslash when it reads the string, and one when it reads the markup.
     if (c == '_' || c == '^' || c == '@' || c == '&' || c == '{' || c == '}' || c == '~') {
       out += "\\\\";
     }
@@ -28,7 +28,7 @@ std::string plot_text(const std::string& text) {
 }
 
 // The script is a file, so that the pipe is free for gnuplot's messages. env finds gnuplot in PATH,
-// and ends with 127 when it is not there.
+// and ends with 127 if it finds none.
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
   const std::string file = svg.string() + ".gnuplot";

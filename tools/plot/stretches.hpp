@@ -1,5 +1,5 @@
-// A run of any length in a bounded number of stretches of time, for curves. When all are in use,
-// each becomes twice as long, and those that fall together are joined.
+// Summarises a run of any length in a bounded number of stretches of time, for plotting. When all
+// stretches are in use, their length is doubled, and neighbours are joined.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace clearance {
 
-// Each stretch has a Head, whose `begin_ns` is the time of its first entry, and a row of Cells,
-// which begin as Cell{}. merge(later, into) joins two Heads or Cells; it is found in their
-// namespace.
+// Each stretch has a Head and a row of Cells. Head::begin_ns is the time of the first entry, and
+// each Cell begins as Cell{}. Head and Cell each need a function merge(later, into) in their own
+// namespace, which joins two of them when stretches are joined.
 template <class Head, class Cell>
 class Stretches {
  public:

@@ -25,8 +25,8 @@ struct RecordArguments {
   DdsArguments dds;
 };
 
-// convert.cpp and subscribe.cpp. All return the exit code. `cell` is the
-// cell, or null when none was given.
+// These are in convert.cpp and subscribe.cpp. All return the exit code. `cell` is null if none was
+// given.
 [[nodiscard]] int record_from_csv(const RecordArguments& arguments, const Cell* cell,
                                   StopSignal& stop);
 // Converts a bag, or joints as CSV.

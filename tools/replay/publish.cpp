@@ -107,8 +107,8 @@ class Sender {
     return true;
   }
 
-  // The schedule gives the stamp, not the moment of sending, so that stamps stay as even as they
-  // were.
+  // Stamps are moved by the schedule rather than set to the moment of sending, so that their
+  // intervals stay as even as in the recording.
   std::int64_t moved_to_now(const RecordedMessage& message, clearance_msg_PoseBatch& batch) const {
     for (std::uint32_t i = 0; i < batch.poses._length; ++i) {
       clearance_msg_ObjectPose& pose = batch.poses._buffer[i];

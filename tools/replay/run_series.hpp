@@ -22,7 +22,7 @@ struct StretchOfPair {
 struct StretchOfRun {
   std::int64_t begin_ns = 0;  // after the first tick
 };
-// Merges two cells, as Stretches requires.
+// Joins the values of two stretches of time; Stretches calls this when it joins stretches.
 void merge(const StretchOfPair& later, StretchOfPair& into);
 void merge(const StretchOfRun& later, StretchOfRun& into);
 

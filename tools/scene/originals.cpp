@@ -48,9 +48,9 @@ void add_facets(const Part& part, TriangleMesh& mesh) {
   }
 }
 
-// The error of a hull around several parts. surface_error() bounds the distance of the hull's
-// surface from theirs to 2 %. certified_error() also bounds points inside the hull, but less
-// closely for many facets.
+// Returns the error of a hull around several parts: the smaller one of two bounds. surface_error()
+// bounds the distance of the hull's surface from the parts' surfaces, to 2 %. certified_error()
+// bounds points inside the hull as well, but less closely if there are many facets.
 double hull_error_of(const Object& object, const ConvexBody& hull) {
   TriangleMesh surface;
   for (const Part& part : object.parts) add_facets(part, surface);

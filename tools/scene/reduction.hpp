@@ -1,6 +1,6 @@
 // Makes simpler models around the bodies of meshes, cells or robots. Prints a table of their costs
-// and errors, the cheapest model at a given distance and speed, and the chosen one as parts for a
-// cell.
+// and errors, and the cheapest model at a given distance and speed. It also prints the chosen model
+// as parts for a cell.
 #pragma once
 
 #include <filesystem>

@@ -95,7 +95,8 @@ void LiveSource::take(TopicKind kind) {
   taken_.clear();
 }
 
-// The daemon does the same (dds/pose_reader.cpp). Its log names the faults; the page does not.
+// Takes messages of ROS 2 as the daemon does (dds/pose_reader.cpp). News is dropped here, because
+// the daemon's log has it.
 void LiveSource::take_from_ros(const Now& now) {
   if (!intake_.hears_ros()) return;
   if (ros_.look()) intake_.keep(ros_.writers());

@@ -1,4 +1,4 @@
-// The page's files at build time: the program needs no folder beside it.
+// The files of the page, compiled into the program, so that it needs no folder beside it.
 #pragma once
 
 #include <span>

@@ -94,7 +94,8 @@ void RecordingSource::read_up_to(std::int64_t time_ns) {
   read_ns_ = time_ns;
 }
 
-// Zones are written when they change: the last state of each holds there.
+// A zone's state is recorded only when it changes. So the earlier zone messages are taken first:
+// the last state of each zone is the one that holds at `time_ns`.
 void RecordingSource::begin_reading_at(std::int64_t time_ns) {
   reader_ = std::make_unique<RecordingReader>(
       file_, McapWindow{.start_ns = static_cast<std::uint64_t>(time_ns)});

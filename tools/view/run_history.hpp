@@ -58,7 +58,7 @@ class RunHistory {
   Stretches<Piece, Least> run_;           // a column per published pair
 };
 
-// Stretches calls these.
+// Join two neighbouring stretches of time, or a pair's values in them; Stretches calls these.
 void merge(const RunHistory::Piece& later, RunHistory::Piece& into);
 void merge(const RunHistory::Least& later, RunHistory::Least& into);
 

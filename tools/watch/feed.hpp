@@ -46,7 +46,7 @@ class Feed {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
     return zones_.states();
   }
-  // Null when no zone has one, or when it has not come.
+  // Null if no zone has `separation`, or if no such message of this daemon has come.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
     return separation_->cycle != 0 && separation_->daemon == reports_->daemon ? &*separation_
                                                                               : nullptr;

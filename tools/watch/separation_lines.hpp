@@ -11,7 +11,7 @@
 namespace clearance::watch {
 
 // One text per zone: "people: scaling 0.43, robot up to 0.51 m/s, 0.120 m above S_p, person -
-// hand". There is none if no zone has a separation, or if it has not come.
+// hand". Empty if no zone has `separation`, or if no such message has come yet.
 [[nodiscard]] std::vector<std::string> separation_texts(const Feed& feed);
 
 // The same as lines of the screen; a robot that has to slow down stands out.

@@ -8,7 +8,8 @@
 
 #include "config/text/printable.hpp"
 
-// Last, without their macros of common names.
+// These headers come last, because they define macros with common names. The two that remain are
+// removed again.
 #define NCURSES_NOMACROS
 #include <curses.h>
 #include <term.h>

@@ -15,10 +15,11 @@ namespace clearance::watch {
 namespace {
 
 constexpr double kMsPerNs = 1e-6;
-// After a delay of this program, Cyclone assumes for a moment that the daemon was delayed. A report
-// that has just come disproves this.
+// If this program itself was delayed, Cyclone counts the daemon as not alive for a moment. A report
+// within this time shows that the daemon is alive.
 constexpr std::int64_t kJustCameNs = 200'000'000;
-// The time for which old reports are mentioned: that of two plain lines.
+// The time for which old reports are mentioned. It is long enough for two lines of the plain
+// output.
 constexpr std::int64_t kToldForNs = 2'500'000'000;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 

@@ -28,7 +28,7 @@ async function live() {
   await picture("live-dark-tablet");
   say({
     samples, chosen: await page.$$eval("tr.chosen", (rows) => rows.length), rows: await page.$$eval("#pair-table tbody tr", (rows) => rows.length),
-    zones: await page.$$eval("#zones .chip", (chips) => chips.map(({ textContent }) => textContent)),
+    zones: await page.$$eval("#zones .chip:not(.more)", (chips) => chips.map(({ textContent }) => textContent)),
     theme: await page.$eval("html", ({ dataset }) => dataset.theme), alarm: await alarm(), address: page.url(), errors,
   });
   await page.waitForFunction(() => document.getElementById("alarm").textContent.includes("clearanced has ended"));

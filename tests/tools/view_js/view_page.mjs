@@ -59,7 +59,7 @@ async function firstView() {
   let moved = "";
   while (moved !== (await place())) {
     moved = await place(); // until the view has come to rest
-    await frames(3);
+    await page.waitForTimeout(500);
   }
   await page.waitForTimeout(2000);
   return { largest, stays: moved === (await place()) };

@@ -45,7 +45,7 @@ class ActiveSetQp {
   }
   [[nodiscard]] Vec3 on_a() const { return x_.head<3>(); }
   [[nodiscard]] Vec3 on_b() const { return x_.tail<3>(); }
-  // Rows of A, and of B after these.
+  // Indices of active rows. The rows of B are numbered after those of A.
   [[nodiscard]] const std::vector<Eigen::Index>& active() const { return active_; }
 
   [[nodiscard]] QpEnd solve(const Mat3& a_from_b, const Vec3& t) {
@@ -97,7 +97,7 @@ class ActiveSetQp {
     speed_.tail(b_.offsets.size()).noalias() = b_.normals * v.tail<3>();
   }
 
-  // Delta and alpha; true if nothing blocked.
+  // Moves by delta, as far as alpha allows. Returns true if no row blocked the move.
   bool step(const Vec3& residual, int& idle) {
     const Vec6 move = free_.least_squares(jacobian_, residual);
     const double length = move.norm();
@@ -120,7 +120,8 @@ class ActiveSetQp {
     return false;
   }
 
-  // Lambda: releases the row with the most negative multiplier; false if there is none.
+  // Releases the active row with the most negative multiplier (lambda), or by Bland's rule the one
+  // with the smallest index. Returns false if no multiplier is negative.
   bool release(const Vec3& residual, bool smallest_index) {
     if (active_.empty()) return false;
     const Vec6 gradient = jacobian_.transpose() * residual;

@@ -14,9 +14,9 @@ namespace clearance::bench {
 
 // FCL 0.7. 'fcl' is its default solver at its default tolerance, 1e-6: libccd's simplex with FCL's
 // repairs. This climbs along edges from 33 vertices, and has no warm start, so tracked equals cold.
-// 'fcl-tight' is the same at 1e-12, which costs hardly any time here. 'fcl-gjk' is its own GJK at
-// 1e-12, which costs none: with a cached guess while tracked, and supports by a search of all
-// vertices.
+// 'fcl-tight' is the same at 1e-12, which costs hardly any time here. 'fcl-gjk' is FCL's own GJK at
+// 1e-12, which costs no extra time. While tracked, it starts from a cached guess. It searches all
+// vertices for a support point.
 void register_fcl(RowSet set);
 // Bullet 3 with doubles: btGjkEpaSolver2 on hulls, starting from the last separation while tracked.
 void register_bullet(RowSet set);

@@ -1,7 +1,7 @@
 // A body as a mesh, in which vertices closer than rounding are welded. The core's exact polyhedron
-// keeps them separate: four facets of a facet-ball that meet in a point up to rounding have two
-// vertices at a distance of 1e-16. Solvers that climb along edges in doubles would fail on such
-// edges.
+// keeps them separate. For example, four facets of a facet-ball that meet in one point up to
+// rounding have two vertices, 1e-16 apart. Solvers that climb along edges in doubles would fail on
+// such edges.
 #pragma once
 
 #include <vector>

@@ -1,9 +1,10 @@
 // The signed distance from one convex body is a convex function. Over the hull of some points it is
 // therefore greatest at one of these points. The distance from the nearest of several bodies is not
-// convex. But for any one of the bodies, the largest signed distance of the points bounds the
-// distance of every point of the hull from the nearest body. The model is covered by such hulls
-// ("cells"). The cell with the largest bound is split until that bound is close to the distance of
-// a point of the model. A ball of radius r around each point of the model adds at most r.
+// convex. It is, however, at most the distance from any one of the bodies. So the largest signed
+// distance of the points from that body is a bound for the whole hull. The model is covered by such
+// hulls ("cells"). The cell with the largest bound is split until that bound is close to the
+// distance of a point of the model. A ball of radius r around each point of the model adds at most
+// r.
 #include "tools/scene/fitting/certified_error.hpp"
 
 #include <algorithm>
@@ -100,7 +101,7 @@ class Tetrahedra {
     for (const Facet& facet : model.facets) fan(model, facet, centre);
   }
 
-  // At the midpoint of its longest edge.
+  // Splits a cell into two at the midpoint of its longest edge.
   void split(const Cell& whole) {
     std::array<std::size_t, 2> longest{0, 1};
     double length = -1.0;
@@ -183,7 +184,7 @@ class EllipsoidPatches {
     }
   }
 
-  // At the midpoint of its longest side.
+  // Splits a patch into two at the midpoint of its longest side.
   void split(const Cell& patch) {
     std::size_t from = 0;
     double longest = -1.0;

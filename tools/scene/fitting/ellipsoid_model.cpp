@@ -88,7 +88,8 @@ EnclosingModel enclosing_ellipsoid(const ConvexBody& body) {
     const Vec3 local = frame.transpose() * (p - at.position);
     scale = std::max(scale, local.cwiseQuotient(semi_axes).norm());
   }
-  // The rounding of a vertex is a larger share of a thinner axis.
+  // Enlarges the ellipsoid by a margin against rounding. A vertex rounds in proportion to the size
+  // of the body, so the relative margin must be larger the thinner the ellipsoid is.
   const double thinnest = semi_axes.minCoeff();
   scale *= 1.0 + 4.0 * kFittingMargin * (1.0 + size_of(body) / thinnest);
   return fitted(ModelKind::kEllipsoid, ellipsoid(scale * semi_axes), at, body);

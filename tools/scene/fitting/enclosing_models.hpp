@@ -3,8 +3,8 @@
 //
 // Each model holds the body, rounding included, and states the largest distance by which it exceeds
 // the body. It is fitted in doubles and then enlarged until every vertex is inside by more than
-// rounding. distance() certifies the error afterwards, whatever the quality of the fit. A call
-// allocates and may take up to a second.
+// rounding. Afterwards distance() certifies the error, so that a poor fit costs accuracy only. A
+// call allocates and may take up to a second.
 #pragma once
 
 #include <optional>

@@ -13,8 +13,8 @@ enum class Turns {
   kTogether,  // both move to where the other was, as the thesis's program has it: twice the rounds
 };
 
-// Starts from A's centre or another point. Ends after so many rounds, or when the points do not
-// move.
+// Starts from A's centre, or from `start`. Ends after `most_rounds` rounds, or when the points do
+// not move any more.
 [[nodiscard]] ClosestPoints alternate(const EllipsoidPair& pair, NearestPointMethod* nearest,
                                       int most_rounds, Turns turns = Turns::kInTurn);
 [[nodiscard]] ClosestPoints alternate_from(const ClosestPoints& start, const EllipsoidPair& pair,

@@ -133,9 +133,9 @@ std::string distance_digits(const EllipsoidPair& pair, int digits) {
   return solve(problem_of(pair)).distance.str(digits);
 }
 
-// x_i = a_i^2 p_i / (a_i^2 - a_n^2 + t), where a_n is the least semi-axis and the sum of (x_i /
-// a_i)^2 is 1 (5.1.5, 5.1.6). The sum falls with t > 0. If it is below 1 even at t = 0, p_n is 0
-// and x_n follows from the other coordinates (D. Eberly, "Distance from a point to an ellipse, an
+// x_i = a_i^2 p_i / (a_i^2 - a_n^2 + t), where a_n is the least semi-axis (5.1.5). The sum of (x_i
+// / a_i)^2 is 1 (5.1.6). The sum falls with t > 0. If it is below 1 even at t = 0, p_n is 0 and x_n
+// follows from the other coordinates (D. Eberly, "Distance from a point to an ellipse, an
 // ellipsoid", 2013).
 TrueNearest true_nearest(const Vec3& axes, const Vec3& p) {
   const Point a = exact(axes), q = exact(p.cwiseAbs());

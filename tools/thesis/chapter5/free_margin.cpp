@@ -25,9 +25,9 @@ Vec3 nearest_of_sphere(const Vec3& h, const Vec3& g) {
 
 }  // namespace
 
-// In the space where A is the unit sphere, B has the semi-axes b_i / a_i and the centre c_i / a_i,
-// because the axes are parallel. The first step finds the point of B nearest to the origin there,
-// the second the point of A nearest to that point.
+// Coordinates are scaled so that A is the unit sphere. The axes are parallel, so B then has the
+// semi-axes b_i / a_i and the centre c_i / a_i. The first step finds the point of B nearest to the
+// origin there, the second the point of A nearest to that point.
 FreeMargin free_margin(const EllipsoidPair& pair) {
   const Vec3 ratios = pair.axes_b.cwiseQuotient(pair.axes_a);
   const Vec3 centre = pair.apart.cwiseQuotient(pair.axes_a);

@@ -12,10 +12,11 @@ struct Line {
   Vec3 point, direction;  // unit
 };
 
-// The closest points of a line and an ellipsoid around the origin; on_a is that of the line.
-// Normals perpendicular to the line belong to an ellipse of the surface (5.5.1 to 5.5.4). Projected
-// onto the plane across the line, this is an ellipse around the origin, and the line is a point. If
-// the line passes through the ellipsoid, both are the same point in it.
+// Returns the closest points of a line and an ellipsoid around the origin; on_a is on the line. The
+// normal at the closest point is perpendicular to the line. All surface points with such normals
+// lie on one ellipse (5.5.1 to 5.5.4). Projected along the line, it is an ellipse around the
+// origin, and the line is a point. If the line passes through the ellipsoid, both results are the
+// same point inside.
 [[nodiscard]] ClosestPoints line_to_ellipsoid(const Line& line, const Vec3& axes);
 
 // The same for a plane n.x = offset, with n of unit length.

@@ -1,11 +1,11 @@
 // The same problem as dominant_term.hpp by Newton's method, for any p and any ratio of semi-axes.
 //
 // Let a_n be the shortest semi-axis and t = lambda + a_n^2. Then the terms are (a_i p_i / (a_i^2 -
-// a_n^2 + t))^2, whose differences are exact where lambda would lose digits near its pole. 1 /
-// sqrt(S) is nearly a straight line in t, and concave (J. Moré and D. Sorensen, "Computing a trust
-// region step", 1983). So Newton's method on it, started where S is at least 1, rises to the root
-// and never passes it. This is the dominant-term iteration with the slope of the sum in place of
-// the slope of one term.
+// a_n^2 + t))^2, and their differences are exact. Near its pole, lambda itself would lose digits. 1
+// / sqrt(S) is nearly a straight line in t, and concave (J. Moré and D. Sorensen, "Computing a
+// trust region step", 1983). So Newton's method on it, started where S is at least 1, rises to the
+// root and never passes it. This is the dominant-term iteration with the slope of the sum in place
+// of the slope of one term.
 #pragma once
 
 #include <algorithm>

@@ -63,7 +63,8 @@ class Simplex {
   [[nodiscard]] const Corner& of(const Part& part, std::size_t k) const {
     return corners_[static_cast<std::size_t>(part.corner[k])];
   }
-  // The weights of the nearest point of the vertices' affine hull; false if it is outside.
+  // Finds the point nearest to the origin in the affine hull of the part's vertices, as weights of
+  // the vertices. Returns false if a weight is not positive: the point is then not inside the part.
   [[nodiscard]] bool weigh(Part& part) const {
     const Vec3 first = of(part, 0).between();
     const auto side = [&](std::size_t k) { return Vec3(of(part, k).between() - first); };
