@@ -48,6 +48,7 @@ ConvexParts vertices_of(const Bodies& bodies) {
 
 Bodies judged(std::vector<ConvexBody> parts, const TriangleTree& tree, double tolerance,
               double enough = kInfinity) {
+  if (parts.empty()) return {};
   const double error = surface_error(parts, tree, kPrecise * tolerance, enough);
   return {std::move(parts), error, false};
 }
@@ -104,8 +105,9 @@ Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const P
 }
 
 // Returns the normal of the plane that all vertices lie in, up to single precision. Returns nothing
-// if they do not, or lie on one line.
-std::optional<Vec3> plane_of(const std::vector<Vec3>& vertices) {
+// if they do not, or lie on one line. A solid that is thicker than `plate` is not flat: a plate
+// would not fill it.
+std::optional<Vec3> plane_of(const std::vector<Vec3>& vertices, double plate) {
   const auto farthest = [&](const auto& distance) {
     return *std::ranges::max_element(vertices, {}, distance);
   };
@@ -116,8 +118,9 @@ std::optional<Vec3> plane_of(const std::vector<Vec3>& vertices) {
   const Vec3 across = (b - a).cross(c - a);
   if (!(across.norm() > kInOnePlane * size * size)) return std::nullopt;
   const Vec3 normal = across.normalized();
+  const double most = std::min(kInOnePlane * size, 0.5 * plate);
   const bool flat = std::ranges::all_of(
-      vertices, [&](const Vec3& v) { return std::abs(normal.dot(v - a)) <= kInOnePlane * size; });
+      vertices, [&](const Vec3& v) { return std::abs(normal.dot(v - a)) <= most; });
   return flat ? std::optional(normal) : std::nullopt;
 }
 
@@ -147,17 +150,9 @@ TriangleMesh plate_of(const TriangleMesh& flat, const Vec3& normal, double thick
   return plate;
 }
 
-}  // namespace
-
-std::variant<ConvexParts, ShapeError> convex_parts(const TriangleMesh& mesh,
-                                                   const PartLimits& limits,
-                                                   const std::function<void()>& begin) {
-  if (const auto normal = plane_of(mesh.vertices)) {
-    auto parts = convex_parts(plate_of(mesh, *normal, limits.plate), limits, begin);
-    // The parts are as near to the plate as stated, and the plate to the mesh.
-    if (auto* made = std::get_if<ConvexParts>(&parts)) made->error += 0.5 * limits.plate;
-    return parts;
-  }
+std::variant<ConvexParts, ShapeError> parts_of_solid(const TriangleMesh& mesh,
+                                                     const PartLimits& limits,
+                                                     const std::function<void()>& begin) {
   ShapeResult hull = polyhedron_from_vertices(mesh.vertices);
   if (auto* error = std::get_if<ShapeError>(&hull)) return std::move(*error);
   const TriangleTree tree(mesh);
@@ -168,6 +163,20 @@ std::variant<ConvexParts, ShapeError> convex_parts(const TriangleMesh& mesh,
     if (split.error < bodies.error) bodies = std::move(split);
   }
   return vertices_of(bodies);
+}
+
+}  // namespace
+
+// A plate counts as a solid, however thin it is.
+std::variant<ConvexParts, ShapeError> convex_parts(const TriangleMesh& mesh,
+                                                   const PartLimits& limits,
+                                                   const std::function<void()>& begin) {
+  const auto normal = plane_of(mesh.vertices, limits.plate);
+  if (!normal) return parts_of_solid(mesh, limits, begin);
+  auto parts = parts_of_solid(plate_of(mesh, *normal, limits.plate), limits, begin);
+  // The parts are as near to the plate as stated, and the plate to the mesh.
+  if (auto* made = std::get_if<ConvexParts>(&parts)) made->error += 0.5 * limits.plate;
+  return parts;
 }
 
 }  // namespace clearance

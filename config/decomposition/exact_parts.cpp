@@ -15,6 +15,7 @@ namespace {
 constexpr double kConvex = 0.01;
 // Relative to the size: the rounding of a facet's plane.
 constexpr double kPlaneRounding = 1e-15;
+constexpr double kSafe = 0.5;       // of the overlap of cells: the rest is for rounding
 constexpr double kOpenShare = 0.3;  // of the tolerance: as in the search for parts
 
 std::optional<ConvexBody> hull_of(const std::vector<Vec3>& points) {
@@ -74,7 +75,8 @@ ConvexPieces convex_pieces(const std::vector<TriangleMesh>& shells, const OpenSp
       pieces.cells.push_back(std::move(cell));
       continue;
     }
-    Walls walls = walls_of(cell, space, open, limits.max_parts);
+    Walls walls =
+        walls_of(cell, space, open, limits.max_parts, kSafe * kOverlap * limits.tolerance);
     for (ConvexCell& wall : walls.cells) pieces.cells.push_back(std::move(wall));
     if (walls.rest) others.push_back(*std::move(walls.rest));
   }

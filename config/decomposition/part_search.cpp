@@ -270,9 +270,8 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
 }
 
 // The hull of whole shells stays as it is, as long as it has few facets.
-std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece) const {
-  const std::vector<Vec3> points = points_of(piece);
-  if (points.empty()) return std::nullopt;
+std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece,
+                                                    const std::vector<Vec3>& points) const {
   auto hull = body_of(points);
   if (!hull) hull = body_of(thickened(points, kOverlap * limits_.tolerance));
   if (!hull) return std::nullopt;
@@ -283,12 +282,17 @@ std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece) const {
 
 std::vector<ConvexBody> PartSearch::parts() {
   in_parallel(joined_.size(), [&](std::size_t i) {
-    if (std::exchange(joined_[i].has_body, true)) return;
-    joined_[i].body = body_of_piece(joined_[i].piece);
+    Joined& joined = joined_[i];
+    if (std::exchange(joined.has_body, true)) return;
+    const std::vector<Vec3> points = points_of(joined.piece);
+    joined.is_empty = points.empty();
+    joined.body = joined.is_empty ? std::nullopt : body_of_piece(joined.piece, points);
   });
   std::vector<ConvexBody> parts;
   for (const Joined& joined : joined_) {
-    if (joined.body) parts.push_back(*joined.body);
+    if (joined.is_empty) continue;
+    if (!joined.body) return {};
+    parts.push_back(*joined.body);
   }
   return parts;
 }

@@ -13,8 +13,9 @@
 
 namespace clearance {
 
-// The pieces do not depend on the number of parts that is allowed, as long as that is at most
-// kUsualParts, and are joined in one order. So more parts are an earlier stage of the same search.
+// The pieces follow from the cells, and not from the number of parts that is allowed, as long as
+// that is at most kUsualParts. They are joined in one order. So from the same cells and with the
+// same aim, more parts are an earlier stage of the search.
 class PartSearch {
  public:
   // Begins with the pieces of a mesh in `cells`, which hold all of it. `space` is that of the mesh.
@@ -29,7 +30,8 @@ class PartSearch {
   // Joins two parts more. Returns false when one is left.
   bool join_two();
 
-  // Returns the parts found. Together they hold every triangle.
+  // Returns the parts found. Together they hold every triangle. Returns none if coordinates are too
+  // coarse for the tolerance, so that a flat piece gets no volume.
   [[nodiscard]] std::vector<ConvexBody> parts();
 
  private:
@@ -42,7 +44,8 @@ class PartSearch {
   struct Joined {
     Piece piece;
     std::optional<ConvexBody> body = {};
-    bool has_body = false;  // `body` is empty where the piece holds no triangle
+    bool has_body = false;
+    bool is_empty = false;  // the piece holds no triangle, and so has no body
   };
 
   [[nodiscard]] Piece piece_of(const ConvexCell& cell) const;
@@ -53,7 +56,8 @@ class PartSearch {
   void estimate_joints(double enough);
   bool join_best(double most);
   [[nodiscard]] std::vector<Vec3> points_of(const Piece& piece) const;
-  [[nodiscard]] std::optional<ConvexBody> body_of_piece(const Piece& piece) const;
+  [[nodiscard]] std::optional<ConvexBody> body_of_piece(const Piece& piece,
+                                                        const std::vector<Vec3>& points) const;
 
   PartLimits limits_;
   const OpenSpace& space_;

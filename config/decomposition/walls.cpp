@@ -287,12 +287,33 @@ class WallCutter {
   std::vector<OpenPoint> few_;
 };
 
+bool hold_mesh(std::vector<ConvexCell> cells, const TriangleMesh& mesh, double margin) {
+  for (ConvexCell& cell : cells) {
+    for (HalfSpace& plane : cell.planes) plane.offset += margin;
+  }
+  std::vector<Polygon> next;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Triangle triangle = mesh.triangle(i);
+    std::vector<Polygon> left = {{triangle.begin(), triangle.end()}};
+    for (const ConvexCell& cell : cells) {
+      next.clear();
+      for (const Polygon& polygon : left) subtract(polygon, cell.planes, next);
+      left.swap(next);
+    }
+    if (!left.empty()) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 Walls walls_of(const ConvexCell& whole, const OpenSpace& space, const std::vector<OpenPoint>& open,
-               std::size_t most) {
+               std::size_t most, double margin) {
   if (whole.mesh->triangles.size() > kMostTriangles) return {{}, whole};
-  return WallCutter(whole, space, open).walls(most);
+  Walls walls = WallCutter(whole, space, open).walls(most);
+  std::vector<ConvexCell> cells = walls.cells;
+  if (walls.rest) cells.push_back(*walls.rest);
+  return hold_mesh(std::move(cells), *whole.mesh, margin) ? std::move(walls) : Walls{{}, whole};
 }
 
 std::vector<Vec3> points_in(const ConvexCell& cell, const OpenSpace& space) {

@@ -19,9 +19,11 @@ struct Walls {
 // `whole` is the cell of a shell. A wall is cut off as long as one is found, the largest first, and
 // as long as there are fewer than `most`. Then the cells of the walls grow as far as these stay
 // convex. So they overlap where they meet, and hold most triangles whole. A piece counts as convex
-// if its hull holds none of the points `open`.
+// if its hull holds none of the points `open`. Coordinates are rounded, so a triangle beside a
+// plane may get lost. If the cells, widened by `margin`, m, do not hold all of the mesh, the rest
+// is the whole, and there are no walls.
 [[nodiscard]] Walls walls_of(const ConvexCell& whole, const OpenSpace& space,
-                             const std::vector<OpenPoint>& open, std::size_t most);
+                             const std::vector<OpenPoint>& open, std::size_t most, double margin);
 
 // Returns the vertices of the mesh in the cell, of its triangles clipped by the cell, and of the
 // cell where they lie within the solid. Vertices within rounding of a plane count as on it.

@@ -188,7 +188,7 @@ TEST(ConvexParts, OfABoxOfFiveWallsAreTheseExactly) {
   }
 }
 
-TEST(ConvexParts, OfMoreAllowedAreNeverWorse) {
+TEST(ConvexParts, OfACrateAreNoWorseWhereMoreAreAllowed) {
   double before = kInfinity;
   for (const std::size_t most : {1, 4, 5, 6}) {
     const ConvexParts parts = parts_of_mesh(test::crate(), {.max_parts = most});
@@ -205,6 +205,25 @@ TEST(ConvexParts, OfAFlatMeshAreAPlateOfTheStatedThickness) {
   ASSERT_EQ(1u, parts.parts.size());
   EXPECT_NEAR(0.001, parts.error, 1e-9);
   for (const Vec3& v : parts.parts[0]) EXPECT_NEAR(0.001, std::abs(v.z()), 1e-15);
+}
+
+// A plate that is thinner than the rounding of a file's coordinates is made once as well.
+TEST(ConvexParts, OfAFlatMeshAreOnePlateHoweverThin) {
+  TriangleMesh flat;
+  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
+  const ConvexParts parts = parts_of_mesh(flat, {.plate = 4e-7});
+  ASSERT_EQ(1u, parts.parts.size());
+  EXPECT_GE(parts.error, 2e-7);
+  EXPECT_LE(parts.error, 1e-6);
+  for (const Vec3& v : parts.parts[0]) EXPECT_NEAR(2e-7, std::abs(v.z()), 1e-15);
+}
+
+TEST(ConvexParts, OfASolidThickerThanAPlateHoldItsInside) {
+  TriangleMesh foil;
+  test::add_box({0.0, 0.0, 0.0}, {1.0, 1.0, 9e-7}, foil);
+  const ConvexParts parts = parts_of_mesh(foil, {.plate = 1e-8});
+  ASSERT_EQ(1u, parts.parts.size());
+  EXPECT_LE(outside(bodies_of_parts(parts)[0], {0.4, 0.3, 4.5e-7}), 0.0);
 }
 
 TEST(ConvexParts, OfAMeshOnOneLineAreNone) {
