@@ -159,7 +159,7 @@ enum class GradientStatus : std::uint8_t {
 };
 [[nodiscard]] const char* name(GradientStatus status) noexcept;
 
-// How near a pair is to having a second pair of closest points. NaN: not known.
+// Tells how near a pair is to having a second pair of closest points. NaN: not known.
 struct GradientAlternative {
   GradientStatus status = GradientStatus::kUnknown;
   // Every other pair of parts, unless it meets the closest points as well, is farther apart than

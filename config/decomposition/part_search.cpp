@@ -184,7 +184,7 @@ PartSearch::JointError PartSearch::joint_error(const Piece& a, const Piece& b,
   return {error, true};
 }
 
-// Estimates each pair of joined pieces of which nothing is known.
+// Estimates the error of each pair of joined pieces that has no estimate yet.
 void PartSearch::estimate_joints(double enough) {
   std::vector<std::pair<std::size_t, std::size_t>> unknown;
   for (std::size_t i = 0; i < joints_.size(); ++i) {

@@ -15,7 +15,7 @@ namespace {
 
 // After this many triangles, which take a few seconds, the search ends with its present bound.
 constexpr std::size_t kMostPieces = 1'000'000;
-// As long as there are fewer, errors are found to kFine of the size, and then to kCoarse.
+// With fewer pieces than this, errors are resolved to kFine of the size; with more, to kCoarse.
 constexpr std::size_t kFewPieces = 100'000;
 constexpr double kFine = 5e-10, kCoarse = 1e-6;
 // Relative: more than the rounding of plane tests and distances.

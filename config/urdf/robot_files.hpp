@@ -27,7 +27,7 @@ struct RobotFiles {
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
 };
 
-// Where a person can say which folder a package is.
+// The place that states the folder of a package: a key of the cell, or an option.
 enum class PackagesFrom { kCell, kCommandLine };
 
 // Says why find() returned nothing for this name, as the end of a sentence: "no directory for the

@@ -21,7 +21,8 @@ struct SingleRobotOptions {
   // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
   std::optional<double> mesh_tolerance = {};
   std::optional<unsigned> max_parts = {};
-  // Of the cell, if it is to be written: paths are relative to it. Empty: they are absolute.
+  // The folder of the cell that will be written: paths are relative to it. Empty: they are
+  // absolute.
   std::filesystem::path directory = {};
 };
 

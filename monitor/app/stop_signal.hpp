@@ -21,9 +21,9 @@ class StopSignal {
   // stay valid.
   void end_with(int status, const char* last_words);
 
-  // From this call on, SIGHUP does not stop the program: hung_up() tells of it instead. Otherwise
-  // it stops like SIGTERM, since a closed terminal sends it. A program that was started with SIGHUP
-  // ignored (nohup) does not hear it at all.
+  // After this call SIGHUP does not stop the program: hung_up() tells of it instead. Without the
+  // call it stops the program like SIGTERM, since a closed terminal sends it. A program that was
+  // started with SIGHUP ignored (nohup) does not hear it at all.
   void keep_running_on_hangup() noexcept;
 
   // Waits for a signal up to the given time. Returns true when one that stops has come, now or

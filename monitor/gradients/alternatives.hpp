@@ -17,8 +17,8 @@ namespace clearance {
 // No rates, and nothing known of them.
 [[nodiscard]] GradientAlternative unknown_alternative() noexcept;
 
-// Of a pair that was evaluated in this tick. `turns`: the angular velocities, in the world, by
-// which the pair's joints turn one object relative to the other. Allocates nothing.
+// The pair must have been evaluated in this tick. `turns` are the angular velocities, in the world,
+// by which the pair's joints turn one object relative to the other. Allocates nothing.
 [[nodiscard]] GradientAlternative alternative_of(const PairReport& pair,
                                                  std::span<const Vec3> turns,
                                                  const TickView& view) noexcept;

@@ -16,9 +16,9 @@
 //   double length(rate)                    the speed of a rate, at least as large as the true one
 //   Value moved(value, step)               the value after a small step (a rate times a time)
 //   Rate scaled_sum(factor, a, b)          factor (a + b)
-//   double distance(from, to)              the distance of two values
 //   kRatesMayBeWrong                       true: values that move at least as far as their rates
 //                                          say are right, and the rates are wrong
+//   double distance(from, to)              the distance of two values; only if kRatesMayBeWrong
 #pragma once
 
 #include <algorithm>

@@ -11,7 +11,7 @@ struct TickTime {
   // that of the tick before means that an unknown time has passed. Every pose is then late until
   // the next one comes.
   std::int64_t now_ns = 0;
-  // CLOCK_REALTIME minus `now_ns`. It becomes nonzero when somebody steps this machine's clock
+  // CLOCK_REALTIME minus `now_ns`. It becomes nonzero when this machine's clock is stepped
   // while the daemon runs.
   std::int64_t clock_offset_ns = 0;
 

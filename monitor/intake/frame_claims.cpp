@@ -89,7 +89,7 @@ bool FrameClaims::set(const std::string& child, const Publisher& publisher, TfTr
   return std::any_of(claims.begin() + 1, claims.end(), differs);
 }
 
-// A frame that nobody sends any more keeps its last transform, which ages.
+// A frame without a publisher keeps its last transform, which ages.
 void FrameClaims::keep(std::span<const std::uint64_t> writers) {
   for (auto& [child, claims] : claims_) {
     const std::size_t gone = std::erase_if(claims, [&](const Claim& claim) {

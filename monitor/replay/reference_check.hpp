@@ -58,7 +58,7 @@ class ReferenceCheck {
 
   // The least distance of ours that the reference and the errors of meshes allow, m.
   [[nodiscard]] static double least_allowed(const Value& value);
-  // How far our distance is from what is allowed, m.
+  // The distance of our value from the allowed interval, m; 0 inside it.
   [[nodiscard]] static double difference_from(const Value& value, double ours);
   void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
 

@@ -16,8 +16,8 @@ double age_of(const TrackedObject& object) noexcept {
   return rounded_up(seconds(object.input.age_ns));
 }
 
-// What an object may have moved since its pose, m, if it is late: its pairs' lower bounds are
-// without it.
+// Returns the unobserved motion of a late object, m: the lower bounds of its pairs are already
+// reduced by it.
 double counted_in_bounds(const TrackedObject& object) noexcept {
   return object.input.late ? object.may_have_moved : 0.0;
 }
