@@ -73,8 +73,8 @@ inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWar
 inline constexpr LogLine<Text> kVelocitiesContradict{
     "velocities-contradict", kWarn,
     "{}: the velocities that are sent contradict the positions, which are used instead"};
-inline constexpr LogLine<Count, Text, Text, Count> kRefused{
-    "refused", kWarn, "{} {} refused in the last second: {} ({} since the start)"};
+inline constexpr LogLine<Count, Text, Text, Text, Count> kRefused{
+    "refused", kWarn, "{} {} refused in the last {}: {} ({} since the start)"};
 inline constexpr LogLine<Text> kMoreLeftOut{"more-left-out", kWarn,
                                             "{} about refusals and late inputs left out"};
 

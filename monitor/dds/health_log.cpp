@@ -1,8 +1,7 @@
 // The counts of a sample only grow. The log tells their growth, which shows when a fault began.
 #include "monitor/dds/health_log.hpp"
 
-#include <fmt/format.h>
-
+#include <algorithm>
 #include <utility>
 
 #include "config/text/sentences.hpp"
@@ -12,7 +11,7 @@ namespace clearance {
 namespace {
 
 // The most lines of one update; it then logs how many it left out.
-constexpr int kLinesAtOnce = 5;
+constexpr std::size_t kLinesAtOnce = 5;
 
 // Says why the object's pairs are stale.
 void log_stale(const clearance_msg_InputAge& input) {
@@ -21,11 +20,6 @@ void log_stale(const clearance_msg_InputAge& input) {
   } else {
     log_line(lines::kPosesLate, input.name, input.age_ns / 1'000'000);
   }
-}
-
-// A joint is "joint NAME" in the list of refusals.
-std::string samples_of(const std::string& input) {
-  return (input.starts_with("joint ") ? "positions of " : "poses of ") + input;
 }
 
 // Logs by how much a count has grown.
@@ -75,7 +69,7 @@ void HealthLog::log_notes(const clearance_msg_Health& health) {
 // its objects at once.
 void HealthLog::update(const clearance_msg_Health& health,
                        const std::function<std::string()>& senders_of_joints) {
-  int logged = 0;
+  std::size_t logged = 0;
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
     // An object that was never known is no news. For links, the log of joints reports lateness.
@@ -94,19 +88,11 @@ void HealthLog::update(const clearance_msg_Health& health,
     }
     other = input.other_source;
   }
-  for (std::uint32_t i = 0; i < health.rejected._length; ++i) {
-    const clearance_msg_RejectCount& entry = health.rejected._buffer[i];
-    std::uint64_t& before = rejected_[fmt::format("{}: {}", entry.object, entry.cause)];
-    if (entry.count > before && logged++ < kLinesAtOnce) {
-      log_line(lines::kRefused, entry.count - before, samples_of(entry.object), entry.cause,
-               entry.count);
-    }
-    before = entry.count;
-  }
-  if (logged > kLinesAtOnce) {
-    log_line(lines::kMoreLeftOut,
-             counted(static_cast<std::uint64_t>(logged - kLinesAtOnce), "more line"));
-  }
+  const std::size_t refusals = refusals_.update(health);
+  refusals_.log(kLinesAtOnce - std::min(logged, kLinesAtOnce));
+  logged += refusals;
+  if (logged > kLinesAtOnce)
+    log_line(lines::kMoreLeftOut, counted(logged - kLinesAtOnce, "more line"));
   joints_.update(health.joints, senders_of_joints);
   log_notes(health);
   log_clock(health);

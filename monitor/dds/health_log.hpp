@@ -9,6 +9,7 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/dds/joint_log.hpp"
+#include "monitor/dds/refusal_log.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -26,9 +27,9 @@ class HealthLog {
   void log_clock(const clearance_msg_Health& health);
   void log_notes(const clearance_msg_Health& health);
 
-  std::map<std::string, std::uint64_t> rejected_;  // by "object: cause"
-  std::vector<bool> stale_;                        // by object
-  std::vector<std::string> other_source_;          // by object
+  RefusalLog refusals_;
+  std::vector<bool> stale_;                // by object
+  std::vector<std::string> other_source_;  // by object
   // By input: the takeovers, and whether its velocities were told of.
   struct Note {
     std::uint32_t takeovers = 0;

@@ -87,6 +87,8 @@ class Reckoning {
 
   // The integration time, in age limits. Over a longer time, noise would accumulate too much.
   static constexpr std::int64_t kAgeLimits = 50;
+  // The integration time while a value repeats, in age limits.
+  static constexpr std::int64_t kRepeatAgeLimits = 10;
   // Over a longer gap, in age limits, the mean of two rates says nothing about the motion between.
   static constexpr std::int64_t kGapAgeLimits = 2;
   static constexpr double kRateError = 1.0 / 6.0;
@@ -97,13 +99,25 @@ class Reckoning {
   [[nodiscard]] Agreement add(const Value& value, const Rate& rate, std::int64_t stamp_ns,
                               bool same, const MotionLimits& limits,
                               const Metric& metric) noexcept {
-    const bool goes_on = any_ && elapsed(since_ns_, stamp_ns) <= kAgeLimits * limits.age_limit_ns &&
-                         elapsed(last_ns_, stamp_ns) <= kGapAgeLimits * limits.age_limit_ns;
-    if (!goes_on) {
+    const std::int64_t age_ns = limits.age_limit_ns;
+    if (!any_ || elapsed(last_ns_, stamp_ns) > kGapAgeLimits * age_ns) {
       start(value, rate, stamp_ns, metric);
+      repeats_.start(value, last_speed_, stamp_ns);
       return Agreement::kAgree;
     }
-    integrate(rate, stamp_ns, metric);
+    const Step step = step_to(rate, stamp_ns, metric);
+    if (elapsed(since_ns_, stamp_ns) > kAgeLimits * age_ns) {
+      start(value, rate, stamp_ns, metric);
+    } else {
+      integrate(step, rate, stamp_ns, metric);
+    }
+    if (!same || elapsed(repeats_.since_ns, stamp_ns) > kRepeatAgeLimits * age_ns) {
+      repeats_.start(value, last_speed_, stamp_ns);
+    } else if (repeats_.add(step, last_speed_, metric);
+               !metric.stay_within(largest_error(repeats_.path, repeats_.fastest, limits),
+                                   repeats_.led_to, value)) {
+      return Agreement::kValuesContradict;
+    }
     const Agreement agreement = compare(value, stamp_ns, limits, metric);
     if (agreement != Agreement::kAgree && !same) start(value, rate, stamp_ns, metric);
     return agreement;
@@ -111,15 +125,43 @@ class Reckoning {
 
   // True if the rates have moved by more than any error.
   [[nodiscard]] bool has_moved(const MotionLimits& limits) const noexcept {
-    return path_ > 2.0 * largest_error(limits);
+    return path_ > 2.0 * largest_error(path_, fastest_, limits);
   }
 
  private:
-  // Farther than this, a value contradicts the rates. Rates that are an age limit late do not
-  // contain the last part of the motion yet. Instead they contain what preceded the first of them.
-  [[nodiscard]] double largest_error(const MotionLimits& limits) const noexcept {
-    return (std::max(limits.usual, fastest_) + fastest_) * seconds(limits.age_limit_ns) +
-           kRateError * path_;
+  // What the rates moved between two samples, and the length of that path.
+  struct Step {
+    Rate change;
+    double length;
+  };
+  // The integration since a value began to repeat. An input that freezes late in the long
+  // integration is detected as fast as one that freezes early.
+  struct Repeats {
+    void start(const Value& value, double speed, std::int64_t stamp_ns) noexcept {
+      led_to = value;
+      path = 0.0;
+      fastest = speed;
+      since_ns = stamp_ns;
+    }
+    void add(const Step& step, double speed, const Metric& metric) noexcept {
+      fastest = std::max(fastest, speed);
+      if (step.length == 0.0) return;
+      led_to = metric.moved(led_to, step.change);
+      path += step.length;
+    }
+    Value led_to{};
+    double path = 0.0;
+    double fastest = 0.0;
+    std::int64_t since_ns = 0;
+  };
+
+  // Farther than this, a value contradicts the rates that were integrated along `path`. Rates that
+  // are an age limit late do not contain the last part of the motion yet. Instead they contain what
+  // preceded the first of them.
+  [[nodiscard]] double largest_error(double path, double fastest,
+                                     const MotionLimits& limits) const noexcept {
+    return (std::max(limits.usual, fastest) + fastest) * seconds(limits.age_limit_ns) +
+           kRateError * path;
   }
   // A value at most this far from where the rates lead does not show that the rates are too small.
   [[nodiscard]] double least_error(const MotionLimits& limits) const noexcept {
@@ -146,8 +188,9 @@ class Reckoning {
                    : Agreement::kRatesContradict;
       }
     }
-    return metric.stay_within(largest_error(limits), led_to_, value) ? Agreement::kAgree
-                                                                     : Agreement::kValuesContradict;
+    return metric.stay_within(largest_error(path_, fastest_, limits), led_to_, value)
+               ? Agreement::kAgree
+               : Agreement::kValuesContradict;
   }
 
   void start(const Value& value, const Rate& rate, std::int64_t stamp_ns,
@@ -161,14 +204,18 @@ class Reckoning {
   }
 
   // Trapezoidal rule: integrates the mean of the last rate and this one.
-  void integrate(const Rate& rate, std::int64_t stamp_ns, const Metric& metric) noexcept {
+  [[nodiscard]] Step step_to(const Rate& rate, std::int64_t stamp_ns,
+                             const Metric& metric) const noexcept {
     const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));
-    const double speed = metric.length(rate);
-    led_to_ = metric.moved(led_to_, Metric::scaled_sum(half, last_, rate));
-    path_ += half * (last_speed_ + speed);
-    fastest_ = std::max(fastest_, speed);
+    return {Metric::scaled_sum(half, last_, rate), half * (last_speed_ + metric.length(rate))};
+  }
+  void integrate(const Step& step, const Rate& rate, std::int64_t stamp_ns,
+                 const Metric& metric) noexcept {
+    led_to_ = metric.moved(led_to_, step.change);
+    path_ += step.length;
     last_ = rate;
-    last_speed_ = speed;
+    last_speed_ = metric.length(rate);
+    fastest_ = std::max(fastest_, last_speed_);
     last_ns_ = stamp_ns;
   }
 
@@ -179,6 +226,7 @@ class Reckoning {
   Rate last_{};
   double last_speed_ = 0.0;
   std::int64_t since_ns_ = 0, last_ns_ = 0;
+  Repeats repeats_;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.
   double way_ = 0.0;

@@ -173,6 +173,26 @@ TEST(Plausibility, PoseThatStaysWhileItsTwistSaysThatItMovesIsFrozen) {
   EXPECT_GE(rejected(monitor, Reject::kFrozen), 1u);
 }
 
+// The twist is integrated over an age limit times 50. Wherever in that time the pose freezes, it is
+// found after the same distance.
+TEST(Plausibility, PoseThatFreezesAfterALongMotionIsFoundAsSoon) {
+  const Scene scene = balls_of_speed(2.0);
+  for (const int moves : {1, 200, 500, 900, 980, 1100}) {
+    Monitor monitor(scene);
+    int frozen = 0;
+    PairStatus status = PairStatus::kConverged;
+    for (int tick = 0; status != PairStatus::kUnknown; ++tick) {
+      ASSERT_LT(frozen, 100) << moves;
+      frozen = std::max(0, tick - moves);
+      const std::int64_t now = kStart + tick * kTick;
+      const PoseSample sample =
+          with_twist(test::at(1e-3 * std::min(tick, moves), 0, 0), Vec3(1, 0, 0), now);
+      status = monitor.tick(std::span(&sample, 1), now).pairs[0].status;
+    }
+    EXPECT_NEAR(frozen, 72, 1) << moves;
+  }
+}
+
 // The reported pose stops for good, bit for bit or except for its last digit, while the object
 // moves on, at times slowly. A twist comes with every sample or only with some.
 TEST(Plausibility, PoseThatStaysBehindIsNeverKnownAgain) {

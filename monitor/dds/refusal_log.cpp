@@ -1,0 +1,56 @@
+#include "monitor/dds/refusal_log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "config/text/sentences.hpp"
+#include "monitor/app/log_lines.hpp"
+#include "monitor/dds/joint_log.hpp"
+
+namespace clearance {
+
+// A joint is "joint NAME" in the list of refusals.
+void RefusalLog::add(const clearance_msg_RejectCount& entry) {
+  const std::string input = entry.object, cause = entry.cause;
+  const std::uint64_t grown = entry.count - std::exchange(before_[{input, cause}], entry.count);
+  if (grown == 0) return;
+  Refusals& refusals = refusals_[{input.starts_with("joint "), cause}];
+  if (std::ranges::find(refusals.inputs, input) == refusals.inputs.end())
+    refusals.inputs.push_back(input);
+  refusals.count += grown;
+  refusals.total += grown;
+}
+
+// A line is due at once if it names an input that the last line did not.
+std::size_t RefusalLog::update(const clearance_msg_Health& health) {
+  for (std::uint32_t i = 0; i < health.rejected._length; ++i) add(health.rejected._buffer[i]);
+  std::size_t due = 0;
+  for (auto& [key, refusals] : refusals_) {
+    ++refusals.silent_s;
+    if (refusals.count > 0) ++refusals.counted_s;
+    const bool is_news = !std::ranges::all_of(
+        refusals.inputs, [&](const std::string& input) { return refusals.named.contains(input); });
+    refusals.is_due = refusals.count > 0 && (is_news || refusals.silent_s >= kPauseS);
+    if (refusals.is_due) ++due;
+  }
+  return due;
+}
+
+void RefusalLog::log(std::size_t most) {
+  for (auto& [key, refusals] : refusals_) {
+    const auto& [are_joints, cause] = key;
+    if (!std::exchange(refusals.is_due, false) || most == 0) continue;
+    --most;
+    log_line(lines::kRefused, refusals.count,
+             (are_joints ? "positions of " : "poses of ") + listed(refusals.inputs, kNamesALine),
+             refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s), cause,
+             refusals.total);
+    refusals.named = {refusals.inputs.begin(), refusals.inputs.end()};
+    refusals.inputs.clear();
+    refusals.count = 0;
+    refusals.counted_s = refusals.silent_s = 0;
+  }
+}
+
+}  // namespace clearance

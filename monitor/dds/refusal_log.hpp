@@ -1,0 +1,43 @@
+// Logs for a person which inputs were refused, and why: one line a cause, however many inputs share
+// it. A refusal that lasts is repeated every ten seconds.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+class RefusalLog {
+ public:
+  // Returns how many lines are due. Called once a second, with every health sample.
+  [[nodiscard]] std::size_t update(const clearance_msg_Health& health);
+  // Logs up to `most` of the lines that are due. The others stay due.
+  void log(std::size_t most);
+
+ private:
+  static constexpr int kPauseS = 10;
+  // The refusals of one cause: of joints, or of objects.
+  struct Refusals {
+    std::vector<std::string> inputs;  // refused since the last line
+    std::set<std::string> named;      // in the last line
+    std::uint64_t count = 0;          // since the last line
+    std::uint64_t total = 0;          // since the start
+    int counted_s = 0;                // the seconds that `count` is from
+    int silent_s = kPauseS;           // since the last line
+    bool is_due = false;
+  };
+
+  void add(const clearance_msg_RejectCount& entry);
+
+  std::map<std::pair<std::string, std::string>, std::uint64_t> before_;  // by input and cause
+  std::map<std::pair<bool, std::string>, Refusals> refusals_;            // by is-a-joint and cause
+};
+
+}  // namespace clearance
