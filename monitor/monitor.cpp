@@ -56,13 +56,12 @@ struct Monitor::State {
   const Scene& scene;
   const ZoneLevels zone_levels;
   const RefreshShare share;
-  const std::vector<std::uint32_t> moving;      // objects that are not fixed
   const std::vector<std::uint32_t> first_part;  // by object
   const Published published;
 
   Inputs inputs;                                // ingest and displace
   std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
-  Displacements displaced;                      // displace
+  Displacer displacer;                          // displace
   std::vector<PosedPart> parts;                 // pose
   PairTable table;                              // cull, evaluate and refresh
   Scheduler scheduler;                          // schedule, evaluate and refresh
@@ -78,7 +77,7 @@ struct Monitor::State {
   explicit State(const Scene& the_scene);
 
   [[nodiscard]] TickView view() const noexcept {
-    return {inputs.objects, parts, inputs.cycle, table};
+    return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns};
   }
   void add_presence_changes() noexcept;
   void count_pairs() noexcept;
@@ -95,15 +94,16 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
                             std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
   ingest(samples, joints, time, s.scene, s.inputs);
-  displace(s.scene, s.moving, s.inputs, s.displaced);
+  s.displacer.displace(s.inputs);
   s.add_presence_changes();
-  pose_parts(s.inputs.objects, s.displaced.changed, s.first_part, s.parts);
+  const Displacements& displaced = s.displacer.result();
+  pose_parts(s.inputs.objects, displaced.changed, s.first_part, s.parts);
 
-  const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table);
-  check_displaced(s.displaced.changed, s.first_part, tick);
+  const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table, s.inputs.time.now_ns);
+  check_displaced(displaced.changed, s.first_part, tick);
 
   Budget budget(s.scene.budget);
-  s.culling.cull(s.displaced.changed, s.evaluated.smallest_upper, tick, budget);
+  s.culling.cull(displaced.changed, s.evaluated.smallest_upper, tick, budget);
   check_updated(s.culling, tick);
   const Schedule schedule = s.scheduler.schedule(s.culling, tick, budget);
   const std::uint32_t kept_for_refresh = budget.reserve(schedule.kept);
@@ -117,7 +117,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.culling.cull_active(tick);
 
   s.conclusion =
-      conclude(s.published, s.displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
+      conclude(s.published, displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
   s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
@@ -140,6 +140,7 @@ bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
   } else {
     make_present(state);
   }
+  s.inputs.visits.visit(object);
   if (std::ranges::find(s.presence_changed, object) == s.presence_changed.end())
     s.presence_changed.push_back(object);
   s.zones.count_absent(s.inputs.objects);
@@ -162,7 +163,7 @@ SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
 
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const TrackedObject& state = state_->inputs.objects[object];
-  return {.age_ns = state.input.age_ns,
+  return {.age_ns = state.input.age_ns(state_->inputs.time.now_ns),
           .stale = state.input.late,
           .contradicted = state.input.contradicted,
           .follows_joints = state.follows_joints,
@@ -176,7 +177,7 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
 // The joints of a robot without any joint position are not advanced, so they are stale here.
 InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
   const TrackedVariable& state = state_->inputs.robots.variables()[variable];
-  return {.age_ns = state.input.age_ns,
+  return {.age_ns = state.input.age_ns(state_->inputs.time.now_ns),
           .stale = !state.input.has_value || state.input.late,
           .contradicted = state.input.contradicted,
           .source = state.input.owner.source(),
@@ -207,10 +208,10 @@ Monitor::State::State(const Scene& the_scene)
     : scene(the_scene),
       zone_levels(the_scene),
       share(refresh_share(the_scene)),
-      moving(moving_objects(the_scene)),
       first_part(first_parts(the_scene)),
       published(published_pairs(the_scene)),
       inputs(initial_inputs(the_scene)),
+      displacer(the_scene),
       parts(parts_of(the_scene)),
       table(the_scene, parts),
       scheduler(the_scene, share, parts, table, zone_levels),
@@ -223,7 +224,6 @@ Monitor::State::State(const Scene& the_scene)
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < spheres.size(); ++i)
     inputs.objects[i].reach = spheres[i].bounding_radius;
-  displaced.changed.reserve(scene.objects.size());
   presence_changed.reserve(scene.objects.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
@@ -237,8 +237,8 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.cycle = inputs.cycle;
   report.now_ns = inputs.time.now_ns;
   report.clock_offset_ns = inputs.time.clock_offset_ns;
-  report.newest_pose_ns = displaced.newest_pose_ns;
-  report.oldest_pose_ns = displaced.oldest_pose_ns;
+  report.newest_pose_ns = displacer.result().newest_pose_ns;
+  report.oldest_pose_ns = displacer.result().oldest_pose_ns;
   report.rejected = inputs.rejected;
   std::ranges::copy(zones.reports(), report.zones.begin());
 
@@ -252,8 +252,7 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
 // in `changed`, except in the first tick.
 void Monitor::State::add_presence_changes() noexcept {
   for (const std::uint32_t object : presence_changed) {
-    if (!inputs.objects[object].input.has_value && inputs.cycle > 1)
-      displaced.changed.push_back(object);
+    if (!inputs.objects[object].input.has_value && inputs.cycle > 1) displacer.add_changed(object);
   }
   presence_changed.clear();
 }

@@ -25,7 +25,7 @@ struct InputRecord {
   bool late = false;          // the value is older than its limit, or contradicted
   bool contradicted = false;  // at the last advance()
   std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
-  std::int64_t age_ns = -1;   // now - stamp, never negative; 0 for a fixed object, -1: no value
+  bool ages = true;           // false for a fixed object
   InputOwner owner;           // the source whose samples are used
   Contradiction contradiction;
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
@@ -37,11 +37,16 @@ struct InputRecord {
     contradiction.forget_age();
   }
 
-  // Updates age and lateness when all samples of the tick have been taken.
+  // now - stamp, never negative; 0 for a fixed object, -1: no value.
+  [[nodiscard]] std::int64_t age_ns(std::int64_t now_ns) const noexcept {
+    if (!has_value) return -1;
+    return ages ? elapsed(stamp_ns, now_ns) : 0;
+  }
+
+  // Updates the lateness when all samples of the tick have been taken.
   void advance(std::int64_t now_ns, std::int64_t age_limit_ns) noexcept {
-    age_ns = elapsed(stamp_ns, now_ns);
     contradicted = contradiction.holds(now_ns);
-    late = contradicted || age_ns > age_limit_ns;
+    late = contradicted || age_ns(now_ns) > age_limit_ns;
   }
 };
 

@@ -132,7 +132,8 @@ void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable
   if (!input.late) return;
   // If the measured velocity exceeds the velocity limit, the limit does not bound the joint.
   const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
-  const double way = input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns));
+  const double way =
+      input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns(now_ns)));
   state.may_have_moved = std::min(way, largest_way(variable, state));
 }
 

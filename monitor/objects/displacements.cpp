@@ -1,6 +1,8 @@
 #include "monitor/objects/displacements.hpp"
 
 #include <algorithm>
+#include <limits>
+#include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -20,22 +22,72 @@ class LargestTwo {
   double most_ = 0.0, second_ = 0.0;
 };
 
-// Sets the bounds over all objects.
-void summarise(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> moving,
-               Displacements& displaced) noexcept {
-  displaced.any_lost = false;
-  displaced.newest_pose_ns = displaced.oldest_pose_ns = 0;
-  bool any = false;
+// The stamp of an object that is fixed, or has no pose: later than any other.
+constexpr std::int64_t kNoPose = std::numeric_limits<std::int64_t>::max();
+
+std::int64_t stamp_of(const InputRecord& input) noexcept {
+  return input.has_value && input.ages ? input.stamp_ns : kNoPose;
+}
+
+// The last time at which the pose in use is not late.
+std::int64_t in_time_until(const TrackedObject& state, const Object& object) noexcept {
+  const std::int64_t stamp = stamp_of(state.input);
+  return stamp == kNoPose ? kNoPose : less(stamp, -object.age_limit_ns);
+}
+
+}  // namespace
+
+Displacer::Displacer(const Scene& scene)
+    : scene_(scene), is_lost_(scene.objects.size()), stamps_(scene.objects.size(), kNoPose) {
+  displaced_.changed.reserve(scene.objects.size());
+  visited_.reserve(scene.objects.size());
+}
+
+// Links come last, when the objects on which robots stand have been advanced.
+void Displacer::displace(Inputs& inputs) noexcept {
+  const std::int64_t now_ns = inputs.time.now_ns;
+  const std::size_t count = inputs.objects.size(), first_link = inputs.robots.first_link();
+  displaced_.changed.clear();
+  visited_.clear();
+  if (inputs.cycle == 1) {
+    for (std::uint32_t i = 0; i < count; ++i) displaced_.changed.push_back(i);
+  }
+  const auto visit_due = [&](std::size_t i) { visit(static_cast<std::uint32_t>(i), inputs); };
+  inputs.visits.each_due(0, first_link, now_ns, visit_due);
+  if (first_link < count) inputs.robots.place(now_ns, inputs.objects);
+  inputs.visits.each_due(first_link, count, now_ns, visit_due);
+  // A loop for each step, so that no object waits for the roots and quotients of the one before it.
+  for (const std::uint32_t i : visited_)
+    clearance::displace(inputs.objects[i].reach, inputs.objects[i]);
+  for (const std::uint32_t i : visited_) {
+    const TrackedObject& object = inputs.objects[i];
+    if (object.at_rest()) inputs.visits.rest_until(i, in_time_until(object, scene_.objects[i]));
+  }
+  summarise(inputs.objects);
+}
+
+void Displacer::visit(std::uint32_t i, Inputs& inputs) noexcept {
+  TrackedObject& object = inputs.objects[i];
+  const bool was_late = object.input.late;
+  const double might_have_moved = object.may_have_moved;
+  advance(scene_.objects[i], inputs.time.now_ns, object);
+  const bool changes =
+      object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
+  if (changes && inputs.cycle > 1) displaced_.changed.push_back(i);
+  visited_.push_back(i);
+}
+
+// An object at rest has not moved, and is not late: it adds nothing to the sums.
+void Displacer::summarise(const std::vector<TrackedObject>& objects) noexcept {
+  bool any_new_stamp = false;
   LargestTwo unseen, farthest;
-  for (const std::uint32_t i : moving) {
+  for (const std::uint32_t i : visited_) {
     const TrackedObject& object = objects[i];
-    displaced.any_lost = displaced.any_lost || !object.known() || object.discontinuous;
-    if (!object.input.has_value) continue;
-    displaced.newest_pose_ns =
-        any ? std::max(displaced.newest_pose_ns, object.input.stamp_ns) : object.input.stamp_ns;
-    displaced.oldest_pose_ns =
-        any ? std::min(displaced.oldest_pose_ns, object.input.stamp_ns) : object.input.stamp_ns;
-    any = true;
+    const bool is_lost = !object.known() || object.discontinuous;
+    lost_ = lost_ + is_lost - is_lost_[i];
+    is_lost_[i] = is_lost;
+    const std::int64_t stamp = stamp_of(object.input);
+    any_new_stamp = std::exchange(stamps_[i], stamp) != stamp || any_new_stamp;
     if (!object.known()) continue;
     unseen.add(object.may_have_moved);
     // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A
@@ -44,45 +96,22 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
     const double bounded = displacement < kInfinity ? displacement : 0.0;
     farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));
   }
-  displaced.most_unseen = unseen.sum();
-  displaced.most_displaced = farthest.sum();
+  displaced_.any_lost = lost_ > 0;
+  displaced_.most_unseen = unseen.sum();
+  displaced_.most_displaced = farthest.sum();
+  if (any_new_stamp) find_oldest_and_newest();
 }
 
-}  // namespace
-
-std::vector<std::uint32_t> moving_objects(const Scene& scene) {
-  std::vector<std::uint32_t> moving;
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].fixed) moving.push_back(i);
+void Displacer::find_oldest_and_newest() noexcept {
+  constexpr std::int64_t kOldest = std::numeric_limits<std::int64_t>::min();
+  std::int64_t oldest = kNoPose, newest = kOldest;
+  for (const std::int64_t stamp : stamps_) {
+    oldest = std::min(oldest, stamp);
+    newest = std::max(newest, stamp == kNoPose ? kOldest : stamp);
   }
-  return moving;
-}
-
-void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs& inputs,
-              Displacements& displaced) noexcept {
-  std::vector<TrackedObject>& objects = inputs.objects;
-  displaced.changed.clear();
-  if (inputs.cycle == 1) {
-    for (std::uint32_t i = 0; i < objects.size(); ++i) displaced.changed.push_back(i);
-  }
-  // A loop for each step, so that no object waits for the roots and quotients of the one before it.
-  bool placed = false;
-  for (const std::uint32_t i : moving) {
-    // Links come last, when the objects on which robots stand have been advanced.
-    if (!placed && i >= inputs.robots.first_link()) {
-      inputs.robots.place(inputs.time.now_ns, objects);
-      placed = true;
-    }
-    TrackedObject& object = objects[i];
-    const bool was_late = object.input.late;
-    const double might_have_moved = object.may_have_moved;
-    advance(scene.objects[i], inputs.time.now_ns, object);
-    const bool changes =
-        object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
-    if (changes && inputs.cycle > 1) displaced.changed.push_back(i);
-  }
-  for (const std::uint32_t i : moving) displace(objects[i].reach, objects[i]);
-  summarise(objects, moving, displaced);
+  const bool any = oldest < kNoPose;
+  displaced_.oldest_pose_ns = any ? oldest : 0;
+  displaced_.newest_pose_ns = any ? newest : 0;
 }
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 // objects.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -23,12 +24,29 @@ struct Displacements {
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
 };
 
-// The objects that are not fixed.
-[[nodiscard]] std::vector<std::uint32_t> moving_objects(const Scene& scene);
+// The stage. It visits the objects that VisitTimes says are due, and keeps what the summary needs
+// of all others.
+class Displacer {
+ public:
+  explicit Displacer(const Scene& scene);
 
-// Advances the `moving` objects to this tick; their `reach` must be set. Does not allocate if the
-// capacity of `changed` covers all objects.
-void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs& inputs,
-              Displacements& displaced) noexcept;
+  // Advances the objects that are not fixed to this tick; their `reach` must be set.
+  void displace(Inputs& inputs) noexcept;
+  [[nodiscard]] const Displacements& result() const noexcept { return displaced_; }
+  // Adds an object to `changed`.
+  void add_changed(std::uint32_t object) noexcept { displaced_.changed.push_back(object); }
+
+ private:
+  void visit(std::uint32_t i, Inputs& inputs) noexcept;
+  void summarise(const std::vector<TrackedObject>& objects) noexcept;
+  void find_oldest_and_newest() noexcept;
+
+  const Scene& scene_;
+  Displacements displaced_;
+  std::vector<std::uint32_t> visited_;  // in this tick
+  std::vector<std::uint8_t> is_lost_;   // by object: not known, or discontinuous
+  std::size_t lost_ = 0;                // number of such objects
+  std::vector<std::int64_t> stamps_;    // by object: of the pose in use; kNoPose: none
+};
 
 }  // namespace clearance

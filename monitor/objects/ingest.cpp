@@ -33,6 +33,7 @@ std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs&
     return Reject::kUnknownObject;
   }
   if (inputs.robots.follows_joints(sample.object)) return Reject::kOtherSource;
+  inputs.visits.visit(sample.object);
   const Object& object = scene.objects[sample.object];
   const std::int64_t stamp_ns = tick_stamp(sample, object.age_limit_ns, scene, inputs);
   return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
@@ -47,7 +48,7 @@ std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs
   const auto cause =
       take(variable, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
            variables[sample.variable], variables[variable.first_of_joint].repetition);
-  if (!cause) inputs.robots.hear(sample.variable);
+  if (!cause && inputs.robots.hear(sample.variable)) inputs.visits.visit_all();
   return cause;
 }
 
@@ -73,12 +74,16 @@ void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
     if (object.input.has_value) forget_age(time.now_ns, object);
   }
   inputs.robots.forget_ages(time.now_ns);
+  inputs.visits.visit_all();
 }
 
 }  // namespace
 
 Inputs initial_inputs(const Scene& scene) {
-  Inputs inputs{.objects = {}, .robots = RobotInputs(scene), .sources = {}};
+  Inputs inputs{.objects = {},
+                .visits = VisitTimes(scene.objects.size()),
+                .robots = RobotInputs(scene),
+                .sources = {}};
   SourceNumbers numbers(scene);
   for (const Object& object : scene.objects) {
     TrackedObject& state = inputs.objects.emplace_back(initial_state(object));

@@ -10,6 +10,7 @@
 #include "monitor/inputs/source_clock.hpp"
 #include "monitor/objects/robot_inputs.hpp"
 #include "monitor/objects/tracked_object.hpp"
+#include "monitor/objects/visit_times.hpp"
 
 namespace clearance {
 
@@ -18,6 +19,7 @@ struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
   std::vector<TrackedObject> objects;  // same order as Scene::objects
+  VisitTimes visits;                   // by object; a sample makes its object due
   RobotInputs robots;
   std::array<SourceClock, kMaxSources> sources;    // indexed by PoseSample::source
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause

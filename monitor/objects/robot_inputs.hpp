@@ -32,8 +32,14 @@ class RobotInputs {
   // The index of the first object that is a link, or the number of objects if there are no links.
   [[nodiscard]] std::uint32_t first_link() const noexcept { return first_link_; }
 
-  // Call this when a position of this variable was taken.
-  void hear(std::uint32_t variable) noexcept { heard_[scene_.variables[variable].robot] = true; }
+  // Call this when a position of this variable was taken. Returns true if it is the first position
+  // of its robot, which then places its links.
+  bool hear(std::uint32_t variable) noexcept {
+    auto robot = heard_[scene_.variables[variable].robot];
+    const bool is_first = !robot;
+    robot = true;
+    return is_first;
+  }
 
   // True if the object is a link that joints place.
   [[nodiscard]] bool follows_joints(std::uint32_t object) const noexcept {

@@ -116,7 +116,7 @@ TrackedObject initial_state(const Object& object) {
   if (!object.fixed) return state;
   state.input.has_value = state.seen_last_tick = true;
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
-  state.input.age_ns = 0;
+  state.input.ages = false;
   state.twist_known = true;  // at rest
   state.plain = true;
   return state;
@@ -170,8 +170,9 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
     state.may_have_moved = state.unseen_by_joints;
   } else {
     state.may_have_moved = input.contradicted ? kInfinity
-                           : input.late       ? rounded_up(object.max_speed * seconds(input.age_ns))
-                                              : 0.0;
+                           : input.late
+                               ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
+                               : 0.0;
   }
   state.unseen_since =
       state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);

@@ -62,6 +62,12 @@ struct TrackedObject {
   Pose pose_before;  // if moved: the pose of the last tick; after `first_seen`: `pose`
   bool seen_last_tick = false;
 
+  // True if only a sample, a time at which it becomes late, or its joints can change this state: a
+  // tick that does not visit it leaves it as a visit would.
+  [[nodiscard]] bool at_rest() const noexcept {
+    if (follows_joints) return false;
+    return !input.has_value || (plain && !moved && accumulated_last_tick == accumulated);
+  }
   // True if there is a bound on where it is now.
   [[nodiscard]] bool known() const noexcept {
     return input.has_value && may_have_moved < kInfinity;

@@ -200,8 +200,8 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   const TrackedObject& b = view.objects[table.entries[pair].object_b];
   if (!is_known(bounds.status)) report = unknown_report();
   report.pair = pair;
-  report.age_a_ns = a.input.age_ns;
-  report.age_b_ns = b.input.age_ns;
+  report.age_a_ns = a.input.age_ns(view.now_ns);
+  report.age_b_ns = b.input.age_ns(view.now_ns);
   report.refresh_age_cycles = view.cycle - table.refreshed_cycle[pair];
   report.status = bounds.status;
   if (!is_known(bounds.status)) return;

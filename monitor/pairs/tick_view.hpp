@@ -16,6 +16,7 @@ struct TickView {
   const std::vector<PosedPart>& parts;
   std::uint64_t cycle;  // counts ticks from 1
   const PairTable& pairs;
+  std::int64_t now_ns = 0;  // the time of the tick
 };
 
 // A tick whose pairs are still being carried and evaluated. Functions that take this one write to
@@ -24,8 +25,8 @@ struct OpenTick : TickView {
   PairTable& table;  // the same as `pairs`
 
   OpenTick(const std::vector<TrackedObject>& the_objects, const std::vector<PosedPart>& the_parts,
-           std::uint64_t the_cycle, PairTable& the_table) noexcept
-      : TickView{the_objects, the_parts, the_cycle, the_table}, table(the_table) {}
+           std::uint64_t the_cycle, PairTable& the_table, std::int64_t the_time = 0) noexcept
+      : TickView{the_objects, the_parts, the_cycle, the_table, the_time}, table(the_table) {}
 };
 
 // An object is known not to be there.

@@ -12,9 +12,7 @@
 namespace clearance {
 namespace {
 
-double age_of(const TrackedObject& object) noexcept {
-  return rounded_up(seconds(object.input.age_ns));
-}
+double age_of(std::int64_t age_ns) noexcept { return rounded_up(seconds(age_ns)); }
 
 // Returns the unobserved motion of a late object, m: the lower bounds of its pairs are already
 // reduced by it.
@@ -145,8 +143,8 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const Separation& terms = *scene_.zones[zone.zone].separation;
   const TrackedObject &human = objects[member.human], &robot = objects[member.robot];
   out = unknown_separation(zone.zone, member.pair);
-  out.age_human_ns = human.input.age_ns;
-  out.age_robot_ns = robot.input.age_ns;
+  out.age_human_ns = member.human_is_first ? pair.age_a_ns : pair.age_b_ns;
+  out.age_robot_ns = member.human_is_first ? pair.age_b_ns : pair.age_a_ns;
 
   if (human.absent || robot.absent) {
     out.validity = SeparationValidity::kAbsent;
@@ -169,8 +167,8 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const Approach assumed{
       .human_speed = terms.human_speed,
       .robot_speed = robot_known ? robot_measured : std::max(robot_assumed, robot_measured),
-      .human_age = age_of(human),
-      .robot_age = age_of(robot),
+      .human_age = age_of(out.age_human_ns),
+      .robot_age = age_of(out.age_robot_ns),
       .human_counted = counted_in_bounds(human),
       .robot_counted = counted_in_bounds(robot)};
   out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;

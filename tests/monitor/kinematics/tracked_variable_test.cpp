@@ -48,7 +48,7 @@ class Variable : public testing::Test {
 TEST_F(Variable, IsUnknownUntilItsFirstPosition) {
   advance(joint_, 5 * kMs, state_);
   EXPECT_FALSE(state_.input.has_value);
-  EXPECT_EQ(state_.input.age_ns, -1);
+  EXPECT_EQ(state_.input.age_ns(5 * kMs), -1);
   EXPECT_EQ(take(at(5 * kMs, 0.3)), std::nullopt);
   EXPECT_TRUE(state_.input.has_value);
   EXPECT_EQ(state_.position, 0.3);

@@ -200,7 +200,7 @@ TEST(TrackedObject, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   EXPECT_TRUE(state.input.late);
   EXPECT_GE(state.may_have_moved, 0.2);
   EXPECT_NEAR(state.may_have_moved, 0.2, 1e-12);
-  EXPECT_EQ(state.input.age_ns, 100 * kTick);
+  EXPECT_EQ(state.input.age_ns(kStart + 100 * kTick), 100 * kTick);
   EXPECT_TRUE(state.known());
 
   advance(late_after(20 * kTick, kInfinity), kStart + 100 * kTick, state);
@@ -213,11 +213,11 @@ TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   TrackedObject state;
   take(sample, state);
   advance(late_after(0, 1.0), kLatest, state);
-  EXPECT_EQ(state.input.age_ns, kLatest);
+  EXPECT_EQ(state.input.age_ns(kLatest), kLatest);
   sample.stamp_ns = kLatest;
   take(sample, state);
   advance(late_after(0, 1.0), kEarliest, state);
-  EXPECT_EQ(state.input.age_ns, 0);
+  EXPECT_EQ(state.input.age_ns(kEarliest), 0);
 }
 
 }  // namespace
