@@ -23,7 +23,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/pose_batch.hpp"
@@ -64,6 +66,11 @@ class Repetition {
     last_ns_ = stamp_ns;
     if (!same) since_ns_ = stamp_ns;
   }
+  // The last stamp at which a value that repeats is not frozen.
+  [[nodiscard]] std::int64_t permitted_until(const MotionLimits& limits) const noexcept {
+    return limits.frozen_limit_ns > 0 ? less(since_ns_, -limits.frozen_limit_ns)
+                                      : std::numeric_limits<std::int64_t>::max();
+  }
   // True when the value has repeated for longer than the cell permits.
   [[nodiscard]] bool is_frozen(const MotionLimits& limits) const noexcept {
     return limits.frozen_limit_ns > 0 && elapsed(since_ns_, last_ns_) > limits.frozen_limit_ns;
@@ -89,6 +96,8 @@ class Reckoning {
   static constexpr std::int64_t kAgeLimits = 50;
   // The integration time while a value repeats, in age limits.
   static constexpr std::int64_t kRepeatAgeLimits = 10;
+  // Values are compared at most so often in an age limit. The steps between are summed up.
+  static constexpr std::int64_t kComparesAnAgeLimit = 8;
   // Over a longer gap, in age limits, the mean of two rates says nothing about the motion between.
   static constexpr std::int64_t kGapAgeLimits = 2;
   static constexpr double kRateError = 1.0 / 6.0;
@@ -101,27 +110,35 @@ class Reckoning {
                               const Metric& metric) noexcept {
     const std::int64_t age_ns = limits.age_limit_ns;
     if (!any_ || elapsed(last_ns_, stamp_ns) > kGapAgeLimits * age_ns) {
+      repeats_.any = false;
       start(value, rate, stamp_ns, metric);
-      repeats_.start(value, last_speed_, stamp_ns);
       return Agreement::kAgree;
     }
     const Step step = step_to(rate, stamp_ns, metric);
+    const bool stays = !same || stays_within_error(value, step, stamp_ns, limits, metric);
+    repeats_.any = same;
     if (elapsed(since_ns_, stamp_ns) > kAgeLimits * age_ns) {
       start(value, rate, stamp_ns, metric);
     } else {
-      integrate(step, rate, stamp_ns, metric);
+      integrate(step, rate, stamp_ns);
     }
-    if (!same || elapsed(repeats_.since_ns, stamp_ns) > kRepeatAgeLimits * age_ns) {
-      repeats_.start(value, last_speed_, stamp_ns);
-    } else if (repeats_.add(step, last_speed_, metric);
-               !metric.stay_within(largest_error(repeats_.path, repeats_.fastest, limits),
-                                   repeats_.led_to, value)) {
-      return Agreement::kValuesContradict;
-    }
+    if (!stays) return Agreement::kValuesContradict;
+    if (elapsed(compared_ns_, stamp_ns) < age_ns / kComparesAnAgeLimit) return Agreement::kAgree;
+    compared_ns_ = stamp_ns;
+    led_to_ = metric.moved(led_to_, std::exchange(to_add_, Rate{}));
     const Agreement agreement = compare(value, stamp_ns, limits, metric);
     if (agreement != Agreement::kAgree && !same) start(value, rate, stamp_ns, metric);
     return agreement;
   }
+
+  // The last stamp at which a value that repeats, with a rate of zero, continues both integrations
+  // without a change.
+  [[nodiscard]] std::int64_t unchanged_until(const MotionLimits& limits) const noexcept {
+    return std::min(less(since_ns_, -kAgeLimits * limits.age_limit_ns),
+                    less(repeats_.since_ns, -kRepeatAgeLimits * limits.age_limit_ns));
+  }
+  // Values like that were left out up to this stamp.
+  void catch_up(std::int64_t stamp_ns) noexcept { last_ns_ = stamp_ns; }
 
   // True if the rates have moved by more than any error.
   [[nodiscard]] bool has_moved(const MotionLimits& limits) const noexcept {
@@ -129,31 +146,39 @@ class Reckoning {
   }
 
  private:
-  // What the rates moved between two samples, and the length of that path.
+  // What the rates moved between two samples, the length of that path, and the last speed.
   struct Step {
     Rate change;
     double length;
+    double speed;
   };
   // The integration since a value began to repeat. An input that freezes late in the long
   // integration is detected as fast as one that freezes early.
   struct Repeats {
-    void start(const Value& value, double speed, std::int64_t stamp_ns) noexcept {
-      led_to = value;
-      path = 0.0;
-      fastest = speed;
-      since_ns = stamp_ns;
-    }
-    void add(const Step& step, double speed, const Metric& metric) noexcept {
-      fastest = std::max(fastest, speed);
-      if (step.length == 0.0) return;
-      led_to = metric.moved(led_to, step.change);
-      path += step.length;
-    }
+    bool any = false;  // the last sample repeated a value
     Value led_to{};
     double path = 0.0;
     double fastest = 0.0;
     std::int64_t since_ns = 0;
   };
+
+  // Adds a sample that repeats the value of the last one. Returns false if the rates say that the
+  // input has moved since.
+  [[nodiscard]] bool stays_within_error(const Value& value, const Step& step, std::int64_t stamp_ns,
+                                        const MotionLimits& limits, const Metric& metric) noexcept {
+    if (!repeats_.any ||
+        elapsed(repeats_.since_ns, stamp_ns) > kRepeatAgeLimits * limits.age_limit_ns) {
+      repeats_ = {true, value, 0.0, last_speed_, last_ns_};
+    }
+    repeats_.fastest = std::max(repeats_.fastest, step.speed);
+    if (step.length > 0.0) {
+      repeats_.led_to = metric.moved(repeats_.led_to, step.change);
+      repeats_.path += step.length;
+    }
+    if (repeats_.path == 0.0) return true;
+    return metric.stay_within(largest_error(repeats_.path, repeats_.fastest, limits),
+                              repeats_.led_to, value);
+  }
 
   // Farther than this, a value contradicts the rates that were integrated along `path`. Rates that
   // are an age limit late do not contain the last part of the motion yet. Instead they contain what
@@ -200,32 +225,34 @@ class Reckoning {
     path_ = way_ = 0.0;
     last_ = rate;
     last_speed_ = fastest_ = metric.length(rate);
-    since_ns_ = last_ns_ = step_ns_ = stamp_ns;
+    to_add_ = Rate{};
+    since_ns_ = last_ns_ = step_ns_ = compared_ns_ = stamp_ns;
   }
 
   // Trapezoidal rule: integrates the mean of the last rate and this one.
   [[nodiscard]] Step step_to(const Rate& rate, std::int64_t stamp_ns,
                              const Metric& metric) const noexcept {
     const double half = 0.5 * seconds(elapsed(last_ns_, stamp_ns));
-    return {Metric::scaled_sum(half, last_, rate), half * (last_speed_ + metric.length(rate))};
+    const double speed = metric.length(rate);
+    return {Metric::scaled_sum(half, last_, rate), half * (last_speed_ + speed), speed};
   }
-  void integrate(const Step& step, const Rate& rate, std::int64_t stamp_ns,
-                 const Metric& metric) noexcept {
-    led_to_ = metric.moved(led_to_, step.change);
+  void integrate(const Step& step, const Rate& rate, std::int64_t stamp_ns) noexcept {
+    to_add_ = Metric::scaled_sum(1.0, to_add_, step.change);
     path_ += step.length;
     last_ = rate;
-    last_speed_ = metric.length(rate);
+    last_speed_ = step.speed;
     fastest_ = std::max(fastest_, last_speed_);
     last_ns_ = stamp_ns;
   }
 
   bool any_ = false;
-  Value led_to_{};        // where the rates lead from the first value
+  Value led_to_{};        // where the rates lead from the first value, without `to_add_`
+  Rate to_add_{};         // what they moved since `compared_ns_`
   double path_ = 0.0;     // length of the integrated path
   double fastest_ = 0.0;  // the fastest speed since since_ns_
   Rate last_{};
   double last_speed_ = 0.0;
-  std::int64_t since_ns_ = 0, last_ns_ = 0;
+  std::int64_t since_ns_ = 0, last_ns_ = 0, compared_ns_ = 0;
   Repeats repeats_;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.
@@ -251,6 +278,10 @@ class FormerValue {
   [[nodiscard]] bool allows(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits,
                             const Metric& metric) const noexcept {
     return can_reach(metric, value_, value, elapsed(stamp_ns_, stamp_ns), limits);
+  }
+  // The last stamp at which follow() does nothing.
+  [[nodiscard]] std::int64_t unchanged_until(const MotionLimits& limits) const noexcept {
+    return less(stamp_ns_, -kAgeLimits * limits.age_limit_ns);
   }
   // Call this with every later value that is taken.
   void follow(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits) noexcept {
@@ -339,6 +370,17 @@ class Plausibility {
     former_.follow(value, stamp_ns, limits);
     other_place_.clear();
   }
+
+  // The last stamp at which a sample of the value in use changes nothing here. Its rate is zero, or
+  // it has none, as the sample before it.
+  [[nodiscard]] std::int64_t unchanged_until(bool has_rate, const Repetition& repetition,
+                                             const MotionLimits& limits) const noexcept {
+    const std::int64_t value =
+        std::min(former_.unchanged_until(limits), repetition.permitted_until(limits));
+    return has_rate ? std::min(value, reckoning_.unchanged_until(limits)) : value;
+  }
+  // Samples like that, with rates, were left out up to this stamp.
+  void catch_up(std::int64_t stamp_ns) noexcept { reckoning_.catch_up(stamp_ns); }
 
   // The age of the value in use is not known any more.
   void forget_age(const Value& in_use, std::int64_t in_use_ns) noexcept {

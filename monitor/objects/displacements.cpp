@@ -1,8 +1,6 @@
 #include "monitor/objects/displacements.hpp"
 
 #include <algorithm>
-#include <limits>
-#include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -22,23 +20,19 @@ class LargestTwo {
   double most_ = 0.0, second_ = 0.0;
 };
 
-// The stamp of an object that is fixed, or has no pose: later than any other.
-constexpr std::int64_t kNoPose = std::numeric_limits<std::int64_t>::max();
-
 std::int64_t stamp_of(const InputRecord& input) noexcept {
-  return input.has_value && input.ages ? input.stamp_ns : kNoPose;
+  return input.has_value && input.ages ? input.stamp_ns : PoseStamps::kNone;
 }
 
 // The last time at which the pose in use is not late.
 std::int64_t in_time_until(const TrackedObject& state, const Object& object) noexcept {
   const std::int64_t stamp = stamp_of(state.input);
-  return stamp == kNoPose ? kNoPose : less(stamp, -object.age_limit_ns);
+  return stamp == PoseStamps::kNone ? PoseStamps::kNone : less(stamp, -object.age_limit_ns);
 }
 
 }  // namespace
 
-Displacer::Displacer(const Scene& scene)
-    : scene_(scene), is_lost_(scene.objects.size()), stamps_(scene.objects.size(), kNoPose) {
+Displacer::Displacer(const Scene& scene) : scene_(scene), is_lost_(scene.objects.size()) {
   displaced_.changed.reserve(scene.objects.size());
   visited_.reserve(scene.objects.size());
 }
@@ -59,11 +53,7 @@ void Displacer::displace(Inputs& inputs) noexcept {
   // A loop for each step, so that no object waits for the roots and quotients of the one before it.
   for (const std::uint32_t i : visited_)
     clearance::displace(inputs.objects[i].reach, inputs.objects[i]);
-  for (const std::uint32_t i : visited_) {
-    const TrackedObject& object = inputs.objects[i];
-    if (object.at_rest()) inputs.visits.rest_until(i, in_time_until(object, scene_.objects[i]));
-  }
-  summarise(inputs.objects);
+  summarise(inputs);
 }
 
 void Displacer::visit(std::uint32_t i, Inputs& inputs) noexcept {
@@ -78,16 +68,15 @@ void Displacer::visit(std::uint32_t i, Inputs& inputs) noexcept {
 }
 
 // An object at rest has not moved, and is not late: it adds nothing to the sums.
-void Displacer::summarise(const std::vector<TrackedObject>& objects) noexcept {
-  bool any_new_stamp = false;
+void Displacer::summarise(Inputs& inputs) noexcept {
   LargestTwo unseen, farthest;
   for (const std::uint32_t i : visited_) {
-    const TrackedObject& object = objects[i];
+    const TrackedObject& object = inputs.objects[i];
     const bool is_lost = !object.known() || object.discontinuous;
-    lost_ = lost_ + is_lost - is_lost_[i];
+    if (is_lost != is_lost_[i]) lost_ = is_lost ? lost_ + 1 : lost_ - 1;
     is_lost_[i] = is_lost;
-    const std::int64_t stamp = stamp_of(object.input);
-    any_new_stamp = std::exchange(stamps_[i], stamp) != stamp || any_new_stamp;
+    inputs.stamps.set(i, stamp_of(object.input));
+    if (object.at_rest()) inputs.visits.rest_until(i, in_time_until(object, scene_.objects[i]));
     if (!object.known()) continue;
     unseen.add(object.may_have_moved);
     // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A
@@ -99,19 +88,9 @@ void Displacer::summarise(const std::vector<TrackedObject>& objects) noexcept {
   displaced_.any_lost = lost_ > 0;
   displaced_.most_unseen = unseen.sum();
   displaced_.most_displaced = farthest.sum();
-  if (any_new_stamp) find_oldest_and_newest();
-}
-
-void Displacer::find_oldest_and_newest() noexcept {
-  constexpr std::int64_t kOldest = std::numeric_limits<std::int64_t>::min();
-  std::int64_t oldest = kNoPose, newest = kOldest;
-  for (const std::int64_t stamp : stamps_) {
-    oldest = std::min(oldest, stamp);
-    newest = std::max(newest, stamp == kNoPose ? kOldest : stamp);
-  }
-  const bool any = oldest < kNoPose;
-  displaced_.oldest_pose_ns = any ? oldest : 0;
-  displaced_.newest_pose_ns = any ? newest : 0;
+  inputs.stamps.update();
+  displaced_.oldest_pose_ns = inputs.stamps.oldest();
+  displaced_.newest_pose_ns = inputs.stamps.newest();
 }
 
 }  // namespace clearance

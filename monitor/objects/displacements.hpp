@@ -38,15 +38,13 @@ class Displacer {
 
  private:
   void visit(std::uint32_t i, Inputs& inputs) noexcept;
-  void summarise(const std::vector<TrackedObject>& objects) noexcept;
-  void find_oldest_and_newest() noexcept;
+  void summarise(Inputs& inputs) noexcept;
 
   const Scene& scene_;
   Displacements displaced_;
   std::vector<std::uint32_t> visited_;  // in this tick
-  std::vector<std::uint8_t> is_lost_;   // by object: not known, or discontinuous
+  std::vector<bool> is_lost_;           // by object: not known, or discontinuous
   std::size_t lost_ = 0;                // number of such objects
-  std::vector<std::int64_t> stamps_;    // by object: of the pose in use; kNoPose: none
 };
 
 }  // namespace clearance

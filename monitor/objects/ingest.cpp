@@ -33,11 +33,17 @@ std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs&
     return Reject::kUnknownObject;
   }
   if (inputs.robots.follows_joints(sample.object)) return Reject::kOtherSource;
-  inputs.visits.visit(sample.object);
   const Object& object = scene.objects[sample.object];
   const std::int64_t stamp_ns = tick_stamp(sample, object.age_limit_ns, scene, inputs);
-  return take(object, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
-              inputs.objects[sample.object]);
+  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
+  TrackedObject& state = inputs.objects[sample.object];
+  if (take_at_rest(object, sample, stamp_ns, limits, state)) {
+    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -object.age_limit_ns));
+    inputs.stamps.set(sample.object, stamp_ns);
+    return std::nullopt;
+  }
+  inputs.visits.visit(sample.object);
+  return take(object, sample, stamp_ns, limits, state);
 }
 
 std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
@@ -82,6 +88,7 @@ void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
 Inputs initial_inputs(const Scene& scene) {
   Inputs inputs{.objects = {},
                 .visits = VisitTimes(scene.objects.size()),
+                .stamps = PoseStamps(scene.objects.size()),
                 .robots = RobotInputs(scene),
                 .sources = {}};
   SourceNumbers numbers(scene);

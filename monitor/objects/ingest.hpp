@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "monitor/inputs/source_clock.hpp"
+#include "monitor/objects/pose_stamps.hpp"
 #include "monitor/objects/robot_inputs.hpp"
 #include "monitor/objects/tracked_object.hpp"
 #include "monitor/objects/visit_times.hpp"
@@ -19,7 +20,8 @@ struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
   std::vector<TrackedObject> objects;  // same order as Scene::objects
-  VisitTimes visits;                   // by object; a sample makes its object due
+  VisitTimes visits;  // a sample makes its object due, unless the object is at rest
+  PoseStamps stamps;  // of the objects that are not fixed
   RobotInputs robots;
   std::array<SourceClock, kMaxSources> sources;    // indexed by PoseSample::source
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause

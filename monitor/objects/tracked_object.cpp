@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/mean_twist.hpp"
@@ -43,6 +44,10 @@ bool same_pose(const Pose& a, const Pose& b) noexcept {
   return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
 }
 
+bool is_zero(const Twist& twist) noexcept {
+  return twist.linear == Vec3::Zero() && twist.angular == Vec3::Zero();
+}
+
 // The sample is not a pose at all, whichever source sent it.
 std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
@@ -59,7 +64,8 @@ struct PoseCandidate {
   std::int64_t stamp_ns;
   TrackedObject& state;
   MotionLimits limits = motion_limits(object);
-  Pose pose = {};  // the sample's pose, normalised; set by malformed()
+  Pose pose = {};     // the sample's pose, normalised; set by malformed()
+  bool same = false;  // it is the pose in use; set by implausible()
 
   [[nodiscard]] std::optional<Reject> malformed() noexcept {
     const auto cause = clearance::malformed(sample);
@@ -69,6 +75,7 @@ struct PoseCandidate {
   [[nodiscard]] bool disputes() const noexcept;
   [[nodiscard]] std::optional<Reject> implausible() noexcept;
   void use() noexcept;
+  void rest_from_now() noexcept;
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {
     return state.plausibility.agree_for_ns(limits);
   }
@@ -82,9 +89,9 @@ bool PoseCandidate::disputes() const noexcept {
 }
 
 std::optional<Reject> PoseCandidate::implausible() noexcept {
+  same = state.input.has_value && same_pose(pose, state.pose);
   if (object.may_jump) return std::nullopt;
   if (!can_have_twist(object, state.landmarks, sample)) return Reject::kTooFast;
-  const bool same = state.input.has_value && same_pose(pose, state.pose);
   return state.plausibility.refuses(
       {.value = pose, .rate = sample.has_twist ? &sample.twist : nullptr, .stamp_ns = stamp_ns},
       state.input.has_value ? &state.pose : nullptr, state.input.stamp_ns, same, state.repetition,
@@ -106,6 +113,17 @@ void PoseCandidate::use() noexcept {
   }
   state.pose = pose;
   state.plausibility.use(pose, stamp_ns, !state.input.has_value, limits);
+  if (same && state.twist_known && is_zero(state.twist)) rest_from_now();
+}
+
+void PoseCandidate::rest_from_now() noexcept {
+  constexpr std::int64_t kAlways = std::numeric_limits<std::int64_t>::max();
+  const bool has_rate = sample.has_twist;
+  state.rest = {.holds = true,
+                .has_twist = has_rate,
+                .until_ns = object.may_jump ? kAlways
+                                            : state.plausibility.unchanged_until(
+                                                  has_rate, state.repetition, limits)};
 }
 
 }  // namespace
@@ -124,8 +142,30 @@ TrackedObject initial_state(const Object& object) {
 
 std::optional<Reject> take(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
                            const SampleLimits& limits, TrackedObject& state) noexcept {
+  if (state.rest.holds && state.rest.has_twist) state.plausibility.catch_up(state.input.stamp_ns);
+  state.rest.holds = false;
   return take(PoseCandidate{object, sample, stamp_ns, state}, {sample.source, stamp_ns}, limits,
               object.age_limit_ns, state.input);
+}
+
+// The checks that are left out would find what they found at the sample before.
+bool take_at_rest(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+                  const SampleLimits& limits, TrackedObject& state) noexcept {
+  InputRecord& input = state.input;
+  if (!state.rest.holds || stamp_ns > state.rest.until_ns || stamp_ns < input.stamp_ns ||
+      elapsed(input.stamp_ns, stamp_ns) > 2 * object.age_limit_ns ||
+      elapsed(limits.now_ns, stamp_ns) > limits.future_ns ||
+      sample.source != input.owner.source() || input.contradiction.holds(limits.now_ns)) {
+    return false;
+  }
+  if (sample.has_twist != state.rest.has_twist ||
+      !same_pose(sample.world_from_object, state.pose) ||
+      (sample.has_twist && !is_zero(sample.twist))) {
+    return false;
+  }
+  input.owner.take(sample.source, limits.now_ns);
+  input.stamp_ns = stamp_ns;
+  return true;
 }
 
 void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
@@ -145,6 +185,7 @@ void follow(const LinkState& link, const Object& object, TrackedObject& state) n
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.input.forget_age(now_ns);
   state.plausibility.forget_age(state.pose, state.input.stamp_ns);
+  state.rest.holds = false;
   state.repetition.add(false, now_ns);
 }
 

@@ -16,7 +16,15 @@
 
 namespace clearance {
 
-struct TrackedObject {
+// While an object repeats its pose, and its twist is zero, nothing changes but the stamp. Until a
+// check is due again, such samples are taken without it.
+struct Rest {
+  bool holds = false;         // the last sample was of this kind
+  bool has_twist = false;     // that sample had a twist
+  std::int64_t until_ns = 0;  // stamp of the last sample that needs no check
+};
+
+struct alignas(64) TrackedObject {
   // The members up to `accumulated_turn` fill one cache line. Every pair reads them from both its
   // objects in each tick.
   bool moved = false;          // the pose differs from that of the last tick
@@ -39,18 +47,20 @@ struct TrackedObject {
   double bend = 0.0;
   double accumulated_turn = 0.0;  // accumulated Motion::turn
 
-  // The reports of its pairs read the members from here to the first ones of `input`.
+  // The reports of its pairs read the members from here to `twist_known`. A sample of an object at
+  // rest reads and writes those up to the first ones of `input`.
   double reach = kInfinity;  // bounding radius around its origin, m; set by displace()
   // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
   // 5e-7.
   Pose pose;
+  Rest rest;
+  InputRecord input;  // of its poses; for a link that follows joints, of the joints
   // The twist sent with the pose, else the mean velocity between the last two poses. It is zero and
   // not known after the first pose, and after a gap longer than twice the age limit. Over such a
   // gap a mean says nothing about the present.
   Twist twist;
   Motion motion;  // since the last tick; zero if nothing was known then
   bool twist_known = false;
-  InputRecord input;  // of its poses; for a link that follows joints, of the joints
   // For a link that follows joints, the joints determine its lateness and its unobserved motion, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
   double unseen_by_joints = 0.0;
@@ -100,6 +110,12 @@ struct TrackedObject {
 [[nodiscard]] std::optional<Reject> take(const Object& object, const PoseSample& sample,
                                          std::int64_t stamp_ns, const SampleLimits& limits,
                                          TrackedObject& state) noexcept;
+
+// Takes a sample of an object at rest, or returns false if the sample needs the checks of take().
+// It then has changed nothing.
+[[nodiscard]] bool take_at_rest(const Object& object, const PoseSample& sample,
+                                std::int64_t stamp_ns, const SampleLimits& limits,
+                                TrackedObject& state) noexcept;
 
 // Takes the state of a robot's link from its joints. A link that was known and no longer is may be
 // anywhere. The same applies if the rounding error of its pose exceeds Object::pose_error.
