@@ -282,7 +282,7 @@ TEST(CellFile, ADirectoryIsNoCell) {
   EXPECT_TRUE(std::holds_alternative<std::vector<CellError>>(read_cell("/")));
 }
 
-TEST(CellFile, TheExampleOfTheReferenceIsAGoodCell) {
+TEST(CellFile, TheExampleOfTheReadmeIsAGoodCell) {
   std::ifstream stream(std::string(CLEARANCE_SOURCE) + "/config/README.md");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   const std::string fence = "```yaml\n";
