@@ -134,9 +134,9 @@ class Reckoning {
                                   const MotionLimits& limits, const Metric& metric) noexcept {
     if constexpr (Metric::kRatesMayBeWrong) {
       const double step = metric.distance(step_from_, value);
-      const bool moves_less = way_ + step < (1.0 - kRateError) * path_;
+      const bool moves_less = value_path_ + step < (1.0 - kRateError) * path_;
       if (elapsed(step_ns_, stamp_ns) >= limits.age_limit_ns) {
-        way_ += step;
+        value_path_ += step;
         step_from_ = value;
         step_ns_ = stamp_ns;
       }
@@ -154,7 +154,7 @@ class Reckoning {
              const Metric& metric) noexcept {
     any_ = true;
     led_to_ = step_from_ = value;
-    path_ = way_ = 0.0;
+    path_ = value_path_ = 0.0;
     last_ = rate;
     last_speed_ = fastest_ = metric.length(rate);
     since_ns_ = last_ns_ = step_ns_ = stamp_ns;
@@ -181,7 +181,7 @@ class Reckoning {
   std::int64_t since_ns_ = 0, last_ns_ = 0;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.
-  double way_ = 0.0;
+  double value_path_ = 0.0;
   Value step_from_{};
   std::int64_t step_ns_ = 0;
 };

@@ -26,7 +26,7 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
   displaced.any_lost = false;
   displaced.newest_pose_ns = displaced.oldest_pose_ns = 0;
   bool any = false;
-  LargestTwo unseen, farthest;
+  LargestTwo unobserved, farthest;
   for (const std::uint32_t i : moving) {
     const TrackedObject& object = objects[i];
     displaced.any_lost = displaced.any_lost || !object.known() || object.discontinuous;
@@ -37,14 +37,14 @@ void summarise(const std::vector<TrackedObject>& objects, std::span<const std::u
         any ? std::min(displaced.oldest_pose_ns, object.input.stamp_ns) : object.input.stamp_ns;
     any = true;
     if (!object.known()) continue;
-    unseen.add(object.may_have_moved);
+    unobserved.add(object.may_have_moved);
     // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A
     // discontinuity counts as infinite.
     const double displacement = object.known_displacement();
     const double bounded = displacement < kInfinity ? displacement : 0.0;
-    farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));
+    farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unobserved + bounded));
   }
-  displaced.most_unseen = unseen.sum();
+  displaced.most_unobserved = unobserved.sum();
   displaced.most_displaced = farthest.sum();
 }
 
@@ -81,7 +81,7 @@ void displace(const Scene& scene, std::span<const std::uint32_t> moving, Inputs&
         object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
     if (changes && inputs.cycle > 1) displaced.changed.push_back(i);
   }
-  for (const std::uint32_t i : moving) displace(objects[i].reach, objects[i]);
+  for (const std::uint32_t i : moving) displace(objects[i].bounding_radius, objects[i]);
   summarise(objects, moving, displaced);
 }
 
