@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "config/cell/ros_reader.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
 

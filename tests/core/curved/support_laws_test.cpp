@@ -116,8 +116,7 @@ TEST(SupportLaws, TheSupportPartHasTheSupportValueOfTheWholeBody) {
     const BodyView view{&body, body.bounding_radius};
     for (const double epsilon : {0.0, 1e-1, 1e-3, 1e-9, 1e-15}) {
       along_all_axes(epsilon, [&](const Vec3& m) {
-        const std::int32_t part = support_part(view, m);
-        const double value = support_value(view, part, m);
+        const double value = support_value(view, support_part(view, m), m);
         for (std::int32_t part = 0; part < parts_of(body); ++part) {
           EXPECT_LE(support_value(view, part, m), value + 1e-15 * body.bounding_radius);
         }
