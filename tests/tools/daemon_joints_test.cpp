@@ -158,7 +158,12 @@ TEST_F(DaemonJoints, OfAThousandHertzAreAllTaken) {
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
   double at = 0.0;
-  EXPECT_TRUE(step_until(1, sent(joints, {at += 1e-4, 0, 0.1}), [&] { return at > 0.1; }));
+  EXPECT_TRUE(step_until(
+      1,
+      [&] {
+        joints.send(kNames, {at += 1e-4, 0, 0.1});
+      },
+      [&] { return at > 0.1; }));
   EXPECT_TRUE(is("finger", PairStatus::kConverged));
   EXPECT_FALSE(daemon->told("batches-lost")) << daemon->output();
 }
