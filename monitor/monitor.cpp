@@ -223,7 +223,7 @@ Monitor::State::State(const Scene& the_scene)
       differentiation(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    inputs.objects[i].reach = spheres[i].bounding_radius;
+    inputs.objects[i].bounding_radius = spheres[i].bounding_radius;
   presence_changed.reserve(scene.objects.size());
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());

@@ -18,7 +18,7 @@ void check_object(const TrackedObject& object) noexcept {
   CLEARANCE_INVARIANT(is_usable(object.pose));
   CLEARANCE_INVARIANT(object.displacement >= 0.0);
   CLEARANCE_INVARIANT(object.accumulated_last_tick <= object.accumulated);
-  CLEARANCE_INVARIANT(0.0 <= object.may_have_moved && object.may_have_moved <= object.unseen_since);
+  CLEARANCE_INVARIANT(0.0 <= object.may_have_moved && object.may_have_moved <= object.unobserved);
 }
 
 void check_zones(std::span<const ZoneReport> zones) noexcept {

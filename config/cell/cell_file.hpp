@@ -1,4 +1,4 @@
-// Reads a YAML file (config/README.md lists its keys) into a checked Cell.
+// Reads a YAML file (config/KEYS.md lists its keys) into a checked Cell.
 #pragma once
 
 #include <filesystem>

@@ -11,11 +11,11 @@
 
 #include "config/cell/joint_reader.hpp"
 #include "config/cell/link_parts.hpp"
+#include "config/cell/robot_base_reader.hpp"
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
 #include "config/scene/plausible_joints.hpp"
-#include "config/text/spelling.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
 
@@ -33,9 +33,7 @@ struct RobotKeys {
   RosStamps stamps = RosStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
-  std::int64_t frozen_limit_ns = 0;        // of all joints
-  JointVariable base;                      // its limits and its source, if it follows a frame
-  double base_max_turn_speed = kInfinity;  // rad/s
+  std::int64_t frozen_limit_ns = 0;  // of all joints
 };
 
 class RobotReader {
@@ -59,9 +57,6 @@ class RobotReader {
   void read_packages(const YamlNode& node, RobotKeys& keys);
   void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
-  void read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys, RobotBase& base);
-  void read_base_limits(MapReader& map, RobotKeys& keys);
-  void stand_on(const YamlNode& node, const RobotList& list, RobotBase& base);
   void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
   void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
              PairExceptions& may_touch);
@@ -76,8 +71,7 @@ class RobotReader {
   ObjectList& objects_;
   std::map<std::string, int> names_;         // of robots, with their lines
   std::set<std::string> links_, variables_;  // of all robots
-  // The poses in the world of all links that nothing moves, of all robots.
-  std::map<std::string, Pose> at_rest_;
+  PosesAtRest at_rest_;                      // of all robots
 };
 
 void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
@@ -173,89 +167,6 @@ bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& 
   return true;
 }
 
-// Reads the base: a link of an earlier robot, or an object. If nothing moves it, the base becomes a
-// pose in the world.
-void RobotReader::stand_on(const YamlNode& node, const RobotList& list, RobotBase& base) {
-  const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
-  if (!name) return;
-  std::vector<std::string> names;
-  for (std::uint32_t robot = 0; robot < list.robots.size(); ++robot) {
-    const std::vector<RobotLink>& links = list.robots[robot].links;
-    for (std::uint32_t link = 0; link < links.size(); ++link) {
-      names.push_back(links[link].name);
-      if (links[link].name != *name) continue;
-      const auto place = at_rest_.find(*name);
-      if (place != at_rest_.end())
-        base.base_from_root = compose(place->second, base.base_from_root);
-      if (place == at_rest_.end()) base.kind = RobotBase::Kind::kLink;
-      base.robot = robot;
-      base.link = link;
-      return;
-    }
-  }
-  for (std::uint32_t i = 0; i < objects_.objects.size(); ++i) {
-    const Object& object = objects_.objects[i];
-    names.push_back(object.name);
-    if (object.name != *name) continue;
-    if (object.fixed) {
-      base.base_from_root = compose(object.world_from_object, base.base_from_root);
-    } else {
-      base.kind = RobotBase::Kind::kObject;
-      base.object = i;
-    }
-    return;
-  }
-  if (!objects_.names_known) return;
-  diagnostics_.add(node,
-                   fmt::format("found the unknown name '{}'; expected an object, or a link of "
-                               "a robot that stands before this one{}",
-                               *name, did_you_mean(*name, names)));
-}
-
-void RobotReader::read_base(const YamlNode& node, const RobotList& list, RobotKeys& keys,
-                            RobotBase& base) {
-  MapReader map(node, "a robot's base", diagnostics_);
-  Pose pose;
-  if (const YamlNode* given = map.optional("pose"))
-    pose = quantities_.pose(*given).value_or(Pose{});
-  const YamlNode* on = map.optional("on");
-  const YamlNode* frame = map.optional("frame");
-  if (frame != nullptr) {
-    base.frame = read_frame(*frame, diagnostics_).value_or("");
-    base.frame_from_root = pose;
-    if (on != nullptr) {
-      diagnostics_.add(*on, "found 'on' of a base that follows a frame; expected one of the two");
-    }
-    read_base_limits(map, keys);
-  } else {
-    base.base_from_root = pose;
-    if (on != nullptr) stand_on(*on, list, base);
-  }
-  map.refuse_unknown_keys();
-}
-
-// Reads the keys that apply to a base that follows a frame of tf.
-void RobotReader::read_base_limits(MapReader& map, RobotKeys& keys) {
-  if (const YamlNode* age = map.optional("age_limit_ms")) {
-    keys.base.age_limit_ns = quantities_.milliseconds(*age, "the age limit", kPositive).value_or(0);
-  }
-  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
-    keys.base.frozen_limit_ns =
-        quantities_.milliseconds(*frozen, "the frozen limit", kPositive).value_or(0);
-  }
-  if (const YamlNode* speed = map.optional("max_speed")) {
-    keys.base.max_speed =
-        quantities_.speed(*speed, "the largest speed of the base").value_or(kInfinity);
-  }
-  if (const YamlNode* speed = map.optional("max_turn_speed")) {
-    keys.base_max_turn_speed =
-        quantities_.turn_speed(*speed, "the largest turning speed of the base").value_or(kInfinity);
-  }
-  if (const YamlNode* source = map.optional("source")) {
-    keys.base.source = read_source(*source, diagnostics_).value_or("");
-  }
-}
-
 // Joints are sorted so that a parent link precedes its children: whether it moves is then known.
 void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
                             Robot& robot) {
@@ -334,21 +245,6 @@ void RobotReader::account_for_rounding(const RobotList& list) {
   }
 }
 
-// The first seven variables are those of the floating joint that carries the base. An entry of a
-// quaternion changes at most at half the rate of the rotation.
-void limit_base(const RobotKeys& keys, std::vector<JointVariable>& variables) {
-  constexpr std::uint32_t kFirstOfQuaternion = 3;
-  for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
-    JointVariable& variable = variables[i];
-    variable.source = keys.base.source.empty() ? "" : base_source(keys.base.source);
-    if (keys.base.age_limit_ns > 0) variable.age_limit_ns = keys.base.age_limit_ns;
-    variable.frozen_limit_ns = keys.base.frozen_limit_ns;
-    variable.speed_tolerance = 1.0;
-    variable.max_speed =
-        i < kFirstOfQuaternion ? keys.base.max_speed : 0.5 * keys.base_max_turn_speed;
-  }
-}
-
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   RobotKeys keys = read_keys(node);
   auto description = read_description({.urdf = keys.urdf_node,
@@ -356,8 +252,11 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
                                        .files = {file_, keys.packages, revision_.root()},
                                        .prefix = keys.prefix},
                                       diagnostics_, revision_);
-  RobotBase base;
-  if (keys.base_node != nullptr) read_base(*keys.base_node, list, keys, base);
+  StatedBase stated;
+  if (keys.base_node != nullptr) {
+    stated = read_robot_base(*keys.base_node, list.robots, at_rest_, objects_, quantities_);
+  }
+  const RobotBase& base = stated.base;
   Robot robot;
   if (description) {
     if (!base.frame.empty()) float_root(description->model, keys.prefix, keys.name);
@@ -378,7 +277,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
     variable.frozen_limit_ns = keys.frozen_limit_ns;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
   }
-  if (!base.frame.empty()) limit_base(keys, variables);
+  if (!base.frame.empty()) limit_base(stated, variables);
   if (keys.joints_node != nullptr)
     read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());

@@ -55,22 +55,7 @@ class ShapeReader {
  private:
   std::optional<std::variant<MeshParts, ShapeError>> read_kind(const std::string& kind,
                                                                const YamlNode& node);
-  std::optional<ShapeResult> read_simple_kind(const std::string& kind, const YamlNode& node);
-  std::optional<ShapeResult> read_box(const YamlNode& node) const;
-  std::optional<ShapeResult> read_sphere(const YamlNode& node) const;
-  std::optional<ShapeResult> read_capsule(const YamlNode& node) const;
-  std::optional<ShapeResult> read_ellipsoid(const YamlNode& node) const;
-  std::optional<ShapeResult> read_cylinder_or_cone(const std::string& kind,
-                                                   const YamlNode& node) const;
-  std::optional<ShapeResult> read_truncated_cone(const YamlNode& node) const;
-  std::optional<ShapeResult> read_prism(const YamlNode& node) const;
-  std::optional<ShapeResult> read_half_space(const YamlNode& node) const;
-  std::optional<ShapeResult> read_polyhedron(const YamlNode& node) const;
   std::optional<std::variant<MeshParts, ShapeError>> read_mesh(const YamlNode& node);
-  // One inequality normal . x <= offset, in metres.
-  std::optional<HalfSpace> read_row(const YamlNode& node) const;
-  std::optional<double> read_rounding(MapReader& map) const;
-  static std::optional<ShapeResult> rounded(std::optional<double> rounding, ShapeResult made);
   Vec3 read_scale(const YamlNode* node) const;
   const Quantities& quantities_;
   MeshLibrary& meshes_;

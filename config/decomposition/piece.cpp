@@ -34,31 +34,32 @@ const std::array<Vec3, kDirections>& directions() {
 
 }  // namespace
 
-Outline::Outline() { reach_.fill(-std::numeric_limits<double>::infinity()); }
+Outline::Outline() { support_value_.fill(-std::numeric_limits<double>::infinity()); }
 
 void Outline::add(const Vec3& point) {
   const auto& all = directions();
   for (std::size_t k = 0; k < kDirections; ++k) {
-    const double reach = all[k].dot(point);
-    if (reach <= reach_[k]) continue;
-    reach_[k] = reach;
-    farthest_[k] = point;
+    const double value = all[k].dot(point);
+    if (value <= support_value_[k]) continue;
+    support_value_[k] = value;
+    support_point_[k] = point;
   }
 }
 
 void Outline::add(const Outline& other) {
   for (std::size_t k = 0; k < kDirections; ++k) {
-    if (other.reach_[k] <= reach_[k]) continue;
-    reach_[k] = other.reach_[k];
-    farthest_[k] = other.farthest_[k];
+    if (other.support_value_[k] <= support_value_[k]) continue;
+    support_value_[k] = other.support_value_[k];
+    support_point_[k] = other.support_point_[k];
   }
 }
 
 std::vector<Vec3> Outline::points() const {
   std::vector<Vec3> points;
   for (std::size_t k = 0; k < kDirections; ++k) {
-    if (std::isinf(reach_[k])) continue;
-    if (std::ranges::find(points, farthest_[k]) == points.end()) points.push_back(farthest_[k]);
+    if (std::isinf(support_value_[k])) continue;
+    if (std::ranges::find(points, support_point_[k]) == points.end())
+      points.push_back(support_point_[k]);
   }
   return points;
 }

@@ -28,8 +28,8 @@ class Outline {
   [[nodiscard]] std::vector<Vec3> points() const;  // each once
 
  private:
-  std::array<double, kDirections> reach_;
-  std::array<Vec3, kDirections> farthest_;
+  std::array<double, kDirections> support_value_;
+  std::array<Vec3, kDirections> support_point_;
 };
 
 // A convex cell: the piece of a mesh, and of the space that it encloses, between these planes.

@@ -45,8 +45,8 @@ class TriangleTree {
                   const Eigen::AlignedBox3d& box, const Visit& visit) const {
     const Node& node = nodes_[at];
     const double height = plane.normal.dot(node.box.center()) - plane.offset;
-    const double reach = 0.5 * plane.normal.cwiseAbs().dot(node.box.sizes());
-    if (std::abs(height) > reach + slack || !node.box.intersects(box)) return;
+    const double extent = 0.5 * plane.normal.cwiseAbs().dot(node.box.sizes());
+    if (std::abs(height) > extent + slack || !node.box.intersects(box)) return;
     for (std::uint32_t i = node.first; i < node.first + node.count; ++i) visit(i);
     if (node.count > 0) return;
     visit_near(node.first, plane, slack, box, visit);

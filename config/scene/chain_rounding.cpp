@@ -20,8 +20,8 @@ struct LinkBound {
 // Returns the largest length that a position can have, m.
 double largest(const JointVariable& variable, double multiplier, double offset) noexcept {
   const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
-  const double way = std::isfinite(limit) ? limit + variable.limit_tolerance : kSureWay;
-  return std::abs(multiplier) * way + std::abs(offset);
+  const double length = std::isfinite(limit) ? limit + variable.limit_tolerance : kLargestLength;
+  return std::abs(multiplier) * length + std::abs(offset);
 }
 
 // Returns the largest length by which the joint moves its link, as ForwardKinematics computes it.
@@ -30,9 +30,9 @@ double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& varia
     case JointType::kPrismatic:
       return largest(variables[joint.variable], joint.multiplier, joint.offset);
     case JointType::kPlanar:
-      return 2.0 * kSureWay;
+      return 2.0 * kLargestLength;
     case JointType::kFloating:
-      return 3.0 * kSureWay;
+      return 3.0 * kLargestLength;
     default:
       return 0.0;
   }
@@ -68,7 +68,7 @@ std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
   std::vector<std::vector<LinkBound>> bounds;
   for (const Robot& robot : robots) {
     LinkBound parent;
-    if (robot.base.kind == RobotBase::Kind::kObject) parent.farthest = kSureWay;
+    if (robot.base.kind == RobotBase::Kind::kObject) parent.farthest = kLargestLength;
     if (robot.base.kind == RobotBase::Kind::kLink)
       parent = bounds[robot.base.robot][robot.base.link];
     std::vector<LinkBound>& links = bounds.emplace_back();
@@ -84,16 +84,16 @@ std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
 }
 
 void account_for(const ChainError& error, Object& object) {
-  double reach = 0.0;
+  double radius = 0.0;
   for (const Part& part : object.parts) {
     for (const Vec3& anchor : part.shape.anchors) {
-      reach = std::max(reach, transform(part.object_from_part, anchor).norm());
+      radius = std::max(radius, transform(part.object_from_part, anchor).norm());
     }
-    reach = std::max(reach, part.object_from_part.position.norm() + part.shape.bounding_radius);
-    reach += part.shape.radius + part.shape.position_error;
+    radius = std::max(radius, part.object_from_part.position.norm() + part.shape.bounding_radius);
+    radius += part.shape.radius + part.shape.position_error;
   }
   // The lever arm is doubled: at run time, the error is taken for a sphere around the parts.
-  object.pose_error = kRounded * (error.shift + 2.0 * error.turn * reach);
+  object.pose_error = kRounded * (error.shift + 2.0 * error.turn * radius);
   for (Part& part : object.parts) {
     ConvexBody& shape = part.shape;
     shape.position_error += object.pose_error;

@@ -18,7 +18,7 @@ inline constexpr double kPositionError = 0x1p-51;
 
 // The bounds hold up to this length, m. It limits the positions of joints that state no limits, and
 // the distance of an object that carries a robot.
-inline constexpr double kSureWay = 1e4;
+inline constexpr double kLargestLength = 1e4;
 // The bounds hold for all angles up to 1e6 rad. Every joint gets the error of a rescaled angle of
 // at least this size, rad, although only joints that mimic others rescale angles.
 inline constexpr double kLeastSureAngle = 1e3;

@@ -22,11 +22,11 @@ ShapeError bad_radius(const char* what) {
   return {std::string(what) + " is not a length from 0 to 1e12 m"};
 }
 
-// reach: the bounding radius of the shape without the radius around it, m.
-ShapeResult body_of(const CurvedShape& shape, double reach, double rounding) {
+// bounding_radius: the bounding radius of the shape without the radius around it, m.
+ShapeResult body_of(const CurvedShape& shape, double bounding_radius, double rounding) {
   ConvexBody body;
   body.curved = shape;
-  body.bounding_radius = reach;
+  body.bounding_radius = bounding_radius;
   add_query_tables(body);
   return rounded_by(rounding, std::move(body));
 }

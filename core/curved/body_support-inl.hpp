@@ -63,12 +63,12 @@ struct BodySupport {
 inline constexpr double kNearAxis = 0x1p-20;
 
 // The part of the greatest support value, height m_z + radius |D m|, and that value.
-struct FarthestPart {
+struct SupportPart {
   std::int32_t number;
   double value;
 };
-HWY_INLINE FarthestPart farthest_part(const RoundParts& round, double m_z, double length) {
-  FarthestPart found{0, round.parts[0].height * m_z + round.parts[0].radius * length};
+HWY_INLINE SupportPart support_part(const RoundParts& round, double m_z, double length) {
+  SupportPart found{0, round.parts[0].height * m_z + round.parts[0].radius * length};
   for (std::int32_t i = 1; i < round.count; ++i) {
     const double value = round.parts[i].height * m_z + round.parts[i].radius * length;
     if (value > found.value) found = {i, value};
@@ -81,11 +81,11 @@ HWY_INLINE BodySupport round_support(const Side& side, const SideParts& active, 
   const double length = norm(scaled);
   if (side.round.count == 1) return {true, kNone, length, over(semi_axes * scaled, length)};
   if (side.round.has_caps && HWY_UNLIKELY(!(length > kNearAxis))) return BodySupport();
-  const FarthestPart farthest = farthest_part(side.round, lane(m, 2), length);
+  const SupportPart largest = support_part(side.round, lane(m, 2), length);
   BodySupport found;
   found.known = true;
-  found.value = farthest.value;
-  if (!active.has(farthest.number)) found.missing = farthest.number;
+  found.value = largest.value;
+  if (!active.has(largest.number)) found.missing = largest.number;
   double radius = 0.0, height = 0.0;
   for (std::size_t i = 0; i < active.count; ++i) {
     const Disc& part = side.round.parts[active.number(i)];

@@ -74,8 +74,8 @@ decltype(auto) visit(const BodyView& view, F&& f) {
 }
 
 // ---- support, in the body's frame; m: unit ----
-[[nodiscard]] inline std::int32_t farthest_part(const BodyView& view, const Vec3& m) noexcept {
-  return visit(view, [&](const auto& body) { return body.farthest_part(m); });
+[[nodiscard]] inline std::int32_t support_part(const BodyView& view, const Vec3& m) noexcept {
+  return visit(view, [&](const auto& body) { return body.support_part(m); });
 }
 [[nodiscard]] inline Vec3 support_point(const BodyView& view, std::int32_t part,
                                         const Vec3& m) noexcept {

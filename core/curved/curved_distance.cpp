@@ -58,9 +58,7 @@ DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
   const Facet& facet = plane.facets.front();
   const Mat3& r = a_from_b.rotation;
   const BodyView view{&body, body.bounding_radius};
-  const auto nearest = [&](const Vec3& m) {
-    return support_point(view, farthest_part(view, m), m);
-  };
+  const auto nearest = [&](const Vec3& m) { return support_point(view, support_part(view, m), m); };
   CurvedConclusion found;
   Vec3 to_body = facet.normal, point;  // frame A
   if (of_a) {

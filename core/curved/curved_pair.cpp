@@ -30,7 +30,7 @@ SupportPair CurvedPair::support_of(const PartPair& parts, const Vec3& n) const n
 }
 
 SupportPair CurvedPair::support(const Vec3& n) noexcept {
-  const PartPair parts{farthest_part(a, n), farthest_part(b, -direction_to_b(n))};
+  const PartPair parts{support_part(a, n), support_part(b, -direction_to_b(n))};
   const SupportPair found = support_of(parts, n);
   if (found.value > bounds.lower) {
     bounds.lower = found.value;

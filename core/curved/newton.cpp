@@ -17,7 +17,7 @@ namespace clearance::HWY_NAMESPACE {
 HWY_INLINE std::int32_t first_part(const Side& side, Vec4 m) {
   if (!side.is_round()) return support(side.body, vec3(m)).anchor;
   const double length = norm(side.semi_axes() * m);
-  const std::int32_t part = farthest_part(side.round, lane(m, 2), length).number;
+  const std::int32_t part = support_part(side.round, lane(m, 2), length).number;
   return side.round.has_caps && !(length > kNearAxis) ? first_planar_face(side.body) + part : part;
 }
 inline HWY_NOINLINE Vec4 start(const Side& a, const Side& b, const RelativePose4& a_from_b, Vec4 x,

@@ -22,7 +22,7 @@ class Polyhedron : public BodyDefaults {
   [[nodiscard]] std::int32_t parts() const noexcept {
     return anchors() * (static_cast<std::int32_t>(body_.rays.size()) + 1);
   }
-  [[nodiscard]] std::int32_t farthest_part(const Vec3& m) const noexcept {
+  [[nodiscard]] std::int32_t support_part(const Vec3& m) const noexcept {
     double steepest = 0.0;
     std::int32_t ray = 0;
     for (std::size_t i = 0; i < body_.rays.size(); ++i) {
@@ -46,7 +46,7 @@ class Polyhedron : public BodyDefaults {
   // Among all vertices of the support set along m, the support point along `towards`.
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3& towards,
                                               double tolerance) const noexcept {
-    const double top = m.dot(support_point(farthest_part(m), m));
+    const double top = m.dot(support_point(support_part(m), m));
     double greatest = -kInfinity;
     PointOfPart found;
     for (std::int32_t i = 0; i < parts(); ++i) {

@@ -51,7 +51,7 @@ class WideMinkowskiDifference {
 
  private:
   // Unbounded bodies are cut off four times farther out than the closest points can be.
-  static Vec3 cut_off_support(const ConvexBody& body, const Vec3& m, double reach) noexcept {
+  static Vec3 cut_off_support(const ConvexBody& body, const Vec3& m, double extent) noexcept {
     Vec3 point = body.anchors[support(body, m).anchor];
     const Ray* steepest = nullptr;
     double slope = 0.0;
@@ -62,7 +62,7 @@ class WideMinkowskiDifference {
         steepest = &ray;
       }
     }
-    if (steepest) point += (4.0 * reach / steepest->direction.norm()) * steepest->direction;
+    if (steepest) point += (4.0 * extent / steepest->direction.norm()) * steepest->direction;
     return point;
   }
   [[nodiscard]] Wide to_a(const Vec3& v) const noexcept {

@@ -20,7 +20,7 @@ class Ellipsoid : public BodyDefaults {
   [[nodiscard]] double support_value(const Vec3& m) const noexcept {
     return d_.cwiseProduct(m).norm();
   }
-  [[nodiscard]] std::int32_t farthest_part(const Vec3&) const noexcept { return 0; }
+  [[nodiscard]] std::int32_t support_part(const Vec3&) const noexcept { return 0; }
   [[nodiscard]] Vec3 support_point(std::int32_t, const Vec3& m) const noexcept {
     return clearance::support_point(SemiAxes(d_.data()), kWhole, scaled(m));
   }

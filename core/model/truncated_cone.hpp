@@ -33,7 +33,7 @@ class TruncatedCone : public BodyDefaults {
     return std::max(clearance::support_value(discs_[0], m, across),
                     clearance::support_value(discs_[1], m, across));
   }
-  [[nodiscard]] std::int32_t farthest_part(const Vec3& m) const noexcept {
+  [[nodiscard]] std::int32_t support_part(const Vec3& m) const noexcept {
     const double across = scaled(m).length;
     return clearance::support_value(discs_[1], m, across) >
                    clearance::support_value(discs_[0], m, across)

@@ -26,7 +26,7 @@ double share_of_a(double usual_a, double usual_b) noexcept {
 // the last tick. A discontinuity does not count here: it makes every zone of the object active by
 // itself.
 double displacement_since_last_tick(const TrackedObject& object) noexcept {
-  return object.unseen_since + (object.discontinuous ? 0.0 : object.known_displacement());
+  return object.unobserved + (object.discontinuous ? 0.0 : object.known_displacement());
 }
 
 }  // namespace

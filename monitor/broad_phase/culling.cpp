@@ -149,7 +149,7 @@ UntouchedPairs Culling::untouched(const Displacements& displaced) const noexcept
   return {.any = updated_.size() < known_.known(),
           .horizon = broad_phase_.horizon(),
           .waiting_lower = broad_phase_.waiting_lower(),
-          .most_unobserved = displaced.most_unseen,
+          .most_unobserved = displaced.most_unobserved,
           .most_displaced = displaced.most_displaced};
 }
 

@@ -2,7 +2,7 @@
 // sides need.
 //
 // Use find_package(clearance COMPONENTS client) and link clearance::client. Messages have the C
-// types of idl/clearance.idl (clearance_msg_Distances, ...); idl/README.md documents every field
+// types of idl/clearance.idl (clearance_msg_Distances, ...); idl/FIELDS.md documents every field
 // and unit. Constructors throw DdsError; other functions throw only if they say so. An object is
 // used by one thread at a time, and its connection outlives it.
 #pragma once

@@ -30,7 +30,7 @@ void JointLog::update_robot(std::uint32_t robot,
   const std::string& name = scene_.robots[robot].name;
   std::map<std::pair<State, State>, std::pair<Names, std::int64_t>> changes;
   std::map<std::pair<std::string, std::string>, Names> rivals;
-  Names unseen;
+  Names unheard;
   for (std::uint32_t i = 0; i < joints._length; ++i) {
     const clearance_msg_JointAge& joint = joints._buffer[i];
     if (scene_.variables[joint.variable].robot != robot) continue;
@@ -41,7 +41,7 @@ void JointLog::update_robot(std::uint32_t robot,
     State& before = states_[joint.variable];
     // The intake reports which frame of a base is missing.
     if (now == State::kUnseen && !scene_.robots[robot].is_of_base(joint.variable))
-      unseen.emplace_back(joint.name);
+      unheard.emplace_back(joint.name);
     if (now != before) {
       auto& [names, age_ns] = changes[{before, now}];
       names.emplace_back(joint.name);
@@ -60,10 +60,10 @@ void JointLog::update_robot(std::uint32_t robot,
     log_line(lines::kTwoJointSources, name, sources.first, sources.second,
              listed(names, kNamesALine));
   }
-  if (unseen.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
+  if (unheard.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
   silence_said_[robot] = true;
-  log_line(lines::kJointsSilent, counted(unseen.size(), "joint"), name, listed(unseen, kNamesALine),
-           senders());
+  log_line(lines::kJointsSilent, counted(unheard.size(), "joint"), name,
+           listed(unheard, kNamesALine), senders());
 }
 
 void JointLog::log_change(const std::string& robot, State before, State now, const Names& names,

@@ -201,9 +201,9 @@ class Reckoning {
                                   const MotionLimits& limits, const Metric& metric) noexcept {
     if constexpr (Metric::kRatesMayBeWrong) {
       const double step = metric.distance(step_from_, value);
-      const bool moves_less = way_ + step < (1.0 - kRateError) * path_;
+      const bool moves_less = value_path_ + step < (1.0 - kRateError) * path_;
       if (elapsed(step_ns_, stamp_ns) >= limits.age_limit_ns) {
-        way_ += step;
+        value_path_ += step;
         step_from_ = value;
         step_ns_ = stamp_ns;
       }
@@ -222,7 +222,7 @@ class Reckoning {
              const Metric& metric) noexcept {
     any_ = true;
     led_to_ = step_from_ = value;
-    path_ = way_ = 0.0;
+    path_ = value_path_ = 0.0;
     last_ = rate;
     last_speed_ = fastest_ = metric.length(rate);
     to_add_ = Rate{};
@@ -256,9 +256,23 @@ class Reckoning {
   Repeats repeats_;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.
-  double way_ = 0.0;
+  double value_path_ = 0.0;
   Value step_from_{};
   std::int64_t step_ns_ = 0;
+};
+
+// A value, and its stamp in the tick's time.
+template <class Metric>
+struct StampedValue {
+  using Value = typename Metric::Value;
+  Value value{};
+  std::int64_t stamp_ns = 0;
+
+  // True if the input can get from this value to a later one.
+  [[nodiscard]] bool allows(const Value& later, std::int64_t later_ns, const MotionLimits& limits,
+                            const Metric& metric) const noexcept {
+    return can_reach(metric, value, later, elapsed(stamp_ns, later_ns), limits);
+  }
 };
 
 // An older value of the stream in use. The input must be able to get from it to each new value.
@@ -271,26 +285,23 @@ class FormerValue {
   static constexpr std::int64_t kAgeLimits = 6;
 
   // Starts from the first value of a stream.
-  void set(const Value& value, std::int64_t stamp_ns) noexcept {
-    value_ = value;
-    stamp_ns_ = stamp_ns;
-  }
+  void set(const Value& value, std::int64_t stamp_ns) noexcept { former_ = {value, stamp_ns}; }
   [[nodiscard]] bool allows(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits,
                             const Metric& metric) const noexcept {
-    return can_reach(metric, value_, value, elapsed(stamp_ns_, stamp_ns), limits);
+    return former_.allows(value, stamp_ns, limits, metric);
   }
   // The last stamp at which follow() does nothing.
   [[nodiscard]] std::int64_t unchanged_until(const MotionLimits& limits) const noexcept {
-    return less(stamp_ns_, -kAgeLimits * limits.age_limit_ns);
+    return less(former_.stamp_ns, -kAgeLimits * limits.age_limit_ns);
   }
   // Call this with every later value that is taken.
   void follow(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits) noexcept {
-    if (elapsed(stamp_ns_, stamp_ns) > kAgeLimits * limits.age_limit_ns) set(value, stamp_ns);
+    if (elapsed(former_.stamp_ns, stamp_ns) > kAgeLimits * limits.age_limit_ns)
+      set(value, stamp_ns);
   }
 
  private:
-  Value value_{};
-  std::int64_t stamp_ns_ = 0;
+  StampedValue<Metric> former_;
 };
 
 // Detects values that stay at a place where the input cannot be.
@@ -307,21 +318,20 @@ class OtherPlace {
   // Returns true if the values have stayed long enough. Stamps are in the tick's time.
   [[nodiscard]] bool add(const Value& value, std::int64_t stamp_ns, const MotionLimits& limits,
                          const Metric& metric) noexcept {
-    const std::int64_t passed_ns = elapsed(last_ns_, stamp_ns);
-    const bool stays = any_ && passed_ns <= std::max(kGapNs, 2 * limits.age_limit_ns) &&
-                       can_reach(metric, value_, value, passed_ns, limits);
+    const std::int64_t largest_gap_ns = std::max(kGapNs, 2 * limits.age_limit_ns);
+    const bool stays = any_ && elapsed(last_.stamp_ns, stamp_ns) <= largest_gap_ns &&
+                       last_.allows(value, stamp_ns, limits, metric);
     if (!stays) since_ns_ = stamp_ns;
     any_ = true;
-    value_ = value;
-    last_ns_ = stamp_ns;
+    last_ = {value, stamp_ns};
     return elapsed(since_ns_, stamp_ns) >= kTakenAfterNs;
   }
   void clear() noexcept { any_ = false; }
 
  private:
   bool any_ = false;
-  Value value_{};
-  std::int64_t since_ns_ = 0, last_ns_ = 0;
+  StampedValue<Metric> last_;
+  std::int64_t since_ns_ = 0;
 };
 
 // All checks of one input.

@@ -30,12 +30,12 @@ double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 }  // namespace
 
-double LinkState::may_have_moved(double reach) const noexcept {
-  return rounded_up(unseen_shift + swept(unseen_turn, reach));
+double LinkState::may_have_moved(double radius) const noexcept {
+  return rounded_up(unobserved_shift + swept(unobserved_turn, radius));
 }
 
-double LinkState::error(double reach) const noexcept {
-  return rounded_up(shift_error + turn_error * reach);
+double LinkState::error(double radius) const noexcept {
+  return rounded_up(shift_error + turn_error * radius);
 }
 
 // The pose and velocity of a joint's child link in the frame of its parent link.
@@ -43,16 +43,16 @@ struct ForwardKinematics::Placement {
   bool known = true, velocity_known = true, late = false, contradicted = false;
   std::int64_t stamp_ns = kNoStamp;
   Eigen::Quaterniond turn;
-  Vec3 step = Vec3::Zero();                            // m
-  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();  // m/s, rad/s
-  double unseen_shift = 0.0, unseen_turn = 0.0;        // as in LinkState
-  double largest_angle = 0.0, largest_slide = 0.0;     // for rounding errors, rad, m
+  Vec3 step = Vec3::Zero();                              // m
+  Vec3 linear = Vec3::Zero(), angular = Vec3::Zero();    // m/s, rad/s
+  double unobserved_shift = 0.0, unobserved_turn = 0.0;  // as in LinkState
+  double largest_angle = 0.0, largest_slide = 0.0;       // for rounding errors, rad, m
 };
 
 // One position of a joint after mimicry: value, velocity, unobserved motion, and the largest
 // magnitude that rounding errors depend on.
 struct ForwardKinematics::Position {
-  double value = 0.0, speed = 0.0, unseen = 0.0, largest = 0.0;
+  double value = 0.0, speed = 0.0, unobserved = 0.0, largest = 0.0;
   bool is_rescaled = false;  // value has rounding errors
 };
 
@@ -69,7 +69,7 @@ ForwardKinematics::Position ForwardKinematics::read(const RobotJoint& joint, std
   const double factor = std::abs(joint.multiplier);
   return {.value = scaled + joint.offset,
           .speed = joint.multiplier * state.velocity,
-          .unseen = factor == 0.0 ? 0.0 : rounded_up(factor * state.may_have_moved),
+          .unobserved = factor == 0.0 ? 0.0 : rounded_up(factor * state.may_have_moved),
           .largest = std::abs(scaled) + std::abs(joint.offset),
           .is_rescaled = joint.rescales()};
 }
@@ -81,15 +81,15 @@ void ForwardKinematics::turn(const Position& angle, const JointFrame& frame,
   // Mimicry can multiply the angle.
   placed.known = placed.known && angle.largest <= kLargestJoint;
   placed.angular = angle.speed * frame.axis;
-  placed.unseen_turn = std::min(angle.unseen, kAcross);
+  placed.unobserved_turn = std::min(angle.unobserved, kAcross);
   placed.largest_angle = angle.is_rescaled ? angle.largest : 0.0;
 }
 
-void ForwardKinematics::slide(const Position& way, const Vec3& along, Placement& placed) noexcept {
-  placed.step += way.value * along;
-  placed.linear += way.speed * along;
-  placed.unseen_shift = rounded_up(placed.unseen_shift + way.unseen);
-  placed.largest_slide += way.largest;
+void ForwardKinematics::slide(const Position& path, const Vec3& along, Placement& placed) noexcept {
+  placed.step += path.value * along;
+  placed.linear += path.speed * along;
+  placed.unobserved_shift = rounded_up(placed.unobserved_shift + path.unobserved);
+  placed.largest_slide += path.largest;
 }
 
 // A quaternion that is not of unit length leaves the joint unknown, like an entry that was never
@@ -117,8 +117,8 @@ void ForwardKinematics::turn_freely(const RobotJoint& joint, const JointFrame& f
                    (twice * rate.z()) * frame.axis;
   // The sent quaternion is of unit length to 1e-3. Normalisation at most doubles a change of the
   // entries, and |R2 - R1| is at most twice the change of the unit quaternion.
-  const double unseen = 4.01 * (x.unseen + y.unseen + z.unseen + w.unseen);
-  placed.unseen_turn = std::min(unseen, kAcross);
+  const double unobserved = 4.01 * (x.unobserved + y.unobserved + z.unobserved + w.unobserved);
+  placed.unobserved_turn = std::min(unobserved, kAcross);
 }
 
 ForwardKinematics::Placement ForwardKinematics::placement(
@@ -194,10 +194,11 @@ void ForwardKinematics::carry(const LinkState& parent, const Placement& placed,
         (parent.twist.linear + cross(parent.twist.angular, step)) + times(rotation, placed.linear);
   }
 
-  // The joints before this one rotate the link at its displaced distance, `far` plus unseen_shift.
-  link.unseen_turn = rounded_up(parent.unseen_turn + placed.unseen_turn);
-  link.unseen_shift = rounded_up(parent.unseen_shift + placed.unseen_shift +
-                                 swept(parent.unseen_turn, far + placed.unseen_shift));
+  // The joints before this one rotate the link at its displaced distance, `far` plus
+  // unobserved_shift.
+  link.unobserved_turn = rounded_up(parent.unobserved_turn + placed.unobserved_turn);
+  link.unobserved_shift = rounded_up(parent.unobserved_shift + placed.unobserved_shift +
+                                     swept(parent.unobserved_turn, far + placed.unobserved_shift));
 
   link.turn_error =
       rounded_up(parent.turn_error + kJointError + kPositionError * placed.largest_angle);
@@ -214,7 +215,7 @@ void ForwardKinematics::place_root(std::uint32_t robot, std::span<const LinkStat
   if (base.kind == RobotBase::Kind::kLink) parent = links_[first_link_[base.robot] + base.link];
   if (base.kind == RobotBase::Kind::kObject) {
     parent = bases[robot];
-    if (parent.late) parent.unseen_shift = kInfinity;
+    if (parent.late) parent.unobserved_shift = kInfinity;
   }
   Placement placed;
   placed.turn = base.base_from_root.orientation;

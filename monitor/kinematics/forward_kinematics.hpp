@@ -26,16 +26,16 @@ struct LinkState {
   Pose pose;    // world_from_link; of unit length to 2^-50 for each joint
   Twist twist;  // zero unless velocity_known
 
-  // Since the stamps, no point within r of the link's origin has moved farther than unseen_shift +
-  // unseen_turn r, m. The bound is 0 unless the link is late. It is infinite if a late joint has
-  // neither a speed nor limits.
-  double unseen_shift = 0.0, unseen_turn = 0.0;
+  // Since the stamps, no point within r of the link's origin has moved farther than
+  // unobserved_shift + unobserved_turn r, m. The bound is 0 unless the link is late. It is infinite
+  // if a late joint has neither a speed nor limits.
+  double unobserved_shift = 0.0, unobserved_turn = 0.0;
   // Rounding displaces no point within r of the link's origin farther than shift_error + turn_error
   // r from its exact place, m.
   double shift_error = 0.0, turn_error = 0.0;
 
-  [[nodiscard]] double may_have_moved(double reach) const noexcept;
-  [[nodiscard]] double error(double reach) const noexcept;
+  [[nodiscard]] double may_have_moved(double radius) const noexcept;
+  [[nodiscard]] double error(double radius) const noexcept;
 };
 
 class ForwardKinematics {
@@ -73,7 +73,7 @@ class ForwardKinematics {
                                      std::span<const TrackedVariable> variables,
                                      Placement& placed) noexcept;
   static void turn(const Position& angle, const JointFrame& frame, Placement& placed) noexcept;
-  static void slide(const Position& way, const Vec3& along, Placement& placed) noexcept;
+  static void slide(const Position& path, const Vec3& along, Placement& placed) noexcept;
   static void turn_freely(const RobotJoint& joint, const JointFrame& frame,
                           std::span<const TrackedVariable> variables, Placement& placed) noexcept;
 

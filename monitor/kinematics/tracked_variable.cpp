@@ -78,17 +78,17 @@ struct PositionCandidate {
   // Without a sent velocity, the mean since the last position is used; two equal stamps give none.
   // A mean over an interval is the velocity of half an interval ago, so it is late when that is.
   void use() const noexcept {
-    const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
+    const std::int64_t interval_ns = elapsed(state.input.stamp_ns, stamp_ns);
     const bool sent = has_usable_velocity(variable, sample);
     state.velocities_contradict = state.plausibility.rates_contradict();
     if (sent && !state.velocities_contradict) {
       state.velocity = sample.velocity;
       state.velocity_known = true;
-    } else if (state.input.has_value && apart_ns > 0) {
-      state.velocity_known = apart_ns / 2 <= variable.age_limit_ns;
-      state.velocity = state.velocity_known
-                           ? metric.difference(state.position, sample.position) / seconds(apart_ns)
-                           : 0.0;
+    } else if (state.input.has_value && interval_ns > 0) {
+      state.velocity_known = interval_ns / 2 <= variable.age_limit_ns;
+      state.velocity = state.velocity_known ? metric.difference(state.position, sample.position) /
+                                                  seconds(interval_ns)
+                                            : 0.0;
     }
     state.sent_speed = speed_of(sample);
     state.position = sample.position;

@@ -32,7 +32,7 @@ double turn_error(const Motion& motion) noexcept {
 }  // namespace
 
 double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept {
-  const bool from_a = b.reach <= a.reach;
+  const bool from_a = b.bounding_radius <= a.bounding_radius;
   const BodyMotion& resting = from_a ? a : b;
   const BodyMotion& moving = from_a ? b : a;
   const Motion& frame = resting.motion;
@@ -50,7 +50,7 @@ double relative_displacement(const BodyMotion& a, const BodyMotion& b) noexcept 
   const double of_origin = (shift - turning_frame.cross(between)).norm() + kShiftUnderflow +
                            turn_error(frame) * distance + frame_turn * shifted;
   const double sizes = frame.shift + body.shift + frame_turn * (distance + shifted);
-  return rounded_up(of_origin + swept(turning, moving.reach) + kVelocityError * sizes);
+  return rounded_up(of_origin + swept(turning, moving.bounding_radius) + kVelocityError * sizes);
 }
 
 }  // namespace clearance

@@ -10,8 +10,8 @@ namespace clearance {
 struct BodyMotion {
   const Pose& before;
   const Pose& now;
-  const Motion& motion;  // between the two
-  double reach;          // bounding radius around its origin, m
+  const Motion& motion;    // between the two
+  double bounding_radius;  // around its origin, m
 };
 
 // Bounds the displacement since the last tick of any point of either object in the frame of the

@@ -52,7 +52,7 @@ void Displacer::displace(Inputs& inputs) noexcept {
   inputs.visits.each_due(first_link, count, now_ns, visit_due);
   // A loop for each step, so that no object waits for the roots and quotients of the one before it.
   for (const std::uint32_t i : visited_)
-    clearance::displace(inputs.objects[i].reach, inputs.objects[i]);
+    clearance::displace(inputs.objects[i].bounding_radius, inputs.objects[i]);
   summarise(inputs);
 }
 
@@ -69,7 +69,7 @@ void Displacer::visit(std::uint32_t i, Inputs& inputs) noexcept {
 
 // An object at rest has not moved, and is not late: it adds nothing to the sums.
 void Displacer::summarise(Inputs& inputs) noexcept {
-  LargestTwo unseen, farthest;
+  LargestTwo unobserved, farthest;
   for (const std::uint32_t i : visited_) {
     const TrackedObject& object = inputs.objects[i];
     const bool is_lost = !object.known() || object.discontinuous;
@@ -78,15 +78,15 @@ void Displacer::summarise(Inputs& inputs) noexcept {
     inputs.stamps.set(i, stamp_of(object.input));
     if (object.at_rest()) inputs.visits.rest_until(i, in_time_until(object, scene_.objects[i]));
     if (!object.known()) continue;
-    unseen.add(object.may_have_moved);
+    unobserved.add(object.may_have_moved);
     // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A
     // discontinuity counts as infinite.
     const double displacement = object.known_displacement();
     const double bounded = displacement < kInfinity ? displacement : 0.0;
-    farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unseen_since + bounded));
+    farthest.add(object.discontinuous ? kInfinity : rounded_up(object.unobserved + bounded));
   }
   displaced_.any_lost = lost_ > 0;
-  displaced_.most_unseen = unseen.sum();
+  displaced_.most_unobserved = unobserved.sum();
   displaced_.most_displaced = farthest.sum();
   inputs.stamps.update();
   displaced_.oldest_pose_ns = inputs.stamps.oldest();

@@ -16,10 +16,10 @@ struct Displacements {
   // first tick these are all objects.
   std::vector<std::uint32_t> changed;
   bool any_lost = false;  // an object is not known, or has made a discontinuity
-  // Bounds for any two known objects together, m. `most_unseen` (U) bounds their unobserved motion.
-  // `most_displaced` bounds how far they were, at any instant since the last tick, from where they
-  // are now.
-  double most_unseen = 0.0, most_displaced = 0.0;
+  // Bounds for any two known objects together, m. `most_unobserved` (U) bounds their unobserved
+  // motion. `most_displaced` bounds how far they were, at any instant since the last tick, from
+  // where they are now.
+  double most_unobserved = 0.0, most_displaced = 0.0;
   // Newest and oldest stamp of the moving objects' poses in use; 0: none is in use.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
 };
@@ -30,7 +30,7 @@ class Displacer {
  public:
   explicit Displacer(const Scene& scene);
 
-  // Advances the objects that are not fixed to this tick; their `reach` must be set.
+  // Advances the objects that are not fixed to this tick; their `bounding_radius` must be set.
   void displace(Inputs& inputs) noexcept;
   [[nodiscard]] const Displacements& result() const noexcept { return displaced_; }
   // Adds an object to `changed`.

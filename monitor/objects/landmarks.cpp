@@ -54,7 +54,7 @@ Landmarks::Landmarks(const Object& object) {
     if (apart(farthest) == 0.0) break;
     points_[count_++] = farthest;
   }
-  for (std::size_t i = 0; i < count_; ++i) reach_ = std::max(reach_, points_[i].norm());
+  for (std::size_t i = 0; i < count_; ++i) radius_ = std::max(radius_, points_[i].norm());
 }
 
 bool Landmarks::each_stays_within(double limit, const Pose& from, const Pose& to) const noexcept {
@@ -65,7 +65,7 @@ bool Landmarks::each_stays_within(double limit, const Pose& from, const Pose& to
 }
 
 bool Landmarks::are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept {
-  const double turn = twist.angular.squaredNorm() * (reach_ * reach_);
+  const double turn = twist.angular.squaredNorm() * (radius_ * radius_);
   if (2.0 * (twist.linear.squaredNorm() + turn) <= limit * limit) return true;
   return std::all_of(points_.begin(), points_.begin() + static_cast<std::ptrdiff_t>(count_),
                      [&](const Vec3& point) {

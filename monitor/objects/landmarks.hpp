@@ -33,7 +33,7 @@ class Landmarks {
     const auto &p = from.orientation.coeffs(), &q = to.orientation.coeffs();
     const double turn = 4.0 * std::min((q - p).squaredNorm(), (q + p).squaredNorm());
     const double shift = (to.position - from.position).squaredNorm();
-    return 2.0 * (shift + turn * (reach_ * reach_)) <= limit * limit ||
+    return 2.0 * (shift + turn * (radius_ * radius_)) <= limit * limit ||
            each_stays_within(limit, from, to);
   }
   // Returns true if no landmark is faster than `limit`, m/s.
@@ -41,7 +41,7 @@ class Landmarks {
   // Approximate path length of the landmarks, m, for a translation in m and a rotation in rad. With
   // a twist in m/s and rad/s it is their speed, m/s.
   [[nodiscard]] double length(const Twist& way) const noexcept {
-    return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (reach_ * reach_));
+    return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (radius_ * radius_));
   }
   [[nodiscard]] static Twist scaled_sum(double factor, const Twist& a, const Twist& b) noexcept {
     return {.linear = factor * (a.linear + b.linear), .angular = factor * (a.angular + b.angular)};
@@ -57,7 +57,7 @@ class Landmarks {
 
   std::array<Vec3, 4> points_;  // in the object's frame, m
   std::size_t count_ = 0;
-  double reach_ = 0.0;  // bounding radius of the landmarks around the frame's origin, m
+  double radius_ = 0.0;  // bounding radius of the landmarks around the frame's origin, m
 };
 
 [[nodiscard]] MotionLimits motion_limits(const Object& object) noexcept;

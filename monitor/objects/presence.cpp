@@ -7,7 +7,7 @@ void make_absent(TrackedObject& state) noexcept {
   TrackedObject fresh;
   fresh.absent = true;
   fresh.landmarks = state.landmarks;
-  fresh.reach = state.reach;
+  fresh.bounding_radius = state.bounding_radius;
   fresh.accumulated = fresh.accumulated_last_tick = state.accumulated;
   fresh.accumulated_turn = state.accumulated_turn;
   fresh.input.rejected = state.input.rejected;

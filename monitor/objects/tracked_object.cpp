@@ -99,15 +99,15 @@ std::optional<Reject> PoseCandidate::implausible() noexcept {
 }
 
 void PoseCandidate::use() noexcept {
-  const std::int64_t apart_ns = elapsed(state.input.stamp_ns, stamp_ns);
+  const std::int64_t interval_ns = elapsed(state.input.stamp_ns, stamp_ns);
   if (sample.has_twist) {
     state.twist = sample.twist;
     state.twist_known = true;
-  } else if (state.input.has_value && apart_ns > 0) {  // equal stamps give no velocity
+  } else if (state.input.has_value && interval_ns > 0) {  // equal stamps give no velocity
     // A mean over a time is the velocity of half that time ago. It is accepted for as long as a
     // pose of that age is.
-    state.twist_known = apart_ns / 2 <= object.age_limit_ns;
-    const double seconds = static_cast<double>(apart_ns) * 1e-9;
+    state.twist_known = interval_ns / 2 <= object.age_limit_ns;
+    const double seconds = static_cast<double>(interval_ns) * 1e-9;
     state.twist =
         state.twist_known ? mean_twist(state.pose, sample.world_from_object, seconds) : Twist{};
   }
@@ -132,7 +132,7 @@ TrackedObject initial_state(const Object& object) {
   TrackedObject state;
   state.landmarks = Landmarks(object);
   if (!object.fixed) return state;
-  state.input.has_value = state.seen_last_tick = true;
+  state.input.has_value = state.pose_last_tick_known = true;
   state.pose = state.pose_last_tick = state.pose_before = object.world_from_object;
   state.input.ages = false;
   state.twist_known = true;  // at rest
@@ -169,10 +169,10 @@ bool take_at_rest(const Object& object, const PoseSample& sample, std::int64_t s
 }
 
 void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
-  const bool known = link.known && link.error(state.reach) <= object.pose_error;
+  const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
   state.follows_joints = true;
   state.joints_late = !known || link.late;
-  state.unseen_by_joints = known ? link.may_have_moved(state.reach) : kInfinity;
+  state.unobserved_by_joints = known ? link.may_have_moved(state.bounding_radius) : kInfinity;
   if (!known) return;
   state.joints_contradicted = link.contradicted;
   state.pose = as_queries_take_it(link.pose);
@@ -192,49 +192,50 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
   InputRecord& input = state.input;
   if (object.fixed || !input.has_value) return;
-  const double unseen_before = state.seen_last_tick ? state.may_have_moved : kInfinity;
-  state.first_seen = !(unseen_before < kInfinity);
-  state.moved = !state.seen_last_tick || !same_pose(state.pose_last_tick, state.pose);
-  state.motion = state.moved && state.seen_last_tick
+  const double unobserved_before = state.pose_last_tick_known ? state.may_have_moved : kInfinity;
+  state.newly_known = !(unobserved_before < kInfinity);
+  state.moved = !state.pose_last_tick_known || !same_pose(state.pose_last_tick, state.pose);
+  state.motion = state.moved && state.pose_last_tick_known
                      ? motion_between(state.pose_last_tick, state.pose)
                      : Motion{};
   if (state.moved) {
-    state.pose_before = state.first_seen ? state.pose : state.pose_last_tick;
+    state.pose_before = state.newly_known ? state.pose : state.pose_last_tick;
     state.pose_last_tick = state.pose;
   }
-  state.seen_last_tick = true;
+  state.pose_last_tick_known = true;
 
   input.advance(now_ns, object.age_limit_ns);
   if (state.follows_joints) {
     input.contradicted = state.joints_contradicted;
     input.late = state.joints_late;
-    state.may_have_moved = state.unseen_by_joints;
+    state.may_have_moved = state.unobserved_by_joints;
   } else {
     state.may_have_moved = input.contradicted ? kInfinity
                            : input.late
                                ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
                                : 0.0;
   }
-  state.unseen_since =
-      state.first_seen ? state.may_have_moved : std::max(unseen_before, state.may_have_moved);
+  state.unobserved =
+      state.newly_known ? state.may_have_moved : std::max(unobserved_before, state.may_have_moved);
 }
 
-void displace(double reach, TrackedObject& state) noexcept {
-  state.reach = reach;
-  state.displacement = state.moved ? moved_at_most(state.motion, reach) : 0.0;
-  state.bend = state.moved ? bend_at_most(state.motion, reach) : 0.0;
+void displace(double bounding_radius, TrackedObject& state) noexcept {
+  state.bounding_radius = bounding_radius;
+  state.displacement = state.moved ? moved_at_most(state.motion, bounding_radius) : 0.0;
+  state.bend = state.moved ? bend_at_most(state.motion, bounding_radius) : 0.0;
   state.accumulated_last_tick = state.accumulated;
   if (state.motion.turn > 0.0)
     state.accumulated_turn = rounded_up(state.accumulated_turn + state.motion.turn);
   state.discontinuous = false;
   if (!(state.displacement < kJump)) {
-    state.discontinuous = !state.first_seen && (reach < kInfinity || !(state.motion.shift < kJump));
+    state.discontinuous =
+        !state.newly_known && (bounding_radius < kInfinity || !(state.motion.shift < kJump));
     state.displacement = kInfinity;
   } else if (state.displacement > 0.0) {
     state.accumulated = rounded_up(state.accumulated + state.displacement);
   }
-  state.plain = state.input.has_value && !state.first_seen && !state.input.late &&
-                !state.discontinuous && state.unseen_since == 0.0;
+  state.plain = state.input.has_value && !state.newly_known && !state.input.late &&
+                !state.discontinuous && state.unobserved == 0.0;
 }
 
 }  // namespace clearance

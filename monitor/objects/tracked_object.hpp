@@ -28,7 +28,7 @@ struct alignas(64) TrackedObject {
   // The members up to `accumulated_turn` fill one cache line. Every pair reads them from both its
   // objects in each tick.
   bool moved = false;          // the pose differs from that of the last tick
-  bool first_seen = false;     // nothing was known of it at the last tick
+  bool newly_known = false;    // nothing was known of it at the last tick
   bool discontinuous = false;  // it was known, but its pose jumped farther than anything moves
   // No special case applies: known and on time now and at the last tick, and no discontinuity in
   // between.
@@ -37,7 +37,7 @@ struct alignas(64) TrackedObject {
   // Bound of the motion since its stamp, m. It is 0 unless late, and infinity if no speed is
   // stated.
   double may_have_moved = 0.0;
-  double unseen_since = 0.0;  // the larger of it now and at the last tick, if known then, m
+  double unobserved = 0.0;  // may_have_moved, or that of the last tick if larger and known, m
   // Bounds of the displacement of any point, m, set by displace(). `displacement` is that since the
   // last tick; infinity: not known. The accumulated ones are the totals up to the last tick and up
   // to now. They leave out the ticks whose displacement is not known.
@@ -49,7 +49,7 @@ struct alignas(64) TrackedObject {
 
   // The reports of its pairs read the members from here to `twist_known`. A sample of an object at
   // rest reads and writes those up to the first ones of `input`.
-  double reach = kInfinity;  // bounding radius around its origin, m; set by displace()
+  double bounding_radius = kInfinity;  // around its origin, m; set by displace()
   // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
   // 5e-7.
   Pose pose;
@@ -63,14 +63,14 @@ struct alignas(64) TrackedObject {
   bool twist_known = false;
   // For a link that follows joints, the joints determine its lateness and its unobserved motion, m.
   bool follows_joints = false, joints_late = false, joints_contradicted = false;
-  double unseen_by_joints = 0.0;
+  double unobserved_by_joints = 0.0;
   Landmarks landmarks;
   Repetition repetition;
   Plausibility<Landmarks> plausibility;
 
   Pose pose_last_tick;
-  Pose pose_before;  // if moved: the pose of the last tick; after `first_seen`: `pose`
-  bool seen_last_tick = false;
+  Pose pose_before;  // if moved: the pose of the last tick; after `newly_known`: `pose`
+  bool pose_last_tick_known = false;
 
   // True if only a sample, a time at which it becomes late, or its joints can change this state: a
   // tick that does not visit it leaves it as a visit would.
@@ -89,7 +89,8 @@ struct alignas(64) TrackedObject {
   // The motion since the last tick, if the object was known then. Relative displacements use
   // body_motion(). The assumed motion between the two poses is interpolated().
   [[nodiscard]] BodyMotion body_motion() const noexcept {
-    return {.before = pose_before, .now = pose, .motion = motion, .reach = reach};
+    return {
+        .before = pose_before, .now = pose, .motion = motion, .bounding_radius = bounding_radius};
   }
   [[nodiscard]] InterpolatedMotion interpolated() const noexcept {
     return interpolated_motion(moved ? pose_before : pose, pose);
@@ -97,7 +98,7 @@ struct alignas(64) TrackedObject {
 
   // Like `displacement`, but 0 if the object was not known at the last tick, m.
   [[nodiscard]] double known_displacement() const noexcept {
-    return first_seen ? 0.0 : displacement;
+    return newly_known ? 0.0 : displacement;
   }
 };
 
@@ -127,8 +128,8 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 // Ends the tick's input: sets the motion since the last tick, the age and the lateness.
 void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Accumulates this tick's motion. `reach` is the bounding radius of the object around its origin,
-// m.
-void displace(double reach, TrackedObject& state) noexcept;
+// Accumulates this tick's motion. `bounding_radius` is that of the object around its
+// origin, m.
+void displace(double bounding_radius, TrackedObject& state) noexcept;
 
 }  // namespace clearance

@@ -134,10 +134,10 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
 // Widens the bounds by the unobserved motion of late objects.
 void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
                        PairBounds& bounds) noexcept {
-  const double unseen_since = a.unseen_since + b.unseen_since;
-  if (unseen_since > 0.0) {
-    bounds.swept_lower = rounded_down(bounds.swept_lower - rounded_up(unseen_since));
-    bounds.swept_upper = rounded_up(bounds.swept_upper + rounded_up(unseen_since));
+  const double unobserved = a.unobserved + b.unobserved;
+  if (unobserved > 0.0) {
+    bounds.swept_lower = rounded_down(bounds.swept_lower - rounded_up(unobserved));
+    bounds.swept_upper = rounded_up(bounds.swept_upper + rounded_up(unobserved));
   }
   if (!a.input.late && !b.input.late) return;
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
@@ -164,7 +164,7 @@ double lower_since_last_tick(std::uint32_t pair, double lower, const TickView& v
   const PairEntry& entry = view.pairs.entries[pair];
   const TrackedObject& a = view.objects[entry.object_a];
   const TrackedObject& b = view.objects[entry.object_b];
-  if (a.first_seen || b.first_seen) return lower;
+  if (a.newly_known || b.newly_known) return lower;
   if (a.discontinuous || b.discontinuous) return -kInfinity;
   return lower_between_ticks(a, b, lower_last_tick(pair, view), lower,
                              lower_by_evaluations(pair, view), precision);

@@ -51,10 +51,10 @@ Expectations::Expectations(const Scene& scene, std::optional<double> min_distanc
 
 // Before every moving object is known, distances are unknown and zones active by definition.
 bool Expectations::all_seen(const Monitor& monitor) {
-  for (std::uint32_t i = 0; i < scene_.objects.size() && !all_seen_; ++i) {
+  for (std::uint32_t i = 0; i < scene_.objects.size() && !all_known_; ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) return false;
   }
-  return all_seen_ = true;
+  return all_known_ = true;
 }
 
 // Each expectation is reported once, at the first tick that breaks it.
@@ -135,15 +135,15 @@ std::optional<std::string> Expectations::check_sweep(const Report& report, const
 // A replay that judged nothing must not pass for one that found nothing wrong.
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {
   if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
-  if (all_seen_) return "no tick could be judged";
-  std::vector<std::string> unseen;
+  if (all_known_) return "no tick could be judged";
+  std::vector<std::string> unknown;
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
     if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) {
-      unseen.push_back(scene_.objects[i].name);
+      unknown.push_back(scene_.objects[i].name);
     }
   }
   return fmt::format("no tick could be judged: the recording never tells where {} is",
-                     one_of(unseen));
+                     one_of(unknown));
 }
 
 }  // namespace clearance

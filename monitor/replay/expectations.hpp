@@ -49,7 +49,7 @@ class Expectations {
   std::optional<double> min_distance_;
   bool distance_broken_ = false;
   std::vector<NoZone> no_zone_;
-  bool all_seen_ = false;
+  bool all_known_ = false;
   bool judged_ = false;  // some tick
   std::string error_;
 };

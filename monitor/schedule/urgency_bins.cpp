@@ -88,7 +88,8 @@ std::size_t UrgencyBins::bin_of(std::uint32_t pair, const TickView& view) const 
 // that has just become known is evaluated anyway.
 double UrgencyBins::speed_of(std::uint32_t object, const TrackedObject& state) const noexcept {
   const double turning = state.twist.angular.norm();
-  const double measured = state.twist.linear.norm() + (turning > 0.0 ? turning * state.reach : 0.0);
+  const double measured =
+      state.twist.linear.norm() + (turning > 0.0 ? turning * state.bounding_radius : 0.0);
   return std::max(stated_speed_[object], measured);
 }
 

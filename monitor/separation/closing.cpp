@@ -16,8 +16,8 @@ double speed_towards(const TrackedObject& body, const Vec3& towards, const Vec3&
   const bool directed = towards.allFinite();
   const double linear = directed ? towards.dot(v) : v.norm();
   const double turning = directed ? towards.cross(w).norm() : w.norm();
-  const double of_turn = swept(turning, body.reach);
-  const double rounding = kVelocityError * (v.norm() + swept(w.norm(), body.reach));
+  const double of_turn = swept(turning, body.bounding_radius);
+  const double rounding = kVelocityError * (v.norm() + swept(w.norm(), body.bounding_radius));
   const double any_point = rounded_up(linear + of_turn + (rounding < kInfinity ? rounding : 0.0));
   const Vec3 of_witness = witness.allFinite() ? velocity_at(witness, body.pose, body.twist) : v;
   const double at_witness = (directed ? towards.dot(of_witness) : of_witness.norm()) + rounding;

@@ -38,7 +38,7 @@ SweptBounds search_part_pairs(std::uint32_t pair, double level, double displacem
 
 // Returns true when the object was known at the last tick and has made no discontinuity since.
 bool has_swept_motion(const TrackedObject& object) noexcept {
-  return !object.first_seen && !object.discontinuous;
+  return !object.newly_known && !object.discontinuous;
 }
 
 // Returns true when displacement alone proves that the pair was outside its zones since the last
@@ -48,8 +48,7 @@ inline bool stayed_outside(std::uint32_t pair, double threshold, const TickView&
   const PairEntry& entry = view.pairs.entries[pair];
   const TrackedObject& a = view.objects[entry.object_a];
   const TrackedObject& b = view.objects[entry.object_b];
-  const double displaced =
-      2.0 * (a.displacement + b.displacement) + (a.unseen_since + b.unseen_since);
+  const double displaced = 2.0 * (a.displacement + b.displacement) + (a.unobserved + b.unobserved);
   return rounded_down(entry.least_lower - rounded_up(displaced)) >= threshold;
 }
 
@@ -60,7 +59,7 @@ SweptBounds swept_bounds_of(std::uint32_t pair, double level, const TickView& vi
   const TrackedObject& a = view.objects[view.pairs.entries[pair].object_a];
   const TrackedObject& b = view.objects[view.pairs.entries[pair].object_b];
   if (!has_swept_motion(a) || !has_swept_motion(b)) return {};
-  const double unobserved = rounded_up(a.unseen_since + b.unseen_since);
+  const double unobserved = rounded_up(a.unobserved + b.unobserved);
   const SweptBounds found =
       search_part_pairs(pair, rounded_up(level + unobserved),
                         rounded_up(a.displacement + b.displacement), view, budget);
@@ -91,7 +90,7 @@ void ZoneCrossings::examine(std::uint32_t pair, const Zones& zones, const TickVi
     return;
 
   const double unobserved_now = rounded_up(a.may_have_moved + b.may_have_moved);
-  const double unobserved = rounded_up(a.unseen_since + b.unseen_since);
+  const double unobserved = rounded_up(a.unobserved + b.unobserved);
   const double now = rounded_down(entry.least_lower - unobserved_now);
   if (!(zones.undecided(pair, now, -kInfinity) > -kInfinity)) return;
   const double known =

@@ -30,7 +30,7 @@ Inputs inputs_of(const Scene& scene) {
   const std::vector<BoundingSphere> spheres =
       bounding_spheres(scene.objects.size(), parts_of(scene));
   for (std::size_t i = 0; i < spheres.size(); ++i)
-    inputs.objects[i].reach = spheres[i].bounding_radius;
+    inputs.objects[i].bounding_radius = spheres[i].bounding_radius;
   return inputs;
 }
 

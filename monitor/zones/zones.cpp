@@ -12,7 +12,7 @@ constexpr std::uint32_t kAnyObject = ~0u;
 // Returns the cause that this object alone would give for a pair of it being inside a zone.
 ZoneCause cause_of(const TrackedObject& object) noexcept {
   if (!object.input.has_value) return ZoneCause::kUnknown;
-  if (object.unseen_since > 0.0)
+  if (object.unobserved > 0.0)
     return object.input.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
@@ -22,7 +22,7 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
              double threshold) noexcept {
   if (!a.known() || !b.known()) return false;
-  const double unobserved = a.unseen_since + b.unseen_since;
+  const double unobserved = a.unobserved + b.unobserved;
   if (report.clearance + unobserved < threshold) return true;
   return !a.discontinuous && !b.discontinuous && report.swept_clearance + unobserved < threshold;
 }
@@ -139,8 +139,7 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     const double level = ZoneLevels::threshold(scene_.zones[z], !report.changed);
     if (is_near(report, objects[a], objects[b], level)) continue;
     const ZoneCause of_a = cause_of(objects[a]), of_b = cause_of(objects[b]);
-    const bool is_a =
-        of_a != of_b ? of_a > of_b : objects[a].unseen_since >= objects[b].unseen_since;
+    const bool is_a = of_a != of_b ? of_a > of_b : objects[a].unobserved >= objects[b].unobserved;
     report.cause = is_a ? of_a : of_b;
     report.cause_object = is_a ? a : b;
   }

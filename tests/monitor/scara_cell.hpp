@@ -35,6 +35,19 @@ inline const std::string kScaraRest =
     "zones:\n"
     "  - {name: near, between: [upper, wall], enter_below: 3.5, leave_above: 3.6}\n";
 
+// The robots left and right, with topics and stamps of their own.
+inline Cell two_scara_arms() {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  return read_good(
+      "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
+      "  - {name: left, urdf: scara.urdf, prefix: left_, joint_states: /left/joint_states}\n"
+      "  - {name: right, urdf: scara.urdf, prefix: right_, base: {pose: {xyz: [9, 0, 0]}}, "
+      "stamps: sent}\n"
+      "pairs: [{between: [left, right]}]\n",
+      folder / "cell.yaml");
+}
+
 // `base` contains further keys of the robot.
 inline Scene scara_cell(const std::string& base = "") {
   const ScratchFolder folder;

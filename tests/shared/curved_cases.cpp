@@ -92,7 +92,7 @@ void move_together(Random& random, CurvedCase& c) {
 }
 
 // The support point along n of the rotated body; a radius adds to it.
-Vec3 farthest(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3& n) {
+Vec3 support_point(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3& n) {
   const Vec3 m = turn.conjugate() * n;
   Vec3 best = Vec3::Zero();
   if (!body.points.empty()) {
@@ -103,12 +103,12 @@ Vec3 farthest(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3
     best = axes.cwiseProduct(stretched) / stretched.norm();
   } else {
     const Vec3 across(m.x(), m.y(), 0.0);
-    double reach = -kInfinity;
+    double support_value = -kInfinity;
     for (const Disc& disc : body.shape.discs) {
       Vec3 p(0.0, 0.0, disc.height);
       if (!across.isZero()) p += disc.radius * across.normalized();
-      if (m.dot(p) > reach) best = p;
-      reach = std::max(reach, m.dot(p));
+      if (m.dot(p) > support_value) best = p;
+      support_value = std::max(support_value, m.dot(p));
     }
   }
   return turn * best + body.radius * n;
@@ -117,8 +117,8 @@ Vec3 farthest(const CurvedBody& body, const Eigen::Quaterniond& turn, const Vec3
 // Places B so that its support point along -n lies `gap` beyond A's support point along n. The
 // distance is then `gap`.
 void face(CurvedCase& c, const Vec3& n, double gap) {
-  const Vec3 on_a = farthest(c.a, c.pose_a.orientation, n);
-  const Vec3 on_b = farthest(c.b, c.pose_b.orientation, -n);
+  const Vec3 on_a = support_point(c.a, c.pose_a.orientation, n);
+  const Vec3 on_b = support_point(c.b, c.pose_b.orientation, -n);
   c.pose_b.position = c.pose_a.position + on_a + gap * n - on_b;
 }
 

@@ -14,13 +14,13 @@ constexpr double kPromised = 1e-13;
 constexpr double kTruthDigits = 1e-20;  // relative to the size
 constexpr int kDirections = 40, kClimbs = 200;
 
-double reach_of(const oracle::CurvedBody& body) {
-  double reach = body.shape.semi_axes.maxCoeff();
+double bounding_radius_of(const oracle::CurvedBody& body) {
+  double radius = body.shape.semi_axes.maxCoeff();
   for (const Disc& disc : body.shape.discs) {
-    reach = std::max(reach, std::hypot(disc.height, disc.radius));
+    radius = std::max(radius, std::hypot(disc.height, disc.radius));
   }
-  for (const Vec3& p : body.points) reach = std::max(reach, p.norm());
-  return reach + body.radius;
+  for (const Vec3& p : body.points) radius = std::max(radius, p.norm());
+  return radius + body.radius;
 }
 
 std::string text(const char* what, const Real& is, const Real& other) {
@@ -31,7 +31,7 @@ std::string text(const char* what, const Real& is, const Real& other) {
 
 CurvedJudge::CurvedJudge(const hard::CurvedCase& asked)
     : case_(asked),
-      size_(reach_of(asked.a) + reach_of(asked.b) +
+      size_(bounding_radius_of(asked.a) + bounding_radius_of(asked.b) +
             2.0 * (asked.pose_a.position - asked.pose_b.position).norm()),
       truth_(oracle::curved_truth(case_.placed_a(), case_.placed_b(), kTruthDigits * size_)) {}
 

@@ -317,25 +317,25 @@ bool ExactBody::rows_hold_at(const RationalVec& x) const {
 bool ExactBody::proves_bound(const RationalVec& direction, const Rational& value) const {
   if (!given_by_rows()) {
     for (const IntegerVec& p : points_) {
-      Rational reach = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
-      if (reach > value * points_scale_) return false;
+      Rational support_value = direction[0] * p[0] + direction[1] * p[1] + direction[2] * p[2];
+      if (support_value > value * points_scale_) return false;
     }
     return true;
   }
   const Program::Corner at = Program{rows_, 3}.corner(basis_);
   RationalVec sum;
-  Rational reach = 0;
+  Rational support_value = 0;
   for (std::size_t j = 0; j < 3; ++j) {
     Rational multiplier = 0;
     for (std::size_t i = 0; i < 3; ++i) multiplier += at.inverse[i][j] * direction[i];
     if (multiplier < 0) return false;
     const Row& row = rows_[basis_[j]];
     for (std::size_t k = 0; k < 3; ++k) sum[k] += multiplier * row.normal[k];
-    reach += multiplier * row.offset;
+    support_value += multiplier * row.offset;
     // A row that only pins a line does not belong to the body, and proves nothing.
     if (static_cast<std::size_t>(basis_[j]) >= given_rows_ && multiplier != 0) return false;
   }
-  return sum == direction && reach <= value;
+  return sum == direction && support_value <= value;
 }
 
 }  // namespace clearance::oracle

@@ -52,8 +52,9 @@ class Search {
     if (is_zero(n) || a_corner_is_as_far(n)) return;
     const std::optional<RationalVec> corner = remember_corner(n);
     if (!corner) return;
-    const Rational reach = dot(n, *corner);
-    const Rational squared = reach <= 0 ? Rational(0) : Rational(reach * reach / dot(n, n));
+    const Rational support_value = dot(n, *corner);
+    const Rational squared =
+        support_value <= 0 ? Rational(0) : Rational(support_value * support_value / dot(n, n));
     if (!best_ || squared < *best_) best_ = squared;
     root_ = std::sqrt(best_->get_d());
   }
@@ -90,8 +91,8 @@ class Search {
     const std::size_t count = std::min(corners_.size(), kCornersAsked);
     return std::any_of(corners_.end() - static_cast<std::ptrdiff_t>(count), corners_.end(),
                        [&](const RationalVec& corner) {
-                         const Rational reach = dot(n, corner);
-                         return reach >= 0 && reach * reach >= enough;
+                         const Rational support_value = dot(n, corner);
+                         return support_value >= 0 && support_value * support_value >= enough;
                        });
   }
 

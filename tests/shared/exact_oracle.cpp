@@ -188,8 +188,8 @@ ExactDistance exact_distance(ExactBody& a, const Pose& world_from_a, ExactBody& 
     ++out.steps;
     if (out.squared == 0) break;
     Generator next = next_generator(a, b, place, nearest);
-    const Rational reach = dot(nearest, next.difference);
-    if (!next.is_ray && reach >= out.squared) break;
+    const Rational support_value = dot(nearest, next.difference);
+    if (!next.is_ray && support_value >= out.squared) break;
     corral.add(std::move(next));
   }
   const RationalVec p = corral.sum(&Generator::of_a), q = corral.sum(&Generator::of_b);

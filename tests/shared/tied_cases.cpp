@@ -97,12 +97,12 @@ HardCase tiny_gaps(Random& random) {
   const auto body = [&](double side) {
     const double size = std::ldexp(1.0, random.integer(-30, 30));
     Body out = random.chance(0.6) ? box({size, size, size}) : lattice(random);
-    double reach = 0.0;
+    double support = 0.0;
     for (const HalfSpace& row : out.rows) {
-      if (row.normal.cwiseAbs() == Vec3::UnitX()) reach = std::max(reach, row.offset);
+      if (row.normal.cwiseAbs() == Vec3::UnitX()) support = std::max(support, row.offset);
     }
-    for (const Vec3& p : out.points) reach = std::max(reach, side * p.x());
-    return shifted(std::move(out), Vec3(-side * reach, 0, 0));
+    for (const Vec3& p : out.points) support = std::max(support, side * p.x());
+    return shifted(std::move(out), Vec3(-side * support, 0, 0));
   };
   Body a = body(1.0), b = body(-1.0);
   HardCase c{"", std::move(a), std::move(b), {}, {}};

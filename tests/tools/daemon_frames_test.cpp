@@ -62,31 +62,26 @@ TEST_F(DaemonFrames, ThatAreMissingAreNamedWithThoseThatThereAre) {
       [&] {
         frames.send({{"map", "box_lnk"}, {"odom", "mir"}});
       },
-      logged("box is not known: it follows the frame 'box_link', which no transform leads to; "
-             "there are box_lnk, "
-             "mir")))
+      told("frame-missing", {"box", "'box_link'", "box_lnk, mir", "'box_lnk'"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("did you mean 'box_lnk'")) << daemon->output();
   EXPECT_TRUE(step_until(
-      5, [] {},
-      logged("arm is not known: it follows the frame 'mir', whose transforms lead to "
-             "'odom' and not to the world_frame 'map'")))
+      5, [] {}, told("frame-missing", {"arm", "'mir'", "'odom'", "'map'"})))
       << daemon->output();
   EXPECT_TRUE(step_until(
       5,
       [&] {
         frames.send({{"a", "box_link"}, {"box_link", "a"}});
       },
-      logged("whose transforms go round in a circle (box_link, a, box_link)")))
+      told("frame-missing", {"(box_link, a, box_link)"})))
       << daemon->output();
   EXPECT_TRUE(step_until(
       5,
       [&] {
         frames.send({{"map", "a"}, {"a", "box_link"}});
       },
-      logged("frame 'box_link', which box follows, is there")))
+      told("frame-found", {"'box_link'", "box"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("frame 'a' hangs on 'map' now, before on 'box_link'"));
+  EXPECT_TRUE(daemon->told("frame-moved", {"'a'", "'map'", "'box_link'"}));
 }
 
 TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
@@ -97,9 +92,7 @@ TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
     first.send({{"map", "box_link", {1, 0, 0}}});
     other.send({{"map", "box_link", {2, 0, 0}}});
   };
-  EXPECT_TRUE(step_until(
-      5, both, logged("frame 'box_link' is sent by several publishers that contradict each other")))
-      << daemon->output();
+  EXPECT_TRUE(step_until(5, both, told("frame-of-two", {"'box_link'"}))) << daemon->output();
   EXPECT_TRUE(step_until(5, both, [&] { return is("box", PairStatus::kUnknown); }));
   // One of them falls silent.
   EXPECT_TRUE(step_until(
@@ -113,9 +106,8 @@ TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {
       [&] {
         other.send_at(dds_time() - 100'000'000'000, {{"map", "mir"}});
       },
-      logged("transforms of frame 'mir' are stamped -100.00")))
+      told("other-clock", {"'mir'", "-100.00", "'stamps: sent'", "'ros2'"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("'stamps: sent' of 'ros2' would take the time"));
 }
 
 // Objects and bases with static and changing transforms. During the run one rotates and one gets a

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -30,6 +31,11 @@ class DaemonJoints : public WatchedDaemon {
         "pairs:\n  - {between: [arm, wall], publish: true}\n"
         "  - {between: [arm, arm], publish: false}\n");
   }
+  // A step that sends these positions of all joints, and velocities unless none are given.
+  static std::function<void()> sent(RosJoints& joints, const std::vector<double>& positions,
+                                    const std::vector<double>& velocities = {}) {
+    return [&joints, positions, velocities] { joints.send(kNames, positions, velocities); };
+  }
 };
 
 // The wall is at x = 5. At the angle 0 the end of the upper link is at 0.9 m.
@@ -37,22 +43,14 @@ TEST_F(DaemonJoints, OfRos2PlaceTheLinksOfARobot) {
   start();
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
-  ASSERT_TRUE(step_until(
-      5,
-      [&] {
-        joints.send(kNames, {0, 0, 0.1}, {0, 0, 0});
-      },
-      [&] { return is("finger", PairStatus::kConverged); }))
-      << daemon->output();
+  ASSERT_TRUE(step_until(5, sent(joints, {0, 0, 0.1}, {0, 0, 0}), [&] {
+    return is("finger", PairStatus::kConverged);
+  })) << daemon->output();
   EXPECT_NEAR(pair("upper").distance, 5 - 0.9, 1e-12);
   EXPECT_NEAR(pair("finger").distance, 5 - 2.1 - 0.05, 1e-12);
   EXPECT_EQ(pair("finger").closing_speed, 0.0);
-  EXPECT_TRUE(step_until(
-      5,
-      [&] {
-        joints.send(kNames, {0, 0, 0.1});
-      },
-      told("joints-heard", {"arm", "shoulder, elbow, push"})));
+  EXPECT_TRUE(step_until(5, sent(joints, {0, 0, 0.1}),
+                         told("joints-heard", {"arm", "shoulder, elbow, push"})));
 }
 
 // The drivers of the arm and of the gripper each send their own joints. Then the gripper's driver
@@ -124,12 +122,8 @@ TEST_F(DaemonJoints, ThatAreNoNumbersAreRefusedAndNamed) {
   start();
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
-  EXPECT_TRUE(step_until(
-      5,
-      [&] {
-        joints.send(kNames, {0.1, 0.1, kNaN}, {kNaN, kNaN, kNaN});
-      },
-      told("refused", {"joint push", "not finite"})))
+  EXPECT_TRUE(step_until(5, sent(joints, {0.1, 0.1, kNaN}, {kNaN, kNaN, kNaN}),
+                         told("refused", {"joint push", "not finite"})))
       << daemon->output();
   EXPECT_TRUE(is("lower", PairStatus::kConverged)) << "the rest of the message is used";
   EXPECT_TRUE(is("finger", PairStatus::kUnknown));
@@ -139,19 +133,10 @@ TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
   start();
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
-  ASSERT_TRUE(step_until(
-      5,
-      [&] {
-        joints.send(kNames, {0.0, 0.0, 0.1});
-      },
-      [&] { return is("finger", PairStatus::kConverged); }));
+  ASSERT_TRUE(step_until(5, sent(joints, {0.0, 0.0, 0.1}),
+                         [&] { return is("finger", PairStatus::kConverged); }));
   // The shoulder rotates at 2 rad/s at most, which is 0.4 rad in an age limit.
-  EXPECT_TRUE(step_until(
-      5,
-      [&] {
-        joints.send(kNames, {2.9, 0.0, 0.1});
-      },
-      told("joints-contradict", {"arm"})))
+  EXPECT_TRUE(step_until(5, sent(joints, {2.9, 0.0, 0.1}), told("joints-contradict", {"arm"})))
       << daemon->output();
   EXPECT_TRUE(daemon->told("refused", {"joint shoulder"})) << daemon->output();
   EXPECT_FALSE(is("upper", PairStatus::kConverged));
@@ -162,14 +147,10 @@ TEST_F(DaemonJoints, ThatComeMoreSeldomThanTheirAgeLimitAreNamedOnceWithOneThatF
   start("");
   RosJoints joints(client);
   ASSERT_TRUE(joints.is_heard());
-  EXPECT_TRUE(step_until(
-      100,
-      [&] {
-        joints.send(kNames, {0, 0, 0.1});
-      },
-      logged("the age limit of shoulder and 2 more joints is 20 ms")))
+  EXPECT_TRUE(
+      step_until(100, sent(joints, {0, 0, 0.1}),
+                 told("slow-input", {"'/joint_states'", "shoulder and 2 more joints", "20 ms"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->wrote("joint states from '/joint_states' come at ")) << daemon->output();
 }
 
 TEST_F(DaemonJoints, OfAThousandHertzAreAllTaken) {
@@ -194,7 +175,7 @@ TEST_F(DaemonJoints, StampedByAnotherClockAreNamedAndUsableByTheTimeTheyAreSent)
   ASSERT_TRUE(joints.is_heard());
   std::int64_t clock = 12'000'000'000;
   const auto send = [&] { joints.send_at(clock += 5'000'000, kNames, {0, 0, 0.1}); };
-  EXPECT_TRUE(step_until(5, send, logged("by a clock of their own"))) << daemon->output();
+  EXPECT_TRUE(step_until(5, send, told("other-clock", {"'/joint_states'"}))) << daemon->output();
   EXPECT_FALSE(is("finger", PairStatus::kConverged)) << "what is not known is never clear";
   daemon.reset();
   start(", age_limit_ms: 200, stamps: sent");

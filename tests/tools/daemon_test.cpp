@@ -164,9 +164,9 @@ TEST(Daemon, SaysOnceThatASourceIsSlowerThanTheAgeLimit) {
   const auto dds = test::dds_arguments(test::own_dds());
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "20"}, dds));
-  EXPECT_TRUE(eventually([&] { return daemon.wrote("age_limit_ms of 1"); })) << daemon.output();
-  EXPECT_TRUE(daemon.wrote("its age limit is 20 ms: it is late again and again"))
-      << daemon.output();
+  EXPECT_TRUE(eventually([&] {
+    return daemon.told("slow-input", {"20 ms", "age_limit_ms of 1"});
+  })) << daemon.output();
 }
 
 TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {

@@ -220,7 +220,7 @@ TEST_F(StateInputs, AreNotLateByTheHistoryOfTheirWriterWhenPacketsAreLost) {
   }
 }
 
-// Prints the table of idl/README.md. It is no test, because its figures need an idle machine.
+// Prints the table of idl/FIELDS.md. It is no test, because its figures need an idle machine.
 TEST_F(StateInputs, DISABLED_TableOfStaleShares) {
   for (const double loss : {0.1, 0.3}) {
     for (const int objects : {8, 50}) {

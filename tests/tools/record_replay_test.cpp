@@ -7,6 +7,7 @@
 #include "monitor/csv/pose_log.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/bench_cell.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -14,19 +15,6 @@ namespace {
 
 using testing::HasSubstr;
 using testing::StartsWith;
-
-constexpr const char* kCell = R"(name: bench
-units: {length: m, angle: deg}
-defaults: {age_limit_ms: 50, max_speed: 2, may_jump: true}
-objects:
-  - {name: hand, groups: [robot], sphere: {radius: 0.05}}
-  - {name: tool, groups: [robot], box: {size: [0.1, 0.1, 0.1]}}
-  - {name: box, groups: [still], fixed: true, box: {size: [0.2, 0.2, 0.2]}}
-pairs:
-  - {between: [robot, still], publish: true}
-zones:
-  - {name: stop, between: [robot, still], enter_below: 0.1, leave_above: 0.15}
-)";
 
 // The hand descends to 80 mm above the box.
 std::string descending_log() {
@@ -47,7 +35,7 @@ std::string text_of(const Kept& message) {
 class RecordReplay : public RunsPrograms {
  protected:
   RecordReplay() {
-    write_text(folder / "cell.yaml", kCell);
+    write_text(folder / "cell.yaml", kBenchCell);
     write_text(folder / "log.csv", descending_log());
   }
   // Like run(), with a signal that is pending before the program begins.
@@ -96,7 +84,7 @@ TEST_F(RecordReplay, PoseLogBecomesARecordingThatReplaysIntoATable) {
 }
 
 TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
-  std::string cell = kCell;
+  std::string cell = kBenchCell;
   const std::string rule = "  - {between: [robot, still], publish: true}\n";
   cell.insert(cell.find(rule), "  - {between: [hand, tool], publish: false}\n");
   write_text(folder / "cell.yaml", cell.insert(cell.find("objects:"), "budget: 1\n"));

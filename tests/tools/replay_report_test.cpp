@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <regex>
 
+#include "tests/tools/bench_cell.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -19,19 +20,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 constexpr double kLeastMm = 80.0, kLeastAtS = 0.12, kRunS = 0.199;
-
-constexpr const char* kReviewedCell = R"(name: reviewed
-units: {length: m, angle: deg}
-defaults: {age_limit_ms: 50, max_speed: 2, may_jump: true}
-objects:
-  - {name: hand, groups: [robot], sphere: {radius: 0.05}}
-  - {name: tool, groups: [robot], box: {size: [0.1, 0.1, 0.1]}}
-  - {name: box, groups: [still], fixed: true, box: {size: [0.2, 0.2, 0.2]}}
-pairs:
-  - {between: [robot, still], publish: true}
-zones:
-  - {name: stop, between: [robot, still], enter_below: 0.1, leave_above: 0.15}
-)";
 
 // The ball moves down at one metre per second, and up again.
 std::string visit_log() {
@@ -89,7 +77,7 @@ std::vector<PlotPoint> curve_of(const std::string& svg, const std::string& title
 class ReplayReport : public RunsPrograms {
  protected:
   void SetUp() override {
-    write_text(folder / "cell.yaml", kReviewedCell);
+    write_text(folder / "cell.yaml", kBenchCell);
     write_text(folder / "log.csv", visit_log());
     ASSERT_EQ(0, run(kRecord, {"--from-csv", path("log.csv"), "-o", path("run.mcap"), "--cell",
                                path("cell.yaml")}))

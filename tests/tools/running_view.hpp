@@ -36,6 +36,21 @@ inline void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
   }
 }
 
+// A cell of two boxes, whose daemon and simulated robot run.
+struct RunningSmallCell {
+  CellFile cell{small_cell("small")};
+  DdsOptions own = own_dds();
+  std::vector<std::string> dds = dds_arguments(own);
+  ChildProcess daemon{kDaemon, with({cell.path()}, dds)};
+  ChildProcess robot{kRobot, with({cell.path(), "--rate", "200"}, dds)};
+
+  // Waits for poses of both boxes; returns the arguments of a program that joins them.
+  std::vector<std::string> arguments() {
+    wait_for_poses(own, cell.cell());
+    return with({cell.path()}, dds);
+  }
+};
+
 // Returns the lines of JSON that a script has printed.
 inline std::vector<nlohmann::json> lines_of(const ChildProcess& script) {
   std::vector<nlohmann::json> lines;

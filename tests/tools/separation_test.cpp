@@ -6,31 +6,13 @@
 
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/person_and_robot.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
 namespace {
 
 // A person who stands 2 m in front of a standing robot, at a distance of 1.7 m.
-const char* const kPersonAndRobot = R"(name: hall
-units: {length: m, angle: deg}
-rate_hz: 200
-defaults: {age_limit_ms: 300}
-objects:
-  - {name: person, sphere: {radius: 0.2}}
-  - {name: robot, sphere: {radius: 0.1}}
-pairs: [{between: [person, robot]}]
-zones:
-  - name: people
-    between: [person, robot]
-    enter_below: 0.3
-    leave_above: 0.4
-    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
-                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
-simulation:
-  movers: [{object: person, centre: {xyz: [2, 0, 0]}}, {object: robot}]
-)";
-
 TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   const CellFile cell(kPersonAndRobot);
   const Cell read = cell.cell();

@@ -17,25 +17,18 @@
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
 
 using nlohmann::json;
-using test::ChildProcess;
-using test::eventually;
-using test::kScripts;
-using test::lines_of;
-using test::View;
 
 constexpr int kGranted = 200, kSwitched = 101, kForbidden = 403;
 
 // A viewer without a daemon.
 struct LonelyView {
-  explicit LonelyView(const std::vector<std::string>& more = {},
-                      const test::ChildOptions& options = {})
-      : view(test::with(test::with({cell.path()}, more), test::dds_arguments(test::own_dds())),
-             options) {}
-  test::CellFile cell{test::small_cell("small")};
+  explicit LonelyView(const std::vector<std::string>& more = {}, const ChildOptions& options = {})
+      : view(with(with({cell.path()}, more), dds_arguments(own_dds())), options) {}
+  CellFile cell{small_cell("small")};
   View view;
 };
 
@@ -112,7 +105,7 @@ TEST(ViewAccess, StatedHostsAndOriginsAreAnsweredAndNoOthers) {
 
 TEST(ViewAccess, AnAllowedHostThatIsNoneIsWrongUsage) {
   for (const char* const wrong : {"two words", "desk:port", "desk:70000", "::1", "-/"}) {
-    ChildProcess view(test::kView, {"cell.yaml", fmt::format("--allow={}", wrong)});
+    ChildProcess view(kView, {"cell.yaml", fmt::format("--allow={}", wrong)});
     EXPECT_EQ(view.wait(), 2) << wrong << ": " << view.output();
   }
 }
@@ -196,4 +189,4 @@ TEST(ViewAccess, WithoutFileDescriptorsItWaitsAndServesAgainWhenThereAreSome) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

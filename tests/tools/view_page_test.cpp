@@ -7,18 +7,16 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "monitor/zone_cause.hpp"
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
 
 using nlohmann::json;
-using test::ChildProcess;
-using test::kScripts;
-using test::lines_of;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
@@ -56,12 +54,12 @@ class ViewPage : public testing::Test {
 
   // Runs these steps of view_page.mjs; returns what each found.
   std::map<std::string, json> run(const std::vector<std::string>& steps) {
-    const auto dds = test::dds_arguments(test::own_dds());
-    const ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-    const ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "50"}, dds));
-    const test::View view(test::with({cell.path()}, dds));
+    const auto dds = dds_arguments(own_dds());
+    const ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+    const ChildProcess robot(kRobot, with({cell.path(), "--rate", "50"}, dds));
+    const View view(with({cell.path()}, dds));
     ChildProcess page("/usr/bin/env",
-                      test::with({"node", kScripts + "/view_page.mjs", view.page()}, steps));
+                      with({"node", kScripts + "/view_page.mjs", view.page()}, steps));
     EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
     std::map<std::string, json> found;
     for (const json& line : lines_of(page)) {
@@ -71,12 +69,12 @@ class ViewPage : public testing::Test {
     return found;
   }
 
-  test::CellFile cell;
+  CellFile cell;
 };
 
 class SmallViewPage : public ViewPage {
  protected:
-  SmallViewPage() : ViewPage(test::small_cell("small")) {}
+  SmallViewPage() : ViewPage(small_cell("small")) {}
 };
 
 TEST_F(ViewPage, IsNeverBlankWhileItChangesItsResolution) {
@@ -153,27 +151,42 @@ TEST_F(ViewPage, ZonesTellTheirStateAndWhatTheyWereEnteredBy) {
   EXPECT_THAT(found[0].value("kind", ""), HasSubstr("alarm"));
 }
 
+void expect_causes(const json& found, PlacedBy placed_by) {
+  ASSERT_EQ(found["texts"].size(), 8u);
+  for (std::uint8_t i = 0; i < 8; ++i) {
+    EXPECT_EQ(found["texts"][i], cause_text(static_cast<ZoneCause>(i), found["object"], placed_by));
+  }
+  EXPECT_NE(found["texts"][static_cast<std::size_t>(ZoneCause::kContradicted)], "");
+}
+
+TEST_F(SmallViewPage, SaysTheCausesOfZonesInTheWordsOfAllPrograms) {
+  expect_causes(run({"causes"})["causes"], PlacedBy::kPoses);
+}
+
 // Without joint states, as a person meets it who has started no driver yet.
 TEST(ViewOfAUrdf, NeedsNoCellFileAndSpeaksOfJointStates) {
-  const test::ScratchFolder folder;
-  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
   const std::vector<std::string> robot = {"--urdf", (folder / "scara.urdf").string()};
-  const auto dds = test::dds_arguments(test::own_dds());
-  const ChildProcess daemon(test::kDaemon, test::with(robot, dds));
-  const test::View view(test::with(robot, dds));
-  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "inputs"});
+  const auto dds = dds_arguments(own_dds());
+  const ChildProcess daemon(kDaemon, with(robot, dds));
+  const View view(with(robot, dds));
+  ChildProcess page("/usr/bin/env",
+                    {"node", kScripts + "/view_page.mjs", view.page(), "inputs", "causes"});
   EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
   const std::vector<json> said = lines_of(page);
   ASSERT_FALSE(said.empty()) << page.output();
   const std::string text = said.front().value("found", json::object()).value("minimum", "");
   EXPECT_THAT(text, HasSubstr("joint states"));
   EXPECT_THAT(text, Not(HasSubstr("pose")));
+  ASSERT_GE(said.size(), 2u);
+  expect_causes(said[1]["found"], PlacedBy::kJointStates);
 }
 
 // A visual mesh, a visual box in a material of the file, and a shape that cannot be read.
 TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
-  const test::ScratchFolder folder;
-  std::string urdf = test::kScaraUrdf;
+  const ScratchFolder folder;
+  std::string urdf = kScaraUrdf;
   const auto add = [&](const std::string& link, const std::string& geometry) {
     const std::string begin = "<link name=\"" + link + "\">";
     urdf.insert(urdf.find(begin) + begin.size(),
@@ -184,15 +197,14 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   add("lower", R"(<mesh filename="gone.obj"/>)");
   urdf.insert(urdf.find("</robot>"),
               R"(<material name="red"><color rgba="0.8 0.1 0.1 1"/></material>)");
-  test::write_text(folder / "scara.urdf", urdf);
-  test::write_text(
-      folder / "tip.obj",
-      "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  write_text(folder / "scara.urdf", urdf);
+  write_text(folder / "tip.obj",
+             "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
   const std::vector<std::string> robot = {"--urdf", (folder / "scara.urdf").string()};
-  const auto dds = test::dds_arguments(test::own_dds());
-  const ChildProcess daemon(test::kDaemon, test::with(robot, dds));
-  const ChildProcess joints(test::kRobot, test::with(test::with(robot, {"--rate", "50"}), dds));
-  const test::View view(test::with(robot, dds));
+  const auto dds = dds_arguments(own_dds());
+  const ChildProcess daemon(kDaemon, with(robot, dds));
+  const ChildProcess joints(kRobot, with(with(robot, {"--rate", "50"}), dds));
+  const View view(with(robot, dds));
   ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "visuals"});
   EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
   const std::vector<json> said = lines_of(page);
@@ -205,4 +217,4 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

@@ -13,25 +13,18 @@
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
 
 using nlohmann::json;
-using test::ChildProcess;
-using test::kScripts;
-using test::kView;
-using test::lines_of;
-using test::pictures;
-using test::View;
-using test::wait_for_poses;
 
 class ViewOfARecording : public testing::Test {
  protected:
   ViewOfARecording() {
-    const DdsOptions own = test::own_dds();
-    const auto dds = test::dds_arguments(own);
-    ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--record", file}, dds));
-    ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+    const DdsOptions own = own_dds();
+    const auto dds = dds_arguments(own);
+    ChildProcess daemon(kDaemon, with({cell.path(), "--record", file}, dds));
+    ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
     wait_for_poses(own, cell.cell());
     std::this_thread::sleep_for(std::chrono::milliseconds(1200));
     daemon.signal(SIGTERM);
@@ -55,8 +48,8 @@ class ViewOfARecording : public testing::Test {
     return least;
   }
 
-  test::CellFile cell{test::small_cell("small")};
-  test::ScratchFolder folder;
+  CellFile cell{small_cell("small")};
+  ScratchFolder folder;
   std::string file = (folder / "run.mcap").string();
 };
 
@@ -175,4 +168,4 @@ TEST_F(ViewOfARecording, WritesPicturesOfTheTimesThatAreAskedFor) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

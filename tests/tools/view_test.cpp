@@ -12,32 +12,26 @@
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/person_and_robot.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
 
 using nlohmann::json;
-using test::ChildProcess;
-using test::eventually;
-using test::kScripts;
-using test::lines_of;
-using test::pictures;
-using test::View;
-using test::wait_for_poses;
 
 const std::string kTwoArms = std::string(CLEARANCE_SOURCE) + "/config/cells/two_arms.yaml";
 
 TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
-  const DdsOptions dds = test::own_dds();
-  const auto arguments = test::dds_arguments(dds);
+  const DdsOptions dds = own_dds();
+  const auto arguments = dds_arguments(dds);
   const Cell cell = std::get<Cell>(read_cell(kTwoArms));
   Participant client(dds);
-  ChildProcess daemon(test::kDaemon, test::with({kTwoArms}, arguments));
-  ChildProcess robot(test::kRobot, test::with({kTwoArms, "--rate", "250"}, arguments));
-  View view(test::with({kTwoArms}, arguments));
-  test::Distances reports(client, cell);
+  ChildProcess daemon(kDaemon, with({kTwoArms}, arguments));
+  ChildProcess robot(kRobot, with({kTwoArms, "--rate", "250"}, arguments));
+  View view(with({kTwoArms}, arguments));
+  Distances reports(client, cell);
   ChildProcess page("/usr/bin/env",
                     {"node", kScripts + "/page.mjs", view.page(), pictures(), "live"});
   std::map<std::uint64_t, double> distances;  // by cycle
@@ -78,28 +72,11 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
 
 // A person and a robot stand 1.7 m apart until the poses end.
 TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
-  const test::CellFile cell(R"(name: hall
-units: {length: m, angle: deg}
-rate_hz: 200
-defaults: {age_limit_ms: 300}
-objects:
-  - {name: person, sphere: {radius: 0.2}}
-  - {name: robot, sphere: {radius: 0.1}}
-pairs: [{between: [person, robot], publish: true}]
-zones:
-  - name: people
-    between: [person, robot]
-    enter_below: 0.3
-    leave_above: 0.4
-    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
-                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
-simulation:
-  movers: [{object: person, centre: {xyz: [2, 0, 0]}}, {object: robot}]
-)");
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  View view(test::with({cell.path()}, dds));
+  const CellFile cell(kPersonAndRobot);
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
+  View view(with({cell.path()}, dds));
   std::filesystem::remove(pictures() + "/separation.png");
   ChildProcess page("/usr/bin/env",
                     {"node", kScripts + "/page.mjs", view.page(), pictures(), "separation"});
@@ -126,13 +103,8 @@ simulation:
 }
 
 TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
-  const test::CellFile cell(test::small_cell("small"));
-  const DdsOptions own = test::own_dds();
-  const auto dds = test::dds_arguments(own);
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.cell());
-  View view(test::with({cell.path()}, dds));
+  RunningSmallCell running;
+  View view(running.arguments());
   ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
                                        "30", "clearance/catalogue", "clearance/zones", "/tf",
                                        "/clearance/bodies", "/clearance/closest"});
@@ -166,23 +138,23 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
 
 // An arm on a cart that follows a frame, and a box that follows another.
 TEST(View, DrawsLiveWhatFollowsFrames) {
-  const test::ScratchFolder folder;
-  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-  test::write_text(folder / "cell.yaml",
-                   "name: frames\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
-                   "defaults: {age_limit_ms: 10000}\nros2: {world_frame: map}\n"
-                   "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir}}]\n"
-                   "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
-                   "pairs: [{between: [arm, box]}]\n");
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  write_text(folder / "cell.yaml",
+             "name: frames\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+             "defaults: {age_limit_ms: 10000}\nros2: {world_frame: map}\n"
+             "robots: [{name: arm, urdf: scara.urdf, base: {frame: mir}}]\n"
+             "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
+             "pairs: [{between: [arm, box]}]\n");
   const std::string cell = (folder / "cell.yaml").string();
-  const DdsOptions own = test::own_dds();
-  const auto dds = test::dds_arguments(own);
+  const DdsOptions own = own_dds();
+  const auto dds = dds_arguments(own);
   Participant robot(own);
-  test::RosFrames frames(robot), fixed(robot, test::RosFrames::Kind::kStatic);
-  test::RosJoints joints(robot);
+  RosFrames frames(robot), fixed(robot, RosFrames::Kind::kStatic);
+  RosJoints joints(robot);
   fixed.send({{"mir", "box_link", {0.5, 0, 0}}});
-  ChildProcess daemon(test::kDaemon, test::with({cell}, dds));
-  View view(test::with({cell}, dds));
+  ChildProcess daemon(kDaemon, with({cell}, dds));
+  View view(with({cell}, dds));
   ChildProcess client("/usr/bin/env",
                       {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "120", "/tf"});
   ASSERT_TRUE(eventually([&] {
@@ -205,13 +177,8 @@ TEST(View, DrawsLiveWhatFollowsFrames) {
 }
 
 TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
-  const test::CellFile cell(test::small_cell("small"));
-  const DdsOptions own = test::own_dds();
-  const auto dds = test::dds_arguments(own);
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
-  wait_for_poses(own, cell.cell());
-  View view(test::with({cell.path()}, dds));
+  RunningSmallCell running;
+  View view(running.arguments());
   std::uint64_t last = 0;
   for (int look = 0; look < 2; ++look) {
     SCOPED_TRACE(look);
@@ -228,15 +195,15 @@ TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
 }
 
 TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
-  const test::CellFile cell(test::small_cell("small"));
-  const test::ScratchFolder folder;
+  const CellFile cell(small_cell("small"));
+  const ScratchFolder folder;
   const std::string file = (folder / "scene.mcap").string();
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess record(test::kRecord, test::with({"-o", file, "--cell", cell.path(), "--scene",
-                                                 "--uncompressed", "--seconds", "3"},
-                                                dds));
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess record(kRecord, with({"-o", file, "--cell", cell.path(), "--scene", "--uncompressed",
+                                     "--seconds", "3"},
+                                    dds));
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   EXPECT_EQ(record.wait(), 0) << record.output();
   ChildProcess reader("/usr/bin/env", {"node", kScripts + "/scene.mjs", file});
   EXPECT_EQ(reader.wait(), 0) << reader.output();
@@ -251,4 +218,4 @@ TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

@@ -7,19 +7,16 @@
 
 #include "tests/tools/running_cell.hpp"
 
-namespace clearance {
+namespace clearance::test {
 namespace {
 
-using test::ChildProcess;
-using test::eventually;
-
 TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
-  const test::CellFile cell(test::small_cell("small"));
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  const CellFile cell(small_cell("small"));
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess watch(kWatch, with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("waiting for clearanced"); })) << watch.output();
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("left - right") && watch.wrote("tick p50"); }))
       << watch.output();
   watch.signal(SIGINT);
@@ -32,14 +29,14 @@ TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
 }
 
 TEST(Watch, SaysThatNobodyKnowsHowFastThingsCloseYet) {
-  const test::CellFile cell(test::small_cell("small"));
+  const CellFile cell(small_cell("small"));
   const Cell read = cell.cell();
-  const DdsOptions dds = test::own_dds();
+  const DdsOptions dds = own_dds();
   Participant client(dds);
-  test::Poses poses(client, read);
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
-  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  Poses poses(client, read);
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)));
+  ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; }));
   poses.send(0.0, false);
   ASSERT_TRUE(eventually([&] { return watch.wrote("closing at an unknown speed"); }))
       << watch.output();
@@ -49,17 +46,17 @@ TEST(Watch, SaysThatNobodyKnowsHowFastThingsCloseYet) {
 }
 
 TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
-  const test::CellFile first(test::small_cell("first"));
-  std::string text = test::small_cell("second");
+  const CellFile first(small_cell("first"));
+  std::string text = small_cell("second");
   for (std::size_t at = 0; (at = text.find("left", at)) != std::string::npos; at += 4) {
     text.replace(at, 4, "port");  // the same ids under other names
   }
-  const test::CellFile second(text);
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  const CellFile second(text);
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess watch(kWatch, with({"--plain"}, dds));
   for (const auto& [cell, pair] : {std::pair{&first, "left - right"}, {&second, "port - right"}}) {
-    ChildProcess daemon(test::kDaemon, test::with({cell->path()}, dds));
-    ChildProcess robot(test::kRobot, test::with({cell->path(), "--rate", "200"}, dds));
+    ChildProcess daemon(kDaemon, with({cell->path()}, dds));
+    ChildProcess robot(kRobot, with({cell->path(), "--rate", "200"}, dds));
     ASSERT_TRUE(eventually([&] { return watch.wrote(pair); })) << watch.output();
   }
   ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced is silent"); })) << watch.output();
@@ -69,11 +66,11 @@ TEST(Watch, FollowsADaemonThatStartsAgainWithAnotherCell) {
 }
 
 TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
-  const test::CellFile cell(test::small_cell("small"));
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  const CellFile cell(small_cell("small"));
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess watch(kWatch, with({"--plain"}, dds));
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
@@ -88,13 +85,13 @@ TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
 
 // The program runs in a terminal, which `script` simulates: without one the screen is not printed.
 TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
-  const test::CellFile cell(test::small_cell("small"));
-  const auto dds = test::dds_arguments(test::own_dds());
-  std::string command = test::kWatch;
+  const CellFile cell(small_cell("small"));
+  const auto dds = dds_arguments(own_dds());
+  std::string command = kWatch;
   for (const std::string& word : dds) command += " " + word;
   ChildProcess watch("/usr/bin/env", {"TERM=xterm", "script", "-qfec", command, "/dev/null"});
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "200"}, dds));
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
   const std::string live = watch.output();
   EXPECT_EQ(live.find("was "), std::string::npos) << live;
@@ -112,10 +109,10 @@ TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
 }
 
 TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
-  const test::CellFile cell(test::small_cell("small"));
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, dds));
+  const CellFile cell(small_cell("small"));
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess watch(kWatch, with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("cycle "); })) << watch.output();
   watch.signal(SIGSTOP);
   // three times the age at which a report is called old
@@ -135,16 +132,16 @@ TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
 }
 
 TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
-  const test::CellFile cell(test::small_cell("small", 100));
+  const CellFile cell(small_cell("small", 100));
   const Cell read = cell.cell();
-  const DdsOptions dds = test::own_dds();
+  const DdsOptions dds = own_dds();
   Participant client(dds);
-  test::Poses poses(client, read);
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
-  ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
+  Poses poses(client, read);
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)));
+  ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return watch.wrote("zone near: no poses of left"); }))
       << watch.output();
-  ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; }));
   // Sends poses at 0.8 m until the distance is known, and then falls silent.
   ASSERT_TRUE(eventually([&] {
     poses.send(0.0);
@@ -158,20 +155,19 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
 }
 
 TEST(Watch, EndsAfterItsSecondsAndSaysSoWhenNothingCame) {
-  ChildProcess watch(test::kWatch,
-                     test::with({"--seconds", "0.3"}, test::dds_arguments(test::own_dds())));
+  ChildProcess watch(kWatch, with({"--seconds", "0.3"}, dds_arguments(own_dds())));
   EXPECT_EQ(watch.wait(), 5);
   EXPECT_TRUE(watch.wrote("no report came")) << watch.output();
 }
 
 TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
-  const test::CellFile cell(test::small_cell("small"));
+  const CellFile cell(small_cell("small"));
   const Cell read = cell.cell();
-  const DdsOptions dds = test::own_dds();
+  const DdsOptions dds = own_dds();
   Participant participant(dds);
   const dds_entity_t reader = participant.reader(TopicKind::kPoses, read.topics.poses, 4096);
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "100", "--source", "tester"},
-                                              test::dds_arguments(dds)));
+  ChildProcess robot(
+      kRobot, with({cell.path(), "--rate", "100", "--source", "tester"}, dds_arguments(dds)));
   Sample<clearance_msg_PoseBatch> sample;
   std::uint64_t expected = 0;
   for (int i = 0; i < 30; ++i) {
@@ -195,21 +191,21 @@ TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
 }
 
 TEST(Robot, MeasuresHowSoonTheAnswerIsBack) {
-  const test::CellFile cell(test::small_cell("small"));
-  const auto dds = test::dds_arguments(test::own_dds());
-  ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
-  ChildProcess robot(test::kRobot, test::with({cell.path(), "--latency", "--seconds", "0.5"}, dds));
+  const CellFile cell(small_cell("small"));
+  const auto dds = dds_arguments(own_dds());
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds));
+  ChildProcess robot(kRobot, with({cell.path(), "--latency", "--seconds", "0.5"}, dds));
   EXPECT_EQ(robot.wait(), 0);
   EXPECT_TRUE(robot.wrote("batch sent to report received")) << robot.output();
 }
 
 TEST(Robot, SaysThatACellHasNoMotion) {
-  const std::string text = test::small_cell("still");
-  const test::CellFile cell(text.substr(0, text.find("simulation:")));
-  ChildProcess robot(test::kRobot, {cell.path()});
+  const std::string text = small_cell("still");
+  const CellFile cell(text.substr(0, text.find("simulation:")));
+  ChildProcess robot(kRobot, {cell.path()});
   EXPECT_EQ(robot.wait(), 3);
   EXPECT_TRUE(robot.wrote("simulation")) << robot.output();
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::test

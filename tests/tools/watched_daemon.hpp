@@ -39,9 +39,6 @@ class WatchedDaemon : public testing::Test {
     }
     return false;
   }
-  auto logged(const std::string& text) {
-    return [this, text] { return daemon->wrote(text); };
-  }
   auto told(const std::string& code, const std::vector<std::string>& names = {}) {
     return [this, code, names] { return daemon->told(code, names); };
   }

@@ -53,7 +53,7 @@ void TrueDistance::place(Corner& corner) const {
   corner.point = apart_ + world_from_b_ * corner.own_b - world_from_a_ * corner.own_a;
 }
 
-TrueDistance::Corner TrueDistance::farthest(const Point& against) const {
+TrueDistance::Corner TrueDistance::support_point(const Point& against) const {
   Corner found;
   found.own_a = support(a_, world_from_a_.transpose() * against);
   found.own_b = support(b_, -(world_from_b_.transpose() * against));
@@ -110,7 +110,7 @@ Truth TrueDistance::at(const Pose& world_from_a, const Pose& world_from_b) {
     c.weight = 1.0L / static_cast<Real>(corners_.size());
   }
   if (corners_.empty()) {
-    corners_.push_back(farthest(apart_));
+    corners_.push_back(support_point(apart_));
     corners_[0].weight = 1.0L;
   }
   constexpr int kRounds = 1000;
@@ -120,7 +120,7 @@ Truth TrueDistance::at(const Pose& world_from_a, const Pose& world_from_b) {
     const Point v = nearest();
     const Real length = v.norm();
     if (length < 1e-16L || corners_.size() == 4) return {0.0, 0.0};
-    const Corner next = farthest(v);
+    const Corner next = support_point(v);
     const Real gap = length - v.dot(next.point) / length;
     if (static_cast<double>(gap) < best.gap) {
       const Real radii = static_cast<Real>(a_.radius) + static_cast<Real>(b_.radius);

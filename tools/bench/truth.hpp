@@ -36,7 +36,7 @@ class TrueDistance {
 
   [[nodiscard]] static Point support(const ConvexBody& body, const Point& along);
   void place(Corner& corner) const;
-  [[nodiscard]] Corner farthest(const Point& against) const;
+  [[nodiscard]] Corner support_point(const Point& against) const;
   [[nodiscard]] Point nearest() const;
   void minimise();
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -159,6 +160,15 @@ json zones_json(const Scene& scene, Meshes& meshes) {
   return list;
 }
 
+// The text of every ZoneCause, in the order of their numbers, with {} for the object's name.
+json causes_json(PlacedBy placed_by) {
+  json list = json::array();
+  for (std::uint8_t i = 0; *name(static_cast<ZoneCause>(i)) != '\0'; ++i) {
+    list.push_back(cause_text(static_cast<ZoneCause>(i), "{}", placed_by));
+  }
+  return list;
+}
+
 }  // namespace
 
 std::string scene_json(const Cell& cell) {
@@ -176,7 +186,10 @@ std::string scene_json(const Cell& cell) {
               {"objects", objects_json(scene)},
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},
-              {"zones", zones_json(scene, meshes)}};
+              {"zones", zones_json(scene, meshes)},
+              {"zone_causes",
+               {{"by_poses", causes_json(PlacedBy::kPoses)},
+                {"by_joints", causes_json(PlacedBy::kJointStates)}}}};
   all["meshes"] = meshes.take();
   return all.dump(-1, ' ', false, json::error_handler_t::replace);
 }

@@ -20,12 +20,6 @@
 namespace clearance::view {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using asio::ip::tcp;
-using Error = beast::error_code;
 using HttpRequest = http::request<http::empty_body>;
 
 constexpr auto kPatience = std::chrono::seconds(30);

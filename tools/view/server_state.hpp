@@ -4,6 +4,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core.hpp>
+#include <boost/beast/http.hpp>
+#include <boost/beast/websocket.hpp>
 #include <map>
 #include <set>
 #include <string>
@@ -13,6 +16,14 @@
 #include "tools/view/server.hpp"
 
 namespace clearance::view {
+
+// The names of Boost's network library, for the server and its viewers.
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = beast::http;
+namespace websocket = beast::websocket;
+using asio::ip::tcp;
+using Error = beast::error_code;
 
 class Viewer;
 
@@ -28,9 +39,9 @@ struct ServerState {
   std::map<std::string, std::string> statuses;  // by id: the JSON that is sent
   std::set<std::string> told;                   // the messages on stderr so far
   // Last, since their operations use all of the above and end with them.
-  boost::asio::io_context context{1};
-  boost::asio::ip::tcp::acceptor acceptor{context};
-  boost::asio::steady_timer pause{context};  // while connections cannot be accepted
+  asio::io_context context{1};
+  tcp::acceptor acceptor{context};
+  asio::steady_timer pause{context};  // while connections cannot be accepted
 
   void accept();
   // Writes this line to stderr, once; after a few different ones, no more.

@@ -5,13 +5,6 @@
 namespace clearance::view {
 namespace {
 
-namespace asio = boost::asio;
-namespace beast = boost::beast;
-namespace http = beast::http;
-namespace websocket = beast::websocket;
-using asio::ip::tcp;
-using Error = beast::error_code;
-
 constexpr std::size_t kMostRequestBytes = 1 << 16;
 // The kernel may hold about two frames of a large cell for a viewer, so that a slow viewer does not
 // see old ones.

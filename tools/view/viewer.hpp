@@ -3,9 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,13 +15,12 @@ namespace clearance::view {
 // One WebSocket. It lives while an operation of it is under way.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
-  Viewer(boost::asio::ip::tcp::socket socket, ServerState& server)
-      : socket_(std::move(socket)), server_(server) {}
+  Viewer(tcp::socket socket, ServerState& server) : socket_(std::move(socket)), server_(server) {}
   ~Viewer() { server_.viewers.erase(this); }
   Viewer(const Viewer&) = delete;
   Viewer& operator=(const Viewer&) = delete;
 
-  void accept(const boost::beast::http::request<boost::beast::http::empty_body>& request);
+  void accept(const http::request<http::empty_body>& request);
   void send(const Message& message) {
     if (!subscribed(message.channel)) return;
     outbox_.add(message);
@@ -36,8 +32,8 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   }
   void send_text(std::string text) {
     if (outbox_.add_text(std::move(text))) return write_next();
-    boost::beast::error_code ignored;
-    boost::beast::get_lowest_layer(socket_).socket().close(ignored);
+    Error ignored;
+    beast::get_lowest_layer(socket_).socket().close(ignored);
   }
   [[nodiscard]] bool wants_parameters() const noexcept { return wants_parameters_; }
   [[nodiscard]] bool subscribed(ChannelId channel) const {
@@ -54,9 +50,9 @@ class Viewer : public std::enable_shared_from_this<Viewer> {
   void write_next();
   void write(bool is_text, std::size_t begin);
 
-  boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+  websocket::stream<beast::tcp_stream> socket_;
   ServerState& server_;
-  boost::beast::flat_buffer received_;
+  beast::flat_buffer received_;
   Outbox outbox_;
   std::map<std::uint32_t, ChannelId> subscriptions_;  // by the client's id
   bool open_ = false, writing_ = false, wants_parameters_ = false;

@@ -4,11 +4,12 @@
 
 #include "tests/config/cells.hpp"
 #include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/mistake_at.hpp"
 
 namespace clearance {
 namespace {
 
-using testing::HasSubstr;
+using test::mistake_at;
 
 TEST(RosSettingsOfACell, NameTopicsOrTakeTheStandardOnes) {
   const Cell cell =
@@ -26,14 +27,15 @@ TEST(RosSettingsOfACell, NameTopicsOrTakeTheStandardOnes) {
 TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
   for (const char* topic : {"markers", "/", "/a/", "/a//b", "/1a", "/a/1", "/a-b", "/a b"}) {
     EXPECT_THAT(errors_of(cell_text(std::string("ros2: {markers: '") + topic + "'}\n" + kBoxes)),
-                HasSubstr("expected true, false or a topic of ROS 2 with its namespace"))
+                mistake_at("cell.yaml:4:17", topic))
         << topic;
   }
   EXPECT_THAT(errors_of(cell_text("ros2: {markers: /a, diagnostics: /a}\n" + kBoxes)),
-              HasSubstr("found the topic '/a' for both 'markers' and 'diagnostics'"));
-  EXPECT_THAT(errors_of(cell_text("ros2: {marker: true}\n" + kBoxes)), HasSubstr("marker"));
+              mistake_at("cell.yaml:4:7", "'/a'", "'markers'", "'diagnostics'"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {marker: true}\n" + kBoxes)),
+              mistake_at("cell.yaml:4:8", "'marker'", "'markers'"));
   EXPECT_THAT(errors_of(cell_text("ros2: {stamps: never}\n" + kBoxes)),
-              HasSubstr("found 'never'; expected message (the stamp in it) or sent"));
+              mistake_at("cell.yaml:4:16", "'never'"));
 }
 
 TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
@@ -45,11 +47,11 @@ TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
   EXPECT_EQ(cell.scene.objects[0].frame, "box_link");
   EXPECT_EQ(cell.ros.world(), "map");
   EXPECT_THAT(errors_of(cell_text(boxes)),
-              HasSubstr("found that 'box' follows the frame 'box_link', and no world_frame"));
+              mistake_at("cell.yaml:1:1", "'box'", "'box_link'", "world_frame"));
   EXPECT_THAT(errors_of(cell_text("ros2: {world_frame: map}\nobjects:\n  - {name: floor, fixed: "
                                   "true, frame: a, half_space: {normal: [0, 0, 1], offset: 0}}\n"
                                   "pairs: []\n")),
-              HasSubstr("found 'frame' of a fixed object"));
+              mistake_at("cell.yaml:6:39", "'frame'"));
 }
 
 // The root is connected by a floating joint that the URDF does not contain. Everything else stays
@@ -87,7 +89,7 @@ TEST(RosSettingsOfACell, FloatTheBaseOfARobotThatFollowsAFrame) {
   EXPECT_TRUE(plain.objects[0].fixed) << "the foot";
   EXPECT_FALSE(scene.objects[0].fixed);
   EXPECT_THAT(errors_of(cell("{frame: mir, on: r_foot}"), folder / "cell.yaml"),
-              HasSubstr("found 'on' of a base that follows a frame"));
+              mistake_at("cell.yaml:4:91", "'on'"));
 }
 
 }  // namespace

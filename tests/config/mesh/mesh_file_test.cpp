@@ -13,11 +13,13 @@
 
 #include "tests/config/cells.hpp"
 #include "tests/config/mesh/box_meshes.hpp"
+#include "tests/shared/mistake_at.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
 
+using test::mistake_at;
 using testing::HasSubstr;
 
 // A private directory for each test, removed afterwards.
@@ -118,12 +120,11 @@ TEST_F(MeshFile, WhatIsNoMeshIsRefusedByName) {
   write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n");
   write("short.stl", binary_stl().substr(0, 200));
   write("mesh.xyz", "1 2 3");
-  EXPECT_THAT(errors("file: text.stl"),
-              HasSubstr("cell.yaml:5:28: found a mesh file that cannot be used: '"));
+  EXPECT_THAT(errors("file: text.stl"), mistake_at("cell.yaml:5:28", "text.stl"));
   EXPECT_THAT(errors("file: line.obj"), HasSubstr("found a mesh that is not a solid convex body"));
-  EXPECT_THAT(errors("file: points.obj"), HasSubstr("found a mesh file that cannot be used"));
-  EXPECT_THAT(errors("file: short.stl"), HasSubstr("found a mesh file that cannot be used"));
-  EXPECT_THAT(errors("file: mesh.xyz"), HasSubstr("found a mesh file that cannot be used"));
+  EXPECT_THAT(errors("file: points.obj"), mistake_at("cell.yaml:5:28", "points.obj"));
+  EXPECT_THAT(errors("file: short.stl"), mistake_at("cell.yaml:5:28", "short.stl"));
+  EXPECT_THAT(errors("file: mesh.xyz"), mistake_at("cell.yaml:5:28", "mesh.xyz"));
   EXPECT_THAT(errors("file: ."), HasSubstr("is a directory"));
 }
 
@@ -140,8 +141,7 @@ TEST_F(MeshFile, AFaceThatNamesAVertexThatIsNotThereIsRefused) {
         "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty "
         "float z\nelement face 4\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 "
         "0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n3 0 2 3\n3 1 2 70000\n");
-  EXPECT_THAT(errors("file: index.ply"),
-              HasSubstr("index.ply': a face names vertex 70000 of 4; expected"));
+  EXPECT_THAT(errors("file: index.ply"), mistake_at("cell.yaml:5:28", "index.ply", "70000", "4"));
 }
 
 // The accessor announces 200 numbers for an array of 24.
@@ -150,8 +150,7 @@ TEST_F(MeshFile, AColladaAccessorThatLeavesItsArrayIsRefused) {
   dae.replace(dae.find("count=\"8\" stride"), 9, "count=\"67\"");
   dae.replace(dae.find("<p> 0 0"), 5, "<p> 66");
   write("mesh.dae", dae);
-  EXPECT_THAT(errors("file: mesh.dae"),
-              HasSubstr("the accessor in line 6 reaches beyond the 24 numbers of 'pa'"));
+  EXPECT_THAT(errors("file: mesh.dae"), mistake_at("cell.yaml:5:28", "line 6", "24", "'pa'"));
 }
 
 TEST_F(MeshFile, BytesOfTheFileDoNotReachTheTerminal) {
@@ -159,7 +158,7 @@ TEST_F(MeshFile, BytesOfTheFileDoNotReachTheTerminal) {
   ply.replace(ply.find("1.0 1.0 1.0"), 3, "\x1b[2J\xff");
   write("mesh.ply", ply);
   EXPECT_THAT(errors("file: mesh.ply"),
-              HasSubstr("mesh.ply': '\\x1B[2J\\xFF' is no number; expected"));
+              mistake_at("cell.yaml:5:28", "mesh.ply", "'\\x1B[2J\\xFF'"));
 }
 
 TEST_F(MeshFile, AnAsciiStlThatIsCutOffIsRefused) {
@@ -167,38 +166,32 @@ TEST_F(MeshFile, AnAsciiStlThatIsCutOffIsRefused) {
   write("mesh.stl", stl);
   EXPECT_EQ("", errors("file: mesh.stl"));
   write("mesh.stl", stl.substr(0, stl.rfind(" facet normal")));
-  EXPECT_THAT(
-      errors("file: mesh.stl"),
-      HasSubstr("its length is not that of its triangles, and its last line not 'endsolid'"));
+  EXPECT_THAT(errors("file: mesh.stl"), mistake_at("cell.yaml:5:28", "mesh.stl", "'endsolid'"));
 }
 
 TEST_F(MeshFile, ABodyOfKilometresIsRefusedUnlessTheCellSaysSo) {
   write("far.obj", "v 0 0 0\nv 3600 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
-  EXPECT_THAT(errors("file: far.obj"),
-              HasSubstr("found a mesh with a vertex 3600 m from its origin along an axis; expected "
-                        "another unit or scale, or, where the body reaches farther than 100 m, "
-                        "'reach' beside 'file'"));
+  EXPECT_THAT(errors("file: far.obj"), mistake_at("cell.yaml:5:21", "3600 m", "100 m", "'reach'"));
   EXPECT_EQ("", errors("file: far.obj, unit: mm"));
   EXPECT_EQ("", errors("file: far.obj, reach: 4000"));
-  EXPECT_THAT(errors("file: far.obj, unit: mm, reach: 3"), HasSubstr("farther than 3 m"));
+  EXPECT_THAT(errors("file: far.obj, unit: mm, reach: 3"),
+              mistake_at("cell.yaml:5:21", "3.6 m", "3 m", "'reach'"));
 }
 
 TEST_F(MeshFile, OtherFormatsAreRefusedWithTheListOfThese) {
   write("mesh.gltf", "{}");
   EXPECT_THAT(errors("file: mesh.gltf"),
-              HasSubstr("its format is none of stl, obj, ply, dae; expected"));
+              mistake_at("cell.yaml:5:28", "mesh.gltf", "stl, obj, ply, dae"));
   write("MESH.OBJ", kTetrahedronObj);
   EXPECT_EQ("", errors("file: MESH.OBJ"));
 }
 
 TEST_F(MeshFile, AnUnknownUnitOrAScaleOfZeroIsRefused) {
   write("mesh.obj", kTetrahedronObj);
-  EXPECT_THAT(errors("file: mesh.obj, unit: cm"),
-              HasSubstr("expected the unit of length, m or mm"));
-  EXPECT_THAT(errors("file: mesh.obj, scale: 0"),
-              HasSubstr("expected a scale, or a list of 3, more than 0"));
-  EXPECT_THAT(errors("file: mesh.obj, scale: [1, 0, 1]"), HasSubstr("found a scale of 0"));
-  EXPECT_THAT(errors("file: mesh.obj, scale: 1e9"), HasSubstr("expected another unit or scale"));
+  EXPECT_THAT(errors("file: mesh.obj, unit: cm"), mistake_at("cell.yaml:5:44", "'cm'"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: 0"), mistake_at("cell.yaml:5:45", "0"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: [1, 0, 1]"), mistake_at("cell.yaml:5:45", "0"));
+  EXPECT_THAT(errors("file: mesh.obj, scale: 1e9"), mistake_at("cell.yaml:5:21", "2e+09 m"));
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Oracle: whatever the bytes of a mesh file, one of two results is allowed. A cell with it is
 // refused with the file's name and a reason. Otherwise its part lies within the limits stated in
-// config/README.md, and is the same each time it is read. The test makes the meshes itself: boxes
+// config/KEYS.md, and is the same each time it is read. The test makes the meshes itself: boxes
 // as programs export them. Seeds are fixed, and a failure prints its seed.
 #include <gtest/gtest.h>
 

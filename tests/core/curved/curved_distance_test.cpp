@@ -340,11 +340,11 @@ TEST(CurvedBodies, AreInsideTheModelsAroundThem) {
         const Vec3 n = random.direction();
         const Mat3 turn = rotation_matrix(body.frame_from_shape.orientation);
         const CurvedShape& shape = body.shape->curved;
-        const double reach = support_value(shape, turn.transpose() * n) + body.shape->radius +
-                             n.dot(body.frame_from_shape.position);
+        const double support = support_value(shape, turn.transpose() * n) + body.shape->radius +
+                               n.dot(body.frame_from_shape.position);
         double of_model = -kInfinity;
         for (const Vec3& anchor : model->anchors) of_model = std::max(of_model, n.dot(anchor));
-        EXPECT_LE(reach, of_model + 1e-15);
+        EXPECT_LE(support, of_model + 1e-15);
       }
     }
   }

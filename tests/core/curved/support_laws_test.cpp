@@ -111,13 +111,12 @@ TEST(SupportLaws, TheSupportHessianIsTheDerivativeOfTheSupportPoint) {
   }
 }
 
-TEST(SupportLaws, TheFarthestPartHasTheSupportValueOfTheWholeBody) {
+TEST(SupportLaws, TheSupportPartHasTheSupportValueOfTheWholeBody) {
   for (const ConvexBody& body : every_body()) {
     const BodyView view{&body, body.bounding_radius};
     for (const double epsilon : {0.0, 1e-1, 1e-3, 1e-9, 1e-15}) {
       along_all_axes(epsilon, [&](const Vec3& m) {
-        const std::int32_t farthest = farthest_part(view, m);
-        const double value = support_value(view, farthest, m);
+        const double value = support_value(view, support_part(view, m), m);
         for (std::int32_t part = 0; part < parts_of(body); ++part) {
           EXPECT_LE(support_value(view, part, m), value + 1e-15 * body.bounding_radius);
         }
@@ -138,12 +137,12 @@ TEST(SupportLaws, PointsPulledInsideAreInsideAndPointsInsideStay) {
     if (!body.is_curved()) continue;
     const BodyView view{&body, body.bounding_radius};
     along_all_axes(1e-3, [&](const Vec3& m) {
-      const Vec3 on_surface = support_point(view, farthest_part(view, m), m);
+      const Vec3 on_surface = support_point(view, support_part(view, m), m);
       const Vec3 pulled = pulled_inside(view, on_surface + 1e-9 * random.direction());
       EXPECT_LE((pulled - on_surface).norm(), 1e-8);
       along_all_axes(0.0, [&](const Vec3& n) {
         EXPECT_LE(n.dot(pulled),
-                  support_value(view, farthest_part(view, n), n) + 1e-15 * body.bounding_radius);
+                  support_value(view, support_part(view, n), n) + 1e-15 * body.bounding_radius);
       });
       const Vec3 inside = 0.5 * on_surface;
       EXPECT_LE((pulled_inside(view, inside) - inside).norm(), 1e-16);
@@ -158,7 +157,7 @@ TEST(SupportLaws, ThePointOfTheSupportSetIsASupportPointAndNoneIsFartherThatWay)
       for (const Vec3& towards : fifteen_axes()) {
         const PointOfPart found = visit(
             view, [&](const auto& shape) { return shape.support_set_point(m, towards, 1e-15); });
-        const Vec3 any = support_point(view, farthest_part(view, m), m);
+        const Vec3 any = support_point(view, support_part(view, m), m);
         EXPECT_NEAR(m.dot(found.point), m.dot(any), 1e-14);
         if (towards.cross(m).norm() > 1e-6) {
           EXPECT_GE(towards.dot(found.point), towards.dot(any) - 1e-14);

@@ -31,11 +31,11 @@ void expect_depth(const ConvexBody& a, const ConvexBody& b, const Pose& pose, do
 // The depth of coaxial solids of revolution is that of their sections. It is the smallest
 // translation along the axis or along a normal of one of the sections' sides.
 double coaxial_depth(const Vec2 (&a)[2], const Vec2 (&b)[2], double apart) {
-  const auto reach = [](const Vec2(&s)[2], double x, double y) {
+  const auto support_value = [](const Vec2(&s)[2], double x, double y) {
     return std::max(s[0].x() * x + s[0].y() * y, s[1].x() * x + s[1].y() * y);
   };
   const auto along = [&](double x, double y) {
-    return reach(a, x, y) + reach(b, -x, y) - apart * x;
+    return support_value(a, x, y) + support_value(b, -x, y) - apart * x;
   };
   double least = std::min(along(1, 0), along(-1, 0));
   const auto side = [&](const Vec2(&s)[2], double sign) {

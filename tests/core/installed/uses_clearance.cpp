@@ -1,5 +1,5 @@
-// Uses both entry points of the README's section "The core as a library". It exits with 0 if both
-// agree with closed forms. It is built with several switches under which Eigen lays out its types
+// Uses both entry points of core/README.md, "As a library". It exits with 0 if both agree with
+// closed forms. It is built with several switches under which Eigen lays out its types
 // differently.
 #include <core/batch.hpp>
 #include <core/distance.hpp>

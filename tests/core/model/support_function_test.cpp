@@ -16,19 +16,19 @@ TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) 
   Random random(1);
   for (const auto& of : {hard::facet_ball(10), hard::dual_ball(10)}) {
     const ConvexBody body = test::made(of);
-    const auto expect_farthest = [&](const Vec3& m) {
+    const auto expect_support_point = [&](const Vec3& m) {
       EXPECT_EQ(support(body, m).value, support_by_scan(body, m).value);
     };
     for (const Facet& facet : body.facets) {
-      expect_farthest(facet.normal);
+      expect_support_point(facet.normal);
       for (const double tilt : {1e-16, 1e-15, 1e-14}) {
-        expect_farthest((facet.normal + tilt * random.direction()).normalized());
+        expect_support_point((facet.normal + tilt * random.direction()).normalized());
       }
     }
     for (const Edge& edge : body.edges) {
       if (edge.facet[0] == kNone) continue;
       const Vec3 between = body.facets[edge.facet[0]].normal + body.facets[edge.facet[1]].normal;
-      expect_farthest(between.normalized());
+      expect_support_point(between.normalized());
     }
   }
 }

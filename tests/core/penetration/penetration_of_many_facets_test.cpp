@@ -35,16 +35,16 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
 
 // The translation of B along n, of any length, after which it is clear of A.
 double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b, const Vec3& n) {
-  long double reach_a = -kInfinity, reach_b = -kInfinity;
+  long double support_a = -kInfinity, support_b = -kInfinity;
   const auto along = [&](const Vec3& p) {
     return static_cast<long double>(n.x()) * p.x() + static_cast<long double>(n.y()) * p.y() +
            static_cast<long double>(n.z()) * p.z();
   };
-  for (const Vertex& v : a.vertices) reach_a = std::max(reach_a, along(v.position));
+  for (const Vertex& v : a.vertices) support_a = std::max(support_a, along(v.position));
   for (const Vertex& v : b.vertices) {
-    reach_b = std::max(reach_b, -along(transform(pose_b, v.position)));
+    support_b = std::max(support_b, -along(transform(pose_b, v.position)));
   }
-  return static_cast<double>((reach_a + reach_b) / std::sqrt(along(n)));
+  return static_cast<double>((support_a + support_b) / std::sqrt(along(n)));
 }
 
 // Each facet of the difference body is normal to a facet normal of one body's facet, or to an edge

@@ -40,13 +40,21 @@ double stated_errors(const ConvexBody& a, const ConvexBody& b) {
   return a.position_error + b.position_error;
 }
 
-// For polyhedra, m. `of_pose`: counts of the rotation and, a metre, of the translation.
-double account(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-               double distance) {
+// The rounding errors of an answer, as multiples of kUlp times the lengths of a pair.
+struct Roundings {
+  double on_a, on_b, between;
+};
+constexpr Roundings kOfPolyhedra{kUlpsOnA, kUlpsOnB, kUlpsBetween};
+constexpr Roundings kOfCurvedBodies{kUlpsOfA, kUlpsOfB, kUlpsOfOffset};
+
+// Returns the error of a distance, m.
+double account(const Roundings& roundings, const ConvexBody& a, const ConvexBody& b,
+               const RelativePose& a_from_b, double distance) {
   const Lengths of(a, b, a_from_b);
   const double turned = std::min(of.b, of.a + of.between + kStretched * distance);
-  return ulps(kUlpsOnA, of.a) + ulps(kUlpsOnB, of.b) + ulps(kUlpsBetween, of.between) +
-         stated_errors(a, b) + kTranslationError * of.between + kRotationError * turned;
+  return ulps(roundings.on_a, of.a) + ulps(roundings.on_b, of.b) +
+         ulps(roundings.between, of.between) + stated_errors(a, b) +
+         kTranslationError * of.between + kRotationError * turned;
 }
 
 // A box of this size with a stated error of its places, m.
@@ -92,7 +100,8 @@ void for_each_example(const std::function<void(const Example&)>& visit) {
 // `tilted`: the lower bound of two edges, which may be above their distance by the rounding of
 // both.
 void expect_account(const Example& e, const DistanceResult& r, const TrackingState& state) {
-  const double error = account(e.a, e.b, e.pose(), r.distance) * kRounded - ulps(2, r.distance);
+  const double error =
+      account(kOfPolyhedra, e.a, e.b, e.pose(), r.distance) * kRounded - ulps(2, r.distance);
   const bool edges = state.a.kind == FeatureKind::kEdge && state.b.kind == FeatureKind::kEdge;
   const double tilted = edges ? ulps(8, Lengths(e.a, e.b, e.pose()).size()) : 0.0;
   EXPECT_LE(r.lower, r.distance - error + tilted);
@@ -121,7 +130,7 @@ TEST(ErrorAccount, IsAppliedByTheSearch) {
     const DistanceResult r = search_distance(e.a, e.b, e.pose(), state, true);
     if (r.path == DistancePath::kGjk) return;
     ++searched;
-    const double error = account(e.a, e.b, e.pose(), r.distance) * kRounded;
+    const double error = account(kOfPolyhedra, e.a, e.b, e.pose(), r.distance) * kRounded;
     const double gap = kGapToleranceUlps[0] * kUlp * Lengths(e.a, e.b, e.pose()).size();
     EXPECT_LE(r.lower, r.distance - error + gap);
     EXPECT_GE(r.upper, r.distance + error - ulps(2, r.distance));
@@ -186,7 +195,8 @@ TEST(ErrorAccount, IsAppliedToDepths) {
         const Lengths of(e.a, e.b, pose);
         const double depth = -r.distance;
         const double scaled = std::clamp(of.b - of.a - of.between, 0.0, depth);
-        const double of_distance = account(e.a, e.b, pose, 0.0) * kRounded - ulps(2, depth);
+        const double of_distance =
+            account(kOfPolyhedra, e.a, e.b, pose, 0.0) * kRounded - ulps(2, depth);
         const double of_depth = of_distance + ulps(12, of.size()) + kRotationError * scaled;
         // Features that a tracked query certifies at once are judged like those of disjoint bodies.
         EXPECT_GE(r.upper, r.distance + (query == 0 ? of_depth : of_distance));
@@ -200,14 +210,6 @@ TEST(ErrorAccount, IsAppliedToDepths) {
 }
 
 // ---- curved bodies ----
-double curved_account(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                      double distance) {
-  const Lengths of(a, b, a_from_b);
-  const double turned = std::min(of.b, of.a + of.between + kStretched * distance);
-  return ulps(kUlpsOfA, of.a) + ulps(kUlpsOfB, of.b) + ulps(kUlpsOfOffset, of.between) +
-         stated_errors(a, b) + kTranslationError * of.between + kRotationError * turned;
-}
-
 ConvexBody curved_of(Random& random, double size, double error, double rounding) {
   const Vec3 axes =
       size * Vec3(random.uniform(0.3, 1.0), random.uniform(0.3, 1.0), random.uniform(0.3, 1.0));
@@ -236,7 +238,7 @@ TEST(ErrorAccount, IsAppliedToCurvedBodies) {
       const DistanceResult r = distance(a, b, pose, state);
       ASSERT_GT(r.lower, 0.0);
       const double bare = r.distance + rounding;  // between the bodies without their radii
-      const double error = curved_account(a, b, pose, bare) * kRounded;
+      const double error = account(kOfCurvedBodies, a, b, pose, bare) * kRounded;
       // The computed lower bound may be above the distance by the roundings of both.
       EXPECT_LE(r.lower, r.distance - error + ulps(6, Lengths(a, b, pose).size()));
       EXPECT_GE(r.upper, r.distance + error + ulps(0.5, rounding + bare));

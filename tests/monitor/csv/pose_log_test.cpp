@@ -7,6 +7,7 @@
 #include <random>
 
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/mistake_at.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -59,7 +60,7 @@ TEST_F(CsvPoses, RefuseALineThatDoesNotEnd) {
     CsvPose pose;
     EXPECT_TRUE(log.next(pose));
     EXPECT_FALSE(log.next(pose));
-    EXPECT_THAT(log.error(), HasSubstr("log.csv.gz:3: is longer than 1 MiB"));
+    EXPECT_THAT(log.error(), mistake_at("log.csv.gz:3", "1 MiB"));
   }
 }
 
@@ -128,12 +129,11 @@ TEST_F(CsvPoses, EveryErrorNamesItsLine) {
     EXPECT_THAT(error, HasSubstr(c.error));
   }
   read("t_ns,object,px,py,pz,qx,qy,qz\n");
-  EXPECT_THAT(error, HasSubstr("log.csv:1: no column 'qw'"));
+  EXPECT_THAT(error, mistake_at("log.csv:1", "'qw'"));
   read("");
-  EXPECT_THAT(error,
-              HasSubstr("log.csv:1: is empty; expected a first line that names t_ns,object,"));
+  EXPECT_THAT(error, mistake_at("log.csv:1", "t_ns,object,"));
   read("t_ns,object,px,py,px,pz,qw,qx,qy,qz\n");
-  EXPECT_THAT(error, HasSubstr("log.csv:1: two columns are named 'px'; expected a first line"));
+  EXPECT_THAT(error, mistake_at("log.csv:1", "'px'"));
 }
 
 }  // namespace

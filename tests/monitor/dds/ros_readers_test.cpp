@@ -38,19 +38,7 @@ class RosReadersTest : public testing::Test {
     return found;
   }
 
-  static Scene two_arms() {
-    const test::ScratchFolder folder;
-    test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-    return scene_of(
-        "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
-        "  - {name: left, urdf: scara.urdf, prefix: left_, joint_states: /left/joint_states}\n"
-        "  - {name: right, urdf: scara.urdf, prefix: right_, base: {pose: {xyz: [9, 0, 0]}}, "
-        "stamps: sent}\n"
-        "pairs: [{between: [left, right]}]\n",
-        folder / "cell.yaml");
-  }
-
-  Cell cell{two_arms()};
+  Cell cell{test::two_scara_arms()};
   Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant daemon{dds}, robot{dds};

@@ -15,18 +15,6 @@ using Positions = std::map<std::string, double>;
 
 class RosJointStatesTest : public testing::Test {
  protected:
-  static Cell two_arms() {
-    const ScratchFolder folder;
-    write_text(folder / "scara.urdf", kScaraUrdf);
-    return read_good(
-        "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
-        "  - {name: left, urdf: scara.urdf, prefix: left_, joint_states: /left/joint_states}\n"
-        "  - {name: right, urdf: scara.urdf, prefix: right_, base: {pose: {xyz: [9, 0, 0]}}, "
-        "stamps: sent}\n"
-        "pairs: [{between: [left, right]}]\n",
-        folder / "cell.yaml");
-  }
-
   // Sends the state, stamped with the current time.
   bool take(const JointStateText& state, const std::string& topic = "/joint_states",
             std::uint64_t writer = 1) {
@@ -41,7 +29,7 @@ class RosJointStatesTest : public testing::Test {
   }
   [[nodiscard]] std::int64_t now() const { return heard.now.realtime_ns; }
 
-  Cell cell = two_arms();
+  Cell cell = two_scara_arms();
   Heard heard{cell};
 };
 

@@ -15,14 +15,14 @@ using test::kStart;
 using test::kTick;
 
 // The state after a tick that moved the object from one pose to another.
-TrackedObject gone(const Pose& from, const Pose& to, double reach) {
+TrackedObject gone(const Pose& from, const Pose& to, double bounding_radius) {
   const Object object = test::moving("gone", {test::ball(0.1)});
   TrackedObject state;
   for (const std::int64_t now : {kStart, kStart + kTick}) {
     EXPECT_FALSE(
         take(object, test::sample(0, now == kStart ? from : to, now), now, {now, 0}, state));
     advance(object, now, state);
-    displace(reach, state);
+    displace(bounding_radius, state);
   }
   return state;
 }
@@ -57,7 +57,7 @@ TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
   Random random(91);
   int tighter = 0;
   for (int i = 0; i < 3000; ++i) {
-    const double reach_a = random.uniform(0.05, 2.0), reach_b = random.uniform(0.05, 2.0);
+    const double radius_a = random.uniform(0.05, 2.0), radius_b = random.uniform(0.05, 2.0);
     const double scale = std::pow(10.0, random.uniform(-6.0, 0.0));
     const Pose a = random.pose(3.0), b = random.pose(3.0);
     // Rotations and translations are often nearly equal. They must cancel, but not too much.
@@ -66,12 +66,12 @@ TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const Pose a_to = after(a, shift, turn);
     const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
                             turn + differ * scale * random.in_box(0.5));
-    const TrackedObject of_a = gone(a, a_to, reach_a), of_b = gone(b, b_to, reach_b);
+    const TrackedObject of_a = gone(a, a_to, radius_a), of_b = gone(b, b_to, radius_b);
     const double told = relative_displacement(of_a.body_motion(), of_b.body_motion());
     ASSERT_EQ(told, relative_displacement(of_a.body_motion(), of_b.body_motion()));
-    const bool b_goes = reach_b <= reach_a;
+    const bool b_goes = radius_b <= radius_a;
     for (int k = 0; k < 4; ++k) {
-      const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? reach_b : reach_a);
+      const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? radius_b : radius_a);
       const double way =
           b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
       ASSERT_LE(way, told + 1e-13) << "case " << i;

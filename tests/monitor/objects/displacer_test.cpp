@@ -12,7 +12,7 @@ namespace {
 void expect_same(const Displacements& a, const Displacements& b) {
   EXPECT_EQ(a.changed, b.changed);
   EXPECT_EQ(a.any_lost, b.any_lost);
-  EXPECT_EQ(a.most_unseen, b.most_unseen);
+  EXPECT_EQ(a.most_unobserved, b.most_unobserved);
   EXPECT_EQ(a.most_displaced, b.most_displaced);
   EXPECT_EQ(a.newest_pose_ns, b.newest_pose_ns);
   EXPECT_EQ(a.oldest_pose_ns, b.oldest_pose_ns);
@@ -20,11 +20,11 @@ void expect_same(const Displacements& a, const Displacements& b) {
 
 void expect_same(const TrackedObject& a, const TrackedObject& b) {
   EXPECT_EQ(a.moved, b.moved);
-  EXPECT_EQ(a.first_seen, b.first_seen);
+  EXPECT_EQ(a.newly_known, b.newly_known);
   EXPECT_EQ(a.discontinuous, b.discontinuous);
   EXPECT_EQ(a.plain, b.plain);
   EXPECT_EQ(a.may_have_moved, b.may_have_moved);
-  EXPECT_EQ(a.unseen_since, b.unseen_since);
+  EXPECT_EQ(a.unobserved, b.unobserved);
   EXPECT_EQ(a.displacement, b.displacement);
   EXPECT_EQ(a.accumulated_last_tick, b.accumulated_last_tick);
   EXPECT_EQ(a.accumulated, b.accumulated);
@@ -77,7 +77,7 @@ TEST(Displacer, LeavesUnvisitedObjectsAsAVisitWould) {
     Life life(scene, seed);
     Inputs visited = initial_inputs(scene), left_out = initial_inputs(scene);
     for (Inputs* inputs : {&visited, &left_out}) {
-      for (TrackedObject& object : inputs->objects) object.reach = 0.1;
+      for (TrackedObject& object : inputs->objects) object.bounding_radius = 0.1;
     }
     Displacer all(scene), some(scene);
     std::int64_t now = kStart;

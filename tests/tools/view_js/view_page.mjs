@@ -183,7 +183,13 @@ async function visuals() {
   return { ...shown, back };
 }
 
-const known = { inputs, visuals, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+// The page's texts for causes of zones by number, more than there are, as of the cell's first object.
+const causes = () => page.evaluate(() => {
+  const { state } = window.clearance;
+  return { object: state.scene.objects[0].name, texts: [0, 1, 2, 3, 4, 5, 6, 7].map((cause) => state.causeOf({ cause, cause_object: 0 })) };
+});
+
+const known = { causes, inputs, visuals, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
 try {
   await page.goto(url);
   await ready();

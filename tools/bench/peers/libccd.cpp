@@ -80,7 +80,7 @@ Vec3 curved_support(const CurvedShape& shape, const Vec3& d) {
   return {scale * d.x(), scale * d.y(), disc.height};
 }
 
-void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* farthest) {
+void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* support_point) {
   // The callback's object is const, but the one registered is not: it is Libccd's own member.
   auto& placed = *static_cast<Placed*>(const_cast<void*>(object));
   const Vec3 d =
@@ -95,7 +95,7 @@ void support(const void* object, const ccd_vec3_t* direction, ccd_vec3_t* farthe
   }
   if (mesh.radius > 0.0) own += mesh.radius / d.norm() * d;
   const Vec3 p = placed.rotation * own + placed.position;
-  ccdVec3Set(farthest, p.x(), p.y(), p.z());
+  ccdVec3Set(support_point, p.x(), p.y(), p.z());
 }
 
 class Libccd {

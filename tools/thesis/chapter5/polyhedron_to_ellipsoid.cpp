@@ -61,9 +61,10 @@ ClosestPoints line_to_ellipsoid(const Line& line, const Vec3& axes) {
 }
 
 ClosestPoints plane_to_ellipsoid(const Vec3& normal, double offset, const Vec3& axes) {
-  const double reach = axes.cwiseProduct(normal).norm();
-  if (std::abs(offset) <= reach) {  // through it: the centre of the section
-    const Vec3 middle = offset / (reach * reach) * axes.cwiseAbs2().cwiseProduct(normal);
+  const double support_value = axes.cwiseProduct(normal).norm();
+  if (std::abs(offset) <= support_value) {  // through it: the centre of the section
+    const Vec3 middle =
+        offset / (support_value * support_value) * axes.cwiseAbs2().cwiseProduct(normal);
     return {middle, middle};
   }
   const Vec3 on_b = support(axes, offset > 0.0 ? normal : Vec3(-normal));

@@ -2,11 +2,6 @@
 import { counted, isKnown } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
-// ZoneCause of monitor/report.hpp, with the kind and the object of the inputs.
-const ENTERED_BY = [
-  () => "", () => "distance", (inputs) => `late ${inputs}`, (inputs) => `no ${inputs}`,
-  (inputs) => `a discontinuity of ${inputs}`, (inputs) => `contradicting ${inputs}`,
-];
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
 const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
@@ -77,14 +72,15 @@ export class CellState {
   zoneStates() {
     return this.scene.zones.map((zone, id) => {
       const state = this.zones.get(id);
-      const enteredBy = state?.active ? (ENTERED_BY[state.cause]?.(this.inputsOf(state.cause_object)) ?? "") : "";
+      const enteredBy = state?.active ? this.causeOf(state) : "";
       return { id, zone, active: state?.active, known: state !== undefined, enteredBy, pair: this.pairs[state?.pair]?.name, cycle: state?.since_cycle };
     });
   }
-  // "poses of hand", or "joint states for hand" where joints place it.
-  inputsOf(object) {
-    const { name, by_joints } = this.scene.objects[object] ?? {};
-    return by_joints ? `joint states for ${name}` : `poses of ${name}`;
+  // "by distance", "poses of hand are late": the server's text for the cause of an active zone.
+  causeOf({ cause, cause_object }) {
+    const { name, by_joints } = this.scene.objects[cause_object] ?? {};
+    const { by_joints: ofJoints, by_poses: ofPoses } = this.scene.zone_causes;
+    return (by_joints ? ofJoints : ofPoses)[cause]?.replace("{}", () => name) ?? "";
   }
   // A word for what places the objects of the cell.
   get inputs() {

@@ -11,7 +11,7 @@ export function chipOf({ zone, active, known, enteredBy, pair, cycle }, frozen) 
   return {
     kind: frozen || !known ? "" : active ? "alarm" : "live", name: zone.name, state,
     entered: enteredBy && `entered: ${enteredBy}`,
-    title: `${zone.name}: ${state}${active ? `\nEntered at cycle ${cycle}, cause: ${enteredBy}, pair: ${pair}` : ""}\n${rule}`,
+    title: `${zone.name}: ${state}${active ? `\nEntered at cycle ${cycle} (${enteredBy}), pair: ${pair}` : ""}\n${rule}`,
   };
 }
 

@@ -1,0 +1,36 @@
+// Matches messages about mistakes in files by their places and by what they quote from the files,
+// whatever their wording. tests/config/cell/cell_errors_test.cpp holds the wording of each mistake.
+#pragma once
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <sstream>
+#include <string>
+#include <vector>
+
+namespace clearance::test {
+
+// `text` has a line with the place, FILE:LINE or FILE:LINE:COLUMN, and each of these words after
+// it.
+MATCHER_P2(has_mistake, place, words, "a mistake at " + place) {
+  std::istringstream lines(arg);
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t at = line.find(place + ": ");
+    if (at == std::string::npos) continue;
+    const std::string message = line.substr(at + place.size());
+    if (std::ranges::all_of(words, [&](const std::string& word) {
+          return message.find(word) != std::string::npos;
+        })) {
+      return true;
+    }
+  }
+  return false;
+}
+
+template <class... Words>
+[[nodiscard]] auto mistake_at(const std::string& place, const Words&... words) {
+  return has_mistake(place, std::vector<std::string>{words...});
+}
+
+}  // namespace clearance::test
