@@ -96,7 +96,8 @@ class Reckoning {
   static constexpr std::int64_t kAgeLimits = 50;
   // The integration time while a value repeats, in age limits.
   static constexpr std::int64_t kRepeatAgeLimits = 10;
-  // Values are compared at most so often in an age limit. The steps between are summed up.
+  // Values are compared at most so often in an age limit. The steps between are summed up, and the
+  // last comparison holds for them.
   static constexpr std::int64_t kComparesAnAgeLimit = 8;
   // Over a longer gap, in age limits, the mean of two rates says nothing about the motion between.
   static constexpr std::int64_t kGapAgeLimits = 2;
@@ -123,10 +124,10 @@ class Reckoning {
       integrate(step, rate, stamp_ns);
     }
     if (!stays) return Agreement::kValuesContradict;
-    if (elapsed(compared_ns_, stamp_ns) < age_ns / kComparesAnAgeLimit) return Agreement::kAgree;
+    if (elapsed(compared_ns_, stamp_ns) < age_ns / kComparesAnAgeLimit) return agreement_;
     compared_ns_ = stamp_ns;
     led_to_ = metric.moved(led_to_, std::exchange(to_add_, Rate{}));
-    const Agreement agreement = compare(value, stamp_ns, limits, metric);
+    const Agreement agreement = agreement_ = compare(value, stamp_ns, limits, metric);
     if (agreement != Agreement::kAgree && !same) start(value, rate, stamp_ns, metric);
     return agreement;
   }
@@ -226,6 +227,7 @@ class Reckoning {
     last_ = rate;
     last_speed_ = fastest_ = metric.length(rate);
     to_add_ = Rate{};
+    agreement_ = Agreement::kAgree;
     since_ns_ = last_ns_ = step_ns_ = compared_ns_ = stamp_ns;
   }
 
@@ -253,6 +255,7 @@ class Reckoning {
   Rate last_{};
   double last_speed_ = 0.0;
   std::int64_t since_ns_ = 0, last_ns_ = 0, compared_ns_ = 0;
+  Agreement agreement_ = Agreement::kAgree;  // of the last comparison
   Repeats repeats_;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.

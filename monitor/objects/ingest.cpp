@@ -38,7 +38,7 @@ std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs&
   const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
   TrackedObject& state = inputs.objects[sample.object];
   if (take_at_rest(object, sample, stamp_ns, limits, state)) {
-    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -object.age_limit_ns));
+    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -object.age_limit_ns), limits.now_ns);
     inputs.stamps.set(sample.object, stamp_ns);
     return std::nullopt;
   }

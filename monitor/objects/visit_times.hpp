@@ -20,9 +20,9 @@ class VisitTimes {
   void visit_all() noexcept { std::ranges::fill(due_ns_, kNow); }
   // No tick at or before this time, in the tick's time, visits this object, unless visit() says so.
   void rest_until(std::size_t object, std::int64_t ns) noexcept { due_ns_[object] = ns; }
-  // The same for an object that rests already. One that the next tick visits is visited.
-  void rest_on_until(std::size_t object, std::int64_t ns) noexcept {
-    if (due_ns_[object] != kNow) due_ns_[object] = ns;
+  // The same for an object that rests already. One that is due stays so.
+  void rest_on_until(std::size_t object, std::int64_t ns, std::int64_t now_ns) noexcept {
+    if (due_ns_[object] >= now_ns) due_ns_[object] = ns;
   }
 
   // Calls visit(object) for the objects from `first` to before `end` that are due. Many objects are
