@@ -42,7 +42,7 @@ TEST_F(RobotFilesTest, FindNothingThatLeadsOutOfItsPackage) {
 
 // With a root, the files are those of another machine.
 TEST_F(RobotFilesTest, FindNothingThatLeadsOutOfTheRoot) {
-  files_ = {.named_in = folder_ / "arm/urdf/arm.urdf", .root = folder_ / "arm"};
+  files_ = {folder_ / "arm/urdf/arm.urdf", {}, folder_ / "arm"};
   const std::string root = (folder_ / "arm").string();
   EXPECT_EQ(find("../meshes/a.stl"), folder_ / "arm/meshes/a.stl");
   EXPECT_EQ(find("file:///meshes/../a.stl"), folder_ / "arm/a.stl");
