@@ -29,9 +29,10 @@ namespace clearance {
 // True if a path leads out of the root, as root/../x does. Nothing leads out of an empty root.
 [[nodiscard]] inline bool leads_out_of(const std::filesystem::path& root,
                                        const std::filesystem::path& path) {
+  if (root.empty()) return false;
   const auto outer = std::filesystem::absolute(root).lexically_normal();
   const auto inner = std::filesystem::absolute(path).lexically_normal();
-  return !root.empty() && std::ranges::mismatch(outer, inner).in1 != outer.end();
+  return std::ranges::mismatch(outer, inner).in1 != outer.end();
 }
 
 // Ends a sentence that begins with the name of a file for which leads_out_of() is true.
