@@ -57,6 +57,8 @@ TEST_F(RobotFilesTest, FindNothingThatLeadsOutOfTheRoot) {
         << name;
   }
   EXPECT_EQ(find("package://other/a.stl"), std::nullopt) << "a folder above the root";
+  std::filesystem::create_directories(folder_ / "arm/kept/other");
+  EXPECT_EQ(find("package://other/a.stl"), folder_ / "arm/kept/other/a.stl");
 }
 
 }  // namespace
