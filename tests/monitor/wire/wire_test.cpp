@@ -293,6 +293,9 @@ TEST(Convert, ZoneStateCarriesNameAndTickAndCutsAnOverlongName) {
   EXPECT_EQ(3u, zone->since_cycle);
   EXPECT_EQ(5u, zone->cycle);
   EXPECT_EQ(6, zone->now_ns);
+  scene.zones[0].name = "stop";  // the message still has the longer name
+  to_wire(scene, report, 0, *zone);
+  EXPECT_STREQ("stop", zone->name);
 }
 
 TEST(Convert, PosesComeBackBitForBit) {
