@@ -46,7 +46,7 @@ std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const Urd
     return std::get<MeshParts>(std::move(parts));
   }
   const std::string missing = path ? fmt::format("no file '{}'", path->string())
-                                   : why_not_found(mesh.file, packages_from(diagnostics_));
+                                   : files_.why_not_found(mesh.file, packages_from(diagnostics_));
   refuse(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file, missing));
   return std::nullopt;
 }

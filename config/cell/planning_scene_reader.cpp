@@ -6,7 +6,6 @@
 #include <utility>
 #include <variant>
 
-#include "config/text/file_bytes.hpp"
 #include "config/text/printable.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/yaml/map_reader.hpp"
@@ -20,7 +19,7 @@ std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem:
   const auto name = read_text(file_node, "a file", diagnostics);
   if (!name) return {};
   const std::filesystem::path path = path_in(revision.root(), directory, *name);
-  const auto bytes = read_bytes(path.string());
+  const auto bytes = revision.read(path, *name);
   if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(file_node, fmt::format("found a file that cannot be used: {}; expected a path "
                                            "relative to the cell file",

@@ -21,7 +21,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   const auto path = files.find(*name);
   if (!path) {
     diagnostics.add(node, fmt::format("found '{}', and {}", *name,
-                                      why_not_found(*name, packages_from(diagnostics))));
+                                      files.why_not_found(*name, packages_from(diagnostics))));
     return std::nullopt;
   }
   const auto bytes = read_bytes(path->string());

@@ -11,7 +11,6 @@
 
 #include "config/mesh/file_lock.hpp"
 #include "config/mesh/parts_cover.hpp"
-#include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 
 namespace clearance {
@@ -90,11 +89,12 @@ std::filesystem::path MeshLibrary::path_of(const MeshUse& use) const {
 
 // Each file is read once, however many parts use it. Its bytes go into the scene's revision, so
 // that two scenes with different meshes have different revisions.
-MeshLibrary::File& MeshLibrary::load(const std::filesystem::path& path) {
+MeshLibrary::File& MeshLibrary::load(const MeshUse& use) {
+  const std::filesystem::path path = path_of(use);
   const auto [entry, is_new] = files_.try_emplace(path.string());
   File& file = entry->second;
   if (is_new) {
-    auto bytes = read_bytes(path.string());
+    auto bytes = revision_.read(path, use.file);
     if (auto* fault = std::get_if<FileFault>(&bytes)) {
       file.refusal = {MeshRefusal::Kind::kFile, std::move(fault->reason)};
     } else {
@@ -216,7 +216,7 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
 }
 
 std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
-  File& file = load(path_of(use));
+  File& file = load(use);
   if (file.refusal) return *file.refusal;
   const std::string key = key_of(use, file.bytes);
   auto made = made_.find(key);

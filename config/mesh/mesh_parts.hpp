@@ -81,7 +81,7 @@ class MeshLibrary {
     bool counted = false;  // in the revision
   };
   [[nodiscard]] std::filesystem::path path_of(const MeshUse& use) const;
-  File& load(const std::filesystem::path& path);
+  File& load(const MeshUse& use);
   // Returns the mesh in metres, or refuses one that is too large.
   std::variant<TriangleMesh, MeshRefusal> mesh_of(const MeshUse& use, File& file);
   // Returns the kept parts if they contain the mesh, whoever wrote them.

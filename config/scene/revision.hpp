@@ -5,9 +5,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
+
+#include "config/text/file_bytes.hpp"
 
 namespace clearance {
 
@@ -22,11 +26,31 @@ namespace clearance {
   return is_there ? name : root / name.relative_path();
 }
 
+// True if a path leads out of the root, as root/../x does. Nothing leads out of an empty root.
+[[nodiscard]] inline bool leads_out_of(const std::filesystem::path& root,
+                                       const std::filesystem::path& path) {
+  if (root.empty()) return false;
+  const auto outer = std::filesystem::absolute(root).lexically_normal();
+  const auto inner = std::filesystem::absolute(path).lexically_normal();
+  return std::ranges::mismatch(outer, inner).in1 != outer.end();
+}
+
+// Ends a sentence that begins with the name of a file for which leads_out_of() is true.
+inline constexpr std::string_view kLeadsOut = "leads out of the files that are kept with the cell";
+
 class Revision {
  public:
   // `root` as in path_in().
   explicit Revision(std::filesystem::path root = {}) : root_(std::move(root)) {}
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
+
+  // Returns the bytes of a file that the cell calls `name`. A path that leads out of the root is
+  // not read.
+  [[nodiscard]] std::variant<std::string, FileFault> read(const std::filesystem::path& path,
+                                                          const std::string& name) const {
+    if (leads_out_of(root_, path)) return FileFault{"'" + name + "' " + std::string(kLeadsOut)};
+    return read_bytes(path.string());
+  }
 
   void add(std::string_view bytes) noexcept {
     for (const char byte : bytes) {

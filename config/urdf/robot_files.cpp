@@ -44,7 +44,7 @@ std::optional<std::filesystem::path> directory_of(const std::string& package,
   }
   std::filesystem::path at =
       std::filesystem::absolute(files.named_in).lexically_normal().parent_path();
-  for (; at.has_relative_path(); at = at.parent_path()) {
+  for (; at.has_relative_path() && !leads_out_of(files.root, at); at = at.parent_path()) {
     if (at.filename() == package) return at;
     if (std::error_code fault; std::filesystem::is_directory(at / package, fault))
       return at / package;
@@ -65,11 +65,12 @@ bool leaves_package(const std::string& name) {
 
 }  // namespace
 
-std::string why_not_found(const std::string& name, PackagesFrom from) {
-  if (leaves_package(name)) {
+std::string RobotFiles::why_not_found(const std::string& name, PackagesFrom from) const {
+  if (name.starts_with(kPackage) && leaves_package(name)) {
     return fmt::format("'{}' leads out of its package; expected {}NAME/PATH with a path within it",
                        name, kPackage);
   }
+  if (path_of(name)) return fmt::format("it {}; expected a path within them", kLeadsOut);
   const std::string package = package_of(name);
   return fmt::format("no directory for the package '{}'; expected {}", package,
                      from == PackagesFrom::kCell
@@ -83,6 +84,12 @@ std::string package_of(const std::string& name) {
 }
 
 std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) const {
+  const auto path = path_of(name);
+  if (!path || leads_out_of(root, *path)) return std::nullopt;
+  return path;
+}
+
+std::optional<std::filesystem::path> RobotFiles::path_of(const std::string& name) const {
   std::filesystem::path path;
   if (name.starts_with(kPackage)) {
     if (leaves_package(name)) return std::nullopt;

@@ -13,6 +13,9 @@
 
 namespace clearance {
 
+// The place that states the folder of a package: a key of the cell, or an option.
+enum class PackagesFrom { kCell, kCommandLine };
+
 // A file is named as package://NAME/PATH, as file://PATH, or by a path relative to the file that
 // names it.
 struct RobotFiles {
@@ -23,16 +26,18 @@ struct RobotFiles {
   std::filesystem::path root = {};  // as of path_in()
 
   // Returns the absolute path, whether or not there is such a file. Returns nothing if its package
-  // was not found, or if its path leads out of the package, as package://NAME/../x does.
+  // was not found, or if its path leads out of the package or of the root, as package://NAME/../x
+  // and /../x do.
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
+
+  // Says why find() returned nothing for this name, as the end of a sentence: "no directory for the
+  // package 'x'; expected ...".
+  [[nodiscard]] std::string why_not_found(const std::string& name, PackagesFrom from) const;
+
+ private:
+  // Returns the path that the name means, wherever it leads.
+  [[nodiscard]] std::optional<std::filesystem::path> path_of(const std::string& name) const;
 };
-
-// The place that states the folder of a package: a key of the cell, or an option.
-enum class PackagesFrom { kCell, kCommandLine };
-
-// Says why find() returned nothing for this name, as the end of a sentence: "no directory for the
-// package 'x'; expected ...".
-[[nodiscard]] std::string why_not_found(const std::string& name, PackagesFrom from);
 
 // Returns NAME of package://NAME/PATH; empty: the name has none.
 [[nodiscard]] std::string package_of(const std::string& name);

@@ -86,10 +86,11 @@ void RobotCellWriter::find_fixed_links() {
 
 // Returns the path of the mesh, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
-  const auto path = RobotFiles{options_.urdf, options_.packages}.find(mesh.file);
+  const RobotFiles files{options_.urdf, options_.packages};
+  const auto path = files.find(mesh.file);
   if (!path) {
     fail(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file,
-                                why_not_found(mesh.file, PackagesFrom::kCommandLine)));
+                                files.why_not_found(mesh.file, PackagesFrom::kCommandLine)));
     return mesh.file;
   }
   if (std::error_code fault; !std::filesystem::is_regular_file(*path, fault)) {

@@ -27,7 +27,6 @@ bool stays_inside(const std::filesystem::path& name) {
 }
 
 bool put_under(const std::filesystem::path& root, McapAttachment attachment) {
-  if (!stays_inside(attachment.name)) return false;
   if (attachment.media_type == kZstdMediaType) {
     std::vector<std::byte> bytes;
     decompress(McapCompression::kZstd, attachment.bytes, kLargestFile, bytes);
@@ -43,6 +42,10 @@ bool put_under(const std::filesystem::path& root, McapAttachment attachment) {
   return out.good();
 }
 
+std::string leads_out(const std::string& name) {
+  return fmt::format("'{}' leads out of the recording", name);
+}
+
 CellResult failed(const std::filesystem::path& recording, const std::string& why) {
   return std::vector<CellError>{
       {fmt::format("{}: the files of its cell cannot be used: {}; expected --cell instead",
@@ -55,13 +58,15 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
                                         const RecordingOutline& outline, CellOptions options) {
   const char* const yaml = outline.catalogue ? (*outline.catalogue)->cell_yaml : nullptr;
   if (yaml == nullptr || *yaml == '\0') return std::nullopt;
-  if (!stays_inside(outline.cell_file)) return parse_cell(yaml, recording, options);
+  if (outline.cell_file.empty()) return parse_cell(yaml, recording, options);
+  if (!stays_inside(outline.cell_file)) return failed(recording, leads_out(outline.cell_file));
   McapAttachments attachments = read_first_attachments(recording);
   if (!attachments.error.empty()) return failed(recording, attachments.error);
   const TemporaryFolder folder;
   if (!folder.error().empty()) return failed(recording, folder.error());
   for (McapAttachment& attachment : attachments.found) {
     const std::string name = attachment.name;
+    if (!stays_inside(name)) return failed(recording, leads_out(name));
     if (!put_under(folder.path(), std::move(attachment)))
       return failed(recording, fmt::format("'{}' cannot be written", name));
   }

@@ -6,8 +6,11 @@ FOLDER = ROOT / "tests" / "mutants"
 PRODUCT = ("core", "config", "monitor")  # the folders that slips are planted into
 HEADER = "tests/mutants/chosen_slip.hpp"
 
-Slip = collections.namedtuple("Slip", "id file context original text reason where")
-ROW = re.compile(r"^(\d+) +`([^`]+)` +-> +`([^`]*)`(?: +# (.*))?$")
+# `tests`: the folder in tests/ whose tests come first.
+Slip = collections.namedtuple("Slip", "id file tests context original text reason where")
+FILE = re.compile(r"^([^\s`]+)(?: +first +tests/(\S+))?$")
+ROW = re.compile(r"^(\d+) +`([^`]+)` +-> +`([^`]*)`(?: +for +([^#]+?))?(?: +# (.*))?$")
+EACH = "{each}"  # in a row that ends with `for WORD WORD`: one word a slip
 
 
 class ListError(Exception):
@@ -22,32 +25,37 @@ def read_lists():
     """All slips of tests/mutants/*.slips, sorted by number."""
     slips, errors = {}, []
     for path in lists():
-        file = None
+        file, tests = None, None
         for number, line in enumerate(path.read_text().splitlines(), 1):
             where = f"{path.name}:{number}"
             if not line.strip() or line.startswith("#"):
                 continue
-            if not line[0].isdigit():
-                file = line.strip()
+            if named := FILE.match(line.strip()):
+                file, tests = named[1], (named[2] or named[1].rpartition("/")[0]) + "/"
                 continue
             match = ROW.match(line)
             if not match or not file:
                 errors.append(f"{where}: expected NUMBER `original` -> `slip`, with the name of a file above it")
                 continue
-            number, context, text, reason = match.groups()
-            number = int(number)
-            if number in slips:
-                errors.append(f"{where}: {number} is taken by {slips[number].where}: choose a number that is free")
-                continue
-            before, mark, rest = context.partition("{|")
-            original, mark2, _ = rest.partition("|}")
-            if bool(mark) != bool(mark2):
-                errors.append(f"{where}: {{| and |}} mark the expression in its context: one of them is missing")
-                continue
-            slips[number] = Slip(number, file, context, original if mark else context, text, reason, where)
+            for slip in slips_of_row(match, file, tests, where):
+                if slip.id in slips:
+                    errors.append(f"{where}: {slip.id} is taken by {slips[slip.id].where}: choose a number that is free")
+                elif ("{|" in slip.context) != ("|}" in slip.context):
+                    errors.append(f"{where}: {{| and |}} mark the expression in its context: one of them is missing")
+                else:
+                    slips[slip.id] = slip
     if errors:
         raise ListError("\n".join(errors))
     return [slips[number] for number in sorted(slips)]
+
+
+def slips_of_row(match, file, tests, where):
+    """One slip; or, with `for`, one for each word, numbered on from the number of the row."""
+    number, context, text, words, reason = match.groups()
+    for offset, word in enumerate(words.split() if words else [""]):
+        of_word, slip = context.replace(EACH, word), text.replace(EACH, word)
+        marked = of_word.partition("{|")[2].partition("|}")[0]
+        yield Slip(int(number) + offset, file, tests, of_word, marked or of_word, slip, reason, where)
 
 
 def pattern(text):

@@ -218,7 +218,8 @@ TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
   EXPECT_TRUE(was_split());
 }
 
-// Each scale has parts of its own, whatever was kept before: along one axis, or mirrored.
+// Each scale has parts of its own, whatever was kept before: along one axis, or mirrored. The parts
+// of a larger mesh would hold a smaller one, too.
 TEST_F(PartsOfMeshes, OfAScaleAlongOneAxisAreOthers) {
   const auto extent = [](const Scene& scene) {
     Eigen::AlignedBox3d box;
@@ -226,8 +227,9 @@ TEST_F(PartsOfMeshes, OfAScaleAlongOneAxisAreOthers) {
     return box;
   };
   const Eigen::AlignedBox3d plain = extent(read());
-  for (const Vec3& scale : {Vec3(2, 1, 1), Vec3(1, 2, 1), Vec3(1, 1, 2), Vec3(-1, 1, 1),
-                            Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
+  for (const Vec3& scale :
+       {Vec3(0.5, 1, 1), Vec3(1, 0.5, 1), Vec3(1, 1, 0.5), Vec3(2, 1, 1), Vec3(1, 2, 1),
+        Vec3(1, 1, 2), Vec3(-1, 1, 1), Vec3(1, -1, 1), Vec3(1, 1, -1)}) {
     std::ostringstream keys;
     keys << ", scale: [" << scale.x() << ", " << scale.y() << ", " << scale.z() << "]";
     const Eigen::AlignedBox3d scaled = extent(read(keys.str()));

@@ -78,6 +78,22 @@ class RecordedCell : public testing::Test {
     EXPECT_TRUE(read);
     return read.value_or(std::vector<CellError>{});
   }
+  // The errors of a recording that somebody wrote: of `cell`, which stood at `cell_file`, with one
+  // attachment.
+  std::string errors_of_recording(const std::string& cell_file, const std::string& attachment,
+                                  std::string_view bytes) {
+    McapWriter writer(run);
+    writer.attachment(attachment, "text/plain", std::as_bytes(std::span(bytes)));
+    writer.metadata(kRecordingMetadata, {{"cell_file", cell_file}});
+    const auto channel = writer.add_channel(topic_schema(TopicKind::kCatalogue),
+                                            "clearance/catalogue", kCdrEncoding);
+    CdrEncoder encoder;
+    writer.write(channel, 1, 1, encoder.encode(*make_catalogue(cell)));
+    EXPECT_TRUE(writer.close());
+    const auto read = recorded_cell(run, outline(run));
+    EXPECT_TRUE(read);
+    return errors_in(read.value_or(std::vector<CellError>{}));
+  }
   static std::string errors_in(const CellResult& result) {
     std::string text;
     if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
@@ -146,20 +162,47 @@ TEST_F(RecordedCell, IsInEveryFileOfSeveral) {
 // A recording is not trusted: its files are written into a private directory or not at all.
 TEST_F(RecordedCell, IsRefusedWhereAFileWouldStandElsewhere) {
   for (const std::string name : {"/../../escaped", "escaped", "/tmp/../../escaped", "/"}) {
-    {
-      McapWriter writer(run);
-      writer.attachment(name, "text/plain", std::as_bytes(std::span("x", 1)));
-      writer.metadata(kRecordingMetadata, {{"cell_file", "/cells/cell.yaml"}});
-      const auto channel = writer.add_channel(topic_schema(TopicKind::kCatalogue),
-                                              "clearance/catalogue", kCdrEncoding);
-      CdrEncoder encoder;
-      writer.write(channel, 1, 1, encoder.encode(*make_catalogue(cell)));
-      ASSERT_TRUE(writer.close());
-    }
-    const auto read = recorded_cell(run, outline(run));
-    ASSERT_TRUE(read);
-    EXPECT_THAT(errors_in(*read), HasSubstr("'" + name + "' cannot be written")) << name;
+    EXPECT_THAT(errors_of_recording("/cells/cell.yaml", name, "x"),
+                HasSubstr("'" + name + "' leads out"));
+    EXPECT_THAT(errors_of_recording(name, "/cells/x", "x"), HasSubstr("'" + name + "' leads out"));
   }
+}
+
+// The cell's own text is not trusted either. The files that it names exist, so that only the rule
+// refuses them.
+TEST_F(RecordedCell, IsRefusedWhereItNamesAFileElsewhere) {
+  write("kept_out.obj", kTetrahedron);
+  write("kept_out.scene", "shelf\n* board\n1\nbox\n1 1 1\n5 0 0\n0 0 0 1\n0 0 0 0\n.\n");
+  write("kept_out.urdf", "<robot name=\"arm\"/>\n");
+  const std::string elsewhere = "../../../../../../../.." + (folder / "kept_out").string();
+  const std::string balls =
+      "objects: [{name: a, sphere: {radius: 1}}, {name: b, sphere: {radius: 1}}]\n";
+  for (const std::string& objects :
+       {"objects: [{name: a, mesh: {file: " + elsewhere +
+            ".obj}}, {name: b, sphere: {radius: 1}}]\n",
+        "objects: [{name: a, mesh: {file: /" + elsewhere +
+            ".obj}}, {name: b, sphere: {radius: 1}}]\n",
+        balls + "scenes: [{group: shelf, file: " + elsewhere + ".scene}]\n",
+        balls + "robots: [{name: arm, urdf: " + elsewhere + ".urdf}]\n"}) {
+    cell.yaml =
+        "name: kept\nunits: {length: m, angle: rad}\n" + objects + "pairs: [{between: [a, b]}]\n";
+    EXPECT_THAT(errors_of_recording("/cells/cell.yaml", "/cells/x", "x"),
+                HasSubstr("leads out of the files that are kept with the cell"))
+        << objects;
+  }
+}
+
+TEST_F(RecordedCell, IsRefusedWhereItsRobotNamesAMeshElsewhere) {
+  write("kept_out.obj", kTetrahedron);
+  const std::string urdf =
+      "<robot name=\"arm\"><link name=\"foot\"><collision><geometry><mesh filename=\""
+      "../../../../../../../.." +
+      (folder / "kept_out.obj").string() + "\"/></geometry></collision></link></robot>\n";
+  cell.yaml =
+      "name: kept\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: arm.urdf}]\n"
+      "objects: [{name: a, sphere: {radius: 1}}]\npairs: [{between: [a, arm]}]\n";
+  EXPECT_THAT(errors_of_recording("/cells/cell.yaml", "/cells/arm.urdf", urdf),
+              HasSubstr("leads out of the files that are kept with the cell"));
 }
 
 TEST_F(RecordedCell, OfADamagedAttachmentIsRefused) {

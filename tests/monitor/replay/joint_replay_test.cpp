@@ -51,6 +51,20 @@ TEST(JointStates, ComeThroughTheWireAsTheyWere) {
   EXPECT_EQ(out.joints[1].velocity, 0.7);
 }
 
+TEST(JointStates, OfRosHaveTheStampThatIsChosenForThem) {
+  const Scene scene = scara_cell();
+  Sample<sensor_msgs_msg_dds__JointState_> states;
+  reserve_sequence(states->name, 1);
+  reserve_sequence(states->position, 1);
+  states->name._buffer[states->name._length++] = dds_string_dup("elbow");
+  states->position._buffer[states->position._length++] = 0.5;
+  PoseBatch out;
+  from_wire(*states, JointNames(scene), kStart, out);
+  ASSERT_EQ(out.joints.size(), 1u);
+  EXPECT_EQ(out.joints[0].stamp_ns, kStart);
+  EXPECT_EQ(out.joints[0].position, 0.5);
+}
+
 TEST(JointStates, NamesOfNoUseAreLeftOutAndUnknownOnesAreOfNoVariable) {
   Scene scene = scara_cell();
   scene.robots[0].joints.emplace_back().name = "bolt";

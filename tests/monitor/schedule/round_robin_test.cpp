@@ -200,15 +200,21 @@ TEST(Scheduler, PublishedPairsThatAreAllEvaluatedLeaveTheOthersTheirRefresh) {
   }
 }
 
-// Twenty pairs in a zone want twice the budget in every tick. The others get their share all the
-// same.
+// Pairs in a zone want more in every tick than the refresh leaves of the budget. The others get
+// their share all the same. In the last case, all but a few need it, so that the published pairs
+// must have a share of their own.
 TEST(Scheduler, UrgentPairsLeaveTheOthersTheirRefresh) {
-  for (const std::size_t published : {0u, 8u}) {
-    Scene scene = side_by_side(150);
+  struct Case {
+    std::uint32_t pairs;
+    std::size_t in_zone, published;
+  };
+  for (const auto& [pairs, in_zone, published] :
+       {Case{150, 20, 0}, Case{150, 20, 8}, Case{420, 5, 6}}) {
+    Scene scene = side_by_side(pairs);
     Zone zone = test::zone_over(scene, 1000.0, 1000.0);
-    zone.pairs.resize(20);
+    zone.pairs.resize(in_zone);
     scene.zones = {zone};
-    for (std::size_t p = 20; p < 20 + published; ++p) scene.pairs[p].publish = true;
+    for (std::size_t p = in_zone; p < in_zone + published; ++p) scene.pairs[p].publish = true;
     scene.refresh_s = 0.05;
     scene.budget = 10;
     ASSERT_LE(refresh_share(scene).queries(), scene.budget);

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/monitor.hpp"
+#include "monitor/pairs/evaluate_pair.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/poses.hpp"
 
@@ -48,6 +49,10 @@ class TwoOnTheirWay {
     return bounds;
   }
   [[nodiscard]] std::uint32_t queries() const { return queries_; }
+  // The bounds at the end of the motion, as the search has them.
+  [[nodiscard]] DistanceBounds at_end() const {
+    return for_exact_poses(truth(1.0), parts_[0], parts_[1]);
+  }
 
   [[nodiscard]] DistanceResult truth(double s) const {
     std::array<Pose, 2> world_from_part;
@@ -200,6 +205,32 @@ TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsOrientation) {
   EXPECT_LT(bounds.upper, 0.301);
   const double of_place = kInterpolationError * 2.0 * (kLong + 0.5);
   EXPECT_GE(bounds.upper, arm.truth(0.5).upper + of_place + 0.9 * kInterpolationError * kLong);
+}
+
+// Between two instants the sums of their bounds are rounded, too.
+TEST(SweptSearch, TheBoundBetweenTwoInstantsAllowsForTheRoundingOfItsSums) {
+  for (const double apart : {0.5, 3.0, 1e4}) {
+    const std::array resting{test::at(0, 0, 0), test::at(0, 0, apart)};
+    TwoOnTheirWay pair(test::ball(0.1), test::ball(0.1), {resting, resting});
+    const double lower = pair.at_end().lower;
+    EXPECT_LE(pair.decide(0.1).lower, lower * (1.0 - 0.9 * 0x1p-47)) << apart;
+    EXPECT_GE(pair.decide(0.1).lower, lower * (1.0 - 0x1p-44)) << apart;
+  }
+}
+
+// The direction that separates two parts is rounded at every instant: per metre of both positions
+// at both ends, and of the two centres. Halfway the two ends share the error.
+TEST(SweptSearch, ABoundAlongADirectionAllowsForTheRoundingOfTheDirection) {
+  constexpr double kFar = 0x1p20;
+  Motion2 past;
+  past.from = {test::at(kFar, 0, 0), test::at(kFar, -1.0, 1.0)};
+  past.to = {test::at(kFar, 0, 0), test::at(kFar, 1.0, 1.0)};
+  TwoOnTheirWay pair(test::block({0.1, 4.0, 0.1}), test::block({0.1, 0.1, 0.1}), past);
+  const double error = 0x1p-44 * 6.0 * kFar;
+  const double lower = pair.decide(0.5).lower;
+  EXPECT_LE(lower, pair.at_end().lower - 0.45 * error);
+  EXPECT_GE(lower, pair.at_end().lower - 2.0 * error);
+  EXPECT_EQ(pair.queries(), 2u);
 }
 
 TEST(SweptSearch, WithoutQueriesNothingIsTold) {

@@ -1,0 +1,49 @@
+// GJK alone, without bounds from the active-set iteration before it. Oracle: the closed form of
+// cubes that face each other. All their figures are exact in doubles, so each bound differs from
+// the distance by the whole error bound.
+#include "core/gjk/gjk.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/shared/made.hpp"
+
+namespace clearance {
+namespace {
+
+struct Refined {
+  DistanceResult result;
+  Precision precision;
+};
+
+// Cubes of 1 m, the second at `place`. The features begin at vertices.
+Refined refined(const Vec3& place) {
+  const ConvexBody cube = test::cube();
+  const RelativePose pose = relative_pose(Pose{}, Pose{.position = place});
+  ActiveFeature a(cube, nullptr), b(cube, &pose);
+  a.place_at_vertex(0);
+  b.place_at_vertex(0);
+  Refined found{{}, precision(cube, cube, pose, place.norm())};
+  found.result.lower = -kInfinity;
+  found.result.upper = found.result.distance = kInfinity;
+  refine(a, b, pose, found.precision, found.result);
+  return found;
+}
+
+TEST(Refine, WidensBothBoundsByTheErrorBound) {
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      for (const double gap : {0x1p-10, 1.0, 0x1p10}) {
+        const auto [r, p] = refined(side * (1.0 + gap) * Vec3::Unit(axis));
+        EXPECT_EQ(r.status, DistanceStatus::kConverged);
+        EXPECT_EQ(r.distance, gap);
+        EXPECT_GT(p.error_bound, 0.0);
+        EXPECT_EQ(r.lower, gap - p.error_bound);
+        EXPECT_EQ(r.upper, gap + p.error_bound);
+        EXPECT_EQ(r.normal, side * Vec3::Unit(axis));
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance
