@@ -87,6 +87,7 @@ Bodies found_by(PartSearch& search, const TriangleTree& tree, const PartLimits& 
     const bool no_more = found.parts.size() >= limits.max_parts;
     aim *= std::clamp(kLowerAim * limits.tolerance / found.error, 0.5, 0.9);
     if (found.error < best.error) best = std::move(found);
+    if (search.is_stuck()) break;
     if (no_more) improve(search, tree, limits.tolerance, best);
     if (no_more) break;
   }

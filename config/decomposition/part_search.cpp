@@ -163,9 +163,11 @@ void PartSearch::split(double aim) {
   for (;;) {
     const auto worst = std::ranges::max_element(pieces_, {}, &Piece::error);
     if (worst->error <= aim) return;
-    is_stuck_ |= worst->useless_cuts >= kMostUseless ||
-                 (pieces_.size() >= most && worst->error > limits_.tolerance);
-    if (pieces_.size() >= most || (is_stuck_ && choice_ == CutChoice::kLeastOpen)) return;
+    const bool too_many = pieces_.size() >= most;
+    is_stuck_ |=
+        choice_ == CutChoice::kLeastOpen &&
+        (worst->useless_cuts >= kMostUseless || (too_many && worst->error > limits_.tolerance));
+    if (too_many || is_stuck_) return;
     auto sides = cut(*worst);
     if (!sides) return;
     *worst = std::move(sides->first);
@@ -236,7 +238,7 @@ bool PartSearch::join_best(double most) {
 bool PartSearch::search(double aim) {
   split(aim);
   const double worst = std::ranges::max_element(pieces_, {}, &Piece::error)->error;
-  if (choice_ == CutChoice::kLeastOpen && is_stuck_ && worst > limits_.tolerance) return false;
+  if (is_stuck_ && worst > limits_.tolerance) return false;
   joined_.clear();
   for (const Piece& piece : pieces_) joined_.push_back({piece});
   joints_.assign(joined_.size(), {});
