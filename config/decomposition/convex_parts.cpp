@@ -62,46 +62,83 @@ Bodies one_part(ConvexBody hull, const TriangleTree& tree, double tolerance) {
   return fewer.error <= std::max(tolerance, whole.error) ? fewer : whole;
 }
 
+// Fewer parts within the tolerance are better, and otherwise the smaller error.
+bool is_no_worse(const Bodies& bodies, const Bodies& other, double tolerance) {
+  if (bodies.error <= tolerance && other.error <= tolerance) {
+    return bodies.parts.size() <= other.parts.size();
+  }
+  return bodies.error <= other.error;
+}
+
 // A lower number of parts is tried as well where the error is too large: joining may leave less.
 void improve(PartSearch& search, const TriangleTree& tree, double tolerance, Bodies& best) {
-  while (best.error > tolerance && search.join_two()) {
+  while (best.error > tolerance && search.join_best(best.error)) {
     Bodies found = judged(search.parts(), tree, tolerance, best.error);
     if (found.error < best.error) best = std::move(found);
   }
 }
 
-Bodies searched_parts(const TriangleMesh& mesh, const TriangleTree& tree, const OpenSpace& space,
-                      std::span<const ConvexCell> cells, const PartLimits& limits) {
-  PartSearch search(mesh, space, cells, limits);
+Bodies found_by(PartSearch& search, const TriangleTree& tree, const PartLimits& limits) {
   Bodies best;
   double aim = kAim * limits.tolerance;
   for (int round = 0; round < kAims && best.error > limits.tolerance; ++round) {
-    search.search(aim);
+    if (!search.search(aim)) break;
     Bodies found = judged(search.parts(), tree, limits.tolerance, best.error);
     const bool no_more = found.parts.size() >= limits.max_parts;
     aim *= std::clamp(kLowerAim * limits.tolerance / found.error, 0.5, 0.9);
     if (found.error < best.error) best = std::move(found);
+    if (search.is_stuck()) break;
     if (no_more) improve(search, tree, limits.tolerance, best);
     if (no_more) break;
   }
   return best;
 }
 
+// The cuts that leave the least open space give the fewest parts of most meshes. They get stuck in
+// rings and cups, of which they slice off one thin piece after the other.
+Bodies searched_parts(const TriangleMesh& mesh, const TriangleTree& tree, const OpenSpace& space,
+                      std::span<const ConvexCell> cells, const PartLimits& limits) {
+  PartSearch search(mesh, space, cells, limits);
+  Bodies best = found_by(search, tree, limits);
+  if (best.error <= limits.tolerance || !search.is_stuck()) return best;
+  PartSearch even(mesh, space, cells, limits, CutChoice::kEven);
+  Bodies other = found_by(even, tree, limits);
+  return is_no_worse(other, best, limits.tolerance) ? other : best;
+}
+
+// Shells that are not convex often lie within each other, and are then better cut together. Where
+// some shells are convex, these are also kept whole and only the others cut, unless the parts would
+// be too many.
+Bodies parts_of_pieces(const TriangleMesh& mesh, const TriangleTree& tree, const OpenSpace& space,
+                       const ConvexPieces& pieces, const PartLimits& limits) {
+  const auto searched = [&](std::span<const ConvexCell> cells) {
+    return searched_parts(mesh, tree, space, cells, limits);
+  };
+  if (pieces.convex == pieces.cells.size() || pieces.shells == 1) return searched(pieces.cells);
+  const ConvexCell whole = ConvexCell::around(mesh);
+  Bodies together = searched({&whole, 1});
+  const std::size_t most =
+      together.error <= limits.tolerance ? together.parts.size() : limits.max_parts;
+  if (pieces.convex == 0 || pieces.convex >= most) return together;
+  Bodies kept = searched(pieces.cells);
+  return is_no_worse(kept, together, limits.tolerance) ? kept : together;
+}
+
 // Exact parts come first. A mesh of very many shells is searched as a whole.
 Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const PartLimits& limits) {
   const OpenSpace space(mesh, kBall * limits.tolerance);
   const std::vector<TriangleMesh> shells = shells_of(mesh);
-  const ConvexCell whole = ConvexCell::around(mesh);
-  if (shells.size() > kMostShells) return searched_parts(mesh, tree, space, {&whole, 1}, limits);
+  if (shells.size() > kMostShells) {
+    const ConvexCell whole = ConvexCell::around(mesh);
+    return searched_parts(mesh, tree, space, {&whole, 1}, limits);
+  }
   const ConvexPieces pieces = convex_pieces(shells, space, limits);
   std::vector<ConvexBody> exact = exact_parts(pieces, mesh, space);
   if (!exact.empty() && exact.size() <= limits.max_parts) {
     Bodies bodies = judged(std::move(exact), tree, limits.tolerance);
     if (bodies.error <= kExact * limits.tolerance) return bodies;
   }
-  // Shells that are not convex often lie within each other, and are better cut together.
-  const bool together = shells.size() > 1 && pieces.convex < pieces.cells.size();
-  return searched_parts(mesh, tree, space, together ? std::span(&whole, 1) : pieces.cells, limits);
+  return parts_of_pieces(mesh, tree, space, pieces, limits);
 }
 
 // Returns the normal of the plane that all vertices lie in, up to single precision. Returns nothing

@@ -133,7 +133,7 @@ void add_faces(const Piece& piece, const std::vector<HalfSpace>& faces, double t
 }  // namespace
 
 std::optional<HalfSpace> best_cut(const Piece& piece, const std::vector<HalfSpace>& faces,
-                                  double tolerance, double spacing) {
+                                  CutChoice choice, double tolerance, double spacing) {
   std::vector<Candidate> candidates;
   for (Eigen::Index axis = 0; axis < 3; ++axis) add_slabs(piece, Vec3::Unit(axis), candidates);
   const Mat3 axes = principal_axes(piece.points);
@@ -154,14 +154,14 @@ std::optional<HalfSpace> best_cut(const Piece& piece, const std::vector<HalfSpac
   OpenSum whole;
   add_open(piece.outline, open, tolerance, spacing, whole);
   // Both sums count. No cut through a box of sheets makes the hulls smaller, but a cut that
-  // separates a finished side is a gain as well. Where all cuts are alike, as for a ring, one
-  // through the middle is best: its halves can be cut further.
+  // separates a finished side is a gain as well.
   const auto plain = [](const Candidate& candidate) {
     return candidate.open.all + candidate.open.unfinished;
   };
   const auto best = std::ranges::min_element(candidates, {}, plain);
   if (best == candidates.end()) return std::nullopt;
-  if (plain(*best) < kGain * (whole.all + whole.unfinished)) return best->plane;
+  const bool gains = plain(*best) < kGain * (whole.all + whole.unfinished);
+  if (choice == CutChoice::kLeastOpen || gains) return best->plane;
   return std::ranges::min_element(candidates, {},
                                   [&](const Candidate& candidate) {
                                     return plain(candidate) * (1.0 + candidate.uneven);

@@ -68,6 +68,7 @@ ConvexPieces convex_pieces(const std::vector<TriangleMesh>& shells, const OpenSp
                            const PartLimits& limits) {
   const std::vector<OpenPoint> open = space.points(kOpenShare * limits.tolerance);
   ConvexPieces pieces;
+  pieces.shells = shells.size();
   std::vector<ConvexCell> others;
   for (const TriangleMesh& shell : shells) {
     ConvexCell cell = ConvexCell::around(shell);

@@ -15,6 +15,7 @@ namespace clearance {
 struct ConvexPieces {
   std::vector<ConvexCell> cells;
   std::size_t convex = 0;  // number of cells whose piece is convex
+  std::size_t shells = 0;  // number of shells of the mesh
 };
 
 // Every shell that is its own hull is convex; others are cut into walls (walls.hpp). A shell within

@@ -22,6 +22,10 @@ constexpr double kSimplified = 0.06;  // the largest distance by which vertices 
 constexpr std::size_t kFacets = 96;         // of a part, at most
 constexpr std::size_t kFacetsOfShell = 32;  // of a whole shell's hull that is kept as it is
 constexpr std::size_t kPiecesAPart = 3;
+// A cut is of no use if a side keeps more than this share of the error. After so many in a row,
+// the search has got stuck.
+constexpr double kNoGain = 0.98;
+constexpr int kMostUseless = 12;
 constexpr std::size_t kUsualParts = 24;  // the search does not depend on lower numbers allowed
 
 // A share of a body's size: more than clipping and rounding can move a point, and negligible as a
@@ -68,11 +72,16 @@ ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
 }
 
 PartSearch::PartSearch(const TriangleMesh& mesh, const OpenSpace& space,
-                       std::span<const ConvexCell> cells, const PartLimits& limits)
+                       std::span<const ConvexCell> cells, const PartLimits& limits,
+                       CutChoice choice)
     : limits_(limits),
+      choice_(choice),
       space_(space),
       faces_(large_faces(mesh, limits.tolerance)),
       open_(space.points(kLeastOpen * limits.tolerance)) {
+  // Points outside the hull of the whole are no error of any part.
+  open_ = piece_of(ConvexCell::around(mesh)).open;
+  open_blocks_ = OpenBlocks(open_, space.spacing());
   for (const ConvexCell& cell : cells) pieces_.push_back(piece_of(cell));
 }
 
@@ -126,7 +135,7 @@ void PartSearch::add_rim(const HalfSpace& plane, Piece& piece) const {
 }
 
 std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const {
-  const auto plane = best_cut(piece, faces_, limits_.tolerance, space_.spacing());
+  const auto plane = best_cut(piece, faces_, choice_, limits_.tolerance, space_.spacing());
   if (!plane) return std::nullopt;
   std::pair<Piece, Piece> sides;
   const double overlap = kOverlap * limits_.tolerance;
@@ -136,23 +145,29 @@ std::optional<std::pair<Piece, Piece>> PartSearch::cut(const Piece& piece) const
     if (above >= -overlap) sides.second.points.push_back(point);
   }
   sides.first.cells = sides.second.cells = piece.cells;
-  sides.first.cells[0].planes.push_back(*plane);
-  sides.second.cells[0].planes.push_back({-plane->normal, -plane->offset});
+  sides.first.cells[0].cut_by(*plane);
+  sides.second.cells[0].cut_by({-plane->normal, -plane->offset});
   for (Piece* side : {&sides.first, &sides.second}) {
     const std::vector<Vec3> corners = side->cells[0].corners_within(space_, overlap);
     side->points.insert(side->points.end(), corners.begin(), corners.end());
     add_rim(*plane, *side);
     side->finish(piece.open, space_.spacing());
+    side->useless_cuts = side->error > kNoGain * piece.error ? piece.useless_cuts + 1 : 0;
   }
   return sides;
 }
 
 // The worst piece is split first.
 void PartSearch::split(double aim) {
-  while (pieces_.size() < kPiecesAPart * std::max(kUsualParts, limits_.max_parts)) {
-    const auto worst = std::ranges::max_element(
-        pieces_, [](const Piece& a, const Piece& b) { return a.error < b.error; });
+  const std::size_t most = kPiecesAPart * std::max(kUsualParts, limits_.max_parts);
+  for (;;) {
+    const auto worst = std::ranges::max_element(pieces_, {}, &Piece::error);
     if (worst->error <= aim) return;
+    const bool too_many = pieces_.size() >= most;
+    is_stuck_ |=
+        choice_ == CutChoice::kLeastOpen &&
+        (worst->useless_cuts >= kMostUseless || (too_many && worst->error > limits_.tolerance));
+    if (too_many || is_stuck_) return;
     auto sides = cut(*worst);
     if (!sides) return;
     *worst = std::move(sides->first);
@@ -160,9 +175,8 @@ void PartSearch::split(double aim) {
   }
 }
 
-// Returns the error of the hull of both, or a bound above `enough` where it is larger.
-PartSearch::JointError PartSearch::joint_error(const Piece& a, const Piece& b,
-                                               double enough) const {
+// Returns the estimated error of the hull of both.
+double PartSearch::joint_error(const Piece& a, const Piece& b) const {
   Outline outline = a.outline;
   outline.add(b.outline);
   const std::vector<Vec3> points = outline.points();
@@ -172,55 +186,43 @@ PartSearch::JointError PartSearch::joint_error(const Piece& a, const Piece& b,
   box.extend(box.max() + Vec3::Constant(near));
   box.extend(box.min() - Vec3::Constant(near));
   const std::vector<HalfSpace> hull = rough_hull(points);
-  double error = 0.0;
-  for (const OpenPoint& point : open_) {
-    if (point.distance - near <= error || !box.contains(point.position) ||
-        !holds(hull, point.position, near)) {
-      continue;
-    }
-    error = point.distance - near;
-    if (error > enough) return {error, false};
-  }
-  return {error, true};
+  return std::max(0.0, open_blocks_.farthest_in(hull, box, near) - near);
 }
 
 // Estimates the error of each pair of joined pieces that has no estimate yet.
-void PartSearch::estimate_joints(double enough) {
+void PartSearch::estimate_joints() {
   std::vector<std::pair<std::size_t, std::size_t>> unknown;
   for (std::size_t i = 0; i < joints_.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      if (!joints_[i][j].is_exact && joints_[i][j].error == 0.0) unknown.emplace_back(i, j);
+      if (!joints_[i][j]) unknown.emplace_back(i, j);
     }
   }
   in_parallel(unknown.size(), [&](std::size_t k) {
     const auto [i, j] = unknown[k];
-    joints_[i][j] = joint_error(joined_[i].piece, joined_[j].piece, enough);
+    joints_[i][j] = joint_error(joined_[i].piece, joined_[j].piece);
   });
 }
 
 // Joins the two pieces whose common hull has the least error, if that is at most `most`.
 bool PartSearch::join_best(double most) {
   if (joined_.size() < 2) return false;
+  estimate_joints();
   std::size_t first = 0, second = 1;
-  for (;;) {
-    for (std::size_t i = 0; i < joints_.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j) {
-        if (joints_[i][j].error < joints_[second][first].error) {
-          first = j;
-          second = i;
-        }
+  for (std::size_t i = 0; i < joints_.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      if (joints_[i][j] < joints_[second][first]) {
+        first = j;
+        second = i;
       }
     }
-    JointError& best = joints_[second][first];
-    if (best.error > most) return false;
-    if (best.is_exact) break;
-    best = joint_error(joined_[first].piece, joined_[second].piece, kInfinity);
   }
+  const double error = *joints_[second][first];
+  if (error > most) return false;
   Joined& joined = joined_[first];
   const Piece& other = joined_[second].piece;
   joined.piece.cells.insert(joined.piece.cells.end(), other.cells.begin(), other.cells.end());
   joined.piece.outline.add(other.outline);
-  joined.piece.error = joints_[second][first].error;
+  joined.piece.error = error;
   joined.has_body = false;
   const auto gone = static_cast<std::ptrdiff_t>(second);
   joined_.erase(joined_.begin() + gone);
@@ -228,25 +230,22 @@ bool PartSearch::join_best(double most) {
   for (std::size_t i = second; i < joints_.size(); ++i) {
     joints_[i].erase(joints_[i].begin() + gone);
   }
-  std::ranges::fill(joints_[first], JointError());
-  for (std::size_t i = first + 1; i < joints_.size(); ++i) joints_[i][first] = {};
+  std::ranges::fill(joints_[first], std::nullopt);
+  for (std::size_t i = first + 1; i < joints_.size(); ++i) joints_[i][first].reset();
   return true;
 }
 
-void PartSearch::search(double aim) {
+bool PartSearch::search(double aim) {
   split(aim);
+  const double worst = std::ranges::max_element(pieces_, {}, &Piece::error)->error;
+  if (is_stuck_ && worst > limits_.tolerance) return false;
   joined_.clear();
   for (const Piece& piece : pieces_) joined_.push_back({piece});
   joints_.assign(joined_.size(), {});
   for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].resize(i);
-  do {
-    estimate_joints(aim);
-  } while (join_best(joined_.size() > limits_.max_parts ? kInfinity : aim));
-}
-
-bool PartSearch::join_two() {
-  estimate_joints(kInfinity);
-  return join_best(kInfinity);
+  while (join_best(joined_.size() > limits_.max_parts ? kInfinity : aim)) {
+  }
+  return true;
 }
 
 // Returns the vertices of every triangle, clipped by the piece's cells, and those vertices of the

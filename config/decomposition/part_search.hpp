@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "config/decomposition/cuts.hpp"
+#include "config/decomposition/open_blocks.hpp"
 #include "config/decomposition/open_space.hpp"
 #include "config/decomposition/part_limits.hpp"
 #include "config/decomposition/piece.hpp"
@@ -20,26 +22,28 @@ class PartSearch {
  public:
   // Begins with the pieces of a mesh in `cells`, which hold all of it. `space` is that of the mesh.
   PartSearch(const TriangleMesh& mesh, const OpenSpace& space, std::span<const ConvexCell> cells,
-             const PartLimits& limits);
+             const PartLimits& limits, CutChoice choice = CutChoice::kLeastOpen);
 
   // Splits pieces until the estimated error of each is at most `aim`, or there are too many. Then
   // joins pieces as long as the error stays below `aim`, or as there are more than the limits
-  // allow. A call with a lower aim continues with the pieces of the call before.
-  void search(double aim);
+  // allow. A call with a lower aim continues with the pieces of the call before. Returns false, and
+  // joins nothing, if the search has got stuck with a piece whose error exceeds the tolerance,
+  // while the other choice of cuts may get on.
+  bool search(double aim);
 
-  // Joins two parts more. Returns false when one is left.
-  bool join_two();
+  // Tells whether cuts that leave the least open space no longer make the worst piece better, or
+  // would make too many pieces.
+  [[nodiscard]] bool is_stuck() const { return is_stuck_; }
+
+  // Joins two parts more. Returns false when one is left, or if the estimated error of every two is
+  // larger than `most`, m.
+  bool join_best(double most);
 
   // Returns the parts found. Together they hold every triangle. Returns none if coordinates are too
   // coarse for the tolerance, so that a flat piece gets no volume.
   [[nodiscard]] std::vector<ConvexBody> parts();
 
  private:
-  // The error of the hull of two pieces: a lower bound, or the estimate itself.
-  struct JointError {
-    double error = 0.0;
-    bool is_exact = false;
-  };
   // A piece after joining, and its body once that was made.
   struct Joined {
     Piece piece;
@@ -52,21 +56,23 @@ class PartSearch {
   void split(double aim);
   [[nodiscard]] std::optional<std::pair<Piece, Piece>> cut(const Piece& piece) const;
   void add_rim(const HalfSpace& plane, Piece& piece) const;
-  [[nodiscard]] JointError joint_error(const Piece& a, const Piece& b, double enough) const;
-  void estimate_joints(double enough);
-  bool join_best(double most);
+  [[nodiscard]] double joint_error(const Piece& a, const Piece& b) const;
+  void estimate_joints();
   [[nodiscard]] std::vector<Vec3> points_of(const Piece& piece) const;
   [[nodiscard]] std::optional<ConvexBody> body_of_piece(const Piece& piece,
                                                         const std::vector<Vec3>& points) const;
 
   PartLimits limits_;
+  CutChoice choice_;
+  bool is_stuck_ = false;
   const OpenSpace& space_;
   std::vector<HalfSpace> faces_;  // candidates for cuts
   std::vector<OpenPoint> open_;   // in the hull of the whole
+  OpenBlocks open_blocks_;        // the same points
   std::vector<Piece> pieces_;     // before joining
   std::vector<Joined> joined_;
-  // Row i holds the errors of joined piece i with each earlier one.
-  std::vector<std::vector<JointError>> joints_;
+  // Row i holds the errors of the hulls of joined piece i and each earlier one, where known.
+  std::vector<std::vector<std::optional<double>>> joints_;
 };
 
 // Returns a body that holds `hull` and exceeds it by a small share of the tolerance.

@@ -75,6 +75,17 @@ ConvexCell ConvexCell::around(const TriangleMesh& mesh) {
   return cell;
 }
 
+// Planes that the new one makes redundant are removed. Cuts across one axis are many, and the
+// number of possible vertices grows with the third power of that of planes.
+void ConvexCell::cut_by(const HalfSpace& plane) {
+  const auto is_redundant = [&](const HalfSpace& other) {
+    return other.normal == plane.normal && other.offset >= plane.offset;
+  };
+  const auto first = planes.begin() + static_cast<std::ptrdiff_t>(kBoxPlanes);
+  planes.erase(std::remove_if(first, planes.end(), is_redundant), planes.end());
+  planes.push_back(plane);
+}
+
 // A vertex is an intersection of three planes that no other plane cuts off.
 std::vector<Vec3> ConvexCell::corners_within(const OpenSpace& space, double margin) const {
   std::vector<Vec3> corners;
@@ -113,8 +124,14 @@ void Piece::finish(std::span<const OpenPoint> open_before, double spacing) {
   }
 }
 
-// Clips plane by plane (I. Sutherland and G. Hodgman, 1974).
+// Clips plane by plane (I. Sutherland and G. Hodgman, 1974). Most triangles are outside one plane.
 std::vector<Vec3> clipped(const Triangle& triangle, const ConvexCell& cell, double margin) {
+  for (const HalfSpace& plane : cell.planes) {
+    const double limit = plane.offset + margin;
+    if (std::ranges::all_of(triangle, [&](const Vec3& v) { return plane.normal.dot(v) > limit; })) {
+      return {};
+    }
+  }
   std::vector<Vec3> polygon(triangle.begin(), triangle.end()), kept;
   for (const HalfSpace& plane : cell.planes) {
     const double limit = plane.offset + margin;

@@ -42,6 +42,9 @@ struct ConvexCell {
   // The cell of all of a mesh.
   [[nodiscard]] static ConvexCell around(const TriangleMesh& mesh);
 
+  // Keeps the side of the plane where n.x <= d.
+  void cut_by(const HalfSpace& plane);
+
   // Tells whether no plane cuts the mesh.
   [[nodiscard]] bool is_whole() const { return planes.size() == kBoxPlanes; }
 
@@ -58,7 +61,8 @@ struct Piece {
   // The open points in the hull. Points just outside are included, since a thin hull would contain
   // no grid point.
   std::vector<OpenPoint> open;
-  double error = 0.0;  // estimate: the largest distance of the hull from the mesh, m
+  double error = 0.0;    // estimate: the largest distance of the hull from the mesh, m
+  int useless_cuts = 0;  // the last cuts of the piece that left its error nearly as it was
 
   // Completes the piece from its points and from the open points of the piece that it was cut from.
   // `spacing` is that of the grid.

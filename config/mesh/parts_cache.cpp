@@ -132,6 +132,7 @@ std::optional<ConvexParts> parts_of(const std::string& text, const std::string& 
   }
   ConvexParts parts;
   parts.error = words.number();
+  if (!(parts.error >= 0.0 && std::isfinite(parts.error))) return std::nullopt;
   if (!words.says("parts")) return std::nullopt;
   const double count = words.number();
   for (double i = 0.0; i < count; ++i) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
+#include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -85,6 +86,21 @@ TEST_F(Reduction, AHullAroundTwoBlocksIsHalfAsFarFromThemAsTheyAreApart) {
   EXPECT_GE(model(body, "hull")["error"].get<double>(), 0.5);
   EXPECT_LE(model(body, "hull")["error"].get<double>(), 0.5 * 1.02 + 1e-5);
   EXPECT_LE(model(body, "2 parts")["error"].get<double>(), 1e-12);
+}
+
+// The hull of a box without a lid is as good as any two parts. Its five walls are exact.
+TEST_F(Reduction, TriesMorePartsWhereTwoBringNothing) {
+  std::ofstream(file("crate.obj")) << test::obj_of(test::crate_of_solids());
+  ASSERT_EQ(run({"reduce", file("crate.obj"), "--json"}), 0) << output_;
+  const json body = json::parse(output_).at(0);
+  for (const json& one : body["models"]) EXPECT_NE(one["model"], "2 parts");
+  EXPECT_LE(model(body, "5 parts")["error"].get<double>(), 1e-6);
+}
+
+TEST_F(Reduction, FailsWhereNoModelIsWithinTheTolerance) {
+  EXPECT_EQ(run({"reduce", file("l.obj"), "--tolerance", "0"}), 1);
+  EXPECT_NE(output_.find("l: no model is within the tolerance of 0 m"), std::string::npos)
+      << output_;
 }
 
 TEST_F(Reduction, PartsThatWereChosenMakeACell) {

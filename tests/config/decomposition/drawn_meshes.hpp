@@ -143,6 +143,24 @@ inline TriangleMesh turned(const std::vector<Vec2>& outline, int sides) {
   return mesh;
 }
 
+// A rod of 120 mm, bent by 90 degrees around an axis 250 mm away, with two bars across it that
+// cross each other. The bars are added behind the rod.
+inline TriangleMesh bent_rod_with_bars(const std::array<Vec3, 4>& bars) {
+  constexpr int kSteps = 16;
+  constexpr double kRadius = 0.06, kBend = 0.25, kLength = 0.4;
+  std::vector<Vec2> outline = {{0.0, 0.0}};
+  for (int i = 0; i <= kSteps; ++i) outline.emplace_back(kRadius, kLength * i / kSteps);
+  outline.emplace_back(0.0, kLength);
+  TriangleMesh mesh = turned(outline, 24);
+  for (Vec3& v : mesh.vertices) {
+    const double angle = v.z() / kBend, ring = kBend - v.x();
+    v = {ring * std::cos(angle), v.y(), ring * std::sin(angle)};
+  }
+  add_box(bars[0], bars[1], mesh);
+  add_box(bars[2], bars[3], mesh);
+  return mesh;
+}
+
 // An open box as one closed manifold.
 inline TriangleMesh crate(const Vec3& size = {0.6, 0.4, 0.3}, double wall = 0.01) {
   TriangleMesh mesh;

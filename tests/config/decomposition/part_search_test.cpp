@@ -31,5 +31,22 @@ TEST(PartSearch, LeavesNoPieceOutWhereCoordinatesAreTooCoarseForThat) {
   EXPECT_TRUE(parts_of_box_and_sheet(1e-15).empty());
 }
 
+// Returns whether the search for parts of the mesh got stuck before it had parts.
+bool gets_stuck(const TriangleMesh& mesh) {
+  const PartLimits limits;
+  const OpenSpace space(mesh, 0.75 * limits.tolerance);
+  const ConvexCell whole = ConvexCell::around(mesh);
+  PartSearch search(mesh, space, {&whole, 1}, limits);
+  const bool found = search.search(0.85 * limits.tolerance);
+  EXPECT_NE(found, search.is_stuck());
+  return !found;
+}
+
+// Every cut of a cup leaves about as much open space, and that of a thin slice the least.
+TEST(PartSearch, GetsStuckInACupAndNotInAnL) {
+  EXPECT_TRUE(gets_stuck(test::cup()));
+  EXPECT_FALSE(gets_stuck(test::l_shape()));
+}
+
 }  // namespace
 }  // namespace clearance

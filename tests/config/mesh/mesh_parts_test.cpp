@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <filesystem>
@@ -164,6 +165,24 @@ TEST_F(PartsOfMeshes, AreMadeAnewWhereThoseThatAreKeptDoNotContainTheMesh) {
   EXPECT_EQ(anchors(first), anchors(read()));
   EXPECT_THAT(told_, HasSubstr("do not contain it"));
   EXPECT_EQ(good, test::read_text(file));
+}
+
+// The checksum is correct, but no error can be so.
+TEST_F(PartsOfMeshes, AreMadeAnewWhereTheErrorThatIsKeptIsNoLength) {
+  read();
+  const auto file = only_file(folder_ / "clearance.parts");
+  const std::string good = test::read_text(file);
+  const PartsCache cache(folder_ / "");
+  const ConvexParts parts = cache.find(file.stem()).value();
+  for (const double error : {std::nan(""), -1e-3, -kInfinity, kInfinity}) {
+    ConvexParts wrong = parts;
+    wrong.error = error;
+    cache.keep(file.stem(), wrong);
+    EXPECT_FALSE(cache.find(file.stem())) << error;
+    read();
+    EXPECT_THAT(told_, HasSubstr("l.obj: 2 parts")) << error;
+    EXPECT_EQ(good, test::read_text(file));
+  }
 }
 
 TEST_F(PartsOfMeshes, AreNotReadFromAPipeADeviceOrALink) {
