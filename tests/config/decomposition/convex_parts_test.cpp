@@ -25,6 +25,7 @@ struct Drawn {
   TriangleMesh mesh;
   std::size_t most_parts;  // parts expected within the tolerance
   double tolerance = 5e-3;
+  double beyond_hull = 1e-15;  // m, the most by which parts may exceed the mesh's hull
 };
 std::ostream& operator<<(std::ostream& out, const Drawn& drawn) { return out << drawn.name; }
 
@@ -147,6 +148,17 @@ TEST_P(ConvexPartsOf, AreNowhereFartherFromTheMeshThanTheirError) {
     EXPECT_LE(sampled, parts.error) << most;
     EXPECT_GE(sampled, 0.5 * parts.error - 1e-6) << most;  // the bound is not much too large either
   }
+}
+
+// Outside the mesh's hull, distances of the parts would be smaller than those of the hull. Sheets
+// get a thickness, and a part around most of a cup has far fewer facets than its hull.
+TEST_P(ConvexPartsOf, ExceedTheHullOfTheMeshByAtMostThis) {
+  const ConvexBody hull = test::made(polyhedron_from_vertices(GetParam().mesh.vertices));
+  double most = -kInfinity;
+  for (const auto& part : parts_of(GetParam()).parts) {
+    for (const Vec3& vertex : part) most = std::max(most, outside(hull, vertex));
+  }
+  EXPECT_LE(most, GetParam().beyond_hull);
 }
 
 INSTANTIATE_TEST_SUITE_P(
