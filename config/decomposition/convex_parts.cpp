@@ -15,8 +15,8 @@
 namespace clearance {
 namespace {
 
-// A hull of up to this many facets stays as it is. It has the mesh's own vertices, and no error
-// where the mesh is convex.
+// The hull of a whole mesh stays as it is up to this many facets. It has the mesh's own vertices,
+// and no error where the mesh is convex.
 constexpr std::size_t kFacetsOfOne = 400;
 // The search aims below the tolerance, since it estimates the error. If the certified error still
 // exceeds the tolerance, it aims lower again.
@@ -58,7 +58,9 @@ Bodies one_part(ConvexBody hull, const TriangleTree& tree, double tolerance) {
   Bodies whole = judged({std::move(hull)}, tree, tolerance);
   whole.is_hull = true;
   if (whole.parts[0].facets.size() <= kFacetsOfOne) return whole;
-  Bodies fewer = judged({with_fewer_facets(whole.parts[0], tolerance)}, tree, tolerance);
+  auto body = with_fewer_facets(whole.parts[0], tolerance);
+  if (!body) return whole;
+  Bodies fewer = judged({*std::move(body)}, tree, tolerance);
   return fewer.error <= std::max(tolerance, whole.error) ? fewer : whole;
 }
 

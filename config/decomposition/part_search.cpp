@@ -19,7 +19,11 @@ constexpr double kLeastOpen = 0.3;    // points nearer to the mesh are no error
 constexpr double kSimplified = 0.06;  // the largest distance by which vertices of a body with fewer
                                       // facets may exceed it
 
-constexpr std::size_t kFacets = 96;         // of a part, at most
+constexpr std::size_t kFacets = 96;  // of a part, at most
+// A hull of at most this many times the facets of the body around it stays as it is. Bodies of 96
+// planes have up to 372 facets, since their vertices are rounded. Over the links of four robots,
+// 1.5 leaves as many facets in all as no limit does; larger ones bring no nearer bounds.
+constexpr double kWorthFewer = 1.5;
 constexpr std::size_t kFacetsOfShell = 32;  // of a whole shell's hull that is kept as it is
 constexpr std::size_t kPiecesAPart = 3;
 // A cut is of no use if a side keeps more than this share of the error. After so many in a row,
@@ -58,7 +62,7 @@ std::optional<ConvexBody> body_of(const std::vector<Vec3>& points) {
 
 }  // namespace
 
-ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
+std::optional<ConvexBody> with_fewer_facets(ConvexBody hull, double tolerance) {
   const double size = hull.bounding_radius;
   hull.radius = kMargin * size;
   const PlacedShape placed{&hull, {}};
@@ -66,9 +70,9 @@ ConvexBody with_fewer_facets(ConvexBody hull, double tolerance) {
       {&placed, 1}, {.facets = kFacets, .tolerance = kSimplified * tolerance / size});
   // Its vertices are rounded once more than its planes, so the body is the hull of the vertices.
   auto body = fewer ? body_of(vertices_of(*fewer)) : std::nullopt;
-  if (body) return *std::move(body);
-  hull.radius = 0.0;
-  return hull;
+  if (!body) return std::nullopt;
+  const double worth = kWorthFewer * static_cast<double>(body->facets.size());
+  return static_cast<double>(hull.facets.size()) > worth ? std::move(body) : std::nullopt;
 }
 
 PartSearch::PartSearch(const TriangleMesh& mesh, const OpenSpace& space,
@@ -268,7 +272,8 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   return points;
 }
 
-// The hull of whole shells stays as it is, as long as it has few facets.
+// The hull of whole shells stays as it is, as long as it has few facets. Any other hull does where
+// a body around it would save little.
 std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece,
                                                     const std::vector<Vec3>& points) const {
   auto hull = body_of(points);
@@ -276,7 +281,8 @@ std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece,
   if (!hull) return std::nullopt;
   const bool is_whole = std::ranges::all_of(piece.cells, &ConvexCell::is_whole);
   if (is_whole && hull->facets.size() <= kFacetsOfShell) return hull;
-  return with_fewer_facets(*std::move(hull), limits_.tolerance);
+  auto fewer = with_fewer_facets(*hull, limits_.tolerance);
+  return fewer ? std::move(fewer) : std::move(hull);
 }
 
 std::vector<ConvexBody> PartSearch::parts() {

@@ -75,7 +75,9 @@ class PartSearch {
   std::vector<std::vector<std::optional<double>>> joints_;
 };
 
-// Returns a body that holds `hull` and exceeds it by a small share of the tolerance.
-[[nodiscard]] ConvexBody with_fewer_facets(ConvexBody hull, double tolerance);
+// Returns a body that holds `hull` and has far fewer facets. It exceeds the hull by a small share
+// of the tolerance, or by more where it has as many facets as a part may have. Returns nothing
+// where the hull itself has few enough facets.
+[[nodiscard]] std::optional<ConvexBody> with_fewer_facets(ConvexBody hull, double tolerance);
 
 }  // namespace clearance

@@ -18,7 +18,7 @@ namespace {
 
 // A version number. It is raised when the same mesh would be split differently, so that kept parts
 // are made anew.
-constexpr int kMethod = 5;
+constexpr int kMethod = 6;
 
 // s. A hull that took less time is not kept, but computed anew at every start.
 constexpr double kWorthKeeping = 0.1;
