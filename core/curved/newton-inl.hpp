@@ -194,7 +194,7 @@ class Newton {
     (of_a ? pair.a : pair.b) = first_planar_face(of_a ? a_.body : b_.body) + end_of_axis;
     return try_face();
   }
-  HWY_INLINE Next try_face() {
+  HWY_NOINLINE Next try_face() {
     Next next;
     do {
       ++end.supports;
