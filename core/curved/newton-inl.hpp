@@ -18,8 +18,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The limit on evaluated directions, planar faces among them; a tracked query takes three.
-inline constexpr int kIterations = 16;
+// The limit on evaluated directions, planar faces among them; a tracked query takes three. Two
+// ellipsoids that take more than twelve are thin, and mostly take many more.
+inline constexpr int kIterations = 16, kIterationsOfEllipsoids = 12;
 // The gap vector of the witness points is parallel to the direction within this, or within
 // rounding.
 inline constexpr double kAlong = 0x1p-34;
@@ -69,7 +70,9 @@ class Newton {
     } else {
       parts_.place_all();
     }
-    while (next == Next::kIterate && end.supports < kIterations) next = iterate();
+    const bool ellipsoids = a_.round.count == 1 && b_.round.count == 1;
+    const int limit = ellipsoids ? kIterationsOfEllipsoids : kIterations;
+    while (next == Next::kIterate && end.supports < limit) next = iterate();
     return next == Next::kCertified;
   }
 
