@@ -70,8 +70,7 @@ class Newton {
     } else {
       parts_.place_all();
     }
-    const bool ellipsoids = a_.round.count == 1 && b_.round.count == 1;
-    const int limit = ellipsoids ? kIterationsOfEllipsoids : kIterations;
+    const int limit = are_ellipsoids() ? kIterationsOfEllipsoids : kIterations;
     while (next == Next::kIterate && end.supports < limit) next = iterate();
     return next == Next::kCertified;
   }
@@ -86,6 +85,11 @@ class Newton {
   NewtonEnd end;
 
  private:
+  // They have no other parts that could become active, and long steps do them no harm.
+  [[nodiscard]] HWY_INLINE bool are_ellipsoids() const {
+    return a_.round.count == 1 && b_.round.count == 1;
+  }
+
   // ---- one direction ----
   HWY_INLINE Next iterate() {
     ++end.supports;
@@ -110,6 +114,7 @@ class Newton {
       return certify();
     }
     if (square > kLongStep * step_.square) {
+      if (are_ellipsoids()) return Next::kIterate;
       if (HWY_UNLIKELY(square > step_.square)) {
         x_ = x_ - spread(1.0 - std::sqrt(step_.square / square)) * step;
       }
