@@ -49,12 +49,10 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts,
     bodies_[i].fixed = scene.objects[i].fixed;
   }
   for (const std::uint32_t pair : left_out) left_out_[pair] = 1;
-  object_a_.reserve(scene.pairs.size());
-  object_b_.reserve(scene.pairs.size());
+  ends_.reserve(scene.pairs.size());
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    object_a_.push_back(scene.pairs[p].first);
-    object_b_.push_back(scene.pairs[p].second);
-    if (!left_out_[p]) bodies_[object_a_[p]].idle = bodies_[object_b_[p]].idle = false;
+    ends_.push_back({scene.pairs[p].first, scene.pairs[p].second});
+    if (!left_out_[p]) bodies_[ends_[p].a].idle = bodies_[ends_[p].b].idle = false;
   }
   activated_.reserve(scene.pairs.size());
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -165,7 +163,7 @@ double BroadPhase::waiting_lower() const noexcept {
 // also counts the displacement since the last tick. Both H and Z + U are raised by the margin that
 // makes the pair active well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
-  const std::uint32_t a = object_a_[pair], b = object_b_[pair];
+  const auto [a, b] = ends_[pair];
   const double urgent = urgent_[a] + urgent_[b];
   const double since = displacement_since_last_tick(*bodies_[a].state) +
                        displacement_since_last_tick(*bodies_[b].state);
@@ -179,7 +177,7 @@ bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
 
 bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   if (!(horizon_ > -kInfinity)) return false;
-  const std::uint32_t a = object_a_[pair], b = object_b_[pair];
+  const auto [a, b] = ends_[pair];
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
   const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z + U)
@@ -201,8 +199,8 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
 
 // Z + U, m.
 double BroadPhase::zone_level(std::uint32_t pair) const noexcept {
-  return zone_levels_.largest_threshold(pair) + bodies_[object_a_[pair]].state->may_have_moved +
-         bodies_[object_b_[pair]].state->may_have_moved;
+  return zone_levels_.largest_threshold(pair) + bodies_[ends_[pair].a].state->may_have_moved +
+         bodies_[ends_[pair].b].state->may_have_moved;
 }
 
 bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
@@ -212,8 +210,8 @@ bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
 // D >= H and D - U >= Z; only D >= W while some pairs' timers are overdue.
 bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
   if (!is_culled(pair)) return true;
-  const TrackedObject& a = *bodies_[object_a_[pair]].state;
-  const TrackedObject& b = *bodies_[object_b_[pair]].state;
+  const TrackedObject& a = *bodies_[ends_[pair].a].state;
+  const TrackedObject& b = *bodies_[ends_[pair].b].state;
   if (!a.known() || !b.known()) return true;
   return overdue_ ? upper >= std::min(horizon_, overdue_lower_)
                   : upper >= std::max(horizon_, zone_level(pair));
@@ -234,8 +232,8 @@ const Sphere& BroadPhase::sphere_of(Body& body) noexcept {
 }
 
 DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
-  const Sphere& a = sphere_of(bodies_[object_a_[pair]]);
-  const Sphere& b = sphere_of(bodies_[object_b_[pair]]);
+  const Sphere& a = sphere_of(bodies_[ends_[pair].a]);
+  const Sphere& b = sphere_of(bodies_[ends_[pair].b]);
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 

@@ -74,6 +74,17 @@ class BroadPhase {
   // True if all pairs of known objects have been activated once.
   [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
 
+  // The objects of a pair. These, side by side, are all that the decision about a far pair reads of
+  // it besides its timers.
+  struct Ends {
+    std::uint32_t a, b;
+  };
+  [[nodiscard]] const Ends& ends(std::uint32_t pair) const noexcept { return ends_[pair]; }
+  // Fetches the memory of a pair that cull() will be asked about soon.
+  void fetch(std::uint32_t pair) const noexcept {
+    __builtin_prefetch(&ends_[pair]);
+    wheels_.fetch(pair);
+  }
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
   [[nodiscard]] const PairsByObject& by_object() const noexcept { return by_object_; }
 
@@ -119,10 +130,10 @@ class BroadPhase {
   std::vector<Body> bodies_;
   // By object, m a tick, smoothed. It divides allowances and proves nothing.
   std::vector<double> usual_displacement_;
-  std::vector<std::uint32_t> object_a_, object_b_;  // by pair
-  std::vector<std::uint8_t> left_out_;              // by pair
-  const ZoneLevels& zone_levels_;                   // Z
-  std::vector<double> urgent_;                      // by object, m
+  std::vector<Ends> ends_;              // by pair
+  std::vector<std::uint8_t> left_out_;  // by pair
+  const ZoneLevels& zone_levels_;       // Z
+  std::vector<double> urgent_;          // by object, m
   PairsByObject by_object_;
   MotionWheels wheels_;
   double horizon_ = -kInfinity;  // H, m

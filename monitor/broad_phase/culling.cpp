@@ -111,8 +111,13 @@ bool Culling::prove_far(std::uint32_t pair, std::uint32_t kept, const OpenTick& 
 }
 
 void Culling::decide_activated(const OpenTick& tick, Budget& budget) noexcept {
-  for (const std::uint32_t pair : broad_phase_.activated()) {
-    const bool known = is_known(pair, tick);
+  constexpr std::size_t kAhead = 8;
+  const auto& activated = broad_phase_.activated();
+  for (std::size_t i = 0; i < activated.size(); ++i) {
+    if (i + kAhead < activated.size()) broad_phase_.fetch(activated[i + kAhead]);
+    const std::uint32_t pair = activated[i];
+    const auto [a, b] = broad_phase_.ends(pair);
+    const bool known = tick.objects[a].known() && tick.objects[b].known();
     const auto culls = [&](double lower) { return broad_phase_.cull(pair, lower); };
     const bool proved_far = known && bound_by_models(pair, 0, tick, budget, culls);
     decided_.push_back({pair, proved_far});
