@@ -51,12 +51,11 @@ struct SideParts {
 };
 
 struct BodySupport {
-  bool known = false;            // false: the other members have no meaning
-  std::int32_t missing = kNone;  // a part whose support value is at least that of the active ones
-  // The support value of the body without its radius; for a polyhedron with a part that is missing,
-  // that of the active ones.
-  double value = 0.0;
-  Vec4 point{};  // the mean of the active parts' support points
+  bool known = false;             // false: the other members have no meaning
+  std::int32_t missing = kNone;   // a part whose support value is at least that of the active ones
+  std::int32_t farthest = kNone;  // the part with the greatest support value that is known
+  double value = 0.0;             // the support value of the body without its radius
+  Vec4 point{};                   // the mean of the active parts' support points
 };
 
 // For directions nearer to the axis of a truncated cone than this, a cap is tried.
@@ -79,12 +78,13 @@ HWY_INLINE SupportPart support_part(const RoundParts& round, double m_z, double 
 HWY_INLINE BodySupport round_support(const Side& side, const SideParts& active, Vec4 m) {
   const Vec4 semi_axes = side.semi_axes(), scaled = semi_axes * m;
   const double length = norm(scaled);
-  if (side.round.count == 1) return {true, kNone, length, over(semi_axes * scaled, length)};
+  if (side.round.count == 1) return {true, kNone, 0, length, over(semi_axes * scaled, length)};
   if (side.round.has_caps && HWY_UNLIKELY(!(length > kNearAxis))) return BodySupport();
   const SupportPart largest = support_part(side.round, lane(m, 2), length);
   BodySupport found;
   found.known = true;
   found.value = largest.value;
+  found.farthest = largest.number;
   if (!active.has(largest.number)) found.missing = largest.number;
   double radius = 0.0, height = 0.0;
   for (std::size_t i = 0; i < active.count; ++i) {
@@ -130,17 +130,29 @@ HWY_INLINE BodySupport polyhedron_support(const ConvexBody& body, const SidePart
   for (std::size_t i = 0; i < active.count; ++i) {
     const Vec4 p = load3(body.anchors[static_cast<std::size_t>(active.number(i))]);
     found.point = found.point + active.weight[i] * p;
-    found.value = std::max(found.value, dot(m, p));
+    const double value = dot(m, p);
+    if (value > found.value) found.farthest = active.number(i);
+    found.value = std::max(found.value, value);
     steepest = std::max(steepest, ascent(body, active.number(i), active, m));
   }
   if (HWY_LIKELY(!(steepest > -kInfinity))) return found;
   const Support whole = support(body, vec3(m));
   if (steepest > 4.0 * kDerivativeError && !active.has(whole.anchor)) {
-    found.missing = whole.anchor;
-  } else {
-    found.value = std::max(found.value, whole.value);
+    found.missing = found.farthest = whole.anchor;
   }
+  found.value = std::max(found.value, whole.value);
   return found;
+}
+
+// The part with the greatest support value along m (unit), and that value.
+HWY_INLINE SupportPart farthest_part(const Side& side, const SideParts& active, Vec4 m) {
+  if (side.is_round()) {
+    const double length = norm(side.semi_axes() * m);
+    if (side.round.count == 1) return {0, length};
+    return support_part(side.round, lane(m, 2), length);
+  }
+  const BodySupport found = polyhedron_support(side.body, active, m);
+  return {found.farthest, found.value};
 }
 
 HWY_INLINE BodySupport body_support(const Side& side, const SideParts& active, Vec4 m) {

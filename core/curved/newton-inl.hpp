@@ -18,8 +18,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The limit on evaluated directions, planar faces among them; a tracked query takes three.
-inline constexpr int kIterations = 12;
+// The limit on evaluated directions, planar faces among them; a tracked query takes three. Two
+// ellipsoids that take more than twelve are thin, and mostly take many more.
+inline constexpr int kIterations = 16, kIterationsOfEllipsoids = 12;
 // The gap vector of the witness points is parallel to the direction within this, or within
 // rounding.
 inline constexpr double kAlong = 0x1p-34;
@@ -40,7 +41,11 @@ struct NewtonEnd {
   int supports = 0;
 };
 
-enum class Next { kIterate, kCertified, kGiveUp };
+// Two planar faces are tried one after the other if the cosine of the angle between them exceeds
+// this.
+inline constexpr double kFacing = 0x1.fep-1;
+
+enum class Next { kIterate, kCertified, kGiveUp, kOtherFace };
 
 template <class SquaresA, class SquaresB>
 class Newton {
@@ -65,7 +70,8 @@ class Newton {
     } else {
       parts_.place_all();
     }
-    while (next == Next::kIterate && end.supports < kIterations) next = iterate();
+    const int limit = are_ellipsoids() ? kIterationsOfEllipsoids : kIterations;
+    while (next == Next::kIterate && end.supports < limit) next = iterate();
     return next == Next::kCertified;
   }
 
@@ -79,6 +85,11 @@ class Newton {
   NewtonEnd end;
 
  private:
+  // They have no other parts that could become active, and long steps do them no harm.
+  [[nodiscard]] HWY_INLINE bool are_ellipsoids() const {
+    return a_.round.count == 1 && b_.round.count == 1;
+  }
+
   // ---- one direction ----
   HWY_INLINE Next iterate() {
     ++end.supports;
@@ -90,24 +101,42 @@ class Newton {
     if (HWY_UNLIKELY(!(square < kInfinity))) return Next::kGiveUp;
     if (HWY_UNLIKELY(passes_axis())) {
       if (!cap_tried_) return try_cap(step_.next);
-      stop_before_axis(step);
-      return Next::kIterate;
+      if (!stopped_) {
+        stopped_ = true;
+        stop_before_axis(step);
+        grow();
+        return Next::kIterate;
+      }
     }
     x_ = step_.next;
     // Convergence is quadratic: the next step would be about the square of this one.
     if (square * step_.trace <= kAlong * step_.least || square <= kFinalStep * step_.square) {
       return certify();
     }
-    if (square > kLongStep * step_.square) grow();
+    if (square > kLongStep * step_.square) {
+      if (are_ellipsoids()) return Next::kIterate;
+      if (HWY_UNLIKELY(square > step_.square)) {
+        x_ = x_ - spread(1.0 - std::sqrt(step_.square / square)) * step;
+      }
+      grow();
+    }
     return Next::kIterate;
   }
 
-  // Adds the parts that have greater support values along a direction that is not yet the best.
-  HWY_NOINLINE void grow() {
+  // Adds the pair of parts that is nearest along a direction that is not yet the best. Returns its
+  // distance, m.
+  HWY_NOINLINE double grow() {
     const Vec4 n = over(x_, norm(x_));
-    const BodySupport a = body_support(a_, parts_.side(true), n);
-    const BodySupport b = body_support(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
-    if (a.missing != kNone || b.missing != kNone) parts_.add(a.missing, b.missing);
+    const SupportPart a = farthest_part(a_, parts_.side(true), n);
+    const SupportPart b = farthest_part(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
+    add({a.number, b.number});
+    return (dot(n, a_from_b_.translation) - a.value) - b.value;
+  }
+
+  // A pair that is active already stays as it is.
+  HWY_INLINE void add(const PartPair& pair) {
+    if (pair.a == kNone || pair.b == kNone) return;  // the direction is not finite
+    if (!parts_.has(pair)) step_.add(parts_, pair, x_);
   }
 
   HWY_INLINE Next certify() {
@@ -122,9 +151,7 @@ class Newton {
     end.on_a = a.point;
     end.on_b_in_b = b.point;
     end.on_b = on_b;
-    const bool complete =
-        (a.missing == kNone || a_.is_round()) && (b.missing == kNone || b_.is_round());
-    if (HWY_LIKELY(complete && end.upper - end.lower <= tolerance_)) {
+    if (HWY_LIKELY(end.upper - end.lower <= tolerance_)) {
       const Vec4 across = gap - spread(dot(n, gap)) * n;
       const double limit = std::max(4.0 * kAlong * end.upper, 8.0 * tolerance_);
       if (HWY_LIKELY(dot(across, across) <= limit * limit)) {
@@ -132,7 +159,8 @@ class Newton {
         return Next::kCertified;
       }
     }
-    if (a.missing != kNone || b.missing != kNone) parts_.add(a.missing, b.missing);
+    // Otherwise rounding alone keeps the bounds apart.
+    if (dot(n, gap) - end.lower > tolerance_) add({a.farthest, b.farthest});
     return Next::kIterate;
   }
 
@@ -145,7 +173,7 @@ class Newton {
            (caps_of_b() && !(step_.round_b.square > least));
   }
   // When the direction passes an axis, the support point of a rim jumps to its other side: the cap
-  // may be closest.
+  // may be closest. If it is not, the first step that passes the axis ends before it.
   [[nodiscard]] HWY_INLINE bool passes_axis() const {
     return (caps_of_a() && dot(step_.round_a.squared, step_.next) <= 0.0) ||
            (caps_of_b() && dot(step_.round_b.squared, step_.next) <= 0.0);
@@ -174,10 +202,14 @@ class Newton {
     (of_a ? pair.a : pair.b) = first_planar_face(of_a ? a_.body : b_.body) + end_of_axis;
     return try_face();
   }
-  HWY_INLINE Next try_face() {
-    ++end.supports;
-    return active_.pairs[0].a >= first_planar_face(a_.body) ? try_face_of<true>()
-                                                            : try_face_of<false>();
+  HWY_NOINLINE Next try_face() {
+    Next next;
+    do {
+      ++end.supports;
+      next = active_.pairs[0].a >= first_planar_face(a_.body) ? try_face_of<true>()
+                                                              : try_face_of<false>();
+    } while (HWY_UNLIKELY(next == Next::kOtherFace));
+    return next;
   }
   template <bool kOfA>
   HWY_INLINE Next try_face_of() {
@@ -185,12 +217,23 @@ class Newton {
     PartPair& pair = active_.pairs[0];
     std::int32_t &face = kOfA ? pair.a : pair.b, &part = kOfA ? pair.b : pair.a;
     active_.count = 1;
-    const FaceMeeting met = meet_face<kOfA>(side, other, a_from_b_, face, part);
-    if (HWY_UNLIKELY(met.end == FaceEnd::kUnknown)) return Next::kGiveUp;
+    const FaceMeeting met = meet_face<kOfA>(side, other, a_from_b_, face, part, tolerance_);
+    if (HWY_UNLIKELY(met.end == FaceEnd::kUnknown)) {
+      if (end.supports > 1) return Next::kGiveUp;
+      forget_face<kOfA>();
+      return Next::kIterate;
+    }
     part = met.part;
     const Vec4 normal = planar_face(side, face).normal;
     end.normal = kOfA ? normal : -direction_to_a(a_from_b_, normal);
     if (HWY_UNLIKELY(met.end == FaceEnd::kBeside)) {
+      const std::int32_t facing = facing_face(other, met.part, normal_to_other<kOfA>(normal));
+      if (facing != kNone && !facing_tried_) {
+        facing_tried_ = true;
+        face = part_of_face(side.body, face);
+        part = facing;
+        return Next::kOtherFace;
+      }
       leave_face<kOfA>(met);
       return Next::kIterate;
     }
@@ -202,9 +245,52 @@ class Newton {
     end.on_b = point_to_a(a_from_b_, end.on_b_in_b);
     return end.upper - end.lower <= tolerance_ ? Next::kCertified : Next::kGiveUp;
   }
-  // Continues from the edge or the rim past which the nearest point lies.
+  // The other body's planar face at a part that is nearly parallel to a face. `down`: the opposite
+  // of that face's normal, unit, in the other body's frame.
+  [[nodiscard]] static HWY_NOINLINE std::int32_t facing_face(const Side& other, std::int32_t part,
+                                                             Vec4 down) {
+    const std::int32_t first = first_planar_face(other.body);
+    if (other.is_round()) {
+      const double z = lane(down, 2);
+      const bool faces = other.round.has_caps && std::abs(z) > kFacing;
+      return faces ? first + (z > 0.0 ? 1 : 0) : kNone;
+    }
+    const Vertex& vertex = other.body.vertices[static_cast<std::size_t>(part)];
+    for (std::int32_t i = 0; i < vertex.edges; ++i) {
+      const EdgeUse& use = other.body.vertex_edges[static_cast<std::size_t>(vertex.first_edge + i)];
+      for (const std::int32_t facet : other.body.edges[static_cast<std::size_t>(use.edge)].facet) {
+        if (facet == kNone) continue;
+        const Facet& f = other.body.facets[static_cast<std::size_t>(facet)];
+        if (dot(load3(f.normal), down) > kFacing) return first + facet;
+      }
+    }
+    return kNone;
+  }
+  template <bool kOfA>
+  [[nodiscard]] HWY_INLINE Vec4 normal_to_other(Vec4 normal) const {
+    return -(kOfA ? direction_to_b(a_from_b_, normal) : direction_to_a(a_from_b_, normal));
+  }
+  // A disc, or a vertex, of a face.
+  [[nodiscard]] static std::int32_t part_of_face(const ConvexBody& body, std::int32_t number) {
+    const std::int32_t face = number - first_planar_face(body);
+    if (body.is_curved()) return face;
+    const Facet& facet = body.facets[static_cast<std::size_t>(face)];
+    const EdgeUse& use = body.facet_edges[static_cast<std::size_t>(facet.first_side)];
+    return body.edges[static_cast<std::size_t>(use.edge)].vertex[0];
+  }
+  // Continues from the last query's direction, where its face decides nothing any more.
+  template <bool kOfA>
+  HWY_NOINLINE void forget_face() {
+    std::int32_t& face = kOfA ? active_.pairs[0].a : active_.pairs[0].b;
+    face = part_of_face(kOfA ? a_.body : b_.body, face);
+    parts_.place_all();
+    grow();
+  }
+  // Continues from the edge or the rim past which the nearest point lies, or from the direction
+  // before, if the bodies are farther apart along that one.
   template <bool kOfA>
   HWY_NOINLINE void leave_face(const FaceMeeting& met) {
+    const Vec4 last = x_;
     const Side& side = kOfA ? a_ : b_;
     std::int32_t& face = kOfA ? active_.pairs[0].a : active_.pairs[0].b;
     if (side.is_round()) {
@@ -224,6 +310,11 @@ class Newton {
       x_ = end.normal;
     }
     parts_.place_all();
+    const bool worse = grow() * std::sqrt(step_.square) < step_.least;
+    if (worse && end.supports > 1) {
+      x_ = last;
+      grow();
+    }
   }
   // Replaces three vertices of a facet by the facet.
   HWY_NOINLINE void to_facet() {
@@ -244,7 +335,7 @@ class Newton {
   ActiveParts& active_;
   PlacedParts parts_;
   NewtonStep<SquaresA, SquaresB> step_;
-  bool cap_tried_ = false, ended_on_face_ = false;
+  bool cap_tried_ = false, facing_tried_ = false, stopped_ = false, ended_on_face_ = false;
 };
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -12,8 +12,9 @@
 //
 // If bodies nearly touch, K + d I is nearly singular along n, and its determinant is rounding. The
 // step then takes its length from x.(x + s) = x.x and not from the determinant. If the
-// regularisation of K differs from d, along n or across it, w changes along n by the difference.
-// This gives the same step.
+// regularisation of K differs from d, w changes along n by the difference. This gives the same
+// step. If one of the two curvatures is small as well, as on a rim, the inverse loses the other
+// one. The step is then solved on the tangent plane. So are the steps of two and three pairs.
 #if defined(CLEARANCE_CORE_NEWTON_STEP) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON_STEP
 #undef CLEARANCE_CORE_NEWTON_STEP
@@ -61,6 +62,18 @@ class NewtonStep {
     if (!same) solve_once(parts, x);
   }
 
+  // Adds a pair that is not yet active. A fourth one takes the place of the pair whose weight is
+  // the first to vanish as that of the new one grows, as in the simplex method.
+  HWY_NOINLINE void add(PlacedParts& parts, const PartPair& pair, Vec4 x) const {
+    parts.place_behind(pair);
+    std::size_t at = parts.count();
+    if (at == 3) {
+      set_gap(parts, 3);
+      at = first_to_vanish(parts, x);
+    }
+    parts.add(pair, at);
+  }
+
   Vec4 next;
   RoundSupport round_a, round_b;
   double square = 1.0;  // of x
@@ -70,28 +83,55 @@ class NewtonStep {
  private:
   // The distance of a pair of parts, times the length of x.
   HWY_INLINE double evaluate(PlacedParts& parts, Vec4 x, std::size_t i) {
-    Vec4 w = parts.middle[i];
-    double value = dot(x, w);
-    if constexpr (SquaresA::kRound) {
-      w = w - parts.radius_a[i] * round_a.point;
-      value -= parts.radius_a[i] * round_a.value;
-    }
-    if constexpr (SquaresB::kRound) {
-      w = w - parts.radius_b[i] * round_b.point;
-      value -= parts.radius_b[i] * round_b.value;
-    }
-    parts.gap[i] = w;
+    double value = dot(x, parts.middle[i]);
+    if constexpr (SquaresA::kRound) value -= parts.radius_a[i] * round_a.value;
+    if constexpr (SquaresB::kRound) value -= parts.radius_b[i] * round_b.value;
+    set_gap(parts, i);
     return value;
+  }
+
+  HWY_INLINE void set_gap(PlacedParts& parts, std::size_t i) const {
+    Vec4 w = parts.middle[i];
+    if constexpr (SquaresA::kRound) w = w - parts.radius_a[i] * round_a.point;
+    if constexpr (SquaresB::kRound) w = w - parts.radius_b[i] * round_b.point;
+    parts.gap[i] = w;
+  }
+  // Of the three active pairs. The gap vector of the fourth is a sum of theirs with shares of sum
+  // 1, up to a multiple of x.
+  [[nodiscard]] static std::size_t first_to_vanish(const PlacedParts& parts, Vec4 x) {
+    const Vec4 u = parts.gap[1] - parts.gap[0], v = parts.gap[2] - parts.gap[0];
+    const Vec4 rest = parts.gap[3] - parts.gap[0];
+    const double area = 1.0 / dot(cross(u, v), x);
+    const double share_u = dot(x, cross(rest, v)) * area, share_v = dot(x, cross(u, rest)) * area;
+    const double share[3] = {1.0 - share_u - share_v, share_u, share_v};
+    std::size_t first = 0;
+    double least = kInfinity;
+    for (std::size_t i = 0; i < 3; ++i) {
+      if (!(share[i] > 0.0) || !(parts.weight[i] < least * share[i])) continue;
+      least = parts.weight[i] / share[i];
+      first = i;
+    }
+    return first;
   }
 
   // On the unit sphere, the curvature adds the distance d to the Hessian, which regularises it.
   // While the direction is far from the best one, half the length of the gap vector replaces d.
   HWY_INLINE void set_regularisation(const PlacedParts& parts) {
     regularisation_ = least * per_square_;
-    const double gap = dot(parts.gap[0], parts.gap[0]);
-    const bool far_off =
-        parts.count() == 1 ? 4.0 * least * std::abs(least) < gap * square : !(least > 0.0);
-    if (HWY_UNLIKELY(far_off)) regularisation_ = 0.5 * std::sqrt(gap * per_square_);
+    const double gap = nearest_square(parts);
+    if (HWY_UNLIKELY(4.0 * least * std::abs(least) < gap * square)) {
+      regularisation_ = 0.5 * std::sqrt(gap * per_square_);
+    }
+  }
+  // The square of the distance between points of the active pairs' hulls.
+  [[nodiscard]] HWY_INLINE double nearest_square(const PlacedParts& parts) const {
+    Vec4 w = parts.gap[0];
+    for (std::size_t i = 1; i < parts.count(); ++i) {
+      const Vec4 u = parts.gap[i] - w;
+      const double part = std::clamp(-dot(u, w) / dot(u, u), 0.0, 1.0);
+      w = w + part * u;
+    }
+    return dot(w, w);
   }
 
   [[nodiscard]] HWY_INLINE Symmetric4 matrix(const PlacedParts& parts) const {
@@ -116,73 +156,106 @@ class NewtonStep {
   HWY_INLINE void solve_once(PlacedParts& parts, Vec4 x) {
     Symmetric4 m = matrix(parts);
     trace = HWY_NAMESPACE::trace(m);
+    if (HWY_UNLIKELY(parts.count() == 3) && meet_all(parts, x, m)) return;
+    if (HWY_UNLIKELY(parts.count() == 2) && meet(parts, x, m)) return;
+    const Cofactors c = cofactors(m);
     const double distance = least * per_square_;
     const bool singular = regularisation_ < kNearlySingular * trace;
-    careful_ = singular || regularisation_ != distance;
-    lift_ = spread(0.0);
-    if (HWY_UNLIKELY(careful_)) {
-      lift(m, x, singular && parts.count() > 1 ? trace : regularisation_, distance);
+    if (HWY_LIKELY(!singular && regularisation_ == distance)) {
+      next = (c.matrix * parts.gap[0]) / c.determinant;
+    } else if (sum3(c.matrix.main) > kNearlySingular * trace * trace) {
+      const Vec4 y = c.matrix * (parts.gap[0] + spread(regularisation_ - distance) * x);
+      next = spread(square / dot(x, y)) * y;
+    } else {
+      next = x + tangent_step(parts.gap[0], x, m);
     }
-    const Cofactors c = cofactors(m);
-    if (parts.count() == 3 && meet_all(parts, x, c)) return;
-    if (parts.count() == 2 && meet(parts, x, c)) return;
-    set_next(x, c.matrix * (parts.gap[0] + lift_), c);
   }
-  // Sets the regularisation along x to `along`, and lift_ to the vector that the gap vector needs
-  // in return.
-  HWY_INLINE void lift(Symmetric4& m, Vec4 x, double along, double distance) {
-    const Vec4 more = spread((along - regularisation_) * per_square_) * x;
-    m = {m.main + more * x, m.beside + more * yzx(x)};
-    lift_ = (along - distance) * x;
+  // The step of one pair of parts on the tangent plane. Its first axis is that of the greater
+  // curvature, so that the noise of this curvature stays out of the other axis.
+  HWY_INLINE Vec4 tangent_step(Vec4 w, Vec4 x, const Symmetric4& m) const {
+    const Vec4 steepest = column_of_greatest(m);
+    const Vec4 u = steepest - spread(dot(steepest, x) * per_square_) * x, v = cross(x, u);
+    const Vec4 m_u = m * u, m_v = m * v;
+    const double uu = dot(u, m_u), uv = dot(u, m_v), vv = dot(v, m_v);
+    const double to_u = dot(u, w), to_v = dot(v, w), area = 1.0 / (uu * vv - uv * uv);
+    return spread((to_u * vv - to_v * uv) * area) * u + spread((to_v * uu - to_u * uv) * area) * v;
   }
-  // `y`: the next direction, times the determinant.
-  HWY_INLINE void set_next(Vec4 x, Vec4 y, const Cofactors& c) {
-    next = HWY_LIKELY(!careful_) ? y / c.determinant : spread(square / dot(x, y)) * y;
+  [[nodiscard]] static HWY_INLINE Vec4 column_of_greatest(const Symmetric4& m) {
+    const double x = lane(m.main, 0), y = lane(m.main, 1), z = lane(m.main, 2);
+    if (x >= y && x >= z) return m * vec4(1.0, 0.0, 0.0, 0.0);
+    return y >= z ? m * vec4(0.0, 1.0, 0.0, 0.0) : m * vec4(0.0, 0.0, 1.0, 0.0);
   }
-  // The step of two pairs of parts, to the direction at which both distances are equal. False: one
-  // pair is left.
-  HWY_INLINE bool meet(PlacedParts& parts, Vec4 x, const Cofactors& c) {
-    const Vec4 u = parts.gap[1] - parts.gap[0];
-    const Vec4 first = c.matrix * (parts.gap[0] + lift_), across = c.matrix * u;
-    const double part = -dot(u, first) / dot(u, across);
-    if (!(part > 0.0)) {
-      parts.drop(1);
+  // A direction at which two pairs of parts are equally far apart.
+  struct Meeting {
+    Vec4 next;
+    double part;  // the weight of the second pair
+    [[nodiscard]] HWY_INLINE bool is_between() const { return part > 0.0 && part < 1.0; }
+  };
+  // The step of two pairs of parts. It is to_kink u + along_kink (x cross u), with u the tangent
+  // part of the difference of the gap vectors. The first part makes both distances equal, and the
+  // second one is Newton's step along the kink. Nothing here is a small difference of large
+  // numbers, so a small distance costs no digits.
+  HWY_INLINE Meeting meeting(const PlacedParts& parts, std::size_t i, std::size_t j, Vec4 x,
+                             const Symmetric4& m) const {
+    const Vec4 w = parts.gap[i], difference = parts.gap[j] - w;
+    const double height = dot(difference, x);
+    const Vec4 u = difference - spread(height * per_square_) * x, v = cross(x, u);
+    const Vec4 m_u = m * u, m_v = m * v;
+    const double per_length = 1.0 / dot(u, u), to_kink = -height * per_length, uv = dot(u, m_v);
+    const double along_kink = (dot(v, w) - to_kink * uv) / dot(v, m_v);
+    const double part = (to_kink * dot(u, m_u) - dot(u, w)) + along_kink * uv;
+    return {x + (spread(to_kink) * u + spread(along_kink) * v), part * per_length};
+  }
+  HWY_INLINE void keep(PlacedParts& parts, const Meeting& meeting) {
+    parts.weight[0] = 1.0 - meeting.part;
+    parts.weight[1] = meeting.part;
+    next = meeting.next;
+  }
+  // False: one pair is left.
+  HWY_INLINE bool meet(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
+    const Meeting both = meeting(parts, 0, 1, x, m);
+    if (!both.is_between()) {
+      parts.drop(both.part < 1.0 ? 1 : 0);
       return false;
     }
-    if (!(part < 1.0)) {
-      parts.drop(0);
-      return false;
-    }
-    parts.weight[0] = 1.0 - part;
-    parts.weight[1] = part;
-    set_next(x, first + part * across, c);
+    keep(parts, both);
     return true;
   }
-  // The step of three pairs. False: one pair is left, after its step for two.
-  bool meet_all(PlacedParts& parts, Vec4 x, const Cofactors& c) {
+  // The step of three pairs. False: one pair is left.
+  bool meet_all(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
     const Vec4 u = parts.gap[1] - parts.gap[0], v = parts.gap[2] - parts.gap[0];
-    const Vec4 first = c.matrix * (parts.gap[0] + lift_), of_u = c.matrix * u, of_v = c.matrix * v;
-    const double uu = dot(u, of_u), uv = dot(u, of_v), vv = dot(v, of_v);
-    const double to_u = -dot(u, first), to_v = -dot(v, first), area = uu * vv - uv * uv;
-    const double part_u = (to_u * vv - to_v * uv) / area, part_v = (uu * to_v - uv * to_u) / area;
+    const Vec4 normal = cross(u, v);
+    const double area = dot(normal, x);
+    next = spread(square / area) * normal;
+    const Vec4 rest = m * (next - x) - parts.gap[0];
+    const double part_u = dot(x, cross(rest, v)) / area, part_v = dot(x, cross(u, rest)) / area;
     const double part = 1.0 - part_u - part_v, smallest = std::min({part, part_u, part_v});
     if (!(smallest > 0.0)) {
-      parts.drop(smallest == part_u ? 1 : (smallest == part_v ? 2 : 0));
-      return meet(parts, x, c);
+      return drop_one(parts, smallest == part_u ? 1 : (smallest == part_v ? 2 : 0), x, m);
     }
     parts.weight[0] = part;
     parts.weight[1] = part_u;
     parts.weight[2] = part_v;
-    const Vec4 normal = cross(u, v);
-    next = (square / dot(normal, x)) * normal;
     return true;
+  }
+  // Drops the pair that is farther apart than the other two where these meet. `first`: the one that
+  // is tried first.
+  bool drop_one(PlacedParts& parts, std::size_t first, Vec4 x, const Symmetric4& m) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t out = (first + k) % 3, i = out == 0 ? 1 : 0, j = out == 2 ? 1 : 2;
+      const Meeting both = meeting(parts, i, j, x, m);
+      if (!both.is_between() || dot(parts.gap[out] - parts.gap[i], both.next) < 0.0) continue;
+      parts.drop(out);
+      keep(parts, both);
+      return true;
+    }
+    parts.drop(first);
+    return meet(parts, x, m);
   }
 
   const SquaresA squares_a_;
   const SquaresB squares_b_;
   double per_square_ = 1.0, regularisation_ = 0.0;
-  bool careful_ = false;
-  Vec4 lift_{};  // added to the gap vectors
 };
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -13,8 +13,9 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The arrays are indexed by the pairs of `active`. The weights have sum 1. `gap` is the vector from
-// A's to B's support point along the direction that was evaluated last.
+// The arrays are indexed by the pairs of `active`, with room for another one behind them. The
+// weights have sum 1. `gap` is the vector from A's to B's support point along the direction that
+// was evaluated last.
 struct PlacedParts {
   HWY_INLINE PlacedParts(const Side& side_a, const Side& side_b, const RelativePose4& pose,
                          ActiveParts& parts)
@@ -49,27 +50,30 @@ struct PlacedParts {
     }
     if (active.count == 1) weight[0] = 1.0;
   }
-  // kNone stands for the part of this body in the pair with the greatest weight.
-  void add(std::int32_t part_a, std::int32_t part_b) {
-    std::size_t most = 0, least = 0;
-    for (std::size_t i = 1; i < active.count; ++i) {
-      if (weight[i] > weight[most]) most = i;
-      if (weight[i] < weight[least]) least = i;
+  [[nodiscard]] HWY_INLINE bool has(const PartPair& pair) const {
+    for (std::size_t i = 0; i < active.count; ++i) {
+      if (active.pairs[i] == pair) return true;
     }
-    PartPair pair = active.pairs[most];
-    if (part_a != kNone) pair.a = part_a;
-    if (part_b != kNone) pair.b = part_b;
-    const std::size_t at = active.count < 3 ? active.count++ : least;
-    active.pairs[at] = pair;
-    weight[at] = 0.0;
-    place(at);
+    return false;
+  }
+  // Places a pair that is not yet active behind the active ones.
+  HWY_INLINE void place_behind(const PartPair& pair) { place(active.count, pair); }
+  // The pair that was placed behind the active ones becomes active, without weight. `instead_of`: a
+  // pair that it replaces, or the number of active ones.
+  void add(const PartPair& pair, std::size_t instead_of) {
+    middle[instead_of] = middle[active.count];
+    radius_a[instead_of] = radius_a[active.count];
+    radius_b[instead_of] = radius_b[active.count];
+    weight[instead_of] = 0.0;
+    active.pairs[instead_of] = pair;
+    if (instead_of == active.count) ++active.count;
   }
 
   const Side &a, &b;
   const RelativePose4& a_from_b;
   ActiveParts& active;
-  Vec4 middle[3], gap[3];
-  double radius_a[3], radius_b[3], weight[3];
+  Vec4 middle[4], gap[4];
+  double radius_a[4], radius_b[4], weight[4];
 
  private:
   // A part's middle in the body's frame, and its radius.
@@ -85,8 +89,9 @@ struct PlacedParts {
     const Disc& disc = side.round.parts[number];
     return {vec4(0.0, 0.0, disc.height, 0.0), disc.radius};
   }
-  HWY_INLINE void place(std::size_t i) {
-    const Part part_a = part(a, active.pairs[i].a), part_b = part(b, active.pairs[i].b);
+  HWY_INLINE void place(std::size_t i) { place(i, active.pairs[i]); }
+  HWY_INLINE void place(std::size_t i, const PartPair& pair) {
+    const Part part_a = part(a, pair.a), part_b = part(b, pair.b);
     middle[i] = point_to_a(a_from_b, part_b.middle) - part_a.middle;
     radius_a[i] = part_a.radius;
     radius_b[i] = part_b.radius;

@@ -62,43 +62,142 @@ struct FaceMeeting {
   std::int32_t edge = kNone;  // the nearest point lies past this edge of a facet
 };
 
-// Does the other body's nearest point lie above the face? `number`: that of the face, which is A's
-// if kOfA. `part`: the nearest part of the other body, as far as it is known.
-template <bool kOfA>
-HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const RelativePose4& a_from_b,
-                                 std::int32_t number, std::int32_t part) {
-  const PlanarFace face = planar_face(side, number);
-  const Vec4 down =
-      -(kOfA ? direction_to_b(a_from_b, face.normal) : direction_to_a(a_from_b, face.normal));
-  FaceMeeting found;
+// Points of a body that have its greatest support value, up to rounding. The first one is the
+// support point of `part`. The others are likely to lie over a face that is parallel to the body
+// there.
+struct SupportSet {
+  bool known = false;
+  double value = 0.0;
+  std::int32_t part = kNone;
+  Vec4 points[4];
+  int count = 0;
+
+  HWY_INLINE void add(Vec4 point) {
+    if (count < 4) points[count++] = point;
+  }
+};
+
+// Any point of the middle of a face, in the face's frame.
+HWY_INLINE Vec4 middle_of_face(const Side& side, std::int32_t number) {
+  const auto at = static_cast<std::size_t>(number - first_planar_face(side.body));
+  if (side.is_round()) return vec4(0.0, 0.0, side.round.parts[at].height, 0.0);
+  const Facet& facet = side.body.facets[at];
+  Vec4 sum = spread(0.0);
+  for (std::int32_t i = 0; i < facet.sides; ++i) {
+    const EdgeUse& use = side.body.facet_edges[static_cast<std::size_t>(facet.first_side + i)];
+    const Edge& edge = side.body.edges[static_cast<std::size_t>(use.edge)];
+    sum = sum + load3(side.body.vertices[static_cast<std::size_t>(edge.vertex[use.side])].position);
+  }
+  return over(sum, facet.sides);
+}
+
+// m: unit; `middle`: a point that the other points should be near to.
+HWY_INLINE SupportSet round_support_set(const Side& side, Vec4 m, Vec4 middle, double tolerance) {
+  const Vec4 semi_axes = side.semi_axes(), scaled = semi_axes * m;
+  const double length = norm(scaled);
+  SupportSet found;
+  found.known = true;
+  if (side.round.count == 1) {
+    found.value = length;
+    found.part = 0;
+    found.add(over(semi_axes * scaled, length));
+    return found;
+  }
+  const SupportPart largest = support_part(side.round, lane(m, 2), length);
+  const Disc *const discs = side.round.parts, &disc = discs[largest.number];
+  found.value = largest.value;
+  found.part = largest.number;
+  const Vec4 outwards = length > 0.0 ? over(scaled, length) : vec4(1.0, 0.0, 0.0, 0.0);
+  const auto rim_point = [&](const Disc& of) HWY_ATTR {
+    return of.radius * outwards + vec4(0.0, 0.0, of.height, 0.0);
+  };
+  found.add(rim_point(disc));
+  if (HWY_UNLIKELY(disc.radius * length <= tolerance)) {
+    const Vec4 centre = vec4(0.0, 0.0, disc.height, 0.0);
+    const Vec4 across = vec4(lane(middle, 0), lane(middle, 1), 0.0, 0.0);
+    found.add(centre);
+    found.add(centre + std::min(1.0, disc.radius / norm(across)) * across);
+    return found;
+  }
+  const Disc& beside = discs[1 - largest.number];
+  const double value = beside.height * lane(m, 2) + beside.radius * length;
+  if (HWY_UNLIKELY(largest.value - value <= tolerance)) {
+    found.add(rim_point(beside));
+    found.add(0.5 * (found.points[0] + found.points[1]));
+  }
+  return found;
+}
+// `part`: a vertex to begin with.
+HWY_INLINE SupportSet vertex_support_set(const ConvexBody& body, Vec4 m, Vec4 middle,
+                                         std::int32_t part, double tolerance) {
   PartPair pair{part, part};
   const double whole = 1.0;
   const SideParts one{&pair, &whole, 1, &PartPair::a};
-  BodySupport nearest = body_support(other, one, down);
+  BodySupport nearest = polyhedron_support(body, one, m);
   if (nearest.missing != kNone) {
     pair.a = nearest.missing;
-    nearest = body_support(other, one, down);
+    nearest = polyhedron_support(body, one, m);
   }
-  if (!nearest.known || nearest.missing != kNone) return found;
+  SupportSet found;
+  if (nearest.missing != kNone) return found;
+  found.known = true;
+  found.value = nearest.value;
   found.part = pair.a;
-  found.on_other = nearest.point;
-  found.above = kOfA ? point_to_a(a_from_b, nearest.point) : point_to_b(a_from_b, nearest.point);
-  found.upper = dot(face.normal, found.above) - face.offset;
-  found.lower = found.upper - std::max(0.0, nearest.value - dot(down, nearest.point));
-  const bool above = found.lower > 0.0;
-  if (!above && !side.is_round()) return found;
-  found.below = found.above - found.upper * face.normal;
-  const auto at = static_cast<std::size_t>(number - first_planar_face(side.body));
-  bool within = false;
-  if (side.is_round()) {
-    const double x = lane(found.below, 0), y = lane(found.below, 1);
-    const double radius = side.round.parts[at].radius;
-    within = x * x + y * y <= radius * radius;
-  } else {
-    found.edge = crossed_side(side.body, side.body.facets[at], found.below);
-    within = found.edge == kNone;
+  found.add(nearest.point);
+  const Vertex& vertex = body.vertices[static_cast<std::size_t>(pair.a)];
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const std::int32_t end = body.neighbours[static_cast<std::size_t>(vertex.first_edge + i)];
+    if (end == kNone) continue;
+    const Vec4 along = load3(body.vertices[static_cast<std::size_t>(end)].position) - nearest.point;
+    if (HWY_LIKELY(dot(m, along) < -tolerance)) continue;
+    const double part_of_edge = dot(along, middle - nearest.point) / dot(along, along);
+    found.add(nearest.point + std::clamp(part_of_edge, 0.0, 1.0) * along);
   }
-  if (above || !within) found.end = within ? FaceEnd::kClosest : FaceEnd::kBeside;
+  return found;
+}
+
+// The edge of a facet past which a point of its plane lies; kNone: it lies within.
+HWY_INLINE bool is_within(const Side& side, std::int32_t number, Vec4 point, std::int32_t& edge) {
+  const auto at = static_cast<std::size_t>(number - first_planar_face(side.body));
+  if (side.is_round()) {
+    const double x = lane(point, 0), y = lane(point, 1), radius = side.round.parts[at].radius;
+    return x * x + y * y <= radius * radius;
+  }
+  edge = crossed_side(side.body, side.body.facets[at], point);
+  return edge == kNone;
+}
+
+// Does a point of the other body that is nearest to the face's plane lie above the face? `number`:
+// that of the face, which is A's if kOfA. `part`: the nearest part of the other body, as far as it
+// is known. `tolerance`: points whose distances from the plane differ by less are equally near, m.
+template <bool kOfA>
+HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const RelativePose4& a_from_b,
+                                 std::int32_t number, std::int32_t part, double tolerance) {
+  const PlanarFace face = planar_face(side, number);
+  const Vec4 down =
+      -(kOfA ? direction_to_b(a_from_b, face.normal) : direction_to_a(a_from_b, face.normal));
+  const Vec4 in_face = middle_of_face(side, number);
+  const Vec4 middle = kOfA ? point_to_b(a_from_b, in_face) : point_to_a(a_from_b, in_face);
+  const SupportSet nearest = other.is_round()
+                                 ? round_support_set(other, down, middle, tolerance)
+                                 : vertex_support_set(other.body, down, middle, part, tolerance);
+  FaceMeeting found;
+  if (!nearest.known) return found;
+  found.part = nearest.part;
+  for (int i = 0; i < nearest.count; ++i) {
+    FaceMeeting at = found;
+    at.on_other = nearest.points[i];
+    at.above = kOfA ? point_to_a(a_from_b, at.on_other) : point_to_b(a_from_b, at.on_other);
+    at.upper = dot(face.normal, at.above) - face.offset;
+    at.lower = at.upper - std::max(0.0, nearest.value - dot(down, at.on_other));
+    const bool above = at.lower > 0.0;
+    if (!above && !side.is_round()) return i == 0 ? at : found;
+    at.below = at.above - at.upper * face.normal;
+    const bool within = is_within(side, number, at.below, at.edge);
+    if (above || !within) at.end = within ? FaceEnd::kClosest : FaceEnd::kBeside;
+    if (i == 0 || at.end == FaceEnd::kClosest) found = at;
+    if (at.end != FaceEnd::kBeside) return found;
+  }
   return found;
 }
 

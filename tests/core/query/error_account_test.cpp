@@ -75,22 +75,22 @@ constexpr Weights kWeights[] = {{1, 1, 1, 0, 0},    {1000, 1, 1, 0, 0},    {1, 1
                                 {1, 1, 1e6, 0, 0},  {1e-3, 1e3, 10, 0, 0}, {1, 1, 1, 1e-9, 0},
                                 {1, 1, 1, 0, 1e-9}, {1e3, 1e-3, 10, 0, 0}};
 
-struct Example {
+struct WeighedExample {
   ConvexBody a, b;
   Pose pose_a, pose_b;
   [[nodiscard]] RelativePose pose() const { return relative_pose(pose_a, pose_b); }
 };
 
 // Two boxes whose bounding spheres are `distance` apart; negative: they overlap by as much.
-Example example_of(const Weights& w, Random& random) {
-  Example e{box_of(random, w.a, w.error_a), box_of(random, w.b, w.error_b), {}, {}};
+WeighedExample example_of(const Weights& w, Random& random) {
+  WeighedExample e{box_of(random, w.a, w.error_a), box_of(random, w.b, w.error_b), {}, {}};
   e.pose_a = {random.in_box(1.0), random.rotation()};
   const double apart = e.a.bounding_radius + e.b.bounding_radius + w.distance;
   e.pose_b = {e.pose_a.position + std::max(apart, 0.0) * random.direction(), random.rotation()};
   return e;
 }
 
-void for_each_example(const std::function<void(const Example&)>& visit) {
+void for_each_example(const std::function<void(const WeighedExample&)>& visit) {
   Random random(1);
   for (const Weights& w : kWeights) {
     for (int k = 0; k < 60; ++k) visit(example_of(w, random));
@@ -99,7 +99,7 @@ void for_each_example(const std::function<void(const Example&)>& visit) {
 
 // `tilted`: the lower bound of two edges, which may be above their distance by the rounding of
 // both.
-void expect_account(const Example& e, const DistanceResult& r, const TrackingState& state) {
+void expect_account(const WeighedExample& e, const DistanceResult& r, const TrackingState& state) {
   const double error =
       account(kOfPolyhedra, e.a, e.b, e.pose(), r.distance) * kRounded - ulps(2, r.distance);
   const bool edges = state.a.kind == FeatureKind::kEdge && state.b.kind == FeatureKind::kEdge;
@@ -110,7 +110,7 @@ void expect_account(const Example& e, const DistanceResult& r, const TrackingSta
 
 TEST(ErrorAccount, IsAppliedToTrackedFeatures) {
   int tracked = 0;
-  for_each_example([&](const Example& e) {
+  for_each_example([&](const WeighedExample& e) {
     TrackingState by_pose, by_poses;
     const DistanceResult r = distance(e.a, e.b, e.pose(), by_pose);
     const DistanceResult s = distance(e.a, e.b, e.pose_a, e.pose_b, by_poses);
@@ -125,7 +125,7 @@ TEST(ErrorAccount, IsAppliedToTrackedFeatures) {
 
 TEST(ErrorAccount, IsAppliedByTheSearch) {
   int searched = 0;
-  for_each_example([&](const Example& e) {
+  for_each_example([&](const WeighedExample& e) {
     TrackingState state;
     const DistanceResult r = search_distance(e.a, e.b, e.pose(), state, true);
     if (r.path == DistancePath::kGjk) return;
@@ -185,7 +185,7 @@ TEST(ErrorAccount, IsAppliedToDepths) {
   int overlapping = 0;
   for (const Weights& w : kOverlaps) {
     for (int k = 0; k < 40; ++k) {
-      const Example e = example_of(w, random);
+      const WeighedExample e = example_of(w, random);
       const RelativePose pose = e.pose();
       TrackingState state;
       for (int query = 0; query < 2; ++query) {  // cold, then tracked
