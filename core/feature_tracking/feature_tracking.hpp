@@ -55,11 +55,4 @@ struct TransitionsMade {
                                          const RelativePose& a_from_b, TrackingState& state,
                                          DistanceResult& result) noexcept;
 
-// The same for bodies that penetrated each other in the last query. True: `result` is certified,
-// either the depth or the distance. False: nothing is certified, and `state` and `result` are
-// unchanged.
-[[nodiscard]] bool track_penetrating_features(const ConvexBody& a, const ConvexBody& b,
-                                              const RelativePose& a_from_b, TrackingState& state,
-                                              DistanceResult& result) noexcept;
-
 }  // namespace clearance
