@@ -43,6 +43,11 @@ struct TransitionsMade {
   return !state.a.penetrating && static_cast<int>(state.a.kind) + static_cast<int>(state.b.kind) <=
                                      static_cast<int>(FeatureKind::kFacet);
 }
+// Are two facets the features of disjoint bodies? The bodies themselves are not examined.
+[[nodiscard]] inline bool has_facets(const TrackingState& state) noexcept {
+  return !state.a.penetrating && state.a.kind == FeatureKind::kFacet &&
+         state.b.kind == FeatureKind::kFacet;
+}
 // Do the bodies have these features, and is one of them bounded?
 [[nodiscard]] inline bool can_be_tracked(const ConvexBody& a, const ConvexBody& b,
                                          const TrackingState& state) noexcept {

@@ -20,10 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The first transition of a query is compiled separately. Nothing there needs the pair in memory,
-// so its findings stay in registers. Otherwise boxes would cost 3 % more.
-enum class Tracking { kFirst, kFurther };
-
 // Enough for 99.9 % of the tracked queries of the facet-ball workload. Longer ones are left to the
 // active-set iteration.
 inline constexpr int kMostTransitions = 24;
@@ -151,6 +147,17 @@ HWY_INLINE EdgeLines<RelativePose4, Vec4, double> lines_of(const TrackedPair& pa
           load3_of_4(second.point), load3_of_4(second.direction)};
 }
 
+// Edges that do not cross are parallel within tolerance, or rounding cannot tell.
+inline HWY_NOINLINE Transition along_each_other(TrackedPair& pair) {
+  const auto lines =
+      lines_of(pair, pair.a.edges[pair.on_a.feature], pair.b.edges[pair.on_b.feature]);
+  return lines.sine2 <= kParallelTilt * kParallelTilt ? parallel_edges(pair, lines.start_b, lines.f)
+                                                      : Transition::kUndecided;
+}
+inline HWY_NOINLINE Transition between_facets(TrackedPair& pair) {
+  return facet_facet<Tracking::kFurther>(pair);
+}
+
 // Crossing edges are closest if the feet of their common perpendicular lie within both, and all
 // four facets beside them recede along it. `kMode`: see transition().
 template <Tracking kMode>
@@ -161,9 +168,7 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   auto lines = lines_of(pair, first, second);
   if (!(lines.sine2 > kCrossingSine2)) {
     if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
-    return lines.sine2 <= kParallelTilt * kParallelTilt
-               ? parallel_edges(pair, lines.start_b, lines.f)
-               : Transition::kUndecided;
+    return along_each_other(pair);
   }
   lines.find_nearest();
   if (leave_past_end(first, lines.s, pair.on_a) || leave_past_end(second, lines.t, pair.on_b)) {
@@ -218,7 +223,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
     case FeaturePair::kFacetEdge:
       return edge_facet(Owner<true>(pair));
     case FeaturePair::kFacetFacet:
-      return facet_facet(pair);
+      return between_facets(pair);
     default:
       return Transition::kUndecided;
   }

@@ -90,15 +90,14 @@ HWY_INLINE Vec4 rotate_back(Vec4 q, Vec4 v) {
 }
 
 // A unit quaternion whose components are multiples of 1/2 permutes the axes, and products of two
-// such are exact.
-inline bool permutes_axes(const Eigen::Quaterniond& q) {
-  const Eigen::Array4d twice = 2.0 * q.coeffs().array();
-  return (twice == twice.round()).all();
+// such are exact. The sum with 1.5 * 2^52 rounds to an integer.
+HWY_INLINE bool permutes_axes(Vec4 q) {
+  const Vec4 twice = q + q, large = spread(0x1.8p52);
+  return equal((twice + large) - large, twice);
 }
-inline HWY_NOINLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
-  const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
-  const bool a_permutes = permutes_axes(a.orientation);
-  if (p == q || p == -q || (a_permutes && permutes_axes(b.orientation))) r.rotation_error = 0.0;
+HWY_INLINE void set_exactness(Vec4 a, Vec4 b, RelativePose4& r) {
+  const bool a_permutes = permutes_axes(a);
+  if (equal(a, b) || equal(a, -b) || (a_permutes && permutes_axes(b))) r.rotation_error = 0.0;
   if (a_permutes) r.translation_error = kPermutedTranslationError * r.translation_length;
 }
 // A quick test that moving orientations do not pass. If anything is exact, w of a or z of conj(a) b
@@ -132,8 +131,8 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     r.translation_length = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.translation_length);
   }
-  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
-    set_exactness(world_from_a, world_from_b, r);
+  if (HWY_UNLIKELY(may_be_exact(world_from_a.orientation.w(), lane(q, 2)))) {
+    set_exactness(a, load4(world_from_b.orientation.coeffs().data()), r);
   }
   return r;
 }

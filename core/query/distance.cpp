@@ -30,11 +30,15 @@ namespace clearance::HWY_NAMESPACE {
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state);
+DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                           const Pose& world_from_b, TrackingState& state);
 DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                               const Pose& world_from_b, TrackingState& state);
-// The same two by a relative pose. The first of them computes the depth as well.
+// The same three by a relative pose. The first two of them compute the depth as well.
 DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                                const RelativePose& a_from_b, TrackingState& state);
+DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state);
 DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
                                        const RelativePose& a_from_b, TrackingState& state,
                                        bool depth);
@@ -52,8 +56,10 @@ HWY_AFTER_NAMESPACE();
 namespace clearance {
 
 HWY_EXPORT(from_straight_features);
+HWY_EXPORT(from_facets);
 HWY_EXPORT(from_any_state);
 HWY_EXPORT(relative_from_straight_features);
+HWY_EXPORT(relative_from_facets);
 HWY_EXPORT(relative_from_any_state);
 HWY_EXPORT(after_transitions);
 
@@ -61,15 +67,21 @@ HWY_EXPORT(after_transitions);
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                         const Pose& world_from_b, TrackingState& state) noexcept {
-  return has_straight_features(state)
-             ? HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state)
+  if (has_straight_features(state)) {
+    return HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state);
+  }
+  return has_facets(state)
+             ? HWY_STATIC_DISPATCH(from_facets)(a, b, world_from_a, world_from_b, state)
              : HWY_STATIC_DISPATCH(from_any_state)(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
-  return has_straight_features(state) && options.depth
-             ? HWY_STATIC_DISPATCH(relative_from_straight_features)(a, b, a_from_b, state)
+  if (has_straight_features(state) && options.depth) {
+    return HWY_STATIC_DISPATCH(relative_from_straight_features)(a, b, a_from_b, state);
+  }
+  return has_facets(state) && options.depth
+             ? HWY_STATIC_DISPATCH(relative_from_facets)(a, b, a_from_b, state)
              : HWY_STATIC_DISPATCH(relative_from_any_state)(a, b, a_from_b, state, options.depth);
 }
 
@@ -103,6 +115,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
   const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
+                          : has_facets(state)          ? HWY_DISPATCH_TABLE(from_facets)
                                                        : HWY_DISPATCH_TABLE(from_any_state);
   return of_widths[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
@@ -111,9 +124,12 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Relative
                         TrackingState& state, const DistanceOptions& options) noexcept {
   const hwy::ChosenTarget* const chosen = chosen_vectors.load(std::memory_order_relaxed);
   if (HWY_UNLIKELY(chosen == nullptr)) return first_distance(a, b, a_from_b, state, options);
-  if (has_straight_features(state) && options.depth) {
-    return HWY_DISPATCH_TABLE(relative_from_straight_features)[chosen->GetIndex()](a, b, a_from_b,
-                                                                                   state);
+  if (HWY_LIKELY(options.depth)) {
+    const auto known = has_straight_features(state)
+                           ? HWY_DISPATCH_TABLE(relative_from_straight_features)
+                       : has_facets(state) ? HWY_DISPATCH_TABLE(relative_from_facets)
+                                           : nullptr;
+    if (known != nullptr) return known[chosen->GetIndex()](a, b, a_from_b, state);
   }
   return HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()](a, b, a_from_b, state,
                                                                          options.depth);
@@ -150,6 +166,8 @@ namespace clearance::HWY_NAMESPACE {
 DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose4& a_from_b, TrackingState& state,
                                       TransitionsMade start, Transition first);
+DistanceResult from_parallel_edges(const ConvexBody& a, const ConvexBody& b,
+                                   const RelativePose4& a_from_b, TrackingState& state);
 DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose4& a_from_b, TrackingState& state);
 
@@ -167,6 +185,21 @@ HWY_INLINE DistanceResult from_straight_features(const ConvexBody& a, const Conv
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
   const Transition first = transition<Tracking::kFirst>(pair);
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+    return rounded_result_of(pair);
+  }
+  if (first == Transition::kDeferred) return from_parallel_edges(a, b, a_from_b, state);
+  return after_first_transition(a, b, a_from_b, state,
+                                {pair.transitions, pair.parallel_transitions}, first);
+}
+
+// The same for two facets. The order of methods for those that are not parallel any more is that of
+// any state.
+HWY_INLINE DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b,
+                                      const RelativePose4& a_from_b, TrackingState& state) {
+  TrackedPair pair(a, b, a_from_b, state);
+  ++pair.transitions;
+  const Transition first = facet_facet<Tracking::kFirst>(pair);
   if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
@@ -189,6 +222,39 @@ DistanceResult relative_from_straight_features(const ConvexBody& a, const Convex
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
   return from_straight_features(a, b, good_pose4_of(a_from_b), state);
+}
+
+DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                           const Pose& world_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return from_any_state(a, b, world_from_a, world_from_b, state);
+  }
+  return from_facets(a, b, relative_pose4(world_from_a, world_from_b), state);
+}
+
+DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return relative_from_any_state(a, b, a_from_b, state, true);
+  }
+  return from_facets(a, b, good_pose4_of(a_from_b), state);
+}
+
+// For two edges that do not cross.
+HWY_NOINLINE DistanceResult from_parallel_edges(const ConvexBody& a, const ConvexBody& b,
+                                                const RelativePose4& a_from_b,
+                                                TrackingState& state) {
+  TrackedPair pair(a, b, a_from_b, state);
+  ++pair.transitions;
+  const auto lines = lines_of(pair, a.edges[state.a.feature], b.edges[state.b.feature]);
+  const Transition first = lines.sine2 <= kParallelTilt * kParallelTilt
+                               ? parallel_edges(pair, lines.start_b, lines.f)
+                               : Transition::kUndecided;
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+    return rounded_result_of(pair);
+  }
+  return after_first_transition(a, b, a_from_b, state,
+                                {pair.transitions, pair.parallel_transitions}, first);
 }
 
 // The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
