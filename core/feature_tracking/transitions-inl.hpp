@@ -166,9 +166,11 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   const Edge& first = pair.a.edges[pair.on_a.feature];
   const Edge& second = pair.b.edges[pair.on_b.feature];
   auto lines = lines_of(pair, first, second);
-  if (!(lines.sine2 > kCrossingSine2)) {
-    if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
-    return along_each_other(pair);
+  if (HWY_UNLIKELY(!(lines.sine2 > kCrossingSine2))) {
+    if constexpr (kMode == Tracking::kFurther) return along_each_other(pair);
+    return lines.sine2 <= kParallelTilt * kParallelTilt
+               ? parallel_edges(pair, lines.start_b, lines.f)
+               : Transition::kUndecided;
   }
   lines.find_nearest();
   if (leave_past_end(first, lines.s, pair.on_a) || leave_past_end(second, lines.t, pair.on_b)) {

@@ -166,8 +166,6 @@ namespace clearance::HWY_NAMESPACE {
 DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose4& a_from_b, TrackingState& state,
                                       TransitionsMade start, Transition first);
-DistanceResult from_parallel_edges(const ConvexBody& a, const ConvexBody& b,
-                                   const RelativePose4& a_from_b, TrackingState& state);
 DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose4& a_from_b, TrackingState& state);
 
@@ -188,7 +186,6 @@ HWY_INLINE DistanceResult from_straight_features(const ConvexBody& a, const Conv
   if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
-  if (first == Transition::kDeferred) return from_parallel_edges(a, b, a_from_b, state);
   return after_first_transition(a, b, a_from_b, state,
                                 {pair.transitions, pair.parallel_transitions}, first);
 }
@@ -238,23 +235,6 @@ DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
   return from_facets(a, b, good_pose4_of(a_from_b), state);
-}
-
-// For two edges that do not cross.
-HWY_NOINLINE DistanceResult from_parallel_edges(const ConvexBody& a, const ConvexBody& b,
-                                                const RelativePose4& a_from_b,
-                                                TrackingState& state) {
-  TrackedPair pair(a, b, a_from_b, state);
-  ++pair.transitions;
-  const auto lines = lines_of(pair, a.edges[state.a.feature], b.edges[state.b.feature]);
-  const Transition first = lines.sine2 <= kParallelTilt * kParallelTilt
-                               ? parallel_edges(pair, lines.start_b, lines.f)
-                               : Transition::kUndecided;
-  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
-    return rounded_result_of(pair);
-  }
-  return after_first_transition(a, b, a_from_b, state,
-                                {pair.transitions, pair.parallel_transitions}, first);
 }
 
 // The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
