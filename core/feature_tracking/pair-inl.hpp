@@ -259,7 +259,7 @@ enum class Tracking { kFirst, kFurther };
 enum class Transition {
   kClosest,  // the KKT conditions are satisfied by more than rounding: the features are the closest
   kMoved,    // a neighbouring feature takes over
-  kDeferred,   // the features are parallel, which a first transition does not decide
+  kDeferred,   // a first transition leaves the features to a further one
   kUndecided,  // rounding cannot tell, or straight-line code has no case for this pair
 };
 

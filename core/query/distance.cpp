@@ -1,6 +1,7 @@
 // distance(), from top to bottom: the state of a pair says which method goes first.
 //
-//   straight features ─► one transition ─► certified ─────────────────────────────► result
+//   straight features,
+//   or two facets ─────► one transition ─► certified ─────────────────────────────► result
 //                             └─ moved ─┐
 //   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
 //                                                 └─ left open ─► search.hpp
