@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance::test {
 namespace {
@@ -26,9 +26,9 @@ class TrueMeshes : public RunsPrograms {
   // Two walls stand 100 mm apart. Their only part is the hull, whose top is up to 50 mm from them.
   TrueMeshes() {
     TriangleMesh walls;
-    add_box({-0.1, -0.1, -0.1}, {-0.05, 0.1, 0.1}, walls);
-    add_box({0.05, -0.1, -0.1}, {0.1, 0.1, 0.1}, walls);
-    write_text(folder / "walls.obj", obj_of(walls));
+    drawn::add_box({-0.1, -0.1, -0.1}, {-0.05, 0.1, 0.1}, walls);
+    drawn::add_box({0.05, -0.1, -0.1}, {0.1, 0.1, 0.1}, walls);
+    write_text(folder / "walls.obj", drawn::obj_of(walls));
     write_text(folder / "cell.yaml",
                "name: walls\nunits: {length: m, angle: deg}\n"
                "defaults: {age_limit_ms: 50, may_jump: true}\nobjects:\n"

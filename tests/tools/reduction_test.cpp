@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
-#include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
@@ -90,7 +90,7 @@ TEST_F(Reduction, AHullAroundTwoBlocksIsHalfAsFarFromThemAsTheyAreApart) {
 
 // The hull of a box without a lid is as good as any two parts. Its five walls are exact.
 TEST_F(Reduction, TriesMorePartsWhereTwoBringNothing) {
-  std::ofstream(file("crate.obj")) << test::obj_of(test::crate_of_solids());
+  std::ofstream(file("crate.obj")) << drawn::obj_of(drawn::crate_of_solids());
   ASSERT_EQ(run({"reduce", file("crate.obj"), "--json"}), 0) << output_;
   const json body = json::parse(output_).at(0);
   for (const json& one : body["models"]) EXPECT_NE(one["model"], "2 parts");

@@ -27,7 +27,9 @@ Usage: clearance-bench [OPTIONS]
   --curved        the rows of curved bodies and of every pair of kinds, with their peers
   --tick          the rows tick/
   --sweeps        the rows tick/ and sweep/
+  --parts         the rows parts/
   --cell FILE     also the rows cell/ and robot/ of this cell; repeatable
+  --mesh FILE     also the row parts/ of this mesh; repeatable
   --version       print the version and the build
 Options of Google Benchmark apply as well; its list stands at the end.
 
@@ -53,6 +55,7 @@ Rows:
                      timed as often; own_..._us: the tick alone, each tick at its best of own_runs runs
   tick/NAME/plain    the same with every pair evaluated; tick/NAME/fcl: the minimum alone, by FCL's
                      DynamicAABBTreeCollisionManager
+  parts/NAME         splitting a mesh into convex parts; counters parts, error_mm, triangles; CPU time of all threads
   sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), and of other numbers of
                      objects; counters objects, speed (m/s) and density (objects a cubic metre)
   robot/kinematics/NAME  all joints of a cell's robots in, all links placed; counter joints
@@ -77,7 +80,8 @@ Examples:
 Options of Google Benchmark:
 )";
 
-void register_all(const std::vector<std::filesystem::path>& more_cells) {
+[[nodiscard]] bool register_all(const std::vector<std::filesystem::path>& more_cells,
+                                const std::vector<std::filesystem::path>& meshes) {
   using namespace clearance::bench;
   register_ours(RowSet::kBench);
   register_batches();
@@ -88,6 +92,7 @@ void register_all(const std::vector<std::filesystem::path>& more_cells) {
   register_cells(cells);
   register_robots(cells);
   register_ticks();
+  return register_splits(meshes);
 }
 
 // Options that stand for a filter.
@@ -99,13 +104,14 @@ constexpr Part kParts[] = {
     {"--queries", "^(tracked|cold|batch|overlap|peer/[^/]+/(tracked|cold))/"},
     {"--curved", "^(peer/[^/]+/)?(curved|pair)/"},
     {"--tick", "^tick/"},
+    {"--parts", "^parts/"},
     {"--sweeps", "^(tick|sweep)/"},
 };
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::vector<std::filesystem::path> cells;
+  std::vector<std::filesystem::path> cells, meshes;
   std::vector<std::string> options;
   for (int i = 1; i < argc; ++i) {
     const std::string_view word = argv[i];
@@ -117,12 +123,12 @@ int main(int argc, char** argv) {
     const Part* const part = std::ranges::find(kParts, word, &Part::option);
     if (part != std::end(kParts)) {
       options.insert(options.begin(), std::string("--benchmark_filter=") + part->rows);
-    } else if (word != "--cell") {
+    } else if (word != "--cell" && word != "--mesh") {
       options.emplace_back(word);
     } else if (i + 1 < argc) {
-      cells.emplace_back(argv[++i]);
+      (word == "--cell" ? cells : meshes).emplace_back(argv[++i]);
     } else {
-      std::fputs("--cell needs a cell file, as in: --cell cell.yaml\n", stderr);
+      clearance::print(stderr, "{} needs a file, as in: --cell cell.yaml --mesh link.stl\n", word);
       return 2;
     }
   }
@@ -132,7 +138,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&count, words.data());
   if (benchmark::ReportUnrecognizedArguments(count, words.data())) return 2;
   benchmark::AddCustomContext("clearance", clearance::kBuild);
-  register_all(cells);
+  if (!register_all(cells, meshes)) return 1;
   const bool any = benchmark::RunSpecifiedBenchmarks() > 0;
   benchmark::Shutdown();
   return any ? 0 : 1;

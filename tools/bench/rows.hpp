@@ -27,4 +27,9 @@ void register_nearness();
 // kinematics, and of a tick with and without it.
 void register_robots(const std::vector<std::filesystem::path>& cells);
 
+// parts/NAME: splitting a mesh into convex parts, for drawn meshes and for these files, STL, OBJ,
+// PLY or DAE in metres. Counters: parts, error_mm (certified) and triangles; the time is that of
+// all threads. Returns false if a file cannot be read, and says why.
+[[nodiscard]] bool register_splits(const std::vector<std::filesystem::path>& mesh_files);
+
 }  // namespace clearance::bench

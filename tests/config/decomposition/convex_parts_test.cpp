@@ -13,9 +13,9 @@
 #include <variant>
 
 #include "config/decomposition/surface_error.hpp"
-#include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/random.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
@@ -151,17 +151,17 @@ TEST_P(ConvexPartsOf, AreNowhereFartherFromTheMeshThanTheirError) {
 
 INSTANTIATE_TEST_SUITE_P(
     Drawn, ConvexPartsOf,
-    testing::Values(Drawn{"L", test::l_shape(), 2}, Drawn{"Torus", test::torus(), 12},
-                    Drawn{"OpenBox", test::open_box(), 5}, Drawn{"Crate", test::crate(), 5},
-                    Drawn{"CrateOfSolids", test::crate_of_solids(), 5},
-                    Drawn{"Bracket", test::bracket(), 3}, Drawn{"Cup", test::cup(), 24},
-                    Drawn{"NestedBoxes", test::nested_boxes(), 1},
-                    Drawn{"DegenerateL", test::degenerate_l(), 2},
-                    Drawn{"Slivers", test::slivers(), 6}),
+    testing::Values(Drawn{"L", drawn::l_shape(), 2}, Drawn{"Torus", drawn::torus(), 12},
+                    Drawn{"OpenBox", drawn::open_box(), 5}, Drawn{"Crate", drawn::crate(), 5},
+                    Drawn{"CrateOfSolids", drawn::crate_of_solids(), 5},
+                    Drawn{"Bracket", drawn::bracket(), 3}, Drawn{"Cup", drawn::cup(), 24},
+                    Drawn{"NestedBoxes", drawn::nested_boxes(), 1},
+                    Drawn{"DegenerateL", drawn::degenerate_l(), 2},
+                    Drawn{"Slivers", drawn::slivers(), 6}),
     [](const auto& tested) { return tested.param.name; });
 
 TEST(ConvexParts, AConvexMeshIsItsHullToTheBit) {
-  const ConvexParts parts = parts_of_mesh(test::nested_boxes());
+  const ConvexParts parts = parts_of_mesh(drawn::nested_boxes());
   EXPECT_TRUE(parts.is_hull);
   EXPECT_LE(parts.error, 1e-12);
   EXPECT_EQ(parts.parts.at(0).size(), 8u);
@@ -169,19 +169,19 @@ TEST(ConvexParts, AConvexMeshIsItsHullToTheBit) {
 }
 
 TEST(ConvexParts, AreTheSameAtEveryStart) {
-  EXPECT_EQ(parts_of_mesh(test::open_box()).parts, parts_of_mesh(test::open_box()).parts);
+  EXPECT_EQ(parts_of_mesh(drawn::open_box()).parts, parts_of_mesh(drawn::open_box()).parts);
 }
 
 TEST(ConvexParts, OfALargerToleranceAreFewer) {
-  const auto fine = parts_of_mesh(test::l_shape(), {.tolerance = 5e-3});
-  const auto coarse = parts_of_mesh(test::l_shape(), {.tolerance = 0.15});
+  const auto fine = parts_of_mesh(drawn::l_shape(), {.tolerance = 5e-3});
+  const auto coarse = parts_of_mesh(drawn::l_shape(), {.tolerance = 0.15});
   EXPECT_LE(coarse.error, 0.15);
   EXPECT_LT(coarse.parts.size(), fine.parts.size());
 }
 
 TEST(ConvexParts, OfABoxOfFiveWallsAreTheseExactly) {
   for (const TriangleMesh& mesh :
-       {test::crate_of_solids(), test::crate_of_overlapping_solids(), test::crate()}) {
+       {drawn::crate_of_solids(), drawn::crate_of_overlapping_solids(), drawn::crate()}) {
     const ConvexParts parts = parts_of_mesh(mesh);
     EXPECT_EQ(5u, parts.parts.size());
     EXPECT_LE(parts.error, 1e-9);
@@ -193,7 +193,7 @@ TEST(ConvexParts, OfABoxOfFiveWallsAreTheseExactly) {
 TEST(ConvexParts, KeepConvexShellsWholeWhereThatMakesFewer) {
   const std::array<Vec3, 4> bars = {Vec3(-0.1, -0.02, 0.1), Vec3(0.5, 0.02, 0.14),
                                     Vec3(-0.1, -0.2, 0.1), Vec3(-0.06, 0.2, 0.14)};
-  const ConvexParts parts = parts_of_mesh(test::bent_rod_with_bars(bars));
+  const ConvexParts parts = parts_of_mesh(drawn::bent_rod_with_bars(bars));
   EXPECT_LE(parts.error, 5e-3);
   EXPECT_LE(parts.parts.size(), 7u);
   for (const std::size_t bar : {0, 2}) {
@@ -210,7 +210,7 @@ TEST(ConvexParts, KeepConvexShellsWholeWhereThatMakesFewer) {
 TEST(ConvexParts, OfACrateAreNoWorseWhereMoreAreAllowed) {
   double before = kInfinity;
   for (const std::size_t most : {1, 4, 5, 6}) {
-    const ConvexParts parts = parts_of_mesh(test::crate(), {.max_parts = most});
+    const ConvexParts parts = parts_of_mesh(drawn::crate(), {.max_parts = most});
     EXPECT_LE(parts.error, before) << most;
     EXPECT_LE(parts.parts.size(), most);
     before = parts.error;
@@ -219,7 +219,7 @@ TEST(ConvexParts, OfACrateAreNoWorseWhereMoreAreAllowed) {
 
 TEST(ConvexParts, OfAFlatMeshAreAPlateOfTheStatedThickness) {
   TriangleMesh flat;
-  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
+  drawn::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
   const ConvexParts parts = parts_of_mesh(flat, {.plate = 0.002});
   ASSERT_EQ(1u, parts.parts.size());
   EXPECT_NEAR(0.001, parts.error, 1e-9);
@@ -229,7 +229,7 @@ TEST(ConvexParts, OfAFlatMeshAreAPlateOfTheStatedThickness) {
 // A plate that is thinner than the rounding of a file's coordinates is made once as well.
 TEST(ConvexParts, OfAFlatMeshAreOnePlateHoweverThin) {
   TriangleMesh flat;
-  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
+  drawn::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(1, 1, 0), Vec3(0, 1, 0)}, flat);
   const ConvexParts parts = parts_of_mesh(flat, {.plate = 4e-7});
   ASSERT_EQ(1u, parts.parts.size());
   EXPECT_GE(parts.error, 2e-7);
@@ -239,7 +239,7 @@ TEST(ConvexParts, OfAFlatMeshAreOnePlateHoweverThin) {
 
 TEST(ConvexParts, OfASolidThickerThanAPlateHoldItsInside) {
   TriangleMesh foil;
-  test::add_box({0.0, 0.0, 0.0}, {1.0, 1.0, 9e-7}, foil);
+  drawn::add_box({0.0, 0.0, 0.0}, {1.0, 1.0, 9e-7}, foil);
   const ConvexParts parts = parts_of_mesh(foil, {.plate = 1e-8});
   ASSERT_EQ(1u, parts.parts.size());
   EXPECT_LE(outside(bodies_of_parts(parts)[0], {0.4, 0.3, 4.5e-7}), 0.0);
@@ -247,7 +247,7 @@ TEST(ConvexParts, OfASolidThickerThanAPlateHoldItsInside) {
 
 TEST(ConvexParts, OfAMeshOnOneLineAreNone) {
   TriangleMesh line;
-  test::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)}, line);
+  drawn::add_quad({Vec3(0, 0, 0), Vec3(1, 0, 0), Vec3(2, 0, 0), Vec3(3, 0, 0)}, line);
   EXPECT_TRUE(std::holds_alternative<ShapeError>(convex_parts(line)));
 }
 

@@ -5,16 +5,16 @@
 #include <vector>
 
 #include "config/decomposition/shells.hpp"
-#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
 
 std::vector<ConvexBody> parts_of_box_and_sheet(double tolerance) {
   TriangleMesh mesh;
-  test::add_box({1.0, 1.0, 1.0}, {1.05, 1.05, 1.05}, mesh);
-  test::add_quad({Vec3(1.2, 1, 1), Vec3(1.2, 1.05, 1), Vec3(1.2, 1.05, 1.05), Vec3(1.2, 1, 1.05)},
-                 mesh);
+  drawn::add_box({1.0, 1.0, 1.0}, {1.05, 1.05, 1.05}, mesh);
+  drawn::add_quad({Vec3(1.2, 1, 1), Vec3(1.2, 1.05, 1), Vec3(1.2, 1.05, 1.05), Vec3(1.2, 1, 1.05)},
+                  mesh);
   const OpenSpace space(mesh, 0.005);
   const std::vector<TriangleMesh> shells = shells_of(mesh);
   std::vector<ConvexCell> cells;
@@ -44,8 +44,8 @@ bool gets_stuck(const TriangleMesh& mesh) {
 
 // Every cut of a cup leaves about as much open space, and that of a thin slice the least.
 TEST(PartSearch, GetsStuckInACupAndNotInAnL) {
-  EXPECT_TRUE(gets_stuck(test::cup()));
-  EXPECT_FALSE(gets_stuck(test::l_shape()));
+  EXPECT_TRUE(gets_stuck(drawn::cup()));
+  EXPECT_FALSE(gets_stuck(drawn::l_shape()));
 }
 
 }  // namespace

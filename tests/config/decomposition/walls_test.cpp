@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
@@ -13,14 +13,14 @@ Walls walls_of_crate(const TriangleMesh& crate, double margin) {
 }
 
 TEST(Walls, OfACrateAreFive) {
-  const TriangleMesh crate = test::crate();
+  const TriangleMesh crate = drawn::crate();
   const Walls walls = walls_of_crate(crate, 1e-9);
   EXPECT_EQ(5u, walls.cells.size());
 }
 
 // Narrowed cells stand for cells that lost a triangle to rounding.
 TEST(Walls, ThatDoNotHoldTheMeshAreNone) {
-  const TriangleMesh crate = test::crate();
+  const TriangleMesh crate = drawn::crate();
   const Walls walls = walls_of_crate(crate, -1e-3);
   EXPECT_TRUE(walls.cells.empty());
   ASSERT_TRUE(walls.rest);

@@ -21,9 +21,9 @@
 #include "config/mesh/file_lock.hpp"
 #include "config/write/single_robot_cell.hpp"
 #include "tests/config/cells.hpp"
-#include "tests/config/decomposition/drawn_meshes.hpp"
 #include "tests/shared/mistake_at.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
@@ -37,7 +37,7 @@ using testing::Not;
 class PartsOfMeshes : public testing::Test {
  protected:
   PartsOfMeshes() {
-    test::write_text(folder_ / "l.obj", test::obj_of(test::l_shape()));
+    test::write_text(folder_ / "l.obj", drawn::obj_of(drawn::l_shape()));
     ::setenv("XDG_CACHE_HOME", (folder_ / "cache").c_str(), 1);
   }
   ~PartsOfMeshes() override { ::unsetenv("XDG_CACHE_HOME"); }
@@ -232,7 +232,7 @@ TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
   EXPECT_EQ(read(", tolerance: 0.2").objects.at(0).parts.size(), 1u);
   EXPECT_EQ(read("", "defaults: {max_parts: 1}\n").objects.at(0).parts.size(), 1u);
   EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
-  test::write_text(folder_ / "l.obj", test::obj_of(test::degenerate_l()));
+  test::write_text(folder_ / "l.obj", drawn::obj_of(drawn::degenerate_l()));
   read();
   EXPECT_TRUE(was_split());
 }
@@ -343,7 +343,7 @@ TriangleMesh dust() {
 }
 
 TEST_F(PartsOfMeshes, OfAUrdfAloneComeWithTheAdviceToWriteACell) {
-  test::write_text(folder_ / "dust.obj", test::obj_of(dust()));
+  test::write_text(folder_ / "dust.obj", drawn::obj_of(dust()));
   test::write_text(folder_ / "r.urdf",
                    "<robot name='r'><link name='base'><collision><geometry><mesh "
                    "filename='dust.obj'/></geometry></collision></link><link name='tip'><collision>"

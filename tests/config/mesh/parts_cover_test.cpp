@@ -5,7 +5,7 @@
 #include <random>
 
 #include "config/decomposition/convex_parts.hpp"
-#include "tests/config/decomposition/drawn_meshes.hpp"
+#include "tools/cases/drawn_meshes.hpp"
 
 namespace clearance {
 namespace {
@@ -42,7 +42,7 @@ TEST(Cover, AllowsNoGapThatExceedsRounding) {
 
 // The decomposition certifies that its parts hold the mesh; scaled down, they do not.
 TEST(Cover, HoldsOfThePartsOfEveryMeshAndNotOfSmallerOnes) {
-  for (const TriangleMesh& mesh : {test::l_shape(), test::degenerate_l()}) {
+  for (const TriangleMesh& mesh : {drawn::l_shape(), drawn::degenerate_l()}) {
     const auto parts = std::get<ConvexParts>(convex_parts(mesh));
     for (const double scale : {1.0, 0.999, 0.5, 0.1}) {
       std::vector<ConvexBody> bodies;

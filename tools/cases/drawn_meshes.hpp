@@ -1,4 +1,4 @@
-// Meshes of known shape, for the tests of their convex parts. Lengths are in metres.
+// Meshes of known shape, for tests and the benchmark of convex parts. Lengths are in metres.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 #include "config/decomposition/triangle_mesh.hpp"
 
-namespace clearance::test {
+namespace clearance::drawn {
 
 inline void add_quad(std::array<Vec3, 4> corners, TriangleMesh& mesh) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -226,4 +226,4 @@ inline std::string obj_of(const TriangleMesh& mesh) {
   return text;
 }
 
-}  // namespace clearance::test
+}  // namespace clearance::drawn
