@@ -26,7 +26,7 @@ static_assert(sizeof(DistanceOptions) == 1 && alignof(DistanceOptions) == 1);
                                       const RelativePose& a_from_b, TrackingState& state,
                                       const DistanceOptions& options = {}) noexcept;
 
-// The same result, bit for bit, as for relative_pose(world_from_a, world_from_b), but faster.
+// The same result, bit for bit, as the query by relative_pose(world_from_a, world_from_b).
 [[nodiscard]] DistanceResult distance(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) noexcept;

@@ -43,6 +43,11 @@ struct TransitionsMade {
   return !state.a.penetrating && static_cast<int>(state.a.kind) + static_cast<int>(state.b.kind) <=
                                      static_cast<int>(FeatureKind::kFacet);
 }
+// Are two facets the features of disjoint bodies? The bodies themselves are not examined.
+[[nodiscard]] inline bool has_facets(const TrackingState& state) noexcept {
+  return !state.a.penetrating && state.a.kind == FeatureKind::kFacet &&
+         state.b.kind == FeatureKind::kFacet;
+}
 // Do the bodies have these features, and is one of them bounded?
 [[nodiscard]] inline bool can_be_tracked(const ConvexBody& a, const ConvexBody& b,
                                          const TrackingState& state) noexcept {
@@ -54,12 +59,5 @@ struct TransitionsMade {
 [[nodiscard]] TrackingEnd track_features(const ConvexBody& a, const ConvexBody& b,
                                          const RelativePose& a_from_b, TrackingState& state,
                                          DistanceResult& result) noexcept;
-
-// The same for bodies that penetrated each other in the last query. True: `result` is certified,
-// either the depth or the distance. False: nothing is certified, and `state` and `result` are
-// unchanged.
-[[nodiscard]] bool track_penetrating_features(const ConvexBody& a, const ConvexBody& b,
-                                              const RelativePose& a_from_b, TrackingState& state,
-                                              DistanceResult& result) noexcept;
 
 }  // namespace clearance

@@ -72,15 +72,20 @@ inline HWY_NOINLINE void to_parallel(const ConvexBody& body, Side& side, const V
 // The part of a line that lies within a facet's sides.
 struct Span {
   double from, to;  // along the line
-  // the edges that end it; kNone: the line itself began or ended there
+  [[nodiscard]] HWY_INLINE bool empty() const { return !(from < to); }
+};
+
+// The edges that end a span; kNone: the line itself began or ended there.
+struct SpanEnds {
   std::int32_t side[2]{kNone, kNone};
-  [[nodiscard]] bool empty() const { return !(from < to); }
   // If the span is empty: the edge that the line passes by.
   std::int32_t next_edge = kNone;
 };
 
-inline HWY_NOINLINE Span within(const ConvexBody& body, std::int32_t index, const Vec3& start,
-                                const Vec3& direction, Span span) {
+// The edges that cut the span, in their order around the facet.
+inline HWY_NOINLINE SpanEnds ends_within(const ConvexBody& body, std::int32_t index,
+                                         const Vec3& start, const Vec3& direction, Span span) {
+  SpanEnds ends;
   const Facet& facet = body.facets[index];
   for (std::int32_t i = 0; i < facet.limits && !span.empty(); ++i) {
     const FacetLimit limit = body.limit_of(facet, i);
@@ -90,14 +95,40 @@ inline HWY_NOINLINE Span within(const ConvexBody& body, std::int32_t index, cons
     const double meets = -gap / speed;
     if (speed > 0.0 && meets > span.from) {
       span.from = meets;
-      span.side[0] = edge;
+      ends.side[0] = edge;
     } else if (speed < 0.0 && meets < span.to) {
       span.to = meets;
-      span.side[1] = edge;
+      ends.side[1] = edge;
     } else if (speed == 0.0 && gap < 0.0) {
       span.to = span.from;
     }
-    if (span.empty()) span.next_edge = edge;
+    if (span.empty()) ends.next_edge = edge;
+  }
+  return ends;
+}
+
+HWY_INLINE double greatest(Vec4 v) {
+  return std::max(std::max(lane(v, 0), lane(v, 1)), std::max(lane(v, 2), lane(v, 3)));
+}
+
+// The same span without its edges, four sides at a time and without a branch on any of them.
+HWY_INLINE Span within(const ConvexBody& body, const Facet& facet, Vec4 start, Vec4 direction,
+                       Span span) {
+  const double* row = body.facet_limits.row(facet.first_side);
+  const std::int32_t n = facet.limits;
+  const Vec4 at[3] = {spread(lane(start, 0)), spread(lane(start, 1)), spread(lane(start, 2))};
+  const Vec4 to[3] = {spread(lane(direction, 0)), spread(lane(direction, 1)),
+                      spread(lane(direction, 2))};
+  const Vec4 zero = spread(0.0), none = spread(-kInfinity);
+  for (std::int32_t i = 0; i < n; i += 4) {
+    // The last sides repeat the first lane instead of numbers from past the row's end.
+    const Vec4 speed = repeated_past(derivatives(row, n, i, to), n - i);
+    const Vec4 gap = repeated_past(derivatives(row, n, i, at) - load4(row + 3 * n + i), n - i);
+    const Vec4 meets = -gap / speed;
+    span.from = std::max(span.from, greatest(where_less(zero, speed, meets, none)));
+    span.to = std::min(span.to, -greatest(where_less(speed, zero, -meets, none)));
+    const unsigned moving = less(zero, speed) | less(speed, zero);
+    if (HWY_UNLIKELY((less(gap, zero) & ~moving) != 0)) span.to = span.from;
   }
   return span;
 }
@@ -109,10 +140,17 @@ HWY_INLINE double clamped(double s, double from, double to) {
 
 // The part of the owner's edge that faces the facet of the other body.
 template <bool kIsB>
-HWY_INLINE Span facing(const Owner<kIsB>& edge_of, const Edge& edge, std::int32_t facet) {
-  return within(edge_of.other_body(), facet, vec3(edge_of.point_to_other(load3_of_4(edge.point))),
-                vec3(edge_of.direction_to_other(load3_of_4(edge.direction))),
-                {edge.begin, edge.end});
+HWY_INLINE Span facing(const Owner<kIsB>& edge_of, const Edge& edge) {
+  return within(edge_of.other_body(), edge_of.other_body().facets[edge_of.other_side().feature],
+                edge_of.point_to_other(load3_of_4(edge.point)),
+                edge_of.direction_to_other(load3_of_4(edge.direction)), {edge.begin, edge.end});
+}
+template <bool kIsB>
+HWY_INLINE SpanEnds facing_ends(const Owner<kIsB>& edge_of, const Edge& edge) {
+  return ends_within(edge_of.other_body(), edge_of.other_side().feature,
+                     vec3(edge_of.point_to_other(load3_of_4(edge.point))),
+                     vec3(edge_of.direction_to_other(load3_of_4(edge.direction))),
+                     {edge.begin, edge.end});
 }
 
 // The place along an edge of the owner that is halfway between the last witness points.
@@ -129,15 +167,16 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   const Edge& edge = owner.body().edges[owner.side().feature];
   const Facet& facet = owner.other_body().facets[owner.other_side().feature];
   if (!owner.body().bounded()) return Transition::kUndecided;
-  const Span span = facing(owner, edge, owner.other_side().feature);
-  if (span.empty()) return to_edge(owner.other_side(), span.next_edge);
+  const Span span = facing(owner, edge);
+  if (span.empty()) return to_edge(owner.other_side(), facing_ends(owner, edge).next_edge);
   const auto plane = plane_of(owner.opposite(), facet);
   const Vec4 start = load3_of_4(edge.point), e = load3_of_4(edge.direction);
   const Vec4 down = -owner.direction_in_local(plane.n);
   const double along = dot(e, down);
   if (!(std::abs(along) <= kDerivativeError)) {
     const int end = along > 0.0 ? 1 : 0;
-    if (span.side[end] != kNone) return to_edge(owner.other_side(), span.side[end]);
+    const std::int32_t side = facing_ends(owner, edge).side[end];
+    if (side != kNone) return to_edge(owner.other_side(), side);
     return to_vertex(owner.side(), edge.vertex[end]);
   }
   if (to_approaching_facet(edge, down, -kDerivativeError, owner.side()))
@@ -174,10 +213,10 @@ HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& of_b, Vec
 // Moves a point that has passed an edge of the owner's facet back to that edge, in the owner's
 // frame. False: no part of the edge faces the facet of the other body.
 template <bool kIsB>
-inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
+HWY_INLINE bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
   const Edge& edge = owner.body().edges[index];
-  const Span span = facing(owner, edge, owner.other_side().feature);
-  if (span.empty()) {
+  const Span span = facing(owner, edge);
+  if (HWY_UNLIKELY(span.empty())) {
     to_edge(owner.side(), index);
     return false;
   }
@@ -187,8 +226,8 @@ inline bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point
 }
 
 // The same for a point on B's facet that has passed an edge of A's facet, or else one of B's.
-inline HWY_NOINLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a,
-                                    std::int32_t crossed_b, Vec4& local) {
+HWY_INLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a, std::int32_t crossed_b,
+                           Vec4& local) {
   if (crossed_a == kNone) return slide_back(Owner<true>(pair), crossed_b, local);
   Vec4 tip = point_to_a(pair.a_from_b, local);
   if (!slide_back(Owner<false>(pair), crossed_a, tip)) return false;
@@ -226,13 +265,18 @@ inline HWY_NOINLINE Transition leave_facets(TrackedPair& pair, Vec4 n, Vec4 m) {
   return to_support_vertex(Owner<true>(pair), vec3(-direction_to_b(pair.a_from_b, n)));
 }
 
-inline HWY_NOINLINE Transition facet_facet(TrackedPair& pair) {
+// `kMode`: see transition().
+template <Tracking kMode>
+HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   const Facet& of_a = pair.a.facets[pair.on_a.feature];
   const Facet& of_b = pair.b.facets[pair.on_b.feature];
   const Vec4 n = load3_of_4(of_a.normal), m = load3_of_4(of_b.normal);
   const Vec4 tilt = direction_to_b(pair.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
-  if (HWY_UNLIKELY(!(tilt2 <= kParallelTilt * kParallelTilt))) return leave_facets(pair, n, m);
+  if (HWY_UNLIKELY(!(tilt2 <= kParallelTilt * kParallelTilt))) {
+    if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
+    return leave_facets(pair, n, m);
+  }
   Vec4 local;
   if (HWY_UNLIKELY(!halfway_on_facet(pair, of_b, local))) return Transition::kUndecided;
   Vec4 tip = point_to_a(pair.a_from_b, local);
@@ -262,8 +306,7 @@ inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edg
 }
 
 // The bodies are bounded; `start_b` and f are B's edge in frame A.
-inline HWY_NOINLINE Transition parallel_edges(TrackedPair& pair, const Vec4& start_b,
-                                              const Vec4& f) {
+HWY_INLINE Transition parallel_edges(TrackedPair& pair, Vec4 start_b, Vec4 f) {
   const Edge& first = pair.a.edges[pair.on_a.feature];
   const Edge& second = pair.b.edges[pair.on_b.feature];
   const Vec4 start_a = load3_of_4(first.point), e = load3_of_4(first.direction);

@@ -20,10 +20,6 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The first transition of a query is compiled separately. Nothing there needs the pair in memory,
-// so its findings stay in registers. Otherwise boxes would cost 3 % more.
-enum class Tracking { kFirst, kFurther };
-
 // Enough for 99.9 % of the tracked queries of the facet-ball workload. Longer ones are left to the
 // active-set iteration.
 inline constexpr int kMostTransitions = 24;
@@ -151,6 +147,17 @@ HWY_INLINE EdgeLines<RelativePose4, Vec4, double> lines_of(const TrackedPair& pa
           load3_of_4(second.point), load3_of_4(second.direction)};
 }
 
+// Edges that do not cross are parallel within tolerance, or rounding cannot tell.
+inline HWY_NOINLINE Transition along_each_other(TrackedPair& pair) {
+  const auto lines =
+      lines_of(pair, pair.a.edges[pair.on_a.feature], pair.b.edges[pair.on_b.feature]);
+  return lines.sine2 <= kParallelTilt * kParallelTilt ? parallel_edges(pair, lines.start_b, lines.f)
+                                                      : Transition::kUndecided;
+}
+inline HWY_NOINLINE Transition between_facets(TrackedPair& pair) {
+  return facet_facet<Tracking::kFurther>(pair);
+}
+
 // Crossing edges are closest if the feet of their common perpendicular lie within both, and all
 // four facets beside them recede along it. `kMode`: see transition().
 template <Tracking kMode>
@@ -159,8 +166,8 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   const Edge& first = pair.a.edges[pair.on_a.feature];
   const Edge& second = pair.b.edges[pair.on_b.feature];
   auto lines = lines_of(pair, first, second);
-  if (!(lines.sine2 > kCrossingSine2)) {
-    if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
+  if (HWY_UNLIKELY(!(lines.sine2 > kCrossingSine2))) {
+    if constexpr (kMode == Tracking::kFurther) return along_each_other(pair);
     return lines.sine2 <= kParallelTilt * kParallelTilt
                ? parallel_edges(pair, lines.start_b, lines.f)
                : Transition::kUndecided;
@@ -218,7 +225,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
     case FeaturePair::kFacetEdge:
       return edge_facet(Owner<true>(pair));
     case FeaturePair::kFacetFacet:
-      return facet_facet(pair);
+      return between_facets(pair);
     default:
       return Transition::kUndecided;
   }
@@ -234,12 +241,73 @@ HWY_INLINE void start(const ConvexBody& body, Vec4 direction, Side& side) {
   }
 }
 
+// The facets around a vertex: each is to the left of one of the edges that leave the vertex.
+HWY_INLINE std::int32_t facet_around(const ConvexBody& body, const Vertex& vertex, std::int32_t i) {
+  const EdgeUse& use = body.vertex_edges[vertex.first_edge + i];
+  return body.edges[use.edge].facet[use.side];
+}
+
+// The edge of the vertex between two facets, if there is one.
+HWY_INLINE void to_edge_between(const ConvexBody& body, const Vertex& vertex, std::int32_t first,
+                                std::int32_t second, Side& side) {
+  for (std::int32_t i = 0; i < vertex.edges; ++i) {
+    const std::int32_t edge = body.vertex_edges[vertex.first_edge + i].edge;
+    const auto& beside = body.edges[edge].facet;
+    if ((beside[0] == first && beside[1] == second) || (beside[0] == second && beside[1] == first))
+      to_edge(side, edge);
+  }
+}
+
+// From two vertices to the parallel facets around them that face each other at a distance. If there
+// are two pairs of such facets, the edges between them are closer than either pair.
+inline HWY_NOINLINE void start_level(TrackedPair& pair) {
+  const Vertex& of_a = pair.a.vertices[pair.on_a.feature];
+  const Vertex& of_b = pair.b.vertices[pair.on_b.feature];
+  if (of_a.edges != 3 || of_b.edges != 3) return;  // other corners are rare among level bodies
+  const Vec4 tip = point_to_a(pair.a_from_b, load3_alone(of_b.position));
+  std::int32_t facets_a[3], facets_b[3], pairs = 0;
+  for (std::int32_t i = 0; i < 3; ++i) {
+    const Facet& facet = pair.a.facets[facet_around(pair.a, of_a, i)];
+    const Vec4 n = load3_of_4(facet.normal);
+    if (!(dot(n, tip) > facet.offset)) continue;
+    const Vec4 n_in_b = direction_to_b(pair.a_from_b, n);
+    for (std::int32_t k = 0; k < 3; ++k) {
+      const std::int32_t other = facet_around(pair.b, of_b, k);
+      const Vec4 tilt = n_in_b + load3_of_4(pair.b.facets[other].normal);
+      if (!(dot(tilt, tilt) <= kParallelTilt * kParallelTilt)) continue;
+      facets_a[pairs] = facet_around(pair.a, of_a, i);
+      facets_b[pairs++] = other;
+      break;
+    }
+  }
+  if (pairs == 1) {
+    to_facet(pair.on_a, facets_a[0]);
+    to_facet(pair.on_b, facets_b[0]);
+  } else if (pairs == 2) {
+    to_edge_between(pair.a, of_a, facets_a[0], facets_a[1], pair.on_a);
+    to_edge_between(pair.b, of_b, facets_b[0], facets_b[1], pair.on_b);
+  }
+}
+
+// Is an axis of A's frame parallel to one of B's within rounding? Boxes and other bodies with
+// faces across their axes are then level.
+HWY_INLINE bool shares_an_axis(const RelativePose4& pose) {
+  const auto& [main, next, last] = pose.rotation;
+  const Vec4 limit = spread(1.0 - 0x1p-46);
+  return ((less(limit, main * main) | less(limit, next * next) | less(limit, last * last)) & 7u) !=
+         0;
+}
+
 // Chooses features if the state has none.
 HWY_INLINE void begin(TrackedPair& pair) {
   if (exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b)) return;
   const Vec4 a_to_b = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
   start(pair.a, a_to_b, pair.on_a);
   start(pair.b, -direction_to_b(pair.a_from_b, a_to_b), pair.on_b);
+  if (HWY_UNLIKELY(shares_an_axis(pair.a_from_b)) &&
+      pair.features() == FeaturePair::kVertexVertex) {
+    start_level(pair);
+  }
 }
 
 // The certificate of the closest features. Their distance bounds that of the bodies from above, and

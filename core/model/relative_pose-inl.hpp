@@ -8,9 +8,11 @@
 
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 
+#include "core/model/bad_pose.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/numerics/vec4-inl.hpp"
 #include "core/pose.hpp"
@@ -88,15 +90,14 @@ HWY_INLINE Vec4 rotate_back(Vec4 q, Vec4 v) {
 }
 
 // A unit quaternion whose components are multiples of 1/2 permutes the axes, and products of two
-// such are exact.
-inline bool permutes_axes(const Eigen::Quaterniond& q) {
-  const Eigen::Array4d twice = 2.0 * q.coeffs().array();
-  return (twice == twice.round()).all();
+// such are exact. The sum with 1.5 * 2^52 rounds to an integer.
+HWY_INLINE bool permutes_axes(Vec4 q) {
+  const Vec4 twice = q + q, large = spread(0x1.8p52);
+  return equal((twice + large) - large, twice);
 }
-inline HWY_NOINLINE void set_exactness(const Pose& a, const Pose& b, RelativePose4& r) {
-  const auto &p = a.orientation.coeffs(), &q = b.orientation.coeffs();
-  const bool a_permutes = permutes_axes(a.orientation);
-  if (p == q || p == -q || (a_permutes && permutes_axes(b.orientation))) r.rotation_error = 0.0;
+HWY_INLINE void set_exactness(Vec4 a, Vec4 b, RelativePose4& r) {
+  const bool a_permutes = permutes_axes(a);
+  if (equal(a, b) || equal(a, -b) || (a_permutes && permutes_axes(b))) r.rotation_error = 0.0;
   if (a_permutes) r.translation_error = kPermutedTranslationError * r.translation_length;
 }
 // A quick test that moving orientations do not pass. If anything is exact, w of a or z of conj(a) b
@@ -130,22 +131,42 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     r.translation_length = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.translation_length);
   }
-  if (may_be_exact(world_from_a.orientation.w(), lane(q, 2))) {
-    set_exactness(world_from_a, world_from_b, r);
+  if (HWY_UNLIKELY(may_be_exact(world_from_a.orientation.w(), lane(q, 2)))) {
+    set_exactness(a, load4(world_from_b.orientation.coeffs().data()), r);
   }
   return r;
 }
 
+// The nine numbers of the matrix are followed by the translation in the same object.
+static_assert(offsetof(RelativePose, translation) == sizeof(Mat3));
+
 HWY_INLINE RelativePose4 pose4_of(const RelativePose& pose) {
+  const double* const m = pose.rotation.data();  // 00 10 20 01, 11 21 02 12, 22 and the translation
+  const Vec4 first = load4(m), second = load4(m + 4), third = load4(m + 8);
+  const Vec4 d = pick<0, 1, 4, 5>(pick<0, 4, 1, 5>(first, second), third);  // 00, 11, 22
+  const Vec4 p = pick<1, 5, 6, 7>(first, second);                           // 10, 21, 02
+  const Vec4 n = pick<3, 7, 2, 1>(first, second);                           // 01, 12, 20
   RelativePose4 r;
-  const Mat3& m = pose.rotation;
-  const Vec4 main = vec4(m(0, 0), m(1, 1), m(2, 2), 0.0);
-  r.rotation = {main, vec4(m(0, 1), m(1, 2), m(2, 0), 0.0), vec4(m(0, 2), m(1, 0), m(2, 1), 0.0)};
-  r.transposed = {main, yzx(r.rotation.last), zxy(r.rotation.next)};
-  r.translation = load3(pose.translation);
+  r.rotation = {d, n, zxy(p)};
+  r.transposed = {d, p, zxy(n)};
+  r.translation = load3_of_4(pose.translation);
   r.rotation_error = pose.rotation_error;
   r.translation_error = pose.translation_error;
   r.translation_length = norm(r.translation);
+  return r;
+}
+
+// The same for a pose that a caller has made. If it is not good, the translation is NaN, as that of
+// relative_pose4(). The rows of a rotation have squares of 1, so the exact test is seldom made.
+HWY_INLINE RelativePose4 good_pose4_of(const RelativePose& pose) {
+  RelativePose4 r = pose4_of(pose);
+  const auto& [main, next, last] = r.rotation;
+  const Vec4 squares = (main * main + next * next) + last * last;
+  const bool quick = (less(squares, spread(2.0)) & 7u) == 7u;
+  if (HWY_UNLIKELY(!quick || !(r.translation_length <= kLargestCoordinate)) && !is_good(pose)) {
+    r.translation_length = std::numeric_limits<double>::quiet_NaN();
+    r.translation = spread(r.translation_length);
+  }
   return r;
 }
 

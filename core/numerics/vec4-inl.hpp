@@ -42,7 +42,13 @@ HWY_INLINE Vec4 pick(Vec4 a, Vec4 b) {
 HWY_INLINE unsigned less(Vec4 a, Vec4 b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v < b.v)));
 }
+// Are all four lanes equal?
+HWY_INLINE bool equal(Vec4 a, Vec4 b) {
+  return __builtin_ia32_movmskpd256(Doubles(a.v == b.v)) == 15;
+}
 HWY_INLINE Vec4 with_signs(Vec4 a, Vec4 signs) { return {Doubles(Bits(a.v) ^ Bits(signs.v))}; }
+// The lanes of x where a is less than b, and those of y elsewhere.
+HWY_INLINE Vec4 where_less(Vec4 a, Vec4 b, Vec4 x, Vec4 y) { return {a.v < b.v ? x.v : y.v}; }
 // The fourth lane zero.
 HWY_INLINE Vec4 first3(Vec4 a) { return {Doubles(Bits(a.v) & Bits{-1, -1, -1, 0})}; }
 
@@ -80,8 +86,15 @@ HWY_INLINE unsigned less(Vec4 a, Vec4 b) {
   return bits;
 #endif
 }
+HWY_INLINE bool equal(Vec4 a, Vec4 b) {
+  return lane(a, 0) == lane(b, 0) && lane(a, 1) == lane(b, 1) && lane(a, 2) == lane(b, 2) &&
+         lane(a, 3) == lane(b, 3);
+}
 HWY_INLINE Vec4 with_signs(Vec4 a, Vec4 signs) {
   return {{Doubles(Bits(a.v[0]) ^ Bits(signs.v[0])), Doubles(Bits(a.v[1]) ^ Bits(signs.v[1]))}};
+}
+HWY_INLINE Vec4 where_less(Vec4 a, Vec4 b, Vec4 x, Vec4 y) {
+  return {{a.v[0] < b.v[0] ? x.v[0] : y.v[0], a.v[1] < b.v[1] ? x.v[1] : y.v[1]}};
 }
 HWY_INLINE Vec4 first3(Vec4 a) { return {{a.v[0], Doubles(Bits(a.v[1]) & Bits{-1, 0})}}; }
 #endif
@@ -126,6 +139,11 @@ HWY_INLINE bool both_less(Vec2 a, Vec2 b) {
 #endif
 }
 
+// The first n lanes of a (n >= 1), followed by repetitions of its first lane.
+HWY_INLINE Vec4 repeated_past(Vec4 a, std::int32_t n) {
+  if (HWY_LIKELY(n >= 4)) return a;
+  return where_less(vec4(0.0, 1.0, 2.0, 3.0), spread(n), a, spread(lane(a, 0)));
+}
 HWY_INLINE Vec4 over(Vec4 a, double s) { return a / spread(s); }
 HWY_INLINE Vec4 yzx(Vec4 a) { return pick<1, 2, 0, 3>(a); }
 HWY_INLINE Vec4 zxy(Vec4 a) { return pick<2, 0, 1, 3>(a); }

@@ -1,6 +1,7 @@
 // distance(), from top to bottom: the state of a pair says which method goes first.
 //
-//   straight features ─► one transition ─► certified ─────────────────────────────► result
+//   straight features,
+//   or two facets ─────► one transition ─► certified ─────────────────────────────► result
 //                             └─ moved ─┐
 //   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
 //                                                 └─ left open ─► search.hpp
@@ -30,8 +31,18 @@ namespace clearance::HWY_NAMESPACE {
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state);
+DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                           const Pose& world_from_b, TrackingState& state);
 DistanceResult from_any_state(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                               const Pose& world_from_b, TrackingState& state);
+// The same three by a relative pose. The first two of them compute the depth as well.
+DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
+                                               const RelativePose& a_from_b, TrackingState& state);
+DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state);
+DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
+                                       const RelativePose& a_from_b, TrackingState& state,
+                                       bool depth);
 // For a batch, which has made transitions already.
 DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                                  const Pose& world_from_b, TrackingState& state,
@@ -43,21 +54,36 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 #include <atomic>
 
-#include "core/feature_tracking/feature_tracking.hpp"
-
 namespace clearance {
 
 HWY_EXPORT(from_straight_features);
+HWY_EXPORT(from_facets);
 HWY_EXPORT(from_any_state);
+HWY_EXPORT(relative_from_straight_features);
+HWY_EXPORT(relative_from_facets);
+HWY_EXPORT(relative_from_any_state);
 HWY_EXPORT(after_transitions);
 
 #if (HWY_TARGETS & (HWY_TARGETS - 1)) == 0  // one vector width only
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                         const Pose& world_from_b, TrackingState& state) noexcept {
-  return has_straight_features(state)
-             ? HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state)
+  if (has_straight_features(state)) {
+    return HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state);
+  }
+  return has_facets(state)
+             ? HWY_STATIC_DISPATCH(from_facets)(a, b, world_from_a, world_from_b, state)
              : HWY_STATIC_DISPATCH(from_any_state)(a, b, world_from_a, world_from_b, state);
+}
+
+DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                        TrackingState& state, const DistanceOptions& options) noexcept {
+  if (has_straight_features(state) && options.depth) {
+    return HWY_STATIC_DISPATCH(relative_from_straight_features)(a, b, a_from_b, state);
+  }
+  return has_facets(state) && options.depth
+             ? HWY_STATIC_DISPATCH(relative_from_facets)(a, b, a_from_b, state)
+             : HWY_STATIC_DISPATCH(relative_from_any_state)(a, b, a_from_b, state, options.depth);
 }
 
 #else
@@ -74,6 +100,13 @@ HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody
   return distance(a, b, world_from_a, world_from_b, state);
 }
 
+HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
+                                           const RelativePose& a_from_b, TrackingState& state,
+                                           const DistanceOptions& options) noexcept {
+  chosen_vectors.store(&hwy::GetChosenTarget(), std::memory_order_relaxed);
+  return distance(a, b, a_from_b, state, options);
+}
+
 }  // namespace
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
@@ -83,30 +116,27 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
   const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
+                          : has_facets(state)          ? HWY_DISPATCH_TABLE(from_facets)
                                                        : HWY_DISPATCH_TABLE(from_any_state);
   return of_widths[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
 }
 
-#endif
-
-// The same order of methods for a relative pose. Nothing is inlined here, because the speed of this
-// overload matters less.
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
-  if (!is_good(a_from_b)) return of_bad_pose(state);
-  if (a.is_curved() || b.is_curved())
-    return curved_pair_distance(a, b, a_from_b, state, options.depth);
-  DistanceResult result;
-  if (state.a.penetrating && options.depth) {
-    if (!track_penetrating_features(a, b, a_from_b, state, result))
-      return penetrating_distance(a, b, a_from_b, state);
-  } else if (track_features(a, b, a_from_b, state, result) != TrackingEnd::kCertified) {
-    return search_distance(a, b, a_from_b, state, options.depth);
+  const hwy::ChosenTarget* const chosen = chosen_vectors.load(std::memory_order_relaxed);
+  if (HWY_UNLIKELY(chosen == nullptr)) return first_distance(a, b, a_from_b, state, options);
+  if (HWY_LIKELY(options.depth)) {
+    const auto known = has_straight_features(state)
+                           ? HWY_DISPATCH_TABLE(relative_from_straight_features)
+                       : has_facets(state) ? HWY_DISPATCH_TABLE(relative_from_facets)
+                                           : nullptr;
+    if (known != nullptr) return known[chosen->GetIndex()](a, b, a_from_b, state);
   }
-  add_radii(result, a, b);
-  assert(keeps_promises(result));
-  return result;
+  return HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()](a, b, a_from_b, state,
+                                                                         options.depth);
 }
+
+#endif
 
 TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(after_transitions); }
 
@@ -137,8 +167,8 @@ namespace clearance::HWY_NAMESPACE {
 DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                       const RelativePose4& a_from_b, TrackingState& state,
                                       TransitionsMade start, Transition first);
-DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                                const Pose& world_from_b, TrackingState& state);
+DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
+                                const RelativePose4& a_from_b, TrackingState& state);
 
 HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   DistanceResult result = result_of(pair);
@@ -148,13 +178,9 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
 }
 
 // Most queries of a moving scene end here, at the features of the last query.
-DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
-                                      const Pose& world_from_a, const Pose& world_from_b,
-                                      TrackingState& state) {
-  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
-    return from_any_state(a, b, world_from_a, world_from_b, state);
-  }
-  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+HWY_INLINE DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
+                                                 const RelativePose4& a_from_b,
+                                                 TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
   const Transition first = transition<Tracking::kFirst>(pair);
@@ -163,6 +189,53 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
   }
   return after_first_transition(a, b, a_from_b, state,
                                 {pair.transitions, pair.parallel_transitions}, first);
+}
+
+// The same for two facets. The order of methods for those that are not parallel any more is that of
+// any state.
+HWY_INLINE DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b,
+                                      const RelativePose4& a_from_b, TrackingState& state) {
+  TrackedPair pair(a, b, a_from_b, state);
+  ++pair.transitions;
+  const Transition first = facet_facet<Tracking::kFirst>(pair);
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+    return rounded_result_of(pair);
+  }
+  return after_first_transition(a, b, a_from_b, state,
+                                {pair.transitions, pair.parallel_transitions}, first);
+}
+
+DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
+                                      const Pose& world_from_a, const Pose& world_from_b,
+                                      TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return from_any_state(a, b, world_from_a, world_from_b, state);
+  }
+  return from_straight_features(a, b, relative_pose4(world_from_a, world_from_b), state);
+}
+
+DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
+                                               const RelativePose& a_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return relative_from_any_state(a, b, a_from_b, state, true);
+  }
+  return from_straight_features(a, b, good_pose4_of(a_from_b), state);
+}
+
+DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                           const Pose& world_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return from_any_state(a, b, world_from_a, world_from_b, state);
+  }
+  return from_facets(a, b, relative_pose4(world_from_a, world_from_b), state);
+}
+
+DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
+                                    const RelativePose& a_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
+    return relative_from_any_state(a, b, a_from_b, state, true);
+  }
+  return from_facets(a, b, good_pose4_of(a_from_b), state);
 }
 
 // The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
@@ -177,18 +250,23 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
-// For states without features or with parallel ones, for penetrating bodies, and for curved bodies.
+// For states without features or with parallel ones, and for penetrating bodies.
+HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
+                                        const RelativePose4& a_from_b, TrackingState& state,
+                                        TransitionsMade start, bool depth) {
+  if (state.a.penetrating && depth) return from_penetration(a, b, a_from_b, state);
+  TrackedPair pair(a, b, a_from_b, state, start);
+  if (track(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
+  return search_distance(a, b, pose_of(a_from_b), state, depth);
+}
+
 HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, TransitionsMade start) {
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
     return curved_pair_distance(a, b, world_from_a, world_from_b, state);
   }
-  if (state.a.penetrating) return from_penetration(a, b, world_from_a, world_from_b, state);
-  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
-  TrackedPair pair(a, b, a_from_b, state, start);
-  if (track(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
-  return search_distance(a, b, pose_of(a_from_b), state, true);
+  return distance_from(a, b, relative_pose4(world_from_a, world_from_b), state, start, true);
 }
 
 // There are two of these functions, because one argument more than fits into registers costs a cold
@@ -203,11 +281,19 @@ DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const
   return distance_from(a, b, world_from_a, world_from_b, state, start);
 }
 
+DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
+                                       const RelativePose& a_from_b, TrackingState& state,
+                                       bool depth) {
+  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
+    return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
+                             : of_bad_pose(state);
+  }
+  return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
+}
+
 // The bodies penetrated each other in the last query.
 HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
-                                             const Pose& world_from_a, const Pose& world_from_b,
-                                             TrackingState& state) {
-  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+                                             const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
   if (!track_penetrating_features(pair))
     return penetrating_distance(a, b, pose_of(a_from_b), state);

@@ -16,8 +16,10 @@ using clearance::Pose;
 bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
   const auto cube = std::get<clearance::ConvexBody>(clearance::box({0.5, 0.5, 0.5}));
   clearance::TrackingState state;
-  const auto alone =
-      clearance::distance(cube, cube, clearance::relative_pose(pose_a, pose_b), state);
+  const auto alone = clearance::distance(cube, cube, pose_a, pose_b, state);
+  clearance::TrackingState other;
+  const auto by_relative =
+      clearance::distance(cube, cube, clearance::relative_pose(pose_a, pose_b), other);
 
   const clearance::ConvexBody* const bodies[] = {&cube, &cube};
   const Pose poses[] = {pose_a, pose_b};
@@ -27,7 +29,8 @@ bool agree(const Pose& pose_a, const Pose& pose_b, double expected) {
   std::printf("%.9f m alone, %.9f m in a batch; expected %.9f m\n", alone.distance, together,
               expected);
   return std::abs(alone.distance - expected) < 1e-12 && alone.lower <= expected + 1e-12 &&
-         expected - 1e-12 <= alone.upper && together == alone.distance;
+         expected - 1e-12 <= alone.upper && together == alone.distance &&
+         by_relative.distance == alone.distance;
 }
 
 // The library reads shapes that are made here, and vice versa.

@@ -1,0 +1,150 @@
+// Boxes whose faces or edges stay parallel while they slide, spin about a common axis or lie flush,
+// in any frame; and queries from a relative pose. Oracles: the exact distance, closed forms, and
+// the query from two poses.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "tests/shared/distance_judge.hpp"
+#include "tests/shared/hard_bodies.hpp"
+#include "tests/shared/poses.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
+
+namespace clearance {
+namespace {
+
+using Quat = Eigen::Quaterniond;
+using test::turned;
+
+constexpr std::uint64_t kSeeds = 40;
+constexpr int kSteps = 120;
+constexpr double kStep = 0.01, kTurn = 0.013;  // m, rad
+
+enum class Motion { kSliding, kAlongFlushEdges, kSpinning };
+constexpr Motion kMotions[] = {Motion::kSliding, Motion::kAlongFlushEdges, Motion::kSpinning};
+
+// Box B moves above box A, which stands still. Its lower face is parallel to A's upper one.
+struct LevelBoxes {
+  Vec3 half_a, half_b;
+  double gap;  // m
+  std::vector<std::pair<Pose, Pose>> poses;
+  double most_per_step;  // m: no point of B that faces A moves farther
+
+  [[nodiscard]] DistanceJudge judge() const { return {hard::box(half_a), hard::box(half_b)}; }
+};
+
+LevelBoxes level_boxes(Motion motion, std::uint64_t seed) {
+  Random random(seed);
+  const auto half = [&] { return random.uniform(0.1, 0.5); };
+  LevelBoxes made{{half(), half(), half()}, {half(), half(), half()}, 0.0, {}, kStep};
+  if (motion == Motion::kAlongFlushEdges) made.half_b.x() = made.half_a.x();
+  made.gap = random.log_uniform(1e-3, 0.3);
+  const Pose a = random.pose(2.0);
+  const double angle = random.uniform(0.0, 6.3);
+  const Vec3 way = motion == Motion::kAlongFlushEdges ? Vec3(0, 1, 0)
+                                                      : Vec3(std::cos(angle), std::sin(angle), 0);
+  const double up = made.half_a.z() + made.half_b.z() + made.gap;
+  for (int k = 0; k < kSteps; ++k) {
+    Vec3 centre = kStep * (k - kSteps / 2) * way;
+    Quat turn = Quat::Identity();
+    if (motion == Motion::kSpinning) {
+      centre = 0.05 * way;  // the middle of either face lies within the other one
+      turn = turned(Vec3::UnitZ(), kTurn * k + angle);
+    }
+    centre.z() = up;
+    made.poses.push_back({a, {a.position + a.orientation * centre, a.orientation * turn}});
+  }
+  if (motion == Motion::kSpinning) made.most_per_step = kTurn * made.half_b.head<2>().norm();
+  return made;
+}
+
+template <class Visit>
+void for_each_motion(const Visit& visit) {
+  for (const Motion motion : kMotions) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) visit(level_boxes(motion, seed), seed);
+  }
+}
+
+TEST(LevelBoxes, WitnessesMoveNoFasterThanTheBodies) {
+  for_each_motion([](const LevelBoxes& boxes, std::uint64_t seed) {
+    const DistanceJudge judge = boxes.judge();
+    TrackingState state;
+    Vec3 last = Vec3::Zero();
+    for (std::size_t k = 0; k < boxes.poses.size(); ++k) {
+      const auto& [a, b] = boxes.poses[k];
+      const Vec3 found = judge.ask(a, b, state).point_on_a;
+      if (k > 0) {
+        EXPECT_LE((found - last).norm(), boxes.most_per_step + 1e-13)
+            << "seed " << seed << " step " << k;
+      }
+      last = found;
+    }
+  });
+}
+
+TEST(LevelBoxes, BoundsHoldTrackedAndCold) {
+  for_each_motion([](const LevelBoxes& boxes, std::uint64_t seed) {
+    DistanceJudge judge = boxes.judge();
+    TrackingState tracked;
+    for (std::size_t k = 0; k < boxes.poses.size(); ++k) {
+      const auto& [a, b] = boxes.poses[k];
+      const DistanceResult kept = judge.ask(a, b, tracked);
+      if (k % 40 != seed) continue;
+      TrackingState cold;
+      const oracle::ExactDistance truth = judge.truth(a, b);
+      for (const DistanceResult& result : {kept, judge.ask(a, b, cold)}) {
+        EXPECT_EQ(result.status, DistanceStatus::kConverged) << "seed " << seed << " step " << k;
+        for (const std::string& fault : judge.faults(result, truth, a, b)) {
+          ADD_FAILURE() << "seed " << seed << " step " << k << ": " << fault;
+        }
+      }
+    }
+  });
+}
+
+TEST(LevelBoxes, ARelativePoseGivesTheBitsOfTwoPoses) {
+  for_each_motion([](const LevelBoxes& boxes, std::uint64_t seed) {
+    const DistanceJudge judge = boxes.judge();
+    TrackingState by_poses, by_relative, without_depth;
+    for (const auto& [a, b] : boxes.poses) {
+      const RelativePose a_from_b = relative_pose(a, b);
+      const DistanceResult expected = judge.ask(a, b, by_poses);
+      EXPECT_TRUE(same_bits(distance(judge.a(), judge.b(), a_from_b, by_relative), expected))
+          << "seed " << seed;
+      EXPECT_TRUE(same_bits(
+          distance(judge.a(), judge.b(), a_from_b, without_depth, {.depth = false}), expected))
+          << "seed " << seed;
+      EXPECT_TRUE(by_relative.a.point == by_poses.a.point &&
+                  by_relative.b.point == by_poses.b.point)
+          << "seed " << seed;
+    }
+  });
+}
+
+// Each of the twelve numbers in turn, from features of each kind; 1e13 m is farther than any frame.
+TEST(LevelBoxes, ARelativePoseWithOneBadNumberIsRefused) {
+  const DistanceJudge judge(hard::box({0.5, 0.4, 0.3}), hard::box({0.3, 0.4, 0.5}));
+  const RelativePose good = relative_pose(Pose{}, {{0.1, 0.2, 2.0}, turned({1, 2, 3}, 0.7)});
+  constexpr double kInf = std::numeric_limits<double>::infinity();
+  for (const double bad : {std::nan(""), kInf, -kInf, 1e13}) {
+    for (int number = std::isfinite(bad) ? 9 : 0; number < 12; ++number) {
+      for (std::uint8_t kinds = 0; kinds < 9; ++kinds) {
+        RelativePose pose = good;
+        (number < 9 ? pose.rotation.data()[number] : pose.translation[number - 9]) = bad;
+        TrackingState state{{static_cast<FeatureKind>(kinds % 3), false, 0},
+                            {static_cast<FeatureKind>(kinds / 3), false, 0}};
+        const DistanceResult result = distance(judge.a(), judge.b(), pose, state);
+        EXPECT_EQ(result.status, DistanceStatus::kBadPose) << bad << " at " << number;
+        EXPECT_EQ(state.a.kind, FeatureKind::kUnknown) << bad << " at " << number;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace clearance
