@@ -67,7 +67,9 @@ inline constexpr LogLine<Text> kPosesContradict{
     "poses of {} contradict each other or the cell: its pairs are unknown"};
 inline constexpr LogLine<Text> kPosesBack{"poses-back", kInfo, "poses of {} are back"};
 inline constexpr LogLine<Text, Text, Text> kTwoSources{
-    "two-sources", kWarn, "{} is sent by '{}' and by '{}': poses of the latter are not used"};
+    "two-sources", kWarn,
+    "{} is sent by '{}' and by '{}': poses of the latter are not used, and none while the two "
+    "contradict each other, unless the cell names the source"};
 inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWarn,
                                                           "{}: sent by '{}' now, before by '{}'"};
 inline constexpr LogLine<Text> kVelocitiesContradict{
@@ -93,7 +95,9 @@ inline constexpr LogLine<Text, Text, Text> kJointsContradict{
     "is unknown ({})"};
 inline constexpr LogLine<Text, Text, Text, Text> kTwoJointSources{
     "two-joint-sources", kWarn,
-    "joints of {} are sent by '{}' and by '{}': positions of the latter are not used ({})"};
+    "joints of {} are sent by '{}' and by '{}': positions of the latter are not used, and none "
+    "while "
+    "the two contradict each other, unless the cell names the source ({})"};
 inline constexpr LogLine<Text, Text, Text, Text> kJointsSilent{
     "joints-silent", kWarn, "no usable position of {} of {} has come ({}): {}"};
 

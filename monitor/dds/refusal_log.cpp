@@ -20,18 +20,25 @@ void RefusalLog::add(const clearance_msg_RejectCount& entry) {
     refusals.inputs.push_back(input);
   refusals.count += grown;
   refusals.total += grown;
+  refusals.quiet_s = 0;
 }
 
-// A line is due at once if it names an input that the last line did not.
+// A line is due at once if it names an input that no line before did.
 std::size_t RefusalLog::update(const clearance_msg_Health& health) {
+  for (auto& [key, refusals] : refusals_) {
+    ++refusals.silent_s;
+    if (++refusals.quiet_s > kOverS && refusals.count == 0) {
+      refusals.named.clear();
+      refusals.pause_s = 0;
+    }
+  }
   for (std::uint32_t i = 0; i < health.rejected._length; ++i) add(health.rejected._buffer[i]);
   std::size_t due = 0;
   for (auto& [key, refusals] : refusals_) {
-    ++refusals.silent_s;
     if (refusals.count > 0) ++refusals.counted_s;
     const bool is_news = !std::ranges::all_of(
         refusals.inputs, [&](const std::string& input) { return refusals.named.contains(input); });
-    refusals.is_due = refusals.count > 0 && (is_news || refusals.silent_s >= kPauseS);
+    refusals.is_due = refusals.count > 0 && (is_news || refusals.silent_s >= refusals.pause_s);
     if (refusals.is_due) ++due;
   }
   return due;
@@ -46,10 +53,11 @@ void RefusalLog::log(std::size_t most) {
              (are_joints ? "positions of " : "poses of ") + listed(refusals.inputs, kNamesALine),
              refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s), cause,
              refusals.total);
-    refusals.named = {refusals.inputs.begin(), refusals.inputs.end()};
+    refusals.named.insert(refusals.inputs.begin(), refusals.inputs.end());
     refusals.inputs.clear();
     refusals.count = 0;
     refusals.counted_s = refusals.silent_s = 0;
+    refusals.pause_s = std::clamp(2 * refusals.pause_s, kFirstPauseS, kLongestPauseS);
   }
 }
 

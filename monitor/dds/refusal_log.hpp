@@ -1,5 +1,5 @@
 // Logs for a person which inputs were refused, and why: one line a cause, however many inputs share
-// it. A refusal that lasts is repeated every ten seconds.
+// it. One that lasts is repeated after ten seconds, and then after twice the time before.
 #pragma once
 
 #include <cstddef>
@@ -22,15 +22,18 @@ class RefusalLog {
   void log(std::size_t most);
 
  private:
-  static constexpr int kPauseS = 10;
+  static constexpr int kFirstPauseS = 10, kLongestPauseS = 640;
+  static constexpr int kOverS = 60;  // refusals are new again after this time without one
   // The refusals of one cause: of joints, or of objects.
   struct Refusals {
     std::vector<std::string> inputs;  // refused since the last line
-    std::set<std::string> named;      // in the last line
+    std::set<std::string> named;      // in a line, since the refusals began
     std::uint64_t count = 0;          // since the last line
     std::uint64_t total = 0;          // since the start
     int counted_s = 0;                // the seconds that `count` is from
-    int silent_s = kPauseS;           // since the last line
+    int silent_s = 0;                 // since the last line
+    int pause_s = 0;                  // until the next line, unless it names another input
+    int quiet_s = 0;                  // since the last refusal
     bool is_due = false;
   };
 

@@ -53,12 +53,14 @@ struct InputRecord {
 // Who sent a sample, and when its value held in the tick's time.
 struct SampleOrigin {
   std::uint32_t source = 0;
+  std::uint32_t namesake = kNoSource;  // the source whose name it shares
   std::int64_t stamp_ns = 0;
 };
 
 // Takes a sample into use, or returns why it must not be used and updates the input's contradiction
 // state. Two sources that claim one input with values that exclude each other are a contradiction
-// too, whichever came first, unless the cell names the source. A `Candidate` is one sample of one
+// too, whichever came first, unless the cell names the source. Two writers that share the name that
+// the cell states are not told apart by it. A `Candidate` is one sample of one
 // input, with these members:
 //   std::optional<Reject> malformed()    it is not a value at all, whichever source sent it
 //   bool disputes()                      it excludes the value in use, which another source sent
@@ -72,8 +74,8 @@ template <class Candidate>
   const bool is_rival = input.owner.refuses(origin.source, limits.now_ns, age_limit_ns);
   if (const std::optional<Reject> cause = candidate.malformed()) return cause;
   if (is_rival) {
-    if (input.owner.is_stated() || !input.has_value || !candidate.disputes())
-      return Reject::kOtherSource;
+    const bool is_settled = input.owner.is_stated() && origin.namesake != input.owner.source();
+    if (is_settled || !input.has_value || !candidate.disputes()) return Reject::kOtherSource;
     input.contradiction.meet(limits.now_ns, std::max(age_limit_ns, InputOwner::kSilentNs));
     return Reject::kDisputed;
   }

@@ -2,9 +2,13 @@
 // stamps have the same clock as those of poses (monitor/inputs/pose_batch.hpp).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace clearance {
+
+inline constexpr std::size_t kMaxSources = 16;  // as in idl/clearance.idl
+inline constexpr std::uint32_t kNoSource = kMaxSources;
 
 // One variable of a joint: an angle, a length, or an entry of a quaternion.
 struct JointSample {
@@ -14,6 +18,7 @@ struct JointSample {
   double position = 0.0;       // rad or m; may be infinite, NaN or outside the limits until checked
   double velocity = 0.0;       // of `position`, per second
   bool has_velocity = false;
+  std::uint32_t namesake = kNoSource;  // number of the sender whose name this one shares, if any
 };
 
 // The largest admissible position and velocity of a joint. The sines and cosines of angles up to

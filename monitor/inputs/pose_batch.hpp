@@ -13,9 +13,7 @@
 
 namespace clearance {
 
-inline constexpr std::size_t kMaxSources = 16;       // as in idl/clearance.idl
 inline constexpr std::size_t kMaxSourceLength = 32;  // characters
-inline constexpr std::uint32_t kNoSource = kMaxSources;
 
 struct PoseSample {
   std::uint32_t object = 0;   // index into Scene::objects
@@ -24,6 +22,7 @@ struct PoseSample {
   Pose world_from_object;     // as on the wire: may be non-finite or not unit until checked
   Twist twist;
   bool has_twist = false;
+  std::uint32_t namesake = kNoSource;  // number of the sender whose name this one shares, if any
 };
 
 // The largest error of the length of a sample's quaternion, and the largest number in a sample, m,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string_view>
 
 namespace clearance {
 
@@ -35,6 +36,28 @@ std::uint32_t SourceNumbers::of(const SourceName& source) noexcept {
   }
   place->last_use = ++uses_;
   return static_cast<std::uint32_t>(place - places_.begin());
+}
+
+void SourceNumbers::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
+                           std::vector<JointSample>& joints) {
+  const std::uint32_t number = of(batch.source), namesake = namesake_of(batch.source);
+  const auto mark = [&](auto& sample) {
+    sample.source = number;
+    sample.namesake = namesake;
+  };
+  for (const PoseSample& sample : batch.samples) mark(poses.emplace_back(sample));
+  for (const JointSample& sample : batch.joints) mark(joints.emplace_back(sample));
+}
+
+std::uint32_t SourceNumbers::namesake_of(const SourceName& source) const noexcept {
+  const std::string_view name = source.view();
+  const std::size_t mark = name.rfind('#');
+  if (mark == name.npos || name.find_first_not_of("0123456789", mark + 1) != name.npos)
+    return kNoSource;
+  const auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
+    return candidate.last_use > 0 && candidate.source.view() == name.substr(0, mark);
+  });
+  return place == places_.end() ? kNoSource : static_cast<std::uint32_t>(place - places_.begin());
 }
 
 SourceName SourceNumbers::name(std::uint32_t number) const noexcept {

@@ -23,10 +23,17 @@ class SourceNumbers {
  public:
   explicit SourceNumbers(const Scene& scene);
   [[nodiscard]] std::uint32_t of(const SourceName& source) noexcept;
+  // Appends the samples of a batch with the number of their sender. A sender NAME#2 is the second
+  // writer of NAME: the number of NAME is set as well, if that has one. Does not allocate where the
+  // capacities suffice.
+  void append(const PoseBatch& batch, std::vector<PoseSample>& poses,
+              std::vector<JointSample>& joints);
   // Returns an empty name when no source has that number.
   [[nodiscard]] SourceName name(std::uint32_t number) const noexcept;
 
  private:
+  [[nodiscard]] std::uint32_t namesake_of(const SourceName& source) const noexcept;
+
   struct Place {
     SourceName source;
     std::uint64_t last_use = 0;  // 0: never

@@ -115,7 +115,8 @@ std::optional<Reject> take(const JointVariable& variable, const JointSample& sam
                            std::int64_t stamp_ns, const SampleLimits& limits,
                            TrackedVariable& state, Repetition& of_joint) noexcept {
   return take(PositionCandidate{variable, sample, stamp_ns, state, of_joint},
-              {sample.source, stamp_ns}, limits, variable.age_limit_ns, state.input);
+              {sample.source, sample.namesake, stamp_ns}, limits, variable.age_limit_ns,
+              state.input);
 }
 
 void forget_age(std::int64_t now_ns, TrackedVariable& state) noexcept {

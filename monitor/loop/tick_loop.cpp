@@ -95,15 +95,7 @@ void TickLoop::use(const PoseBatch& batch) noexcept {
     return;
   }
   if (batch.empty()) return;
-  const std::uint32_t source = sources_.of(batch.source);
-  for (const PoseSample& sample : batch.samples) {
-    samples_.push_back(sample);
-    samples_.back().source = source;
-  }
-  for (const JointSample& sample : batch.joints) {
-    joints_.push_back(sample);
-    joints_.back().source = source;
-  }
+  sources_.append(batch, samples_, joints_);
 }
 
 // The report names the last batch of each source; this makes a replay exact.

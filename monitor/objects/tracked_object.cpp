@@ -144,8 +144,8 @@ std::optional<Reject> take(const Object& object, const PoseSample& sample, std::
                            const SampleLimits& limits, TrackedObject& state) noexcept {
   if (state.rest.holds && state.rest.has_twist) state.plausibility.catch_up(state.input.stamp_ns);
   state.rest.holds = false;
-  return take(PoseCandidate{object, sample, stamp_ns, state}, {sample.source, stamp_ns}, limits,
-              object.age_limit_ns, state.input);
+  return take(PoseCandidate{object, sample, stamp_ns, state},
+              {sample.source, sample.namesake, stamp_ns}, limits, object.age_limit_ns, state.input);
 }
 
 // The checks that are left out would find what they found at the sample before.

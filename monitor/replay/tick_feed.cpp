@@ -222,15 +222,7 @@ void TickFeed::take_used(TickInput& tick) {
 void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
   ++batches_;
   if (batch.empty()) return;
-  const std::uint32_t source = sources_.of(batch.source);
-  for (const PoseSample& sample : batch.samples) {
-    tick.samples.push_back(sample);
-    tick.samples.back().source = source;
-  }
-  for (const JointSample& sample : batch.joints) {
-    tick.joints.push_back(sample);
-    tick.joints.back().source = source;
-  }
+  sources_.append(batch, tick.samples, tick.joints);
 }
 
 // Drops batches that have waited longer than the feed reads ahead. No report has named them, so the

@@ -81,11 +81,7 @@ void ObjectPoses::take_up_to(std::uint64_t sequence_number, std::int64_t stamp_n
   while (!waiting.batches.empty()) {
     Batch& batch = waiting.batches.front();
     if (batch.sequence_number > sequence_number && batch.stamp_ns > stamp_ns) return;
-    const std::uint32_t source = numbers_.of(batch.content.source);
-    for (PoseSample& sample : batch.content.samples)
-      due_.samples.emplace_back(sample).source = source;
-    for (JointSample& sample : batch.content.joints)
-      due_.joints.emplace_back(sample).source = source;
+    numbers_.append(batch.content, due_.samples, due_.joints);
     waiting.samples -= batch.content.size();
     waiting.batches.pop_front();
   }

@@ -102,6 +102,25 @@ TEST_F(DaemonJoints, OfAPublisherThatSendsZerosMakeTheLinksUnknownAndAreNamed) {
       << daemon->output();
 }
 
+// The cell names the topic, which both publish.
+TEST_F(DaemonJoints, OfTwoPublishersOfTheTopicThatTheCellNamesAreUnknownWhileTheyContradict) {
+  start(", age_limit_ms: 200, source: /joint_states");
+  RosJoints first(client), second(client);
+  ASSERT_TRUE(first.is_heard() && second.is_heard());
+  ASSERT_TRUE(step_until(5, sent(first, {0.5, 0.5, 0.1}), [&] {
+    return is("finger", PairStatus::kConverged);
+  })) << daemon->output();
+  EXPECT_TRUE(step_until(
+      5,
+      [&] {
+        first.send(kNames, {0.5, 0.5, 0.1});
+        second.send(kNames, {0, 0, 0});
+      },
+      told("refused", {"joint elbow", "another source contradicts"})))
+      << daemon->output();
+  EXPECT_FALSE(is("finger", PairStatus::kConverged));
+}
+
 // Many drivers fill in 0.
 TEST_F(DaemonJoints, WhoseVelocitiesAreAlwaysZeroAreNamed) {
   start();

@@ -54,6 +54,32 @@ TEST(Ownership, ObjectOfTwoSourcesThatContradictIsUnknownUntilASecondAfter) {
   }
 }
 
+// The cell names a source, and two writers have that name. It does not say which of them is meant.
+TEST(Ownership, ObjectOfTwoWritersWithTheNameThatTheCellStatesIsUnknownWhileTheyContradict) {
+  Scene scene = test::two_balls();
+  scene.objects[0].source = "tracker";
+  for (const bool is_namesake : {true, false}) {
+    Monitor monitor(scene);
+    SourceNumbers numbers(scene);
+    for (int tick = 0; tick < 100; ++tick) {
+      const std::int64_t now = kStart + tick * kTick;
+      std::vector<PoseSample> samples;
+      std::vector<JointSample> joints;
+      PoseBatch batch;
+      batch.source = SourceName("tracker");
+      batch.samples = {from(0, 0.0, now)};
+      numbers.append(batch, samples, joints);
+      batch.source = SourceName(is_namesake ? "tracker#2" : "other#2");
+      batch.samples = {from(0, 0.5, now)};
+      numbers.append(batch, samples, joints);
+      const Report& report = monitor.tick(samples, now);
+      ASSERT_EQ(report.pairs[0].status == PairStatus::kUnknown, is_namesake);
+    }
+    EXPECT_EQ(monitor.rejected(0)[static_cast<std::size_t>(Reject::kDisputed)],
+              is_namesake ? 100u : 0u);
+  }
+}
+
 TEST(Ownership, AnotherSourceTakesOverAfterASecondOfSilence) {
   const Scene scene = test::two_balls();
   Monitor monitor(scene);

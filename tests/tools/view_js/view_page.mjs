@@ -57,9 +57,11 @@ async function firstView() {
   await page.mouse.up();
   const place = () => page.evaluate(() => window.clearance.view.place);
   let moved = "";
-  while (moved !== (await place())) {
-    moved = await place(); // until the view has come to rest
+  for (let same = 0; same < 4;) {
     await page.waitForTimeout(500);
+    const now = await place(); // until the view has come to rest
+    same = now === moved ? same + 1 : 0;
+    moved = now;
   }
   await page.waitForTimeout(2000);
   return { largest, stays: moved === (await place()) };
