@@ -13,6 +13,7 @@
 #include <cstdlib>
 #include <utility>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/log_lines.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/build_info.hpp"
@@ -159,7 +160,7 @@ std::string PoseReader::senders_of_joints() const {
   if (heard > 0) {
     const auto& names = intake_.joint_states().unknown_names();
     return fmt::format(
-        "{} publishers of joint states are heard{}{}", heard,
+        "joint states come from {}{}{}", counted(heard, "publisher"),
         names.empty() ? "" : ", of joints that the cell does not have: ", fmt::join(names, ", "));
   }
   for (const auto& [handle, writer] : ros_.present().writers()) {

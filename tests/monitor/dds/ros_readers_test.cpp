@@ -59,7 +59,7 @@ TEST_F(RosReadersTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHave) {
   EXPECT_EQ(batch.joints[0].velocity, 0.2);
   EXPECT_TRUE(batch.joints[0].has_velocity);
   EXPECT_THAT(inputs.senders_of_joints(),
-              HasSubstr("of joints that the cell does not have: wheel"));
+              HasSubstr("1 publisher, of joints that the cell does not have: wheel"));
 }
 
 TEST_F(RosReadersTest, OfOneInstantAreWhatOurOwnTopicSays) {
