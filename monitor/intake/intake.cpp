@@ -116,8 +116,7 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
 SourceTally* Intake::admit(PoseBatch& batch, std::uint64_t writer, std::size_t size) {
   Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
   tell_of(admission, batch, writer);
-  if (admission.tally == nullptr && admission.cause == SourceRefusal::kOtherWriter &&
-      !sources_.is_named(batch.source)) {
+  if (admission.tally == nullptr && admission.cause == SourceRefusal::kOtherWriter) {
     batch.source = name_of_writer(batch.source.view(), 2);
     admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
     tell_of(admission, batch, writer);
@@ -161,7 +160,7 @@ void Intake::tell_of(const Admission& admission, const PoseBatch& batch, std::ui
       }
       return tell({Cause::kSourceRefused, true,
                    fmt::format("writer {} uses the name of source '{}', which is writer {}: its {} "
-                               "are not used",
+                               "are not used as that source's",
                                options_.writer_name(writer), source.view(),
                                options_.writer_name(admission.former_writer), inputs)});
   }

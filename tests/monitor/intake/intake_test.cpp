@@ -89,6 +89,26 @@ TEST_F(IntakeTest, GivesASecondWriterOfANameANameOfItsOwnAndTellsOnceOfEach) {
                                  News::Cause::kNewSource, News::Cause::kSourceTakenOver}));
 }
 
+// The cell does not say which of two writers it means.
+TEST_F(IntakeTest, GivesASecondWriterANameOfItsOwnAlsoWhereTheCellStatesTheName) {
+  cell.scene.objects[0].source = "arm";
+  Heard stated(cell, {.admits_sources = true, .most_samples = 8});
+  for (const std::uint64_t writer : {1, 2}) {
+    PoseBatch batch{SourceName("arm"), 1, 0, {}};
+    batch.samples.push_back(sample(0, at(0, 0, 1), stated.now.realtime_ns));
+    Sample<clearance_msg_PoseBatch> wire = make_batch(1);
+    to_wire(batch, *wire);
+    stated.intake.take({.topic = stated.intake.topic(TopicKind::kPoses)->number,
+                        .cdr = encoder.encode(*wire),
+                        .writer = writer},
+                       stated.now);
+  }
+  const std::vector<PoseBatch> both = stated.all();
+  ASSERT_EQ(both.size(), 2u);
+  EXPECT_EQ(both[0].source.view(), "arm");
+  EXPECT_EQ(both[1].source.view(), "arm#2");
+}
+
 TEST_F(IntakeTest, TellsOnceOfASourceWhosePosesAreOfAnotherScene) {
   take(1, 1, 1, "arm", cell.scene.revision + 1);
   take(2, 1, 1, "arm", cell.scene.revision + 1);
