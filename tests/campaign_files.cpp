@@ -21,6 +21,7 @@
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tools/cases/case.hpp"
 
@@ -137,7 +138,7 @@ std::vector<Kind> kinds(const test::ScratchFolder& folder) {
   write_text(folder / "good.srdf", kSrdf);
   write_text(folder / "good.csv", pose_log());
   static_cast<void>(record_csv(folder / "good.csv", folder / "good.mcap", &cell));
-  const std::string cells = std::string(CLEARANCE_SOURCE) + "/config/cells/";
+  const std::string cells = test::places::sources() + "/config/cells/";
   std::vector<Kind> all = {
       {"cell", "cell.yaml", read_text(cells + "mcintyre.yaml"), is_cell},
       {"cell with zones", "cell.yaml", kCell, is_cell},

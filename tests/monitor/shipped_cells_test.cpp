@@ -12,6 +12,7 @@
 #include "monitor/monitor.hpp"
 #include "tests/monitor/fresh_distance.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
@@ -20,7 +21,7 @@ using test::kStart;
 
 Cell shipped(const std::string& name) {
   const CellResult read =
-      read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells" / name);
+      read_cell(std::filesystem::path(test::places::sources()) / "config/cells" / name);
   return std::get<Cell>(read);
 }
 

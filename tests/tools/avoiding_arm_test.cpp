@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "monitor/client/avoiding_arm/quadratic_programme.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -64,10 +65,10 @@ Outcome outcome_of(const std::string& output, const std::string& name) {
 }
 
 TEST(AvoidingArm, KeepsFartherFromMovingObstaclesAndStaysNearItsPath) {
-  const std::string cell = CLEARANCE_SOURCE "/config/cells/avoid.yaml";
+  const std::string cell = test::places::sources() + "/config/cells/avoid.yaml";
   const DdsOptions dds = own_dds();
   ChildProcess daemon(kDaemon, with({cell}, dds_arguments(dds)));
-  ChildProcess avoid(std::string(CLEARANCE_BIN) + "/avoiding_arm",
+  ChildProcess avoid(test::places::programs() + "/avoiding_arm",
                      with({cell, "--seconds", "5"}, dds_arguments(dds)));
   ASSERT_EQ(avoid.wait(std::chrono::seconds(120)), 0) << avoid.output();
   const Outcome without = outcome_of(avoid.output(), "without avoidance"),

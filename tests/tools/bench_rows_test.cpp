@@ -10,13 +10,14 @@
 
 #include "monitor/files/build_info.hpp"
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
 
-const std::string kBench = std::string(CLEARANCE_BIN) + "/clearance-bench";
-const std::string kThesis = std::string(CLEARANCE_BIN) + "/clearance-thesis";
+const std::string kBench = test::places::programs() + "/clearance-bench";
+const std::string kThesis = test::places::programs() + "/clearance-thesis";
 
 std::set<std::string> names(const std::string& program) {
   test::ChildProcess bench(program, {"--benchmark_list_tests"});
@@ -103,8 +104,9 @@ TEST(BenchReport, ShowsTheRowsOfTheJsonThatItIsGiven) {
       kBench, {"--benchmark_filter=^(tracked|peer/qp/tracked)/f2$", "--benchmark_min_time=0.001",
                "--benchmark_out=" + file, "--benchmark_out_format=json"});
   ASSERT_EQ(bench.wait(), 0) << bench.output();
-  test::ChildProcess report("/usr/bin/env", {"python3", CLEARANCE_SOURCE "/tools/bench/report",
-                                             (folder / "").string(), "queries", "--json", file});
+  test::ChildProcess report("/usr/bin/env",
+                            {"python3", test::places::sources() + "/tools/bench/report",
+                             (folder / "").string(), "queries", "--json", file});
   ASSERT_EQ(report.wait(), 0) << report.output();
   const std::string tables = test::read_text(folder / "report.md");
   EXPECT_THAT(tables, testing::HasSubstr("## Tracked, against peers"));

@@ -6,6 +6,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -82,9 +83,9 @@ class DaemonInputs : public testing::Test {
 class SteppedClock : public DaemonInputs {
  protected:
   void SetUp() override {
-    if (std::string(CLEARANCE_STEPPED_CLOCK).empty()) GTEST_SKIP() << "not with sanitizers";
+    if (test::places::stepped_clock().empty()) GTEST_SKIP() << "not with sanitizers";
     step(0);
-    start({.environment = {{"LD_PRELOAD", CLEARANCE_STEPPED_CLOCK},
+    start({.environment = {{"LD_PRELOAD", test::places::stepped_clock()},
                            {"CLEARANCE_CLOCK_AHEAD", file()}}});
     ASSERT_TRUE(send_until(PairStatus::kConverged, 5 * kSecond)) << daemon->output();
   }

@@ -7,6 +7,7 @@
 #include <csignal>
 
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -15,7 +16,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const bool kNoHangingDisk = std::string(CLEARANCE_HANGING_DISK).empty();
+const bool kNoHangingDisk = test::places::hanging_disk().empty();
 
 // A daemon that records, with a client for its reports and its health.
 class RecordingDaemon : public testing::Test {
@@ -34,7 +35,7 @@ class RecordingDaemon : public testing::Test {
   }
   // Starts the daemon with a disk that hangs as long as the file 'hang' exists.
   void start_on_a_disk_that_may_hang() {
-    start({.environment = {{"LD_PRELOAD", CLEARANCE_HANGING_DISK},
+    start({.environment = {{"LD_PRELOAD", test::places::hanging_disk()},
                            {"CLEARANCE_DISK_HANGS_IF", path("hang")}}});
     ASSERT_TRUE(eventually([&] { return size("run.mcap") > 50'000; })) << daemon->output();
   }

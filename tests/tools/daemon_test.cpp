@@ -7,6 +7,7 @@
 
 #include "monitor/files/build_info.hpp"
 #include "monitor/monitor.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {
@@ -112,7 +113,7 @@ TEST(Daemon, EveryReportIsWhatAnOfflineRunOfTheSameStreamGives) {
 // The rate is 200 Hz, so that a sanitizer on a busy machine keeps up with every report.
 TEST(Daemon, AgreesWithTheOfflineRunOnAShippedCell) {
   std::ostringstream text;
-  text << std::ifstream(std::string(CLEARANCE_SOURCE) + "/config/cells/mcintyre.yaml").rdbuf();
+  text << std::ifstream(test::places::sources() + "/config/cells/mcintyre.yaml").rdbuf();
   const std::string rate = "rate_hz: 1000";
   std::string slow = text.str();
   ASSERT_NE(slow.find(rate), std::string::npos);

@@ -15,6 +15,7 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -37,7 +38,7 @@ class DistanceTool : public testing::Test {
   // `arguments` as a shell reads them; `in` is the standard input.
   Outcome run(const std::string& arguments, const std::string& in = "") {
     std::ofstream(path("in")) << in;
-    const std::string command = std::string(CLEARANCE_BIN) + "/clearance-distance " + arguments +
+    const std::string command = test::places::programs() + "/clearance-distance " + arguments +
                                 " < " + path("in") + " > " + path("out") + " 2> " + path("err");
     const int code = std::system(command.c_str());
     Outcome result;
@@ -339,7 +340,8 @@ TEST_F(DistanceTool, HelpShowsAnExampleThatWorks) {
   const std::string help = run("--help").out;
   const std::size_t start = help.find("  echo '");
   ASSERT_NE(start, std::string::npos);
-  std::ofstream(path("example.sh")) << "PATH=" << CLEARANCE_BIN << ":$PATH\n" << help.substr(start);
+  std::ofstream(path("example.sh")) << "PATH=" << test::places::programs() << ":$PATH\n"
+                                    << help.substr(start);
   const std::string command = "sh " + path("example.sh") + " > " + path("out") + " 2> /dev/null";
   EXPECT_EQ(std::system(command.c_str()), 0);
   EXPECT_NEAR(Json::parse(read("out"))["distance"].get<double>(), 0.5, 1e-15);

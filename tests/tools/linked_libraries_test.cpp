@@ -6,6 +6,8 @@
 #include <memory>
 #include <string>
 
+#include "tests/shared/places.hpp"
+
 namespace clearance {
 namespace {
 
@@ -14,7 +16,7 @@ using testing::Not;
 
 // The libraries that a program names for the loader, and their own dependencies.
 std::string libraries_of(const std::string& program) {
-  const std::string command = "ldd " CLEARANCE_BIN "/" + program;
+  const std::string command = "ldd " + test::places::programs() + "/" + program;
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> output(popen(command.c_str(), "r"), pclose);
   std::string text;
   for (int c = std::getc(output.get()); c != EOF; c = std::getc(output.get())) {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tools/cases/drawn_meshes.hpp"
@@ -75,15 +76,14 @@ class ImportedJoints : public RunsPrograms {};
 
 // The joints of the shipped arm move, and both runs write the bounds of every pair and tick.
 TEST_F(ImportedJoints, GiveTheBoundsOfTheUrdfAlone) {
-  std::filesystem::copy(std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arm",
-                        folder / "arm");
+  std::filesystem::copy(test::places::sources() + "/config/cells/seven_joint_arm", folder / "arm");
   std::string log = "t_ns,joint1,joint2,joint3,joint4,joint5,joint6,joint7,finger\n";
   for (int tick = 0; tick < kTicks; ++tick) {
     log += std::to_string(tick * kTick) + ",0.1,0." + std::to_string(10 + tick) +
            ",-0.3,0.5,0.2,0.4,0.1,0.02\n";
   }
   write_text(folder / "joints.csv", log);
-  ASSERT_EQ(0, run(std::string(CLEARANCE_BIN) + "/clearance-scene",
+  ASSERT_EQ(0, run(test::places::programs() + "/clearance-scene",
                    {"import", path("arm/arm.urdf"), "--joints", "-o", path("cell.yaml")}))
       << output;
   const auto table = [&](const char* option, const char* file, const char* csv) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -16,7 +17,8 @@ namespace {
 using nlohmann::json;
 
 json read_officially(const std::filesystem::path& file) {
-  const std::string command = "node " CLEARANCE_MCAP_JS "/read.mjs '" + file.string() + "' 2>&1";
+  const std::string command =
+      "node " + test::places::mcap_js() + "/read.mjs '" + file.string() + "' 2>&1";
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string output;
   std::array<char, 65536> piece;

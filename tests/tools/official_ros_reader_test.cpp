@@ -15,6 +15,7 @@
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/cyclone_private.hpp"
 #include "tests/shared/base64.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -55,7 +56,7 @@ std::vector<json> read_officially(const std::string& type, const std::vector<Byt
   for (const Bytes& message : messages) lines += type + " " + base64(message) + "\n";
   write_text(folder / "messages.txt", lines);
   const std::string command =
-      "node " CLEARANCE_MCAP_JS "/read_ros.mjs < " + (folder / "messages.txt").string();
+      "node " + test::places::mcap_js() + "/read_ros.mjs < " + (folder / "messages.txt").string();
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string output;
   for (int c = std::getc(pipe); c != EOF; c = std::getc(pipe)) output += static_cast<char>(c);
@@ -169,7 +170,7 @@ TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
 }
 
 TEST_F(OfficialRosReader, DecodesJointStatesOfTheSimulatedRobot) {
-  const std::string urdf = std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arm/arm.urdf";
+  const std::string urdf = test::places::sources() + "/config/cells/seven_joint_arm/arm.urdf";
   RawTopic states(client, kRosJointState, "rt/arm/joint_states");
   ChildProcess robot(kRobot, with({"--urdf", urdf, "--ros", "/arm/joint_states", "--rate", "200"},
                                   dds_arguments(dds)));

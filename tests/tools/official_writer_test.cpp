@@ -12,6 +12,7 @@
 #include "tests/monitor/bags/ros_bags.hpp"
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/shared/base64.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -68,8 +69,8 @@ class OfficialWriter : public testing::Test {
   // Returns the output of node.
   std::string write(const json& spec, const std::string& out) {
     write_text(folder / "spec.json", spec.dump());
-    const std::string command =
-        "node " CLEARANCE_MCAP_JS "/write_bag.mjs " + out + " < " + (folder / "spec.json").string();
+    const std::string command = "node " + test::places::mcap_js() + "/write_bag.mjs " + out +
+                                " < " + (folder / "spec.json").string();
     std::FILE* const pipe = popen(command.c_str(), "r");
     std::string output;
     for (int c = std::getc(pipe); c != EOF; c = std::getc(pipe)) output += static_cast<char>(c);

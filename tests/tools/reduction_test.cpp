@@ -12,6 +12,7 @@
 
 #include "config/cell/cell_file.hpp"
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tools/cases/drawn_meshes.hpp"
 
@@ -34,8 +35,7 @@ class Reduction : public testing::Test {
   }
 
   int run(std::vector<std::string> arguments) {
-    test::ChildProcess program(std::string(CLEARANCE_BIN) + "/clearance-scene",
-                               std::move(arguments));
+    test::ChildProcess program(test::places::programs() + "/clearance-scene", std::move(arguments));
     const int status = program.wait();
     output_ = program.output();
     return status;

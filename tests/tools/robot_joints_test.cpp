@@ -7,14 +7,15 @@
 #include <string>
 
 #include "config/write/single_robot_cell.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
 namespace {
 
-const std::string kArms = std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arms.yaml";
-const std::string kArm = std::string(CLEARANCE_SOURCE) + "/config/cells/seven_joint_arm/arm.urdf";
+const std::string kArms = test::places::sources() + "/config/cells/seven_joint_arms.yaml";
+const std::string kArm = test::places::sources() + "/config/cells/seven_joint_arm/arm.urdf";
 
 // Returns true if every published pair of a report is known and on time.
 bool all_known(const clearance_msg_Distances& report) {

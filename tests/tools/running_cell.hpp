@@ -15,15 +15,16 @@
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 
-inline const std::string kDaemon = std::string(CLEARANCE_BIN) + "/clearanced";
-inline const std::string kRobot = std::string(CLEARANCE_BIN) + "/clearance-robot";
-inline const std::string kRecord = std::string(CLEARANCE_BIN) + "/clearance-record";
-inline const std::string kReplay = std::string(CLEARANCE_BIN) + "/clearance-replay";
-inline const std::string kWatch = std::string(CLEARANCE_BIN) + "/clearance-watch";
+inline const std::string kDaemon = test::places::programs() + "/clearanced";
+inline const std::string kRobot = test::places::programs() + "/clearance-robot";
+inline const std::string kRecord = test::places::programs() + "/clearance-record";
+inline const std::string kReplay = test::places::programs() + "/clearance-replay";
+inline const std::string kWatch = test::places::programs() + "/clearance-watch";
 
 // A cell in a temporary file of its own.
 class CellFile {

@@ -10,17 +10,18 @@
 #include <string>
 #include <vector>
 
+#include "tests/shared/places.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
 
-inline const std::string kView = std::string(CLEARANCE_BIN) + "/clearance-view";
+inline const std::string kView = test::places::programs() + "/clearance-view";
 
-inline const std::string kScripts = CLEARANCE_VIEW_JS;
+inline const std::string kScripts = test::places::view_js();
 
 // A folder in the build for pictures that are kept after the run.
 inline std::string pictures() {
-  const std::filesystem::path folder = CLEARANCE_VIEW_PICTURES;
+  const std::filesystem::path folder = test::places::view_pictures();
   std::filesystem::create_directories(folder);
   return folder.string();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -27,7 +28,7 @@ class SceneProgram : public testing::Test {
   }
 
   int run(std::vector<std::string> arguments) {
-    ChildProcess program(std::string(CLEARANCE_BIN) + "/clearance-scene", std::move(arguments));
+    ChildProcess program(test::places::programs() + "/clearance-scene", std::move(arguments));
     const int status = program.wait();
     output_ = program.output();
     return status;
@@ -184,7 +185,7 @@ TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
             std::string::npos)
       << output_;
   EXPECT_LT(output_.find("-o,--output"), output_.find("--srdf")) << output_;
-  ChildProcess daemon(std::string(CLEARANCE_BIN) + "/clearanced", {"--help"});
+  ChildProcess daemon(test::places::programs() + "/clearanced", {"--help"});
   ASSERT_EQ(daemon.wait(), 0);
   EXPECT_NE(daemon.output().find(
                 "Usage: clearanced (CELL | --urdf TEXT | --robot-description TEXT) [OPTIONS]"),

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -21,7 +22,7 @@ namespace {
 
 using nlohmann::json;
 
-const std::string kTwoArms = std::string(CLEARANCE_SOURCE) + "/config/cells/two_arms.yaml";
+const std::string kTwoArms = test::places::sources() + "/config/cells/two_arms.yaml";
 
 TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   const DdsOptions dds = own_dds();

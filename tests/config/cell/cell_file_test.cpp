@@ -11,6 +11,7 @@
 
 #include "tests/config/cells.hpp"
 #include "tests/shared/mistake_at.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
@@ -279,7 +280,7 @@ TEST(CellFile, ADirectoryIsNoCell) {
 }
 
 TEST(CellFile, TheExampleOfTheReadmeIsAGoodCell) {
-  std::ifstream stream(std::string(CLEARANCE_SOURCE) + "/config/README.md");
+  std::ifstream stream(test::places::sources() + "/config/README.md");
   const std::string text{std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
   const std::string fence = "```yaml\n";
   const std::size_t start = text.find(fence) + fence.size();

@@ -11,12 +11,13 @@
 
 #include "tests/config/cells.hpp"
 #include "tests/shared/mutation.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
 
 std::string shipped_text(const std::string& name) {
-  std::ifstream stream(std::string(CLEARANCE_SOURCE) + "/config/cells/" + name);
+  std::ifstream stream(test::places::sources() + "/config/cells/" + name);
   return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 

@@ -9,12 +9,13 @@
 #include "core/distance.hpp"
 #include "core/model/curved_extent.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
 
 Cell shipped(const std::string& name) {
-  CellResult result = read_cell(std::string(CLEARANCE_SOURCE) + "/config/cells/" + name);
+  CellResult result = read_cell(test::places::sources() + "/config/cells/" + name);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) {
     for (const CellError& error : *errors) ADD_FAILURE() << error.text;
     return {};

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/shared/child_process.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
@@ -27,7 +28,8 @@ std::set<std::string> functions_beyond_the_baseline(std::istream& disassembly) {
 }
 
 TEST(InstructionSets, BeyondTheBaselineAreUsedOnlyWhereTheyArePickedAtRunTime) {
-  test::ChildProcess objdump("/usr/bin/objdump", {"-d", "--no-show-raw-insn", CLEARANCE_CORE});
+  test::ChildProcess objdump("/usr/bin/objdump",
+                             {"-d", "--no-show-raw-insn", test::places::core_library()});
   ASSERT_EQ(objdump.wait(), 0) << objdump.output();
   std::istringstream disassembly(objdump.output());
   const std::set<std::string> found = functions_beyond_the_baseline(disassembly);

@@ -11,13 +11,14 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/news.hpp"
 #include "monitor/intake/pose_sources.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance {
 namespace {
 
 std::string faults() {
   std::ostringstream text;
-  text << std::ifstream(std::string(CLEARANCE_SOURCE) + "/monitor/FAULTS.md").rdbuf();
+  text << std::ifstream(test::places::sources() + "/monitor/FAULTS.md").rdbuf();
   return text.str();
 }
 

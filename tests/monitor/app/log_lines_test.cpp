@@ -1,5 +1,6 @@
 // The wording of every log line of the daemon is kept in tests/monitor/messages.golden.
 #include "monitor/app/log_lines.hpp"
+#include "tests/shared/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +12,7 @@
 namespace clearance {
 namespace {
 
-const std::string kGolden = std::string(CLEARANCE_SOURCE) + "/tests/monitor/messages.golden";
+const std::string kGolden = test::places::sources() + "/tests/monitor/messages.golden";
 
 std::string content(const std::string& file) {
   std::ostringstream text;
@@ -48,7 +49,7 @@ TEST(LogLines, AreWordedAsInTheGoldenFile) {
 }
 
 TEST(LogLines, AreAllInTheList) {
-  const std::string header = content(std::string(CLEARANCE_SOURCE) + "/monitor/app/log_lines.hpp");
+  const std::string header = content(test::places::sources() + "/monitor/app/log_lines.hpp");
   std::size_t entries = 0;
   for (std::size_t at = 0; (at = header.find("constexpr LogLine<", at)) != std::string::npos;
        ++at) {

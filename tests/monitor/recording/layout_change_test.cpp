@@ -13,6 +13,7 @@
 #include "monitor/wire/message_fields.hpp"
 #include "other_version.h"
 #include "tests/monitor/replay/offline_replay_run.hpp"
+#include "tests/shared/places.hpp"
 
 namespace clearance::test {
 namespace {
@@ -32,8 +33,8 @@ std::vector<std::byte> encoded(const Sample& sample, const dds_topic_descriptor_
 // The IDL in a recording of the other build: other_version.idl with the structs of one version
 // only, under the names of this build's structs.
 std::string idl_of(const std::string& version) {
-  std::string text =
-      read_text(std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/wire/other_version.idl");
+  std::string text = read_text(std::filesystem::path(test::places::sources()) /
+                               "tests/monitor/wire/other_version.idl");
   text.erase(0, text.find("module"));
   const std::string_view other = version == "Older" ? "struct Newer" : "struct Older";
   for (std::size_t at; (at = text.find(other)) != std::string::npos;) {
@@ -229,7 +230,7 @@ TEST_F(OtherBuild, RecordingOfATypeThatCannotBeReadIsRefusedWithItsBuild) {
 // A recording in the first layout. It must stay readable, whatever fields are added later.
 TEST(FirstLayout, IsReadableForEver) {
   const std::filesystem::path file =
-      std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/recording/first_layout.mcap";
+      std::filesystem::path(test::places::sources()) / "tests/monitor/recording/first_layout.mcap";
   RecordingOutline outlined = outline(file);
   ASSERT_EQ("", outlined.error);
   EXPECT_TRUE(outlined.has_gradients);

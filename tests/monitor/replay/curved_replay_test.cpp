@@ -10,6 +10,7 @@
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -20,7 +21,7 @@ using test::kTick;
 
 Cell round_arm() {
   return std::get<Cell>(
-      read_cell(std::filesystem::path(CLEARANCE_SOURCE) / "config/cells/round_arm.yaml"));
+      read_cell(std::filesystem::path(test::places::sources()) / "config/cells/round_arm.yaml"));
 }
 
 // Records ticks of the cell's own motion from `start_s` on, as the daemon does. Returns the least

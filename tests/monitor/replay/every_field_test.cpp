@@ -13,6 +13,7 @@
 #include "monitor/replay/report_recorder.hpp"
 #include "monitor/wire/message_fields.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -21,7 +22,7 @@ namespace {
 using testing::HasSubstr;
 
 const std::filesystem::path kRecording =
-    std::filesystem::path(CLEARANCE_SOURCE) / "tests/monitor/recording/first_layout.mcap";
+    std::filesystem::path(test::places::sources()) / "tests/monitor/recording/first_layout.mcap";
 
 // Changes the number of index `wanted` in a message, counted from 0, and returns its name. The
 // first element of a list stands for all. Fields that no tick determines are skipped unless they

@@ -1,4 +1,5 @@
 #include "monitor/wire/topics.hpp"
+#include "tests/shared/places.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +19,7 @@ std::string trimmed(const std::string& text) {
 
 // The rows of the table of topics in idl/README.md, cell by cell.
 std::vector<std::vector<std::string>> documented() {
-  std::ifstream page(CLEARANCE_SOURCE "/idl/README.md");
+  std::ifstream page(test::places::sources() + "/idl/README.md");
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(page, line);) {
     if (!line.starts_with("| `clearance/")) continue;
