@@ -29,6 +29,7 @@
 #include "monitor/objects/displacements.hpp"
 #include "monitor/objects/ingest.hpp"
 #include "monitor/objects/presence.hpp"
+#include "monitor/objects/take_over.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/schedule/scheduler.hpp"
 #include "monitor/separation/separations.hpp"
@@ -74,11 +75,12 @@ struct Monitor::State {
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
-  explicit State(const Scene& the_scene);
+  State(const Scene& the_scene, const KnownHulls& known_hulls);
 
   [[nodiscard]] TickView view() const noexcept {
     return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns};
   }
+  void begin_first_tick() noexcept;
   void add_presence_changes() noexcept;
   void count_pairs() noexcept;
   void finish_report(std::uint32_t queries) noexcept;
@@ -87,12 +89,17 @@ struct Monitor::State {
   [[nodiscard]] PairReport pair_report(std::uint32_t pair) const noexcept;
 };
 
-Monitor::Monitor(const Scene& scene) : state_(std::make_unique<State>(scene)) {}
+Monitor::Monitor(const Scene& scene, const Monitor* similar)
+    : state_(std::make_unique<State>(scene, similar == nullptr
+                                                ? KnownHulls{}
+                                                : KnownHulls{similar->state_->scene.objects,
+                                                             similar->state_->culling.hulls()})) {}
 Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples,
                             std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
+  if (s.displacer.is_first()) s.begin_first_tick();
   ingest(samples, joints, time, s.scene, s.inputs);
   s.displacer.displace(s.inputs);
   s.add_presence_changes();
@@ -123,6 +130,15 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.finish_report(s.scene.budget - budget.left());
   check_report(s.report);
   return s.report;
+}
+
+void Monitor::take_over(const Monitor& before, const SceneMap& map,
+                        SourceNumbers& numbers) noexcept {
+  State& s = *state_;
+  CLEARANCE_INVARIANT(s.displacer.is_first());
+  clearance::take_over(before.state_->inputs, map, s.scene, numbers, s.inputs);
+  s.zones.take_over(before.state_->zones, map);
+  s.zones.count_absent(s.inputs.objects);
 }
 
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept {
@@ -204,7 +220,7 @@ std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.stamp_ns;
 }
 
-Monitor::State::State(const Scene& the_scene)
+Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
     : scene(the_scene),
       zone_levels(the_scene),
       share(refresh_share(the_scene)),
@@ -216,7 +232,7 @@ Monitor::State::State(const Scene& the_scene)
       table(the_scene, parts),
       scheduler(the_scene, share, parts, table, zone_levels),
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
-              scheduler.left_out(), share),
+              scheduler.left_out(), share, known_hulls),
       crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
       zones(the_scene, zone_levels),
       separations(the_scene, zone_levels),
@@ -248,11 +264,18 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   write_minimum();
 }
 
+// No pair has waited longer for its refresh than this monitor has run. All objects count as
+// changed, whether their presence is or not.
+void Monitor::State::begin_first_tick() noexcept {
+  std::ranges::fill(table.refreshed_cycle, inputs.cycle);
+  presence_changed.clear();
+}
+
 // An object that has become absent, or present without a pose, has not moved. It is therefore not
-// in `changed`, except in the first tick.
+// in `changed`.
 void Monitor::State::add_presence_changes() noexcept {
   for (const std::uint32_t object : presence_changed) {
-    if (!inputs.objects[object].input.has_value && inputs.cycle > 1) displacer.add_changed(object);
+    if (!inputs.objects[object].input.has_value) displacer.add_changed(object);
   }
   presence_changed.clear();
 }

@@ -7,8 +7,10 @@
 #include <span>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/scene_map.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/report.hpp"
 #include "monitor/swept/swept_bounds.hpp"
@@ -32,11 +34,21 @@ struct InputAge {
 
 class Monitor {
  public:
-  // Allocates all memory that it ever needs. The scene must outlive the monitor.
-  explicit Monitor(const Scene& scene);
+  // Allocates all memory that it ever needs. The scene must outlive the monitor. `similar`, if not
+  // null, is the monitor of a scene with partly the same bodies. What it knows of their shapes is
+  // used again. It may tick in another thread meanwhile.
+  explicit Monitor(const Scene& scene, const Monitor* similar = nullptr);
   ~Monitor();
   Monitor(const Monitor&) = delete;
   Monitor& operator=(const Monitor&) = delete;
+
+  // For a changed scene, before the first tick and between two ticks of `before`: goes on with the
+  // inputs and zones of that monitor. `map` is that of the two scenes. `numbers` has numbered the
+  // sources of the samples that `before` got, and numbers those of both from now on. The same ticks
+  // then bring both monitors to the same inputs. No bound of a pair is taken over: the first ticks
+  // find them afresh. Does not allocate, throw or lock. The time grows with the number of objects,
+  // not with that of pairs.
+  void take_over(const Monitor& before, const SceneMap& map, SourceNumbers& numbers) noexcept;
 
   // Runs one cycle: takes in the samples in the given order, those of joints first. Refused samples
   // are counted and never used. Then it moves the objects, carries bounds forward, evaluates pairs

@@ -27,12 +27,13 @@ std::uint32_t least_left(std::uint32_t budget, const RefreshShare& share) noexce
 
 Culling::Culling(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
                  const ZoneLevels& zone_levels, std::vector<double> urgent,
-                 std::span<const std::uint32_t> left_out, const RefreshShare& share)
+                 std::span<const std::uint32_t> left_out, const RefreshShare& share,
+                 const KnownHulls& known)
     : least_left_(least_left(scene.budget, share)),
       known_(scene),
       broad_phase_(scene, parts, zone_levels, std::move(urgent), left_out,
                    std::max(kLeastActivated, kActivatedPerQuery * scene.budget)),
-      hulls_(scene, parts),
+      hulls_(scene, parts, known),
       is_updated_(table.pairs(), 0) {
   for (auto* list : {&active_, &updated_}) list->reserve(table.pairs());
   decided_.reserve(table.pairs());

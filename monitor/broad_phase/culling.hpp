@@ -20,10 +20,14 @@ namespace clearance {
 
 class Culling {
  public:
-  // `urgent` and `left_out` are passed on to BroadPhase, whose constructor explains them.
+  // `urgent` and `left_out` are passed on to BroadPhase, whose constructor explains them, and
+  // `known` to HullBound.
   Culling(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
           const ZoneLevels& zone_levels, std::vector<double> urgent,
-          std::span<const std::uint32_t> left_out, const RefreshShare& share);
+          std::span<const std::uint32_t> left_out, const RefreshShare& share,
+          const KnownHulls& known = {});
+
+  [[nodiscard]] std::span<const BoundingHull> hulls() const noexcept { return hulls_.hulls(); }
 
   // Call this between ticks when an object has become absent.
   void forget_object(std::uint32_t object, PairTable& table) noexcept {

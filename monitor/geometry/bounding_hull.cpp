@@ -36,23 +36,28 @@ std::vector<PlacedShape> shapes_of(const Object& object) {
   return shapes;
 }
 
-std::vector<BoundingHull> bounding_hulls(const Scene& scene) {
-  std::vector<BoundingHull> hulls;
-  std::vector<std::size_t> originals;  // objects whose hull was made
-  for (const Object& object : scene.objects) {
+std::vector<BoundingHull> bounding_hulls(const Scene& scene, const KnownHulls& known) {
+  struct Made {
+    const Object* object;
     BoundingHull hull;
-    if (would_be_simpler_as_hull(object)) {
-      const auto original = std::find_if(
-          originals.begin(), originals.end(),
-          [&](std::size_t earlier) { return same_parts(scene.objects[earlier], object); });
-      if (original != originals.end()) {
-        hull = hulls[*original];
-      } else {
-        originals.push_back(hulls.size());
-        hull = hull_of(object);
-      }
+  };
+  std::vector<Made> made;
+  for (std::size_t i = 0; i < known.objects.size(); ++i) {
+    if (known.hulls[i] != nullptr) made.push_back({&known.objects[i], known.hulls[i]});
+  }
+  std::vector<BoundingHull> hulls;
+  for (const Object& object : scene.objects) {
+    if (!would_be_simpler_as_hull(object)) {
+      hulls.push_back(nullptr);
+      continue;
     }
-    hulls.push_back(std::move(hull));
+    const auto same = std::ranges::find_if(
+        made, [&](const Made& each) { return same_parts(*each.object, object); });
+    if (same != made.end()) {
+      hulls.push_back(same->hull);
+    } else {
+      hulls.push_back(made.emplace_back(&object, hull_of(object)).hull);
+    }
   }
   return hulls;
 }

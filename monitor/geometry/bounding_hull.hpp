@@ -5,6 +5,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "config/scene/scene.hpp"
@@ -21,8 +22,17 @@ inline constexpr std::size_t kFineFacets = 2 * EnclosingOptions().facets;
 // memory.
 [[nodiscard]] std::vector<PlacedShape> shapes_of(const Object& object);
 
+// The hulls of a scene, by object. They do not change, so that a thread may read them while the
+// scene's monitor ticks.
+struct KnownHulls {
+  std::span<const Object> objects = {};
+  std::span<const BoundingHull> hulls = {};
+};
+
 // One hull an object, in its frame; null for an object of one simple part, or with an unbounded
-// one. Objects of the same parts share a hull.
-[[nodiscard]] std::vector<BoundingHull> bounding_hulls(const Scene& scene);
+// one. Objects of the same parts share a hull, with those of another scene, too: to find a hull
+// takes milliseconds.
+[[nodiscard]] std::vector<BoundingHull> bounding_hulls(const Scene& scene,
+                                                       const KnownHulls& known = {});
 
 }  // namespace clearance

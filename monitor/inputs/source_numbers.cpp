@@ -1,10 +1,15 @@
 #include "monitor/inputs/source_numbers.hpp"
 
 #include <algorithm>
-#include <iterator>
+#include <limits>
 #include <string_view>
 
 namespace clearance {
+namespace {
+
+constexpr std::uint64_t kLast = std::numeric_limits<std::uint64_t>::max();
+
+}  // namespace
 
 std::vector<SourceName> named_sources(const Scene& scene) {
   std::vector<SourceName> named;
@@ -17,25 +22,37 @@ std::vector<SourceName> named_sources(const Scene& scene) {
   return named;
 }
 
-SourceNumbers::SourceNumbers(const Scene& scene) {
-  for (const SourceName& source : named_sources(scene)) {
-    named_ = std::max<std::size_t>(named_, of(source) + 1);
+SourceNumbers::SourceNumbers(const Scene& scene) { add_named(named_sources(scene)); }
+
+bool SourceNumbers::add_named(std::span<const SourceName> sources) noexcept {
+  auto free = static_cast<std::ptrdiff_t>(kMaxSources) -
+              std::ranges::count(places_, true, &Place::is_named);
+  for (const SourceName& source : sources) {
+    const Place* place = find(source);
+    if (place == nullptr || !place->is_named) --free;
   }
+  if (free < 0) return false;
+  for (const SourceName& source : sources) places_[of(source)].is_named = true;
+  return true;
+}
+
+const SourceNumbers::Place* SourceNumbers::find(const SourceName& source) const noexcept {
+  const auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
+    return candidate.last_use > 0 && candidate.source == source;
+  });
+  return place == places_.end() ? nullptr : &*place;
 }
 
 // A number that was never used has last_use 0 and is therefore chosen first.
 std::uint32_t SourceNumbers::of(const SourceName& source) noexcept {
-  auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
-    return candidate.last_use > 0 && candidate.source == source;
-  });
-  if (place == places_.end()) {
-    place =
-        std::ranges::min_element(std::next(places_.begin(), static_cast<std::ptrdiff_t>(named_)),
-                                 places_.end(), {}, &Place::last_use);
-    place->source = source;
-  }
-  place->last_use = ++uses_;
-  return static_cast<std::uint32_t>(place - places_.begin());
+  const auto last_use = [](const Place& place) { return place.is_named ? kLast : place.last_use; };
+  const Place* known = find(source);
+  Place& place =
+      known != nullptr ? places_[index(*known)] : *std::ranges::min_element(places_, {}, last_use);
+  if (known == nullptr && place.is_named) return kNoSource;
+  place.source = source;
+  place.last_use = ++uses_;
+  return index(place);
 }
 
 void SourceNumbers::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
@@ -57,7 +74,7 @@ std::uint32_t SourceNumbers::namesake_of(const SourceName& source) const noexcep
   const auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
     return candidate.last_use > 0 && candidate.source.view() == name.substr(0, mark);
   });
-  return place == places_.end() ? kNoSource : static_cast<std::uint32_t>(place - places_.begin());
+  return place == places_.end() ? kNoSource : index(*place);
 }
 
 SourceName SourceNumbers::name(std::uint32_t number) const noexcept {

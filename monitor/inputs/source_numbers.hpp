@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "config/scene/scene.hpp"
@@ -16,13 +17,17 @@ namespace clearance {
 [[nodiscard]] std::vector<SourceName> named_sources(const Scene& scene);
 
 // The sources that the cell names come first, in its order. The others follow in the order in which
-// they are first heard. When all kMaxSources numbers are taken, a new source replaces the source
-// that was heard longest ago and that the cell does not name. The same requests in the same order
-// give the same numbers.
+// they are first heard, or are named by a changed scene. When all kMaxSources numbers are taken, a
+// new source replaces the source that was heard longest ago and that the cell does not name. The
+// same requests in the same order give the same numbers.
 class SourceNumbers {
  public:
   explicit SourceNumbers(const Scene& scene);
+  // kNoSource: the cell names kMaxSources other sources.
   [[nodiscard]] std::uint32_t of(const SourceName& source) noexcept;
+  // The scene was changed: the sources that it names keep their numbers from now on, too. Returns
+  // false, and numbers none, if there are more than kMaxSources named ones now.
+  bool add_named(std::span<const SourceName> sources) noexcept;
   // Appends the samples of a batch with the number of their sender. A sender NAME#2 is the second
   // writer of NAME: the number of NAME is set as well, if that has one. Does not allocate where the
   // capacities suffice.
@@ -32,14 +37,18 @@ class SourceNumbers {
   [[nodiscard]] SourceName name(std::uint32_t number) const noexcept;
 
  private:
-  [[nodiscard]] std::uint32_t namesake_of(const SourceName& source) const noexcept;
-
   struct Place {
     SourceName source;
     std::uint64_t last_use = 0;  // 0: never
+    bool is_named = false;       // by the cell
   };
+  [[nodiscard]] const Place* find(const SourceName& source) const noexcept;
+  [[nodiscard]] std::uint32_t namesake_of(const SourceName& source) const noexcept;
+  [[nodiscard]] std::uint32_t index(const Place& place) const noexcept {
+    return static_cast<std::uint32_t>(&place - places_.data());
+  }
+
   std::array<Place, kMaxSources> places_;
-  std::size_t named_ = 0;
   std::uint64_t uses_ = 0;
 };
 

@@ -1,6 +1,7 @@
 #include "monitor/objects/displacements.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -43,10 +44,13 @@ void Displacer::displace(Inputs& inputs) noexcept {
   const std::size_t count = inputs.objects.size(), first_link = inputs.robots.first_link();
   displaced_.changed.clear();
   visited_.clear();
-  if (inputs.cycle == 1) {
+  const bool first = std::exchange(first_, false);
+  if (first) {
     for (std::uint32_t i = 0; i < count; ++i) displaced_.changed.push_back(i);
   }
-  const auto visit_due = [&](std::size_t i) { visit(static_cast<std::uint32_t>(i), inputs); };
+  const auto visit_due = [&](std::size_t i) {
+    visit(static_cast<std::uint32_t>(i), first, inputs);
+  };
   inputs.visits.each_due(0, first_link, now_ns, visit_due);
   if (first_link < count) inputs.robots.place(now_ns, inputs.objects);
   inputs.visits.each_due(first_link, count, now_ns, visit_due);
@@ -56,14 +60,14 @@ void Displacer::displace(Inputs& inputs) noexcept {
   summarise(inputs);
 }
 
-void Displacer::visit(std::uint32_t i, Inputs& inputs) noexcept {
+void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs) noexcept {
   TrackedObject& object = inputs.objects[i];
   const bool was_late = object.input.late;
   const double might_have_moved = object.may_have_moved;
   advance(scene_.objects[i], inputs.time.now_ns, object);
   const bool changes =
       object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
-  if (changes && inputs.cycle > 1) displaced_.changed.push_back(i);
+  if (changes && !first) displaced_.changed.push_back(i);
   visited_.push_back(i);
 }
 

@@ -13,7 +13,7 @@ namespace clearance {
 
 struct Displacements {
   // Objects whose pose, lateness or bound of unobserved motion differs from the last tick. In the
-  // first tick these are all objects.
+  // first tick of a monitor these are all objects.
   std::vector<std::uint32_t> changed;
   bool any_lost = false;  // an object is not known, or has made a discontinuity
   // Bounds for any two known objects together, m. `most_unobserved` (U) bounds their unobserved
@@ -33,11 +33,13 @@ class Displacer {
   // Advances the objects that are not fixed to this tick; their `bounding_radius` must be set.
   void displace(Inputs& inputs) noexcept;
   [[nodiscard]] const Displacements& result() const noexcept { return displaced_; }
+  // True until the first displace().
+  [[nodiscard]] bool is_first() const noexcept { return first_; }
   // Adds an object to `changed`.
   void add_changed(std::uint32_t object) noexcept { displaced_.changed.push_back(object); }
 
  private:
-  void visit(std::uint32_t i, Inputs& inputs) noexcept;
+  void visit(std::uint32_t i, bool first, Inputs& inputs) noexcept;
   void summarise(Inputs& inputs) noexcept;
 
   const Scene& scene_;
@@ -45,6 +47,7 @@ class Displacer {
   std::vector<std::uint32_t> visited_;  // in this tick
   std::vector<bool> is_lost_;           // by object: not known, or discontinuous
   std::size_t lost_ = 0;                // number of such objects
+  bool first_ = true;
 };
 
 }  // namespace clearance

@@ -2,9 +2,9 @@
 
 #include <optional>
 #include <span>
+#include <string_view>
 
 #include "monitor/inputs/input_record.hpp"
-#include "monitor/inputs/source_numbers.hpp"
 
 namespace clearance {
 namespace {
@@ -91,19 +91,20 @@ Inputs initial_inputs(const Scene& scene) {
                 .stamps = PoseStamps(scene.objects.size()),
                 .robots = RobotInputs(scene),
                 .sources = {}};
+  for (const Object& object : scene.objects) inputs.objects.push_back(initial_state(object));
   SourceNumbers numbers(scene);
-  for (const Object& object : scene.objects) {
-    TrackedObject& state = inputs.objects.emplace_back(initial_state(object));
-    if (!object.source.empty()) {
-      state.input.owner = InputOwner(numbers.of(SourceName(object.source)));
-    }
-  }
-  for (std::size_t i = 0; i < scene.variables.size(); ++i) {
-    const std::string& source = scene.variables[i].source;
-    if (source.empty()) continue;
-    inputs.robots.variables()[i].input.owner = InputOwner(numbers.of(SourceName(source)));
-  }
+  state_owners(scene, numbers, inputs);
   return inputs;
+}
+
+void state_owners(const Scene& scene, SourceNumbers& numbers, Inputs& inputs) noexcept {
+  const auto state = [&numbers](std::string_view source, InputRecord& input) {
+    if (!source.empty()) input.owner = InputOwner(numbers.of(SourceName(source)));
+  };
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    state(scene.objects[i].source, inputs.objects[i].input);
+  for (std::size_t i = 0; i < scene.variables.size(); ++i)
+    state(scene.variables[i].source, inputs.robots.variables()[i].input);
 }
 
 void ingest(std::span<const PoseSample> samples, std::span<const JointSample> joints,

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "monitor/inputs/source_clock.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/objects/pose_stamps.hpp"
 #include "monitor/objects/robot_inputs.hpp"
 #include "monitor/objects/tracked_object.hpp"
@@ -29,6 +30,9 @@ struct Inputs {
 
 // The state before the first tick.
 [[nodiscard]] Inputs initial_inputs(const Scene& scene);
+
+// Sets the owners that the scene states, of inputs that no sample has come for.
+void state_owners(const Scene& scene, SourceNumbers& numbers, Inputs& inputs) noexcept;
 
 // Begins a tick and takes the samples in the given order, those of joints first. A sample that must
 // not be used is counted. It does not change the pose of its object or the position of its joint.

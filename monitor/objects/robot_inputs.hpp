@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/scene_map.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/tracked_variable.hpp"
 #include "monitor/objects/tracked_object.hpp"
@@ -47,6 +48,9 @@ class RobotInputs {
   }
 
   void forget_ages(std::int64_t now_ns) noexcept;
+
+  // Goes on with the positions of the scene before, where the robots are the same.
+  void take_over(const RobotInputs& before, const SceneMap& map) noexcept;
 
   // Ends the tick's input and places the links of all robots with joint positions. The objects on
   // which robots stand must already be advanced.

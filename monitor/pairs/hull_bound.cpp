@@ -15,8 +15,9 @@ PosedPart around(const ConvexBody& hull) {
 
 }  // namespace
 
-HullBound::HullBound(const Scene& scene, const std::vector<PosedPart>& parts)
-    : hulls_(bounding_hulls(scene)),
+HullBound::HullBound(const Scene& scene, const std::vector<PosedPart>& parts,
+                     const KnownHulls& known)
+    : hulls_(bounding_hulls(scene, known)),
       placed_(scene.objects.size()),
       only_part_(scene.objects.size(), kNoModel) {
   for (std::size_t i = 0; i < hulls_.size(); ++i) {

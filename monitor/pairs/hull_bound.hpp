@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "monitor/geometry/bounding_hull.hpp"
@@ -16,7 +17,11 @@ namespace clearance {
 
 class HullBound {
  public:
-  HullBound(const Scene& scene, const std::vector<PosedPart>& parts);
+  // `known`: hulls of a similar scene.
+  HullBound(const Scene& scene, const std::vector<PosedPart>& parts, const KnownHulls& known = {});
+
+  // By object.
+  [[nodiscard]] std::span<const BoundingHull> hulls() const noexcept { return hulls_; }
 
   // Returns true when the models may save queries: one object has a hull, and the other has a hull
   // or only one part.

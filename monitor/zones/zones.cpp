@@ -42,6 +42,17 @@ Zones::Zones(const Scene& scene, const ZoneLevels& levels)
   begin_tick();
 }
 
+// The pair that decides is found anew in the next tick: it may be absent from this scene.
+void Zones::take_over(const Zones& before, const SceneMap& map) noexcept {
+  for (std::size_t z = 0; z < reports_.size(); ++z) {
+    if (map.zones[z] == SceneMap::kNone) continue;
+    const std::uint32_t pair = reports_[z].pair;
+    reports_[z] = before.reports_[map.zones[z]];
+    reports_[z].pair = pair;
+  }
+  begin_tick();
+}
+
 void Zones::count_absent(std::span<const TrackedObject> objects) noexcept {
   for (std::size_t z = 0; z < absent_.size(); ++z) {
     absent_[z] = static_cast<std::uint32_t>(

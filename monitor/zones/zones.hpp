@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "config/scene/scene_map.hpp"
 #include "monitor/objects/tracked_object.hpp"
 #include "monitor/zones/zone_hysteresis.hpp"
 
@@ -16,6 +17,10 @@ class Zones {
  public:
   // Scene and levels must outlive it.
   Zones(const Scene& scene, const ZoneLevels& levels);
+
+  // Before the first tick: zones that the scene before had are as active as they were there. `map`
+  // has the zones of both scenes.
+  void take_over(const Zones& before, const SceneMap& map) noexcept;
 
   // States after the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }

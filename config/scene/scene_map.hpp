@@ -1,0 +1,34 @@
+// Which objects, joints and zones of a changed scene are those of the scene before the change.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+
+namespace clearance {
+
+// Indices into one scene by indices into the other; kNone: the other scene has no such thing.
+struct SceneMap {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  // By index in the changed scene: the index in the scene before.
+  std::vector<std::uint32_t> objects, robots, variables, zones;
+  // By index in the scene before: the index in the changed scene.
+  std::vector<std::uint32_t> objects_now, variables_now;
+};
+
+// Things correspond by their names. What is known of an input stays valid only if the same source
+// sends it in the same manner. So these have no counterpart:
+//  - an object that is fixed in one of the scenes, since its state follows from the scene;
+//  - an object that is a robot's link in one scene only, or of another robot, or of a robot whose
+//    joints or base are placed otherwise;
+//  - an object or joint variable for which the scenes state different sources or frames;
+//  - a robot whose joint variables are not all the same, with its links and variables.
+//
+// A pose or position that was sent for the scene before is passed on by `objects_now` and
+// `variables_now`, which need the name alone.
+[[nodiscard]] SceneMap scene_map(const Scene& before, const Scene& now);
+
+}  // namespace clearance

@@ -1,0 +1,33 @@
+#include "monitor/objects/take_over.hpp"
+
+namespace clearance {
+namespace {
+
+// The body may be another one: what follows from the body stays.
+void take_over(const TrackedObject& before, TrackedObject& now) noexcept {
+  const Landmarks landmarks = now.landmarks;
+  const double bounding_radius = now.bounding_radius;
+  now = before;
+  now.landmarks = landmarks;
+  now.bounding_radius = bounding_radius;
+  now.rest.holds = false;
+}
+
+}  // namespace
+
+void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
+               SourceNumbers& numbers, Inputs& now) noexcept {
+  state_owners(scene, numbers, now);
+  now.cycle = before.cycle;
+  now.time = before.time;
+  now.sources = before.sources;
+  now.rejected = before.rejected;
+  for (std::size_t i = 0; i < now.objects.size(); ++i) {
+    const std::uint32_t old = map.objects[i];
+    if (old != SceneMap::kNone) take_over(before.objects[old], now.objects[i]);
+  }
+  now.robots.take_over(before.robots, map);
+  now.visits.visit_all();
+}
+
+}  // namespace clearance
