@@ -59,6 +59,7 @@ struct Monitor::State {
   const RefreshShare share;
   const std::vector<std::uint32_t> first_part;  // by object
   const Published published;
+  const std::vector<SourceName> named_sources;
 
   Inputs inputs;                                // ingest and displace
   std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
@@ -132,14 +133,18 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   return s.report;
 }
 
-void Monitor::take_over(const Monitor& before, const SceneMap& map,
+bool Monitor::take_over(const Monitor& before, const SceneMap& map,
                         SourceNumbers& numbers) noexcept {
   State& s = *state_;
   CLEARANCE_INVARIANT(s.displacer.is_first());
+  if (!numbers.add_named(s.named_sources)) return false;
   clearance::take_over(before.state_->inputs, map, s.scene, numbers, s.inputs);
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
+  return true;
 }
+
+std::uint64_t Monitor::cycle() const noexcept { return state_->inputs.cycle; }
 
 void Monitor::refuse(std::uint32_t object, Reject cause) noexcept {
   clearance::refuse(object, cause, state_->inputs);
@@ -226,6 +231,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
       share(refresh_share(the_scene)),
       first_part(first_parts(the_scene)),
       published(published_pairs(the_scene)),
+      named_sources(clearance::named_sources(the_scene)),
       inputs(initial_inputs(the_scene)),
       displacer(the_scene),
       parts(parts_of(the_scene)),

@@ -44,11 +44,16 @@ class Monitor {
 
   // For a changed scene, before the first tick and between two ticks of `before`: goes on with the
   // inputs and zones of that monitor. `map` is that of the two scenes. `numbers` has numbered the
-  // sources of the samples that `before` got, and numbers those of both from now on. The same ticks
+  // sources of the samples that `before` got, and numbers those of both from now on. Returns false,
+  // and changes nothing, if both scenes name too many sources (add_named()). The same ticks
   // then bring both monitors to the same inputs. No bound of a pair is taken over: the first ticks
   // find them afresh. Does not allocate, throw or lock. The time grows with the number of objects,
   // not with that of pairs.
-  void take_over(const Monitor& before, const SceneMap& map, SourceNumbers& numbers) noexcept;
+  [[nodiscard]] bool take_over(const Monitor& before, const SceneMap& map,
+                               SourceNumbers& numbers) noexcept;
+
+  // The number of ticks so far, those of the monitors that it took over from included.
+  [[nodiscard]] std::uint64_t cycle() const noexcept;
 
   // Runs one cycle: takes in the samples in the given order, those of joints first. Refused samples
   // are counted and never used. Then it moves the objects, carries bounds forward, evaluates pairs

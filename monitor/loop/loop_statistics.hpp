@@ -31,6 +31,22 @@ struct LoopStatistics {
         rejected_joints(scene.variables.size()),
         joint_ages(scene.variables.size()) {}
 
+  // For a changed scene: takes all figures but those of single objects and pairs.
+  void continue_from(const LoopStatistics& before) noexcept {
+    tick = before.tick;
+    wakeup = before.wakeup;
+    cycle = before.cycle;
+    now_ns = before.now_ns;
+    clock_steps = before.clock_steps;
+    clock_offset_ns = before.clock_offset_ns;
+    tick_second_max_ns = before.tick_second_max_ns;
+    wakeup_second_max_ns = before.wakeup_second_max_ns;
+    overruns = before.overruns;
+    skipped_cycles = before.skipped_cycles;
+    rejected_total = before.rejected_total;
+    sources = before.sources;
+  }
+
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
   std::uint64_t clock_steps = 0;        // steps of CLOCK_REALTIME,
@@ -41,7 +57,7 @@ struct LoopStatistics {
   std::int64_t wakeup_second_max_ns = 0;
   std::uint64_t overruns = 0;        // ticks that ended after the next deadline
   std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick
-  MinimumSeen minimum;
+  MinimumSeen minimum;               // since the scene was last changed
   std::vector<std::array<std::uint64_t, kRejects>> rejected;         // per object, by cause
   std::array<std::uint64_t, kRejects> rejected_total{};              // unknown ids included
   std::vector<InputAge> ages;                                        // per object

@@ -6,12 +6,29 @@
 #include <cmath>
 
 namespace clearance {
+namespace {
+
+// Gives the samples from `first` on the ids of the changed scene, and drops those that it has not.
+template <class Sample>
+void keep_mapped(std::span<const std::uint32_t> now, std::uint32_t Sample::*input,
+                 std::size_t first, std::vector<Sample>& samples) noexcept {
+  std::size_t kept = first;
+  for (std::size_t i = first; i < samples.size(); ++i) {
+    const std::uint32_t before = samples[i].*input;
+    if (before >= now.size() || now[before] == SceneMap::kNone) continue;
+    samples[kept] = samples[i];
+    samples[kept++].*input = now[before];
+  }
+  samples.resize(kept);
+}
+
+}  // namespace
 
 // All memory of the tick is sized here: the loop itself allocates nothing.
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
-    : scene_(scene),
-      monitor_(scene),
+    : scene_(&scene),
+      monitor_(std::make_unique<Monitor>(scene)),
       sources_(scene),
       source_(source),
       sinks_(std::move(sinks)),
@@ -60,14 +77,46 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 
 // Runs one tick and gives its report to every sink.
 void TickLoop::tick_once() noexcept {
+  follow_offer();
   take_in();
-  const Report& report = monitor_.tick(samples_, joints_, time_.read(clock_));
+  const TickTime time = time_.read(clock_);
+  const Report& report = monitor_->tick(samples_, joints_, time);
+  if (Successor* next = offered_.load(std::memory_order_acquire);
+      next != nullptr && next->state() == Successor::State::kCatchingUp) {
+    next->record(samples_, joints_, time, report.minimum_certified);
+  }
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
+}
+
+bool TickLoop::offer(Successor& successor) noexcept {
+  Successor* none = nullptr;
+  return offered_.compare_exchange_strong(none, &successor, std::memory_order_acq_rel);
+}
+
+// Between two ticks. An offer that has failed is dropped.
+void TickLoop::follow_offer() noexcept {
+  Successor* const next = offered_.load(std::memory_order_acquire);
+  if (next == nullptr) return;
+  if (next->state() == Successor::State::kOffered) {
+    next->begin(*monitor_, sources_);
+  } else if (next->has_caught_up(monitor_->cycle())) {
+    change_scene(*next);
+  }
+  if (next->state() != Successor::State::kCatchingUp)
+    offered_.store(nullptr, std::memory_order_release);
+}
+
+void TickLoop::change_scene(Successor& successor) noexcept {
+  before_.revision = scene_->revision;
+  before_.until_cycle = monitor_->cycle() + ticks_a_second_;
+  has_changed_ = true;
+  scene_ = &successor.scene();
+  successor.succeed(monitor_, statistics_, sinks_, before_.map);
 }
 
 // Batches are used whole: a batch that does not fit waits for the next tick.
@@ -85,17 +134,27 @@ void TickLoop::take_in() noexcept {
   }
 }
 
-// Poses for another scene have ids of other objects: they are counted and not used.
+// Poses for another scene have ids of other objects. Those of the scene before the last change are
+// passed on, and all others are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
-  if (!made_for(batch, scene_.revision)) {
-    for (const PoseSample& sample : batch.samples) {
-      monitor_.refuse(sample.object, Reject::kWrongRevision);
-    }
-    return;
+  if (has_changed_ && batch.scene_revision == before_.revision &&
+      monitor_->cycle() < before_.until_cycle) {
+    use_from_before(batch);
+  } else if (made_for(batch, scene_->revision) && (batch.scene_revision != 0 || !has_changed_)) {
+    if (!batch.empty()) sources_.append(batch, samples_, joints_);
+  } else {
+    for (const PoseSample& sample : batch.samples)
+      monitor_->refuse(sample.object, Reject::kWrongRevision);
   }
+}
+
+void TickLoop::use_from_before(const PoseBatch& batch) noexcept {
   if (batch.empty()) return;
+  const std::size_t poses = samples_.size(), joints = joints_.size();
   sources_.append(batch, samples_, joints_);
+  keep_mapped(before_.map.objects_now, &PoseSample::object, poses, samples_);
+  keep_mapped(before_.map.variables_now, &JointSample::variable, joints, joints_);
 }
 
 // The report names the last batch of each source; this makes a replay exact.
@@ -118,13 +177,13 @@ void TickLoop::note_minimum(const Report& report) noexcept {
 
 // Called once a second. Figures that cover one second are reset afterwards.
 void TickLoop::hand_over_statistics() noexcept {
-  for (std::uint32_t object = 0; object < scene_.objects.size(); ++object) {
-    statistics_.rejected[object] = monitor_.rejected(object);
-    statistics_.ages[object] = monitor_.input_age(object);
+  for (std::uint32_t object = 0; object < scene_->objects.size(); ++object) {
+    statistics_.rejected[object] = monitor_->rejected(object);
+    statistics_.ages[object] = monitor_->input_age(object);
   }
-  for (std::uint32_t variable = 0; variable < scene_.variables.size(); ++variable) {
-    statistics_.rejected_joints[variable] = monitor_.rejected_joints(variable);
-    statistics_.joint_ages[variable] = monitor_.joint_age(variable);
+  for (std::uint32_t variable = 0; variable < scene_->variables.size(); ++variable) {
+    statistics_.rejected_joints[variable] = monitor_->rejected_joints(variable);
+    statistics_.joint_ages[variable] = monitor_->joint_age(variable);
   }
   for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = sources_.name(i);
   statistics_.clock_steps = time_.steps();

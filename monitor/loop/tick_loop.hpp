@@ -5,12 +5,14 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
+#include "monitor/loop/successor.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {
@@ -30,6 +32,20 @@ class TickLoop {
   TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks, Clock& clock,
            const TickLoopOptions& options = {});
 
+  // Any one thread: offers the monitor of a changed scene. The loop begins with it before its next
+  // tick, and ticks it as soon as it has caught up. From then on, batches for the scene before are
+  // still used where the changed scene has the objects, for a second. Those that state no revision
+  // are refused: they do not say which scene's ids they have. Returns false while another one is
+  // under way. The successor must live until the next one has succeeded, or the loop has ended.
+  bool offer(Successor& successor) noexcept;
+  // True while an offer is under way.
+  [[nodiscard]] bool busy() const noexcept {
+    return offered_.load(std::memory_order_acquire) != nullptr;
+  }
+  // The preparing thread while the loop is not busy, which passes it to the constructor of a
+  // successor.
+  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+
   // Runs in the calling thread until `stop` is set or `max_ticks` are done.
   void run(const std::atomic<bool>& stop) noexcept;
 
@@ -37,16 +53,28 @@ class TickLoop {
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
+  void follow_offer() noexcept;
+  void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
+  void use_from_before(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_statistics() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;
 
-  const Scene& scene_;
-  Monitor monitor_;
+  const Scene* scene_;
+  std::unique_ptr<Monitor> monitor_;
+  std::atomic<Successor*> offered_{nullptr};
+  // After a change: how the ids of the scene before are passed on, and until which cycle.
+  struct Before {
+    std::uint64_t revision = 0;
+    SceneMap map = {};
+    std::uint64_t until_cycle = 0;
+  };
+  Before before_;
+  bool has_changed_ = false;
   SourceNumbers sources_;
   SteadyTime time_;
   PoseSource& source_;

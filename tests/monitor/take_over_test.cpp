@@ -29,7 +29,7 @@ std::unique_ptr<Monitor> successor(const Monitor& before, const Scene& scene_bef
   auto monitor = std::make_unique<Monitor>(scene, &before);
   const SceneMap map = scene_map(scene_before, scene);
   const std::uint64_t allocations_before = allocations();
-  monitor->take_over(before, map, numbers);
+  EXPECT_TRUE(monitor->take_over(before, map, numbers));
   EXPECT_EQ(allocations(), allocations_before);
   return monitor;
 }

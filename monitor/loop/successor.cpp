@@ -1,0 +1,90 @@
+#include "monitor/loop/successor.hpp"
+
+#include <utility>
+
+namespace clearance {
+
+Successor::Successor(const Scene& before, const Monitor& running, const Scene& scene,
+                     std::vector<ReportSink*> sinks, const Room& room)
+    : scene_(scene),
+      map_(scene_map(before, scene)),
+      monitor_(std::make_unique<Monitor>(scene, &running)),
+      statistics_(scene),
+      sinks_(std::move(sinks)),
+      ticks_(room.ticks),
+      poses_(room.poses),
+      joints_(room.joints) {
+  taken_poses_.reserve(poses_.capacity());
+  taken_joints_.reserve(joints_.capacity());
+}
+
+void Successor::begin(const Monitor& running, SourceNumbers& numbers) noexcept {
+  if (!monitor_->take_over(running, map_, numbers)) {
+    state_.store(State::kTooManyNames, std::memory_order_release);
+    return;
+  }
+  began_after_ = running.cycle();
+  state_.store(State::kCatchingUp, std::memory_order_release);
+}
+
+// Samples come before the tick that has them.
+void Successor::record(std::span<const PoseSample> samples, std::span<const JointSample> joints,
+                       const TickTime& time, bool certified) noexcept {
+  const auto fill = [](const auto& from, auto& ring) {
+    for (const auto& sample : from) {
+      auto* slot = ring.back();
+      if (slot == nullptr) return false;
+      *slot = sample;
+      ring.push();
+    }
+    return true;
+  };
+  Tick* tick = ticks_.back();
+  if (tick == nullptr || !fill(samples, poses_) || !fill(joints, joints_)) {
+    state_.store(State::kTooSlow, std::memory_order_release);
+    return;
+  }
+  *tick = {time, samples.size(), joints.size(), certified};
+  ticks_.push();
+}
+
+template <class Sample>
+void Successor::take(SpscRing<Sample>& ring, std::size_t count, std::span<const std::uint32_t> now,
+                     std::uint32_t Sample::*input, std::vector<Sample>& taken) noexcept {
+  taken.clear();
+  for (; count > 0; --count) {
+    Sample sample = *ring.front();
+    ring.pop();
+    const std::uint32_t before = sample.*input;
+    sample.*input = before < now.size() ? now[before] : SceneMap::kNone;
+    if (sample.*input != SceneMap::kNone) taken.push_back(sample);
+  }
+}
+
+std::size_t Successor::catch_up() noexcept {
+  std::size_t count = 0;
+  for (Tick* tick = ticks_.front(); tick != nullptr && state() == State::kCatchingUp;
+       tick = ticks_.front(), ++count) {
+    take(poses_, tick->poses, map_.objects_now, &PoseSample::object, taken_poses_);
+    take(joints_, tick->joints, map_.variables_now, &JointSample::variable, taken_joints_);
+    const bool certified = tick->certified;
+    const Report& report = monitor_->tick(taken_poses_, taken_joints_, tick->time);
+    ticks_.pop();
+    const bool is_worse = certified && !report.minimum_certified && report.unknown == 0;
+    if (!is_worse) caught_up_at_.store(report.cycle, std::memory_order_release);
+  }
+  return count;
+}
+
+void Successor::succeed(std::unique_ptr<Monitor>& monitor, LoopStatistics& statistics,
+                        std::vector<ReportSink*>& sinks, SceneMap& map) noexcept {
+  statistics_.continue_from(statistics);
+  std::swap(statistics_, statistics);
+  std::swap(monitor_, monitor);
+  std::swap(sinks_, sinks);
+  std::swap(map_, map);
+  in_force_from_ = monitor->cycle() + 1;
+  state_.store(State::kSucceeded, std::memory_order_release);
+}
+
+}  // namespace clearance
