@@ -32,10 +32,17 @@ inline constexpr LogLine<Text> kNoSpeedScaling{
     "cell "
     "('zones:'), with 'separation:' for speeds between 0 and 1"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
-inline constexpr LogLine<> kNoReload{
-    "no-reload", kWarn,
-    "SIGHUP came (from a person, or from a terminal that was closed): this daemon cannot read its "
-    "cell again, and goes on with the one it has. SIGTERM ends it"};
+inline constexpr LogLine<Text> kReading{
+    "cell-read-again", kInfo,
+    "SIGHUP came (from a person, or from a terminal that was closed): {} is read again; SIGTERM "
+    "ends the daemon"};
+inline constexpr LogLine<Count, Count, Count> kSceneChanged{
+    "scene-changed", kInfo,
+    "the cell's revision {:016x} is in force from cycle {}, and {:016x} is not any more"};
+inline constexpr LogLine<> kSceneUnchanged{
+    "scene-unchanged", kInfo, "the cell has the revision that is in force: nothing changes"};
+inline constexpr LogLine<Text> kSceneRefused{
+    "scene-refused", kWarn, "the changed cell is not used, and the one before stays in force: {}"};
 inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
     "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
@@ -192,7 +199,10 @@ inline constexpr std::tuple kAll{kStarted,
                                  kPartitionWithoutRos,
                                  kNoSpeedScaling,
                                  kStopped,
-                                 kNoReload,
+                                 kReading,
+                                 kSceneChanged,
+                                 kSceneUnchanged,
+                                 kSceneRefused,
                                  kWaitingForDescription,
                                  kDescriptionKept,
                                  kRobotNote,

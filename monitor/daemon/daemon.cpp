@@ -4,6 +4,8 @@
 #include "monitor/daemon/daemon.hpp"
 
 #include <algorithm>
+#include <chrono>
+#include <utility>
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/intake/tracked_frames.hpp"
@@ -19,6 +21,8 @@ constexpr std::size_t kQueuedReports = 64;
 constexpr std::size_t kBatchesATick = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
+// How often a change of the cell looks whether the reports of the cell before are written.
+constexpr std::chrono::milliseconds kReportsPoll{1};
 
 // The text of a Refusal says how to get what was refused.
 void log_refusal(const Refusal& refusal) {
@@ -41,13 +45,6 @@ std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions&
   return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
 }
 
-std::unique_ptr<RosWriter> open_ros(const Cell& cell, Participant& participant,
-                                    const PoseReader& poses, const ReportQueue& published,
-                                    const RecordingHealth& health) {
-  if (!writes_ros(cell)) return nullptr;
-  return std::make_unique<RosWriter>(cell, participant, poses, published, health);
-}
-
 // ROS 2 knows the default partition only.
 void warn_of_partition(const Cell& cell, const DdsOptions& options) {
   const bool wants_ros = writes_ros(cell) || TrackedFrames(cell).any();
@@ -57,37 +54,55 @@ void warn_of_partition(const Cell& cell, const DdsOptions& options) {
 
 }  // namespace
 
-// Members are made in the order of their dependencies: ports before the loop that uses them.
+// Members are made in the order of their dependencies: ports before the loop that uses them. The
+// caller keeps the first cell.
 Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
-    : cell_(cell),
-      scene_(cell.scene),
-      options_(options),
+    : options_(options),
+      cell_file_(cell.file.string()),
       participant_(prepare_threads(options)),
       poses_(cell, participant_),
-      publish_queue_(cell.scene, {.reports = kQueuedReports}),
-      reports_(cell, participant_, publish_queue_, poses_, recording_health_),
-      recording_(open_recording(cell, options, poses_, recording_health_)),
-      ros_(open_ros(cell, participant_, poses_, publish_queue_, recording_health_)) {
+      now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
+      reports_(cell, participant_, *now_.queue, poses_, recording_health_),
+      recording_(open_recording(cell, options, poses_, recording_health_)) {
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
       .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
                                       PoseReader::joints_a_batch(cell.scene))};
-  std::vector<ReportSink*> sinks{&publish_queue_};
+  std::vector<ReportSink*> sinks{now_.queue.get()};
   if (recording_) sinks.push_back(&recording_->sink());
-  if (ros_) sinks.push_back(ros_.get());
+  if (now_.ros) sinks.push_back(now_.ros.get());
   loop_ = std::make_unique<TickLoop>(cell.scene, poses_, std::move(sinks), clock_, loop);
+  changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
+}
+
+// The thread that reads a cell goes on alone.
+Daemon::~Daemon() {
+  stop_ = true;
+  if (changing_.joinable()) changing_.join();
+}
+
+Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
+  OfCell parts{std::move(cell), nullptr, nullptr};
+  parts.queue = std::make_unique<ReportQueue>(parts.cell->scene,
+                                              ReportQueueOptions{.reports = kQueuedReports});
+  if (writes_ros(*parts.cell)) {
+    parts.ros = std::make_unique<RosWriter>(*parts.cell, participant_, poses_, *parts.queue,
+                                            recording_health_);
+  }
+  return parts;
 }
 
 // The loop ticks in its own thread; this one waits for signals and watches the recording.
 // Afterwards the queues are emptied, so that the last report is published and recorded.
 void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
-  log_line(lines::kStarted, scene_.name, scene_.revision, scene_.rate_hz, participant_.where());
+  const Scene& scene = now_.cell->scene;
+  log_line(lines::kStarted, scene.name, scene.revision, scene.rate_hz, participant_.where());
   log_line(lines::kHowToReach, participant_.how_to_reach());
-  for (const Robot& robot : scene_.robots) {
+  for (const Robot& robot : scene.robots) {
     for (const std::string& note : robot.notes) log_line(lines::kRobotNote, robot.name, note);
   }
-  warn_of_partition(cell_, options_.dds);
+  warn_of_partition(*now_.cell, options_.dds);
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
@@ -96,15 +111,17 @@ void Daemon::run(StopSignal& signal) {
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
-    if (signal.hung_up()) log_line(lines::kNoReload);
+    if (signal.hung_up()) read_again();
+    if (reading_ && reading_->done) change_cell();
     if (recording_) recording_->watch();
   }
   stop_ = true;
   ticking.join();
+  if (changing_.joinable()) changing_.join();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
   reports_.finish();
-  if (ros_) ros_->finish();
+  if (now_.ros) now_.ros->finish();
   if (recording_) recording_->finish();
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
 }
@@ -118,10 +135,76 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
   done = true;
 }
 
+// Reading may take long where meshes are new, so that a thread does it.
+void Daemon::read_again() {
+  if (!options_.read_again) return;
+  if (reading_) return;
+  log_line(lines::kReading, cell_file_);
+  reading_ = std::make_shared<Reading>();
+  std::thread([reading = reading_, read = options_.read_again] {
+    reading->cell = read();
+    reading->done = true;
+  }).detach();
+}
+
+// Called again while a change is under way, until that has ended.
+void Daemon::change_cell() {
+  if (is_changing_) return;
+  if (changing_.joinable()) changing_.join();
+  std::optional<Cell> cell = std::move(reading_->cell);
+  reading_ = nullptr;
+  if (!cell) return log_line(lines::kSceneRefused, "its mistakes are listed above");
+  const std::uint64_t before = now_.cell->scene.revision;
+  if (cell->scene.revision == before) return log_line(lines::kSceneUnchanged);
+  if (recording_) {
+    return log_line(lines::kSceneRefused,
+                    "a recording has one cell, and this daemon records (--record)");
+  }
+  is_changing_ = true;
+  changing_ = std::thread([this, before, changed = std::make_shared<const Cell>(*std::move(cell))] {
+    name_thread("scene");
+    try {
+      const SceneChanger::Outcome outcome = changer_->change(changed, stop_);
+      if (outcome.refusal.empty()) {
+        log_line(lines::kSceneChanged, changed->scene.revision, outcome.in_force_from, before);
+      } else {
+        log_line(lines::kSceneRefused, outcome.refusal);
+      }
+    } catch (const std::exception& error) {
+      log_line(lines::kSceneRefused, error.what());
+    }
+    is_changing_ = false;
+  });
+}
+
+std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
+  next_ = parts_of(cell);
+  reports_.continue_with(*cell, *next_.queue);
+  std::vector<ReportSink*> sinks{next_.queue.get()};
+  if (next_.ros) sinks.push_back(next_.ros.get());
+  return sinks;
+}
+
+// Returns when no other thread uses the cell before.
+void Daemon::follow() {
+  now_.queue->close();
+  poses_.change(*next_.cell);
+  while (reports_.is_to_continue()) std::this_thread::sleep_for(kReportsPoll);
+  if (now_.ros) now_.ros->finish();
+  dropped_before_ += now_.queue->dropped_reports();
+  now_ = std::move(next_);
+}
+
+void Daemon::abandon() {
+  reports_.stay();
+  next_ = {};
+}
+
 // Reports that DDS refused count as dropped, too.
 std::string Daemon::summary() const {
-  const std::uint64_t dropped = publish_queue_.dropped_reports() + reports_.failed_writes();
-  return run_summary(scene_, loop_->statistics(), seconds_, dropped) +
+  const std::uint64_t dropped =
+      dropped_before_ + now_.queue->dropped_reports() + reports_.failed_writes();
+  return run_summary(now_.cell->scene, loop_->statistics(), seconds_, dropped) +
          (recording_ ? recording_->summary() : "");
 }
 

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -18,6 +19,7 @@
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/ros_writer.hpp"
+#include "monitor/scene_changes/scene_changer.hpp"
 
 namespace clearance {
 
@@ -28,14 +30,18 @@ struct DaemonOptions {
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
   std::optional<int> cpu;  // processor that the tick thread is pinned to
+  // Reads the cell again after a SIGHUP, in a thread of its own. Nothing: it has mistakes, which
+  // were logged.
+  std::function<std::optional<Cell>()> read_again;
 };
 
 // The order of the members matters: ports and queues outlive the loop that uses them.
-class Daemon {
+class Daemon : private CellParts {
  public:
   // Joins DDS and announces the catalogue. Throws DdsError, and RecordError when the
   // recording cannot be made.
   Daemon(const Cell& cell, const DaemonOptions& options);
+  ~Daemon() override;
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
@@ -52,22 +58,46 @@ class Daemon {
   // After run(): true when the recording thread still waits for the disk. The program must then end
   // without destroying this object.
   [[nodiscard]] bool recording_hangs() const noexcept;
+  // After run(): true when a cell is still being read. The program must then end without destroying
+  // static objects.
+  [[nodiscard]] bool still_reads() const noexcept { return reading_ != nullptr; }
 
  private:
-  void tick_thread(std::atomic<bool>& done);
+  // What belongs to one cell.
+  struct OfCell {
+    std::shared_ptr<const Cell> cell;
+    std::unique_ptr<ReportQueue> queue;
+    std::unique_ptr<RosWriter> ros;
+  };
+  // A cell that a thread reads. The thread has this and nothing else of the daemon.
+  struct Reading {
+    std::atomic<bool> done{false};
+    std::optional<Cell> cell;
+  };
 
-  const Cell& cell_;
-  const Scene& scene_;
+  [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
+  void tick_thread(std::atomic<bool>& done);
+  void read_again();
+  void change_cell();
+  std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
+  void follow() override;
+  void abandon() override;
+
   DaemonOptions options_;
+  std::string cell_file_;
   Participant participant_;
   PoseReader poses_;
-  ReportQueue publish_queue_;
   RecordingHealth recording_health_;
+  OfCell now_, next_;
+  std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
-  std::unique_ptr<RosWriter> ros_;
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
+  std::unique_ptr<SceneChanger> changer_;
+  std::shared_ptr<Reading> reading_;  // null: no cell is being read
+  std::thread changing_;
+  std::atomic<bool> is_changing_{false};
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;
 };

@@ -25,7 +25,7 @@ namespace clearance {
 namespace {
 
 constexpr const char* kFooter = R"(Exit status:
-  0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong. SIGHUP does not stop it
+  0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong. SIGHUP reads the cell again
   1  something else failed, or --check was stopped before its end
   2  wrong usage
   3  the cell file is wrong
@@ -117,8 +117,17 @@ int check_only(const CellArguments& cell) {
 }
 
 // The summary goes to stdout at the end; the log goes to stderr during the run.
+std::optional<Cell> read_cell(const Arguments& arguments) {
+  auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return std::nullopt;
+  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
+  add_ros_outputs(arguments.ros, cell->ros.outputs);
+  return cell;
+}
+
 int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   arguments.daemon.dds = arguments.dds.resolve(cell);
+  arguments.daemon.read_again = [arguments] { return read_cell(arguments); };
   route_dds_log();
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
@@ -127,8 +136,14 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
     drain_log();
     std::_Exit(kIncomplete);
   }
-  if (daemon.gave_way()) return kDdsFailed;
-  return daemon.recording_complete() ? kOk : kIncomplete;
+  const int status = daemon.gave_way()             ? kDdsFailed
+                     : daemon.recording_complete() ? kOk
+                                                   : kIncomplete;
+  if (daemon.still_reads()) {
+    drain_log();
+    std::_Exit(status);
+  }
+  return status;
 }
 
 // Keeps the URDF from ROS 2 as a file. Returns false when it was stopped before the URDF came.
@@ -162,10 +177,8 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!arguments.cell.description_topic.empty()) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }
-  auto cell = cell_or_errors(arguments.cell.read());
+  const auto cell = read_cell(arguments);
   if (!cell) return kBadCell;
-  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
-  add_ros_outputs(arguments.ros, cell->ros.outputs);
   if (arguments.check) {
     print_summary(cell->scene);
     return kOk;

@@ -18,6 +18,7 @@
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/loop/scene_capacity.hpp"
 
 namespace clearance {
 namespace {
@@ -64,18 +65,18 @@ std::string ros_domain() {
 
 std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
   // A batch may have several poses of one object: a sensor may be faster than its sender.
-  return std::min<std::size_t>(2 * scene.objects.size() + 64, clearance_msg_kMaxPoses);
+  return std::min<std::size_t>(2 * capacity_for(scene).objects + 64, clearance_msg_kMaxPoses);
 }
 
 std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
   if (scene.robots.empty()) return 0;
-  return std::min<std::size_t>(2 * scene.variables.size() + 64, clearance_msg_kMaxJoints);
+  return std::min<std::size_t>(2 * capacity_for(scene).variables + 64, clearance_msg_kMaxJoints);
 }
 
 // Reserves all memory before the thread starts. Later, only what is heard for the first time
 // allocates.
 PoseReader::PoseReader(const Cell& cell, Participant& participant)
-    : topics_(cell.topics),
+    : topics_(&cell.topics),
       undecodable_before_(undecodable_samples()),
       where_(participant.where()),
       intake_(cell,
@@ -100,6 +101,12 @@ void PoseReader::start() {
   thread_ = std::thread([this] { run(); });
 }
 
+void PoseReader::change(const Cell& cell) {
+  const std::lock_guard lock(mutex_);
+  topics_ = &cell.topics;
+  intake_.change(cell);
+}
+
 // Cyclone copies the listener and the filter. The objects to which they point are members of this
 // one.
 void PoseReader::open(Participant& participant, TopicKind kind) {
@@ -109,7 +116,7 @@ void PoseReader::open(Participant& participant, TopicKind kind) {
   const dds_topic_filter filter{
       .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
   const dds_entity_t reader =
-      participant.reader(kind, topics_.*topic(kind).name, 0, listener, &filter);
+      participant.reader(kind, topics_->*topic(kind).name, 0, listener, &filter);
   dds_delete_listener(listener);
   own_.push_back({reader, intake_.topic(kind)->number});
   wait_.add(reader);
@@ -174,7 +181,7 @@ std::string PoseReader::senders_of_joints() const {
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
       "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
       "(rmw_zenoh)",
-      topics_.joint_states, where_, ros_.present().listed(), ros_domain());
+      topics_->joint_states, where_, ros_.present().listed(), ros_domain());
 }
 
 // Waits for data, for the time at which the intake wants to settle, or for the destructor.

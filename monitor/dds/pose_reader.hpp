@@ -29,13 +29,17 @@ class PoseReader final : public PoseSource {
   // The number of batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
 
-  // Cell and participant must outlive this.
+  // The participant must outlive this, and the cell until change() is called.
   PoseReader(const Cell& cell, Participant& participant);
   ~PoseReader() override;
 
   // Starts the thread that takes samples. Call this once, when ticks are about to begin: what
   // arrives earlier would only fill the ring.
   void start();
+
+  // The cell has changed: batches have the ids and the revision of this one from now on. It needs
+  // no topic that the cell before did not need, and no larger batches. It must outlive this.
+  void change(const Cell& cell);
 
   const PoseBatch* next() noexcept override;
 
@@ -70,7 +74,7 @@ class PoseReader final : public PoseSource {
   void log_news();
   [[nodiscard]] std::string guid_of(std::uint64_t writer) const;
 
-  const Topics& topics_;
+  const Topics* topics_;
   std::uint64_t undecodable_before_;
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};

@@ -47,35 +47,36 @@ std::int64_t lease_ns(double rate_hz) noexcept {
   return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
 }
 
+ReportWriter::OfCell::OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon)
+    : cell(the_cell),
+      queue(the_queue),
+      distances(make_distances(cell.scene)),
+      separation(make_separation(cell.scene)),
+      gradients(cell.scene),
+      written_zones(cell.scene.zones.size()),
+      zone_log(cell.scene),
+      health_log(cell.scene) {
+  distances->daemon = separation->daemon = daemon;
+}
+
 // The catalogue is latched, so later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording)
-    : cell_(cell),
-      scene_(cell.scene),
-      queue_(queue),
+    : participant_(participant),
+      topics_(cell.topics),
       poses_(poses),
       recording_(recording),
       identity_(make_identity()),
       distances_(make_writer(
-          participant, cell.topics, TopicKind::kDistances,
+          participant, topics_, TopicKind::kDistances,
           {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
-      catalogue_(make_writer(participant, cell.topics, TopicKind::kCatalogue)),
-      zones_(make_writer(participant, cell.topics, TopicKind::kZones)),
-      health_(make_writer(participant, cell.topics, TopicKind::kHealth)),
-      separation_(separated_count(cell.scene).zones == 0
-                      ? 0
-                      : make_writer(participant, cell.topics, TopicKind::kSeparation)),
-      gradients_(cell.scene.gradients ? make_writer(participant, cell.topics, TopicKind::kGradients,
-                                                    {.lease_ns = lease_ns(cell.scene.rate_hz)})
-                                      : 0),
-      others_(participant, cell.topics.distances, identity_),
-      distances_sample_(make_distances(cell.scene)),
-      separation_sample_(make_separation(cell.scene)),
-      gradient_message_(cell.scene),
-      written_zones_(cell.scene.zones.size()),
-      zone_log_(cell.scene),
-      health_log_(cell.scene) {
-  distances_sample_->daemon = separation_sample_->daemon = identity_.id;
+      catalogue_(make_writer(participant, topics_, TopicKind::kCatalogue)),
+      zones_(make_writer(participant, topics_, TopicKind::kZones)),
+      health_(make_writer(participant, topics_, TopicKind::kHealth)),
+      others_(participant, topics_.distances, identity_),
+      now_(std::make_unique<OfCell>(cell, queue, identity_.id)),
+      queue_(&queue) {
+  open_topics(cell.scene);
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
 }
@@ -85,8 +86,37 @@ ReportWriter::~ReportWriter() { finish(); }
 // May be called twice: the destructor calls it as well.
 void ReportWriter::finish() {
   if (!thread_.joinable()) return;
-  queue_.close();
+  {
+    const std::lock_guard lock(mutex_);
+    queue_->close();
+    if (next_.second != nullptr) next_.second->close();
+  }
   thread_.join();
+}
+
+void ReportWriter::continue_with(const Cell& cell, ReportQueue& queue) {
+  const std::lock_guard lock(mutex_);
+  next_ = {&cell, &queue};
+}
+
+void ReportWriter::stay() {
+  const std::lock_guard lock(mutex_);
+  next_ = {nullptr, nullptr};
+}
+
+bool ReportWriter::is_to_continue() const {
+  const std::lock_guard lock(mutex_);
+  return next_.first != nullptr;
+}
+
+// Topics that only some cells need.
+void ReportWriter::open_topics(const Scene& scene) {
+  if (separation_ == 0 && separated_count(scene).zones > 0)
+    separation_ = make_writer(participant_, topics_, TopicKind::kSeparation);
+  if (gradients_ == 0 && scene.gradients) {
+    gradients_ = make_writer(participant_, topics_, TopicKind::kGradients,
+                             {.lease_ns = lease_ns(scene.rate_hz)});
+  }
 }
 
 // The number of matched readers.
@@ -98,7 +128,7 @@ std::uint32_t ReportWriter::distance_readers() const {
 }
 
 Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
-  auto catalogue = make_catalogue(cell_);
+  auto catalogue = make_catalogue(now_->cell);
   catalogue->daemon = identity_.id;
   return catalogue;
 }
@@ -112,31 +142,71 @@ void ReportWriter::look_for_others() {
   write(catalogue_, &*own_catalogue(), "catalogue");
 }
 
-// Writes reports in order, then statistics. Ends when the queue is closed and empty.
+// Writes reports in order, then statistics. Ends when the queue is closed and empty, and no other
+// follows.
 void ReportWriter::run() {
   name_thread("reports");
-  for (bool closed = false; !closed;) {
-    queue_.wait();
-    closed = queue_.closed();  // read before the queue, so that nothing remains in it
-    look_for_others();
-    while (const QueuedReport* queued = queue_.reports().front()) {
-      write_report(*queued);
-      queue_.reports().pop();
-    }
-    while (const LoopStatistics* statistics = queue_.statistics().front()) {
-      write_health(*statistics);
-      queue_.statistics().pop();
-    }
+  for (;;) {
+    now_->queue.wait();
+    const bool closed = now_->queue.closed();  // read before the queue, so that nothing remains
+    write_all();
+    if (closed && !change()) return;
   }
+}
+
+void ReportWriter::write_all() {
+  look_for_others();
+  while (const QueuedReport* queued = now_->queue.reports().front()) {
+    write_report(*queued);
+    now_->queue.reports().pop();
+  }
+  while (const LoopStatistics* statistics = now_->queue.statistics().front()) {
+    write_health(*statistics);
+    now_->queue.statistics().pop();
+  }
+}
+
+// Returns false if no other cell follows. Zones of the same name are as they were. Their ids may be
+// others, so all states are written again, and those of ids that are gone are withdrawn.
+bool ReportWriter::change() {
+  std::pair<const Cell*, ReportQueue*> next;
+  {
+    const std::lock_guard lock(mutex_);
+    next = next_;
+  }
+  if (next.first == nullptr) return false;
+  const std::vector<Zone>& zones = next.first->scene.zones;
+  auto changed = std::make_unique<OfCell>(*next.first, *next.second, identity_.id);
+  for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
+    const auto same = std::ranges::find(zones, now_->cell.scene.zones[zone].name, &Zone::name);
+    if (same != zones.end()) {
+      const auto number = static_cast<std::uint32_t>(same - zones.begin());
+      for (const bool active : {false, true}) {
+        if (now_->written_zones.is(zone, active)) changed->written_zones.set(number, active);
+      }
+    }
+    clearance_msg_ZoneState gone{};
+    gone.zone = zone;
+    if (zone >= zones.size()) dds_dispose(zones_, &gone);
+  }
+  dropped_before_ += now_->queue.dropped_reports();
+  now_ = std::move(changed);
+  open_topics(now_->cell.scene);
+  write_zones_again_ = true;
+  write(catalogue_, &*own_catalogue(), "catalogue");
+  const std::lock_guard lock(mutex_);
+  queue_ = &now_->queue;
+  next_ = {nullptr, nullptr};
+  return true;
 }
 
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
-  to_wire(queued.report, queued.sources(), dds_time(), *distances_sample_);
-  write(distances_, &*distances_sample_, "distances");
-  if (separation_ != 0) write_separation(queued.report);
-  if (gradients_ != 0) {
-    clearance_msg_Gradients& gradients = gradient_message_.of(queued.report, dds_time());
+  to_wire(queued.report, queued.sources(), dds_time(), *now_->distances);
+  write(distances_, &*now_->distances, "distances");
+  if (separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
+  if (now_->cell.scene.gradients) {
+    clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
     write(gradients_, &gradients, "gradients");
   }
@@ -144,8 +214,8 @@ void ReportWriter::write_report(const QueuedReport& queued) {
 }
 
 void ReportWriter::write_separation(const Report& report) {
-  to_wire(report, dds_time(), *separation_sample_);
-  write(separation_, &*separation_sample_, "separation");
+  to_wire(report, dds_time(), *now_->separation);
+  write(separation_, &*now_->separation, "separation");
 }
 
 // Writes a zone at the start, after each change, and again after another daemon may have written
@@ -154,29 +224,30 @@ void ReportWriter::write_zones(const Report& report) {
   const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    const bool is_written = written_zones_.is(zone, active);
+    const bool is_written = now_->written_zones.is(zone, active);
     if (is_written && !again) continue;
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
-    to_wire(scene_, report, zone, state);
+    to_wire(now_->cell.scene, report, zone, state);
     write(zones_, &state, "zone state");
-    if (!is_written && (written_zones_.any(zone) || active)) {
-      zone_log_.note(zone, report.zones[zone], report.cycle);
+    if (!is_written && (now_->written_zones.any(zone) || active)) {
+      now_->zone_log.note(zone, report.zones[zone], report.cycle);
     }
-    written_zones_.set(zone, active);
+    now_->written_zones.set(zone, active);
   }
 }
 
 // Failed writes count as dropped: in both cases the client got nothing.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
-  auto sample = make_health(scene_, statistics, poses_,
-                            queue_.dropped_reports() + failed_writes_.load(), recording_);
+  auto sample = make_health(now_->cell.scene, statistics, poses_,
+                            dropped_before_ + now_->queue.dropped_reports() + failed_writes_.load(),
+                            recording_);
   sample->daemon = identity_.id;
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
-  zone_log_.end_second();
-  health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
+  now_->zone_log.end_second();
+  now_->health_log.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
 void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {

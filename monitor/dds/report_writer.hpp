@@ -4,7 +4,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
+#include <mutex>
 #include <thread>
+#include <utility>
 
 #include "config/cell/cell.hpp"
 #include "monitor/dds/daemon_identity.hpp"
@@ -34,6 +37,14 @@ class ReportWriter {
                const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
+  // The cell will change: once the present queue is closed and empty, the catalogue of this cell
+  // and the reports of this queue follow. Both must outlive this. The topics have the same names.
+  void continue_with(const Cell& cell, ReportQueue& queue);
+  // It will not change after all.
+  void stay();
+  // True while the present queue is not empty yet after continue_with().
+  [[nodiscard]] bool is_to_continue() const;
+
   // After the last tick: writes the queue.
   void finish();
 
@@ -44,7 +55,24 @@ class ReportWriter {
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
  private:
+  // What belongs to one cell, and the queue of its reports.
+  struct OfCell {
+    const Cell& cell;
+    ReportQueue& queue;
+    Sample<clearance_msg_Distances> distances;
+    Sample<clearance_msg_Separation> separation;
+    GradientMessage gradients;
+    WrittenZones written_zones;
+    ZoneLog zone_log;
+    HealthLog health_log;
+
+    OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon);
+  };
+
   void run();
+  void write_all();
+  [[nodiscard]] bool change();
+  void open_topics(const Scene& scene);
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
   void write_report(const QueuedReport& queued);
@@ -53,24 +81,22 @@ class ReportWriter {
   void write_health(const LoopStatistics& statistics);
   void write(dds_entity_t writer, const void* sample, const char* what);
 
-  const Cell& cell_;
-  const Scene& scene_;
-  ReportQueue& queue_;
+  Participant& participant_;
+  const Topics topics_;
   const PoseReader& poses_;
   const RecordingHealth& recording_;
   DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
-  dds_entity_t separation_;  // 0: no zone has one
-  dds_entity_t gradients_;   // 0: the scene asks for none
+  dds_entity_t separation_ = 0;  // 0: no zone has had one yet
+  dds_entity_t gradients_ = 0;   // 0: no scene has asked for them yet
   OtherDaemons others_;
-  Sample<clearance_msg_Distances> distances_sample_;
-  Sample<clearance_msg_Separation> separation_sample_;
-  GradientMessage gradient_message_;
-  WrittenZones written_zones_;
+  std::unique_ptr<OfCell> now_;
   bool write_zones_again_ = false;
-  ZoneLog zone_log_;
-  HealthLog health_log_;
+  std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
+  mutable std::mutex mutex_;  // guards `next_`, and `queue_` where another thread reads it
+  std::pair<const Cell*, ReportQueue*> next_{nullptr, nullptr};
+  ReportQueue* queue_;  // that of `now_`
   std::thread thread_;
 };
 

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/news.hpp"
 #include "monitor/intake/raw_message.hpp"
@@ -51,6 +52,9 @@ class Decoder {
   // Returns false if the bytes are not a message of the topic's type.
   [[nodiscard]] virtual bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                                     TopicCounts& counts) = 0;
+  // The cell has changed, except for the names of its topics. What other programs said stays known.
+  // The new cell must outlive this.
+  virtual void change(const Cell&) {}
   // Called after all available messages, and at the latest after patience_ns().
   virtual void settle(const Now&) {}
   [[nodiscard]] virtual std::int64_t patience_ns() const {

@@ -11,8 +11,8 @@
 namespace clearance {
 
 Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
-    : scene_(cell.scene),
-      topics_(cell.topics),
+    : scene_(&cell.scene),
+      topics_(&cell.topics),
       options_(std::move(options)),
       use_(std::move(use)),
       sources_(named_sources(cell.scene)),
@@ -23,10 +23,19 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
       .most_joints = options_.most_joints};
   const auto from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
   // A row for every kind of input.
-  add<OwnPoses>(topics_.poses, options_.most_samples, *this);
-  add<OwnJointStates>(scene_, topics_.joint_states, options_.most_joints, *this);
-  joint_states_ = add<RosJointStates>(scene_, joint_states, *this);
+  add<OwnPoses>(topics_->poses, options_.most_samples, *this);
+  add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
+  joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
   transforms_ = add<RosTransforms>(cell, from, *this);
+}
+
+void Intake::change(const Cell& cell) {
+  former_revisions_.push_back(scene_->revision);
+  scene_ = &cell.scene;
+  topics_ = &cell.topics;
+  sources_.change_named(named_sources(cell.scene));
+  slow_ = SlowInputs(cell.scene);
+  for (const std::unique_ptr<Decoder>& decoder : decoders_) decoder->change(cell);
 }
 
 template <class Kind, class... Arguments>
@@ -55,7 +64,7 @@ std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
 
 std::optional<Intake::Topic> Intake::topic(TopicKind kind) {
   const clearance::Topic& row = clearance::topic(kind);
-  return topic({topics_.*row.name, row.type->m_typename});
+  return topic({topics_->*row.name, row.type->m_typename});
 }
 
 bool Intake::take(const RawMessage& message, const Now& now) {
@@ -88,8 +97,11 @@ void Intake::keep(std::vector<std::uint64_t> writers) {
 
 std::vector<News> Intake::take_news() { return std::exchange(news_, {}); }
 
+// In the daemon, a batch that was decoded by names has the ids of this cell.
 void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
-  const bool is_ours = made_for(batch, scene_.revision);
+  const bool is_by_name = !batch.joints.empty() || writer == RosTransforms::kWriter;
+  if (options_.admits_sources && is_by_name) batch.scene_revision = scene_->revision;
+  const bool is_ours = made_for(batch, scene_->revision);
   if (!options_.admits_sources) {
     if (is_ours) slow_.note(batch, *this);
     use_(batch);
@@ -98,11 +110,13 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   SourceTally* const tally = admit(batch, writer, batch.size() + cut);
   if (tally == nullptr) return;
   if (is_ours) slow_.note(batch, *this);
-  if (!is_ours && !std::exchange(tally->warned_of_revision, true)) {
+  const bool is_former =
+      std::ranges::find(former_revisions_, batch.scene_revision) != former_revisions_.end();
+  if (!is_ours && !is_former && !std::exchange(tally->warned_of_revision, true)) {
     tell({.cause = News::Cause::kOtherRevision,
           .text = fmt::format("source '{}' sends poses for scene revision {:016x}, this cell's is "
                               "{:016x}: not used",
-                              tally->source.view(), batch.scene_revision, scene_.revision)});
+                              tally->source.view(), batch.scene_revision, scene_->revision)});
   }
   if (!use_(batch)) {
     ++tally->lost;

@@ -46,8 +46,12 @@ class Intake final : public Outlet {
   // there is no free slot; the batch is then lost.
   using Use = std::function<bool(PoseBatch& batch)>;
 
-  // The cell must outlive this.
+  // The cell must outlive this, unless change() is called.
   Intake(const Cell& cell, IntakeOptions options, Use use);
+
+  // The cell has changed, except for the names of its topics. Sources, sequences and transforms
+  // stay known. The new cell must outlive this.
+  void change(const Cell& cell);
 
   struct Topic {
     std::uint32_t number = 0;           // for RawMessage::topic
@@ -60,7 +64,7 @@ class Intake final : public Outlet {
 
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
-    return !scene_.robots.empty() || transforms_->any();
+    return !scene_->robots.empty() || transforms_->any();
   }
 
   // Returns false if the bytes are not a message of the topic's type.
@@ -97,8 +101,9 @@ class Intake final : public Outlet {
   [[nodiscard]] SourceTally* admit(PoseBatch& batch, std::uint64_t writer, std::size_t size);
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
-  const Scene& scene_;
-  const Topics& topics_;
+  const Scene* scene_;
+  std::vector<std::uint64_t> former_revisions_;  // of the cells before
+  const Topics* topics_;
   IntakeOptions options_;
   Use use_;
   std::vector<std::unique_ptr<Decoder>> decoders_;

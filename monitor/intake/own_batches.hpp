@@ -40,6 +40,7 @@ class OwnJointStates final : public Decoder {
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
+  void change(const Cell& cell) override { names_ = JointNames(cell.scene); }
 
  private:
   std::string topic_;

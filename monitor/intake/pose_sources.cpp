@@ -86,7 +86,8 @@ bool PoseSources::is_named(const SourceName& source) const noexcept {
 std::size_t PoseSources::places_for_others() const noexcept {
   const auto taken = std::ranges::count_if(
       tallies_, [this](const SourceTally& tally) { return !is_named(tally.source); });
-  return kMaxSources - named_.size() - static_cast<std::size_t>(taken);
+  const std::size_t used = named_.size() + static_cast<std::size_t>(taken);
+  return used < kMaxSources ? kMaxSources - used : 0;
 }
 
 // The source that has been silent for the longest time among those that may be replaced.

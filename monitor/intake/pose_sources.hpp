@@ -72,6 +72,8 @@ class PoseSources {
   // next call.
   Admission admit(const SourceName& source, std::uint64_t writer, std::size_t poses,
                   std::int64_t monotonic_ns);
+  // The cell has changed and names these sources now.
+  void change_named(std::vector<SourceName> named) { named_ = std::move(named); }
   [[nodiscard]] bool is_named(const SourceName& source) const noexcept;
   // `writers` are those that still exist. The names and places of all others become free.
   void keep(std::span<const std::uint64_t> writers);

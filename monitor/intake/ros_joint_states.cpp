@@ -19,15 +19,22 @@ constexpr std::size_t kMostUnknownNames = 64;
 }  // namespace
 
 RosJointStates::RosJointStates(const Scene& scene, RosJointStatesOptions options, Outlet& out)
-    : scene_(scene), options_(std::move(options)), out_(out) {}
+    : scene_(&scene), options_(std::move(options)), out_(out) {}
+
+void RosJointStates::change(const Cell& cell) {
+  scene_ = &cell.scene;
+  for (Topic& topic : topics_) topic.names = JointNames(*scene_, topic.name);
+  unknown_names_.clear();
+}
 
 bool RosJointStates::is_wanted(const TopicName& topic) const {
-  if (scene_.robots.empty() || topic.type != kJointStatesType) return false;
+  if (scene_->robots.empty() || topic.type != kJointStatesType) return false;
   if (!options_.topics.empty()) {
     return std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }
   return topic.name.ends_with(kLast) || topic.name == kLast.substr(1) ||
-         std::ranges::find(scene_.robots, topic.name, &Robot::joint_states) != scene_.robots.end();
+         std::ranges::find(scene_->robots, topic.name, &Robot::joint_states) !=
+             scene_->robots.end();
 }
 
 std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
@@ -43,7 +50,7 @@ std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
     }
     return std::nullopt;
   }
-  topics_.push_back({topic.name, JointNames(scene_, topic.name), {}});
+  topics_.push_back({topic.name, JointNames(*scene_, topic.name), {}});
   out_.tell({.cause = News::Cause::kTopicHeard,
              .is_warning = false,
              .text = fmt::format("joint states of ROS 2 on {}", ros_dds_name(topic.name))});
@@ -79,7 +86,7 @@ std::int64_t RosJointStates::time_of(const RawMessage& message, const Topic& top
   for (std::uint32_t i = 0; i < states_->name._length; ++i) {
     const std::uint32_t variable = topic.names.find(states_->name._buffer[i]);
     if (variable >= JointNames::kUnused) continue;
-    wanted = scene_.robots[scene_.variables[variable].robot].stamps;
+    wanted = scene_->robots[scene_->variables[variable].robot].stamps;
     break;
   }
   return writer.stamps.time_of(stamp_ns(states_->header), message.sent_ns, wanted,

@@ -36,6 +36,7 @@ class RosJointStates final : public Decoder {
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   void keep(std::span<const std::uint64_t> writers) override;
+  void change(const Cell& cell) override;
 
   // The number of writers, and the first names in their messages that no robot of the cell has.
   [[nodiscard]] std::size_t writers() const noexcept;
@@ -65,7 +66,7 @@ class RosJointStates final : public Decoder {
                                      TopicCounts& counts);
   void note_unused(const Topic& topic, Writer& writer);
 
-  const Scene& scene_;
+  const Scene* scene_;
   RosJointStatesOptions options_;
   Outlet& out_;
   std::vector<Topic> topics_;  // by port

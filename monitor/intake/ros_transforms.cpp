@@ -41,15 +41,27 @@ std::string circle_of(const TfTree& tree, const std::string& frame) {
   return text;
 }
 
+TrackedFrames frames_of(const Cell& cell, TransformsFrom from) {
+  return TrackedFrames(cell, from == TransformsFrom::kLog ? TrackedFrames::ByName::kYes
+                                                          : TrackedFrames::ByName::kNo);
+}
+
 }  // namespace
 
 RosTransforms::RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out)
-    : ros_(cell.ros),
+    : ros_(&cell.ros),
       from_(from),
       out_(out),
-      frames_(cell, from == TransformsFrom::kLog ? TrackedFrames::ByName::kYes
-                                                 : TrackedFrames::ByName::kNo),
+      frames_(frames_of(cell, from)),
       following_(frames_.followers().size(), Following{.state = State::kMissing}) {}
+
+// Transforms stay known. The poses of all followers are handed over anew.
+void RosTransforms::change(const Cell& cell) {
+  ros_ = &cell.ros;
+  frames_ = frames_of(cell, from_);
+  following_.assign(frames_.followers().size(), Following{.state = State::kMissing});
+  by_rivals_.clear();
+}
 
 // A topic of transforms is /tf or /tf_static; in a log, in any namespace. Both are one source.
 std::optional<Decoder::Wanted> RosTransforms::wants(const TopicName& topic) {
@@ -104,7 +116,7 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
     const OtherClock other =
         from_ == TransformsFrom::kLog ? OtherClock::kReplaced : OtherClock::kTold;
     link.stamp_ns = stamps_[message.writer].time_of(
-        stamp_ns(transform.header), message.sent_ns, ros_.stamps, other, counts, out_,
+        stamp_ns(transform.header), message.sent_ns, ros_->stamps, other, counts, out_,
         [&]() -> StampCheck::Whose {
           return {fmt::format("transforms of frame '{}'", child), "'stamps: sent' of 'ros2'"};
         });
@@ -279,7 +291,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
       std::string root;
       static_cast<void>(frames_.find(claims_.tree(), follower.frame, &root));
       return fmt::format("whose transforms lead to '{}' and not to the world_frame '{}'", root,
-                         ros_.world_frame);
+                         ros_->world_frame);
     }
   }
   return "";
@@ -288,7 +300,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
 std::vector<std::string> RosTransforms::worlds() const {
   std::vector<std::string> worlds;
   for (const std::string& root : roots_) {
-    if (!frames_.is_root_link(root) && root != ros_.world()) worlds.push_back(root);
+    if (!frames_.is_root_link(root) && root != ros_->world()) worlds.push_back(root);
   }
   return worlds;
 }

@@ -45,6 +45,7 @@ class RosTransforms final : public Decoder {
   void settle(const Now& now) override;
   [[nodiscard]] std::int64_t patience_ns() const override;
   void keep(std::span<const std::uint64_t> writers) override;
+  void change(const Cell& cell) override;
 
   // True if anything of the cell follows frames.
   [[nodiscard]] bool any() const noexcept { return frames_.any(); }
@@ -92,7 +93,7 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::string what_is_wrong(const TrackedFrames::Follower& follower,
                                           State state) const;
 
-  const RosSettings& ros_;
+  const RosSettings* ros_;
   TransformsFrom from_;
   Outlet& out_;
   TrackedFrames frames_;

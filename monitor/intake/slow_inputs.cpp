@@ -49,7 +49,7 @@ std::optional<std::int64_t> SlowIntervals::note(std::uint32_t input, std::int64_
 }
 
 SlowInputs::SlowInputs(const Scene& scene)
-    : scene_(scene), poses_(pose_limits(scene)), joints_(joint_limits(scene)) {}
+    : scene_(&scene), poses_(pose_limits(scene)), joints_(joint_limits(scene)) {}
 
 void SlowInputs::note(const PoseBatch& batch, Outlet& out) {
   note_poses(batch, out);
@@ -60,7 +60,7 @@ void SlowInputs::note_poses(const PoseBatch& batch, Outlet& out) {
   for (const PoseSample& sample : batch.samples) {
     const auto interval_ns = poses_.note(sample.object, sample.stamp_ns);
     if (!interval_ns) continue;
-    const Object& object = scene_.objects[sample.object];
+    const Object& object = scene_->objects[sample.object];
     out.tell(
         {.cause = News::Cause::kSlowInput,
          .text = fmt::format("poses of {} come every {} ms, its age limit is {} ms: it is late "
@@ -79,7 +79,7 @@ void SlowInputs::note_joints(const PoseBatch& batch, Outlet& out) {
   for (const JointSample& sample : batch.joints) {
     const auto interval = joints_.note(sample.variable, sample.stamp_ns);
     if (!interval) continue;
-    if (found++ == 0) first = &scene_.variables[sample.variable];
+    if (found++ == 0) first = &scene_->variables[sample.variable];
     interval_ns = std::max(interval_ns, *interval);
   }
   if (found == 0) return;

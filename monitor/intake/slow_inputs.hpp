@@ -50,7 +50,7 @@ class SlowInputs {
   void note_poses(const PoseBatch& batch, Outlet& out);
   void note_joints(const PoseBatch& batch, Outlet& out);
 
-  const Scene& scene_;
+  const Scene* scene_;
   SlowIntervals poses_, joints_;
 };
 

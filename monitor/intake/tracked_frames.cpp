@@ -6,7 +6,7 @@
 namespace clearance {
 
 TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
-    : scene_(cell.scene), world_frame_(cell.ros.world_frame) {
+    : scene_(&cell.scene), world_frame_(&cell.ros.world_frame) {
   const Scene& scene = cell.scene;
   std::set<std::uint32_t> links;
   for (const Robot& robot : scene.robots) {
@@ -35,7 +35,7 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
 std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::string& frame,
                                                  std::string* root,
                                                  const TfTree::Instead* instead) const {
-  auto place = tree.find(frame, world_frame_, instead);
+  auto place = tree.find(frame, *world_frame_, instead);
   if (!place) return std::nullopt;
   if (root != nullptr) *root = place->root;
   if (const auto robot = world_from_root_link_.find(place->root);
@@ -48,7 +48,7 @@ std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::
     }
     return place;
   }
-  const bool is_world = world_frame_.empty() || place->root == world_frame_;
+  const bool is_world = world_frame_->empty() || place->root == *world_frame_;
   return is_world ? place : std::nullopt;
 }
 
@@ -67,7 +67,7 @@ void TrackedFrames::add(std::size_t follower, const TfTree::Place& place, std::i
     if (has_twist) sample.twist = *place.twist;
     return;
   }
-  const Robot& robot = scene_.robots[of.index];
+  const Robot& robot = scene_->robots[of.index];
   const Pose root = compose(place.root_from_frame, robot.base.frame_from_root);
   Eigen::Quaterniond turn = root.orientation;
   if (turn.dot(last_[follower]) < 0.0) turn.coeffs() = -turn.coeffs();

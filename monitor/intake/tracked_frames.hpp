@@ -55,8 +55,8 @@ class TrackedFrames {
   }
 
  private:
-  const Scene& scene_;
-  const std::string& world_frame_;  // RosSettings::world_frame
+  const Scene* scene_;
+  const std::string* world_frame_;  // RosSettings::world_frame
   std::vector<Follower> followers_;
   std::vector<Eigen::Quaterniond> last_;  // the orientation added last, by follower
   std::map<std::string, Pose> world_from_root_link_;

@@ -22,6 +22,11 @@ void keep_mapped(std::span<const std::uint32_t> now, std::uint32_t Sample::*inpu
   samples.resize(kept);
 }
 
+// `ids` lead to ids of the scene before the last change, and lead to those of the changed one then.
+void pass_on(std::span<const std::uint32_t> now, std::vector<std::uint32_t>& ids) noexcept {
+  for (std::uint32_t& id : ids) id = id < now.size() ? now[id] : SceneMap::kNone;
+}
+
 }  // namespace
 
 // All memory of the tick is sized here: the loop itself allocates nothing.
@@ -111,12 +116,24 @@ void TickLoop::follow_offer() noexcept {
     offered_.store(nullptr, std::memory_order_release);
 }
 
+// The ids of all former scenes are passed on to those of the changed one.
 void TickLoop::change_scene(Successor& successor) noexcept {
-  before_.revision = scene_->revision;
-  before_.until_cycle = monitor_->cycle() + ticks_a_second_;
-  has_changed_ = true;
+  Former& last = former_[changes_++ % kFormerScenes];
+  last.revision = scene_->revision;
   scene_ = &successor.scene();
-  successor.succeed(monitor_, statistics_, sinks_, before_.map);
+  successor.succeed(monitor_, statistics_, sinks_, last.map);
+  for (Former& scene : former_) {
+    if (&scene == &last) continue;
+    pass_on(last.map.objects_now, scene.map.objects_now);
+    pass_on(last.map.variables_now, scene.map.variables_now);
+  }
+}
+
+const TickLoop::Former* TickLoop::former(std::uint64_t revision) const noexcept {
+  for (std::size_t i = 0; i < std::min(changes_, kFormerScenes); ++i) {
+    if (former_[i].revision == revision) return &former_[i];
+  }
+  return nullptr;
 }
 
 // Batches are used whole: a batch that does not fit waits for the next tick.
@@ -134,27 +151,25 @@ void TickLoop::take_in() noexcept {
   }
 }
 
-// Poses for another scene have ids of other objects. Those of the scene before the last change are
-// passed on, and all others are counted and not used.
+// Poses for another scene have ids of other objects. Those of former scenes are passed on, and all
+// others are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
-  if (has_changed_ && batch.scene_revision == before_.revision &&
-      monitor_->cycle() < before_.until_cycle) {
-    use_from_before(batch);
-  } else if (made_for(batch, scene_->revision) && (batch.scene_revision != 0 || !has_changed_)) {
+  if (batch.scene_revision == 0 ? changes_ == 0 : batch.scene_revision == scene_->revision) {
     if (!batch.empty()) sources_.append(batch, samples_, joints_);
+  } else if (const Former* const scene = former(batch.scene_revision)) {
+    if (!batch.empty()) use_former(*scene, batch);
   } else {
     for (const PoseSample& sample : batch.samples)
       monitor_->refuse(sample.object, Reject::kWrongRevision);
   }
 }
 
-void TickLoop::use_from_before(const PoseBatch& batch) noexcept {
-  if (batch.empty()) return;
+void TickLoop::use_former(const Former& scene, const PoseBatch& batch) noexcept {
   const std::size_t poses = samples_.size(), joints = joints_.size();
   sources_.append(batch, samples_, joints_);
-  keep_mapped(before_.map.objects_now, &PoseSample::object, poses, samples_);
-  keep_mapped(before_.map.variables_now, &JointSample::variable, joints, joints_);
+  keep_mapped(scene.map.objects_now, &PoseSample::object, poses, samples_);
+  keep_mapped(scene.map.variables_now, &JointSample::variable, joints, joints_);
 }
 
 // The report names the last batch of each source; this makes a replay exact.

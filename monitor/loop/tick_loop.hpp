@@ -28,15 +28,18 @@ struct TickLoopOptions {
 // and counted, so that the loop returns to its grid. Cycle numbers count ticks and have no gaps.
 class TickLoop {
  public:
+  static constexpr std::size_t kFormerScenes = 8;
+
   // Allocates all memory of the loop. Everything given must outlive the loop.
   TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks, Clock& clock,
            const TickLoopOptions& options = {});
 
   // Any one thread: offers the monitor of a changed scene. The loop begins with it before its next
-  // tick, and ticks it as soon as it has caught up. From then on, batches for the scene before are
-  // still used where the changed scene has the objects, for a second. Those that state no revision
-  // are refused: they do not say which scene's ids they have. Returns false while another one is
-  // under way. The successor must live until the next one has succeeded, or the loop has ended.
+  // tick, and ticks it as soon as it has caught up. From then on, batches for the last
+  // kFormerScenes scenes are still used where the changed scene has the objects. Those that state
+  // no revision are refused: they do not say which scene's ids they have. Returns false while
+  // another one is under way. The successor must live until the next one has succeeded, or the loop
+  // has ended.
   bool offer(Successor& successor) noexcept;
   // True while an offer is under way.
   [[nodiscard]] bool busy() const noexcept {
@@ -53,12 +56,14 @@ class TickLoop {
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
+  struct Former;
   void follow_offer() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
-  void use_from_before(const PoseBatch& batch) noexcept;
+  void use_former(const Former& scene, const PoseBatch& batch) noexcept;
+  [[nodiscard]] const Former* former(std::uint64_t revision) const noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_statistics() noexcept;
@@ -67,14 +72,14 @@ class TickLoop {
   const Scene* scene_;
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
-  // After a change: how the ids of the scene before are passed on, and until which cycle.
-  struct Before {
+  // How the ids of former scenes are passed on. The latest one is at changes_ - 1, modulo their
+  // number.
+  struct Former {
     std::uint64_t revision = 0;
     SceneMap map = {};
-    std::uint64_t until_cycle = 0;
   };
-  Before before_;
-  bool has_changed_ = false;
+  std::array<Former, kFormerScenes> former_;
+  std::size_t changes_ = 0;
   SourceNumbers sources_;
   SteadyTime time_;
   PoseSource& source_;

@@ -132,22 +132,29 @@ TEST_F(Succession, TheNextTickButOneIsThatOfTheChangedSceneAndNoneIsMissing) {
   EXPECT_EQ(after.last.ages.size(), 3u);
 }
 
-TEST_F(Succession, BatchesForTheSceneBeforeArePassedOnForASecond) {
-  const Scene second = balls({"b", "a"}, 8);
-  poses_for(2000, 7, {0.0, 1.0});
-  change_to(second);
-  run(1005);
-  EXPECT_EQ(after.rejected[static_cast<std::size_t>(Reject::kWrongRevision)], 0u);
-  EXPECT_EQ(after.unknown, 0u);
-}
-
-TEST_F(Succession, BatchesForTheSceneBeforeAreRefusedAfterThat) {
-  const Scene second = balls({"b", "a"}, 8);
-  poses_for(1100, 7, {0.0, 1.0});
-  change_to(second);
-  run(1100);
-  EXPECT_GE(after.rejected[static_cast<std::size_t>(Reject::kWrongRevision)], 180u);
-  EXPECT_EQ(after.unknown, 1u) << "the poses are late";
+TEST_F(Succession, BatchesForFormerScenesArePassedOnAndThoseOfOthersRefused) {
+  const Scene second = balls({"b", "a"}, 8), third = balls({"c", "b", "a"}, 9);
+  poses_for(25, 7, {0.0, 1.0});
+  poses_for(10, 8, {2.0, 0.5});
+  poses_for(5, 6, {0.0, 1.0});
+  std::vector<std::uint32_t> unknown;
+  clock.while_asleep = [&](int tick) {
+    if (tick == 5) {
+      EXPECT_TRUE(loop->offer(succeed(second)));
+    }
+    if (tick == 15) {
+      EXPECT_TRUE(loop->offer(successors.emplace_back(second, loop->monitor(), third,
+                                                      std::vector<ReportSink*>{&after})));
+    }
+    if (tick >= 5) successors.back().catch_up();
+  };
+  run(40);
+  ASSERT_EQ(after.cycles.size(), 35u);
+  EXPECT_EQ(after.revisions[5], 8u);
+  EXPECT_EQ(after.revisions[15], 9u);
+  for (int i = 0; i < 20; ++i) EXPECT_NEAR(after.distances[i], 0.8, 1e-12) << i;
+  for (int i = 20; i < 30; ++i) EXPECT_NEAR(after.distances[i], 1.3, 1e-12) << i;
+  EXPECT_EQ(after.rejected[static_cast<std::size_t>(Reject::kWrongRevision)], 2u * 5u);
 }
 
 TEST_F(Succession, BatchesThatStateNoRevisionAreRefusedAfterAChange) {

@@ -1,0 +1,60 @@
+#include "monitor/scene_changes/restart_needed.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+bool follows_frames(const Scene& scene) {
+  const auto has_frame = [](const auto& each) { return !each.frame.empty(); };
+  return std::ranges::any_of(scene.objects, has_frame) ||
+         std::ranges::any_of(scene.robots, has_frame, &Robot::base);
+}
+
+bool same_topics(const Cell& before, const Cell& now) {
+  return std::ranges::all_of(kTopicKeys, [&](const TopicKey& key) {
+    return before.topics.*key.name == now.topics.*key.name;
+  });
+}
+
+bool same_ros_outputs(const Cell& before, const Cell& now) {
+  return std::ranges::all_of(kRosOutputs, [&](const RosOutput& output) {
+    return before.ros.outputs.*output.topic == now.ros.outputs.*output.topic;
+  });
+}
+
+}  // namespace
+
+// Readers of topics are made when the daemon starts.
+std::optional<std::string> restart_needed(const Cell& before, const Cell& now,
+                                          const SceneCapacity& capacity) {
+  const auto restart = [](const std::string& what) { return what + ", which takes a restart"; };
+  const Scene &old = before.scene, &scene = now.scene;
+  if (old.name != scene.name)
+    return restart(fmt::format("its name changes from '{}' to '{}'", old.name, scene.name));
+  if (old.rate_hz != scene.rate_hz)
+    return restart(fmt::format("the rate changes from {} to {} Hz", old.rate_hz, scene.rate_hz));
+  if (before.domain != now.domain || before.partition != now.partition ||
+      before.interface != now.interface) {
+    return restart("the domain, partition or interface of 'dds' changes");
+  }
+  if (!same_topics(before, now)) return restart("names of 'topics' change");
+  if (!same_ros_outputs(before, now)) return restart("the outputs of 'ros2' change");
+  if (old.robots.empty() && !scene.robots.empty()) return restart("the cell gets its first robot");
+  if (!follows_frames(old) && follows_frames(scene))
+    return restart("an object or a robot follows a frame of tf, and none did before");
+  if (scene.objects.size() > capacity.objects) {
+    return restart(fmt::format("it has {} objects, and the running daemon has room for {}",
+                               scene.objects.size(), capacity.objects));
+  }
+  if (scene.variables.size() > capacity.variables) {
+    return restart(
+        fmt::format("its joints have {} variables, and the running daemon has room for {}",
+                    scene.variables.size(), capacity.variables));
+  }
+  return std::nullopt;
+}
+
+}  // namespace clearance

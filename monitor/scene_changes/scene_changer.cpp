@@ -1,0 +1,63 @@
+#include "monitor/scene_changes/scene_changer.hpp"
+
+#include <chrono>
+#include <thread>
+#include <utility>
+
+namespace clearance {
+namespace {
+
+// A successor that was too slow is tried again, since a machine may have been busy.
+constexpr int kAttempts = 3;
+// The preparing thread looks for new ticks so often.
+constexpr std::chrono::microseconds kLook{50};
+
+SceneChanger::Outcome refused(std::string why) {
+  return {.refusal = std::move(why), .in_force_from = 0};
+}
+
+}  // namespace
+
+SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
+                                           const std::atomic<bool>& stop) {
+  if (auto reason = restart_needed(*cell_, *cell, capacity_)) return refused(*std::move(reason));
+  const std::vector<ReportSink*> sinks = parts_.prepare(cell);
+  try {
+    return succeed(std::move(cell), sinks, stop);
+  } catch (...) {
+    parts_.abandon();
+    throw;
+  }
+}
+
+SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
+                                            const std::vector<ReportSink*>& sinks,
+                                            const std::atomic<bool>& stop) {
+  Successor::State state = Successor::State::kTooSlow;
+  for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
+    // It holds what the loop no longer ticks, and is deleted here.
+    Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks);
+    state = run(successor, stop);
+    if (state != Successor::State::kSucceeded) continue;
+    parts_.follow();
+    std::swap(cell_, cell);
+    return {.refusal = "", .in_force_from = successor.in_force_from()};
+  }
+  parts_.abandon();
+  if (state == Successor::State::kTooManyNames)
+    return refused("both cells together name more sources than the daemon has places for");
+  if (state == Successor::State::kTooSlow)
+    return refused("its pairs could not be evaluated as fast as the loop ticks");
+  return refused("the loop has ended");
+}
+
+// Waits until the loop has let go of the successor, too.
+Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& stop) {
+  if (!loop_.offer(successor)) return Successor::State::kTooSlow;
+  while (loop_.busy() && !stop) {
+    if (successor.catch_up() == 0) std::this_thread::sleep_for(kLook);
+  }
+  return successor.state();
+}
+
+}  // namespace clearance

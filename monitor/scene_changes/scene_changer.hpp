@@ -1,0 +1,62 @@
+// Changes the cell of a running loop.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/loop/successor.hpp"
+#include "monitor/loop/tick_loop.hpp"
+#include "monitor/scene_changes/restart_needed.hpp"
+
+namespace clearance {
+
+// What else of a program belongs to one cell: readers, writers, queues. The preparing thread calls
+// all of these.
+class CellParts {
+ public:
+  virtual ~CellParts() = default;
+  // Makes the sinks of the changed cell. They get no report yet.
+  virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
+  // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
+  // cell before may go.
+  virtual void follow() = 0;
+  // The changed cell is given up, and so is what prepare() made.
+  virtual void abandon() = 0;
+};
+
+// To be used by one thread at a time, the preparing one.
+class SceneChanger {
+ public:
+  // The loop ticks `cell`. Loop and parts must outlive this.
+  SceneChanger(TickLoop& loop, std::shared_ptr<const Cell> cell, CellParts& parts)
+      : loop_(loop), cell_(std::move(cell)), capacity_(capacity_for(cell_->scene)), parts_(parts) {}
+
+  struct Outcome {
+    std::string refusal;              // the end of a sentence that says why not; empty: changed
+    std::uint64_t in_force_from = 0;  // the first cycle of the changed cell
+  };
+  // Returns when the loop ticks this cell, or when it is refused; then the cell before stays in
+  // force. `stop` ends the wait for a loop that has ended. What prepare() throws comes through,
+  // with the cell before in force.
+  [[nodiscard]] Outcome change(std::shared_ptr<const Cell> cell, const std::atomic<bool>& stop);
+
+  [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
+
+ private:
+  [[nodiscard]] Outcome succeed(std::shared_ptr<const Cell> cell,
+                                const std::vector<ReportSink*>& sinks,
+                                const std::atomic<bool>& stop);
+  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& stop);
+
+  TickLoop& loop_;
+  std::shared_ptr<const Cell> cell_;
+  SceneCapacity capacity_;
+  CellParts& parts_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,59 @@
+// What changes of the cell need a restart.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "monitor/scene_changes/restart_needed.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance {
+namespace {
+
+Cell small() {
+  return read_good(
+      "name: test\nunits: {length: m, angle: rad}\n"
+      "objects:\n"
+      "  - {name: a, sphere: {radius: 0.1}}\n"
+      "  - {name: b, sphere: {radius: 0.1}}\n"
+      "pairs: [{between: [a, b]}]\n");
+}
+
+TEST(RestartNeeded, ForNoChangeOfTheScene) {
+  const Cell before = small();
+  Cell now = before;
+  now.scene.objects[0].margin = 0.1;
+  now.scene.objects.push_back(now.scene.objects[0]);
+  now.scene.objects.back().name = "c";
+  now.scene.zones.push_back({});
+  now.scene.pairs.clear();
+  now.scene.budget = 7;
+  EXPECT_EQ(restart_needed(before, now, capacity_for(before.scene)), std::nullopt);
+}
+
+TEST(RestartNeeded, ForAllThatReadersWritersAndTheLoopAreMadeFor) {
+  const std::vector<std::pair<std::string, std::function<void(Cell&)>>> changes = {
+      {"name", [](Cell& cell) { cell.scene.name = "other"; }},
+      {"rate", [](Cell& cell) { cell.scene.rate_hz = 500; }},
+      {"domain", [](Cell& cell) { cell.domain = 5; }},
+      {"partition", [](Cell& cell) { cell.partition = "x"; }},
+      {"interface", [](Cell& cell) { cell.interface = "default"; }},
+      {"topics", [](Cell& cell) { cell.topics.gradients = "x"; }},
+      {"ros2", [](Cell& cell) { cell.ros.outputs.*kRosOutputs[0].topic = "/x"; }},
+      {"frame", [](Cell& cell) { cell.scene.objects[0].frame = "x"; }},
+      {"first robot", [](Cell& cell) { cell.scene.robots.emplace_back(); }},
+      {"objects", [](Cell& cell) { cell.scene.objects.resize(100); }},
+      {"variables", [](Cell& cell) { cell.scene.variables.resize(100); }},
+  };
+  const Cell before = small();
+  for (const auto& [what, change] : changes) {
+    Cell now = before;
+    change(now);
+    const auto reason = restart_needed(before, now, capacity_for(before.scene));
+    ASSERT_TRUE(reason) << what;
+    EXPECT_NE(reason->find(what), std::string::npos) << *reason;
+  }
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,132 @@
+// SIGHUP makes a running daemon read its cell again, over real DDS.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <fstream>
+#include <optional>
+#include <thread>
+
+#include "monitor/client/client.hpp"
+#include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+std::string replaced(std::string text, const std::string& what, const std::string& by) {
+  text.replace(text.find(what), what.size(), by);
+  return text;
+}
+
+class DaemonReload : public testing::Test {
+ protected:
+  void start(std::vector<std::string> more = {}) {
+    daemon.emplace(kDaemon, with(with({cell.path()}, dds_arguments(dds)), more));
+    distances.settle();
+    robot.send(0.0);
+  }
+  // The daemon reads this text instead of the first one.
+  void reload(const std::string& changed) {
+    std::ofstream(cell.path()) << changed;
+    daemon->signal(SIGHUP);
+  }
+  // Sends a pose a report until the daemon has logged this code. Every cycle is reported.
+  void run_until_told(const char* code, const std::vector<std::string>& names = {}) {
+    const bool came = eventually([&] {
+      const auto report = distances.next();
+      if (report == nullptr) return false;
+      if (cycle != 0) {
+        EXPECT_EQ((*report)->cycle, cycle + 1);
+      }
+      cycle = (*report)->cycle;
+      if (revision != (*report)->scene_revision) first_of_revision = cycle;
+      revision = (*report)->scene_revision;
+      unknown = (*report)->unknown;
+      pairs = (*report)->pairs._length;
+      robot.send(t_s += 0.005);
+      return daemon->told(code, names);
+    });
+    ASSERT_TRUE(came) << code << '\n' << daemon->output();
+  }
+
+  std::string text = small_cell("reload");
+  CellFile cell{text};
+  Cell read = cell.cell();
+  DdsOptions dds = own_dds();
+  Participant client{dds};
+  Distances distances{client, read};
+  Poses robot{client, read};
+  double t_s = 0.0;
+  std::uint64_t cycle = 0, revision = 0, first_of_revision = 0;
+  std::uint32_t unknown = 0, pairs = 0;
+  std::optional<ChildProcess> daemon;
+};
+
+TEST_F(DaemonReload, AChangedCellIsInForceWithoutAMissingCycleAndKnowsWhatItKnew) {
+  start();
+  run_until_told("started");
+  ASSERT_EQ(revision, read.scene.revision);
+  ASSERT_EQ(pairs, 3u);
+  const std::string changed =
+      replaced(text, "  - {name: floor,",
+               "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: {size: "
+               "[9, 1, 9]}}\n  - {name: floor,");
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  reload(changed);
+  run_until_told("scene-changed");
+  for (int i = 0; i < 20; ++i) run_until_told("scene-changed");
+  const Cell now = cell.cell();
+  EXPECT_NE(now.scene.revision, read.scene.revision);
+  EXPECT_EQ(revision, now.scene.revision);
+  EXPECT_EQ(unknown, 0u) << "poses of the revision before are still used";
+  EXPECT_EQ(pairs, 5u);
+  EXPECT_TRUE(eventually([&] {
+    catalogue.update();
+    return catalogue.revision() == now.scene.revision;
+  }));
+  EXPECT_TRUE(catalogue.pair("wall", "left"));
+}
+
+TEST_F(DaemonReload, ACellWithAMistakeOrWithAnotherRateIsRefusedAndTheTicksGoOn) {
+  start();
+  run_until_told("started");
+  reload(replaced(text, "box: {size: [0.2, 0.2, 0.2]}", "box: {sizes: [0.2]}"));
+  run_until_told("scene-refused");
+  EXPECT_TRUE(eventually([&] { return daemon->output().find("sizes") != std::string::npos; }));
+  reload(text);
+  run_until_told("scene-unchanged");
+  reload(replaced(text, "rate_hz: 200", "rate_hz: 100"));
+  run_until_told("scene-refused", {"rate", "restart"});
+  for (int i = 0; i < 5; ++i) run_until_told("started");
+  EXPECT_EQ(revision, read.scene.revision);
+}
+
+TEST_F(DaemonReload, ManyChangesInARowLoseNothing) {
+  start();
+  run_until_told("started");
+  for (int i = 0; i < 10; ++i) {
+    const std::string margin = std::to_string(1 + i);
+    reload(replaced(text, "box: {size: [0.2, 0.3, 0.2]}",
+                    "margin: 0.0" + margin + ", box: {size: [0.2, 0.3, 0.2]}"));
+    const std::uint64_t expected = cell.cell().scene.revision;
+    for (int tick = 0; revision != expected; ++tick) {
+      ASSERT_LT(tick, 2000);
+      run_until_told("started");
+    }
+  }
+  EXPECT_EQ(unknown, 0u);
+}
+
+TEST_F(DaemonReload, ADaemonThatRecordsKeepsItsCell) {
+  const ScratchFolder folder;
+  start({"--record", (folder / "run.mcap").string()});
+  reload(replaced(text, "enter_below: 0.3", "enter_below: 0.31"));
+  run_until_told("scene-refused");
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+}  // namespace
+}  // namespace clearance::test
