@@ -10,11 +10,11 @@
 #include <utility>
 
 #include "config/cell/ros_reader.hpp"
+#include "config/scene/source_name.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::size_t kMaxSourceName = 32;    // bytes; idl/clearance.idl
 constexpr std::size_t kMaxNamedSources = 15;  // at most 16 sources are accepted: one place stays
                                               // for any other source
 
@@ -238,10 +238,24 @@ const YamlNode& name_place(const YamlNode& object) {
 
 std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagnostics) {
   auto name = read_name(node, "a source's name", diagnostics);
-  if (!name || name->size() <= kMaxSourceName) return name;
-  diagnostics.add(node, fmt::format("found a source's name of {} bytes; expected at most {}",
-                                    name->size(), kMaxSourceName));
-  return std::nullopt;
+  if (!name) return name;
+  if (name->size() > kMaxSourceLength) {
+    diagnostics.add(node, fmt::format("found a source's name of {} bytes; expected at most {}. A "
+                                      "topic with a longer name is known by its last {} bytes",
+                                      name->size(), kMaxSourceLength, kMaxSourceLength));
+    return std::nullopt;
+  }
+  if (const std::string_view suffix = writer_suffix(*name); !suffix.empty()) {
+    const std::string_view stem(name->data(), name->size() - suffix.size());
+    diagnostics.add(
+        node, fmt::format("found the source '{}'; expected a name that does not end in '#' and "
+                          "a number. Such a number says in which order the writers of '{}' came, "
+                          "and that may change at the next start. Give each writer another name "
+                          "or topic",
+                          *name, stem));
+    return std::nullopt;
+  }
+  return name;
 }
 
 // The values have the same ranges as the keys of the objects.

@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "config/cell/ros_reader.hpp"
+#include "config/scene/source_name.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
 

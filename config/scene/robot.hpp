@@ -112,12 +112,6 @@ struct RobotBase {
   Pose frame_from_root;
 };
 
-// The source name for the bases of robots. Sequence numbers count samples of one kind, so bases
-// need a source beside that of the poses.
-[[nodiscard]] inline std::string base_source(const std::string& source) {
-  return source + ":bases";
-}
-
 struct Robot {
   std::string name;
   std::string prefix;  // its names begin with it in this cell

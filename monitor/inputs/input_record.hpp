@@ -59,8 +59,8 @@ struct SampleOrigin {
 
 // Takes a sample into use, or returns why it must not be used and updates the input's contradiction
 // state. Two sources that claim one input with values that exclude each other are a contradiction
-// too, whichever came first, unless the cell names the source. Two writers that share the name that
-// the cell states are not told apart by it. A `Candidate` is one sample of one
+// too, whichever came first, unless the cell names the source. Several writers that share the name
+// that the cell states are not told apart by it. A `Candidate` is one sample of one
 // input, with these members:
 //   std::optional<Reject> malformed()    it is not a value at all, whichever source sent it
 //   bool disputes()                      it excludes the value in use, which another source sent

@@ -8,12 +8,11 @@
 #include <string_view>
 #include <vector>
 
+#include "config/scene/source_name.hpp"
 #include "core/pose.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
-
-inline constexpr std::size_t kMaxSourceLength = 32;  // characters
 
 struct PoseSample {
   std::uint32_t object = 0;   // index into Scene::objects
@@ -54,9 +53,10 @@ inline constexpr auto kRejects = static_cast<std::size_t>(Reject::kCount);
 class SourceName {
  public:
   SourceName() = default;
-  // Longer names are cut.
+  // Longer names are cut at their beginning, because the end of a topic is more distinctive.
   explicit SourceName(std::string_view text) noexcept {
-    text.substr(0, kMaxSourceLength).copy(text_.data(), kMaxSourceLength);
+    if (text.size() > kMaxSourceLength) text.remove_prefix(text.size() - kMaxSourceLength);
+    text.copy(text_.data(), kMaxSourceLength);
   }
   [[nodiscard]] const char* c_str() const noexcept { return text_.data(); }
   [[nodiscard]] std::string_view view() const noexcept { return text_.data(); }

@@ -67,12 +67,13 @@ void SourceNumbers::append(const PoseBatch& batch, std::vector<PoseSample>& pose
 }
 
 std::uint32_t SourceNumbers::namesake_of(const SourceName& source) const noexcept {
-  const std::string_view name = source.view();
-  const std::size_t mark = name.rfind('#');
-  if (mark == name.npos || name.find_first_not_of("0123456789", mark + 1) != name.npos)
-    return kNoSource;
+  const std::string_view suffix = writer_suffix(source.view());
+  const std::string_view stem = source.view().substr(0, source.view().size() - suffix.size());
+  if (suffix.empty() || stem.empty()) return kNoSource;
+  const std::size_t most = kMaxSourceLength - suffix.size();
   const auto place = std::ranges::find_if(places_, [&](const Place& candidate) {
-    return candidate.last_use > 0 && candidate.source.view() == name.substr(0, mark);
+    const std::string_view name = candidate.source.view();
+    return candidate.is_named && name.substr(name.size() - std::min(name.size(), most)) == stem;
   });
   return place == places_.end() ? kNoSource : index(*place);
 }

@@ -29,8 +29,8 @@ class SourceNumbers {
   // false, and numbers none, if there are more than kMaxSources named ones now.
   bool add_named(std::span<const SourceName> sources) noexcept;
   // Appends the samples of a batch with the number of their sender. A sender NAME#2 is the second
-  // writer of NAME: the number of NAME is set as well, if that has one. Does not allocate where the
-  // capacities suffice.
+  // writer of NAME: the number of NAME is set as well, if the cell names that. Does not allocate
+  // where the capacities suffice.
   void append(const PoseBatch& batch, std::vector<PoseSample>& poses,
               std::vector<JointSample>& joints);
   // Returns an empty name when no source has that number.
@@ -43,6 +43,8 @@ class SourceNumbers {
     bool is_named = false;       // by the cell
   };
   [[nodiscard]] const Place* find(const SourceName& source) const noexcept;
+  // The number of NAME for its writers NAME#2, NAME#3 and so on, if the cell names NAME. The suffix
+  // may have left no space for the beginning of a long name.
   [[nodiscard]] std::uint32_t namesake_of(const SourceName& source) const noexcept;
   [[nodiscard]] std::uint32_t index(const Place& place) const noexcept {
     return static_cast<std::uint32_t>(&place - places_.data());

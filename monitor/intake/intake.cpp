@@ -131,7 +131,7 @@ SourceTally* Intake::admit(PoseBatch& batch, std::uint64_t writer, std::size_t s
   Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
   tell_of(admission, batch, writer);
   if (admission.tally == nullptr && admission.cause == SourceRefusal::kOtherWriter) {
-    batch.source = name_of_writer(batch.source.view(), 2);
+    batch.source = sources_.name_for(batch.source, writer, monotonic_ns_);
     admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
     tell_of(admission, batch, writer);
   }

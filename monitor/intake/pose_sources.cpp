@@ -17,10 +17,7 @@ constexpr std::uint64_t kNoIndex = 0;
 }  // namespace
 
 SourceName name_of_writer(std::string_view name, std::size_t number) {
-  const std::string suffix = number > 1 ? fmt::format("#{}", number) : "";
-  const std::size_t most = kMaxSourceLength - suffix.size();
-  if (name.size() > most) name.remove_prefix(name.size() - most);
-  return SourceName(std::string(name) + suffix);
+  return number > 1 ? SourceName(fmt::format("{}#{}", name, number)) : SourceName(name);
 }
 
 const char* name(SourceRefusal cause) noexcept {
@@ -54,9 +51,8 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
   if (known != tallies_.end()) {
     SourceTally& tally = *known;
     if (tally.writer == writer) return {.tally = &tally};
-    const bool held = tally.writer != kNoIndex && monotonic_ns - tally.last_ns < kNameHeldNs;
     const std::uint64_t former = tally.writer;
-    if (held) {
+    if (is_held(tally, writer, monotonic_ns)) {
       Admission refusal = refuse(source, SourceRefusal::kOtherWriter, poses);
       refusal.former_writer = former;
       return refusal;
@@ -76,6 +72,22 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
   const SourceName before = place->source;
   *place = fresh;
   return {.tally = place, .news = Admission::News::kNewSource, .place_of = before};
+}
+
+SourceName PoseSources::name_for(const SourceName& source, std::uint64_t writer,
+                                 std::int64_t monotonic_ns) const {
+  for (std::size_t number = 1;; ++number) {
+    const SourceName name = name_of_writer(source.view(), number);
+    const auto known = std::ranges::find(tallies_, name, &SourceTally::source);
+    if (known == tallies_.end() || !is_held(*known, writer, monotonic_ns)) return name;
+  }
+}
+
+// True if the name belongs to another writer at this time.
+bool PoseSources::is_held(const SourceTally& tally, std::uint64_t writer,
+                          std::int64_t monotonic_ns) noexcept {
+  return tally.writer != writer && tally.writer != kNoIndex &&
+         monotonic_ns - tally.last_ns < kNameHeldNs;
 }
 
 bool PoseSources::is_named(const SourceName& source) const noexcept {

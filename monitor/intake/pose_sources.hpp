@@ -28,8 +28,7 @@ struct SourceTally {
   void note_sequence(std::uint64_t number) noexcept;
 };
 
-// Returns the source name of the n-th writer that uses a name: NAME, "NAME#2" and so on. A name
-// that is too long is cut at its beginning, because the end of a topic is more distinctive.
+// Returns the source name of the n-th writer that uses a name: NAME, "NAME#2" and so on.
 [[nodiscard]] SourceName name_of_writer(std::string_view name, std::size_t number);
 
 // Why the batches of a source are not used.
@@ -74,6 +73,10 @@ class PoseSources {
                   std::int64_t monotonic_ns);
   // The cell has changed and names these sources now.
   void change_named(std::vector<SourceName> named) { named_ = std::move(named); }
+  // Returns the first of NAME, NAME#2, NAME#3 and so on that belongs to no other writer. At
+  // most kMaxSources names are in use at a time.
+  [[nodiscard]] SourceName name_for(const SourceName& source, std::uint64_t writer,
+                                    std::int64_t monotonic_ns) const;
   [[nodiscard]] bool is_named(const SourceName& source) const noexcept;
   // `writers` are those that still exist. The names and places of all others become free.
   void keep(std::span<const std::uint64_t> writers);
@@ -85,6 +88,8 @@ class PoseSources {
 
  private:
   [[nodiscard]] std::size_t places_for_others() const noexcept;
+  [[nodiscard]] static bool is_held(const SourceTally& tally, std::uint64_t writer,
+                                    std::int64_t monotonic_ns) noexcept;
   [[nodiscard]] SourceTally* free_place(std::int64_t monotonic_ns);
   Admission refuse(const SourceName& source, SourceRefusal cause, std::size_t poses);
 

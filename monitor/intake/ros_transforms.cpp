@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/scene/source_name.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
@@ -131,8 +132,8 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
   }
   out_.tell({.cause = News::Cause::kFrameOfTwo,
              .text = fmt::format("frame '{}' is sent by several publishers that contradict each "
-                                 "other: what follows it is unknown while they do, unless its "
-                                 "'source' is stated",
+                                 "other: what follows it is unknown while they do, unless "
+                                 "'source' in the cell tells them apart",
                                  child)});
 }
 

@@ -89,6 +89,20 @@ TEST_F(IntakeTest, GivesASecondWriterOfANameANameOfItsOwnAndTellsOnceOfEach) {
                                  News::Cause::kNewSource, News::Cause::kSourceTakenOver}));
 }
 
+// A third writer is heard as well, since it may contradict the other two. It keeps its name while
+// all three send.
+TEST_F(IntakeTest, GivesEveryFurtherWriterOfANameANameOfItsOwn) {
+  for (std::uint64_t number = 1; number <= 3; ++number) {
+    for (const std::uint64_t writer : {1, 2, 3}) take(number, writer);
+  }
+  const std::vector<PoseBatch> all = heard.all();
+  ASSERT_EQ(all.size(), 9u);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    EXPECT_EQ(all[i].source.view(), std::array{"arm", "arm#2", "arm#3"}[i % 3]) << i;
+  }
+  for (const SourceTally& tally : heard.intake.sources().tallies()) EXPECT_EQ(tally.lost, 0u);
+}
+
 // The cell does not say which of two writers it means.
 TEST_F(IntakeTest, GivesASecondWriterANameOfItsOwnAlsoWhereTheCellStatesTheName) {
   cell.scene.objects[0].source = "arm";

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/scara_cell.hpp"
@@ -139,6 +140,17 @@ TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   heard.intake.keep({1});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
   EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}}));
+}
+
+// The tick recognises the second source as another writer of the first one's name.
+TEST_F(RosTransformsTest, OfTwoPublishersOfABaseHaveNumbersAtTheEndOfTheirNames) {
+  heard.intake.keep({1, 2, 3});
+  send({{"map", "mir/top", {1, 0, 0}}}, "/tf", 1);
+  send({{"map", "mir/top", {2, 0, 0}}}, "/tf", 2);
+  send({{"map", "mir/top", {3, 0, 0}}}, kStatic, 3);
+  std::vector<std::string> sources;
+  for (const PoseBatch& batch : settled()) sources.emplace_back(batch.source.view());
+  EXPECT_EQ(sources, (std::vector<std::string>{"/tf:bases", "/tf:bases#2", "/tf_static:bases"}));
 }
 
 // A static transform never ages, so its publisher may be one that was forgotten.

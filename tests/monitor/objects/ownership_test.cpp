@@ -1,7 +1,9 @@
 // Which sources may send an object's pose, tested through the tick.
 #include <gtest/gtest.h>
 
+#include "config/scene/source_name.hpp"
 #include "monitor/inputs/source_numbers.hpp"
+#include "monitor/intake/pose_sources.hpp"
 #include "tests/monitor/two_balls.hpp"
 
 namespace clearance {
@@ -9,15 +11,12 @@ namespace {
 
 using test::kStart;
 using test::kTick;
+using test::rejected;
 
 PoseSample from(std::uint32_t source, double x, std::int64_t stamp_ns) {
   PoseSample sample = test::sample(0, test::at(x, 0, 0), stamp_ns);
   sample.source = source;
   return sample;
-}
-
-std::uint64_t refused(const Monitor& monitor) {
-  return monitor.rejected(0)[static_cast<std::size_t>(Reject::kOtherSource)];
 }
 
 TEST(Ownership, FirstSourceOfAnObjectKeepsItWhileAnotherSendsTheSame) {
@@ -30,7 +29,7 @@ TEST(Ownership, FirstSourceOfAnObjectKeepsItWhileAnotherSendsTheSame) {
     ASSERT_NEAR(report.minimum.distance, 0.8, 1e-12);
     ASSERT_TRUE(report.minimum_certified);
   }
-  EXPECT_EQ(refused(monitor), 500u);
+  EXPECT_EQ(rejected(monitor, Reject::kOtherSource), 500u);
   EXPECT_EQ(monitor.input_age(0).source, 3u);
   EXPECT_EQ(monitor.input_age(0).other_source, 5u);
 }
@@ -56,9 +55,31 @@ TEST(Ownership, ObjectOfTwoSourcesThatContradictIsUnknownUntilASecondAfter) {
 
 // The cell names a source, and two writers have that name. It does not say which of them is meant.
 TEST(Ownership, ObjectOfTwoWritersWithTheNameThatTheCellStatesIsUnknownWhileTheyContradict) {
-  Scene scene = test::two_balls();
-  scene.objects[0].source = "tracker";
-  for (const bool is_namesake : {true, false}) {
+  const std::string longest = "/left/of/all/cells/joint_states_";
+  ASSERT_EQ(longest.size(), kMaxSourceLength);
+  struct Case {
+    std::string stated;
+    SourceName other;
+    bool is_namesake;
+  };
+  for (const auto& [stated, other, is_namesake] : {
+           Case{"tracker", name_of_writer("tracker", 2), true},
+           Case{"tracker", name_of_writer("tracker", 12), true},
+           Case{base_source("/tf"), SourceName(base_source("/tf#2")), true},
+           Case{longest, name_of_writer(longest, 2), true},
+           Case{longest, name_of_writer(longest, 10), true},
+           Case{longest, name_of_writer("/a/namespace" + longest, 2), true},
+           Case{longest, name_of_writer("/right" + longest.substr(5), 2), false},
+           Case{longest, name_of_writer(longest.substr(0, 31), 2), false},
+           Case{"tracker", SourceName("other#2"), false},
+           Case{"tracker", SourceName("my_tracker#2"), false},
+           Case{"tracker", SourceName("tracker#"), false},
+           Case{"tracker", SourceName("#" + std::string(kMaxSourceLength - 1, '2')), false},
+           Case{"tracker", SourceName("tracker#two"), false},
+       }) {
+    SCOPED_TRACE(other.view());
+    Scene scene = test::two_balls();
+    scene.objects[0].source = stated;
     Monitor monitor(scene);
     SourceNumbers numbers(scene);
     for (int tick = 0; tick < 100; ++tick) {
@@ -66,17 +87,16 @@ TEST(Ownership, ObjectOfTwoWritersWithTheNameThatTheCellStatesIsUnknownWhileThey
       std::vector<PoseSample> samples;
       std::vector<JointSample> joints;
       PoseBatch batch;
-      batch.source = SourceName("tracker");
+      batch.source = SourceName(stated);
       batch.samples = {from(0, 0.0, now)};
       numbers.append(batch, samples, joints);
-      batch.source = SourceName(is_namesake ? "tracker#2" : "other#2");
+      batch.source = other;
       batch.samples = {from(0, 0.5, now)};
       numbers.append(batch, samples, joints);
       const Report& report = monitor.tick(samples, now);
       ASSERT_EQ(report.pairs[0].status == PairStatus::kUnknown, is_namesake);
     }
-    EXPECT_EQ(monitor.rejected(0)[static_cast<std::size_t>(Reject::kDisputed)],
-              is_namesake ? 100u : 0u);
+    EXPECT_EQ(rejected(monitor, Reject::kDisputed), is_namesake ? 100u : 0u);
   }
 }
 
@@ -127,7 +147,7 @@ TEST(Ownership, SourceThatTheCellNamesIsTheOnlyOne) {
   const std::int64_t later = kStart + 5000 * kTick;
   const PoseSample again = from(other.source, 0.0, later);
   EXPECT_EQ(monitor.tick(std::span(&again, 1), later).unknown, 1u);
-  EXPECT_EQ(refused(monitor), 2u);
+  EXPECT_EQ(rejected(monitor, Reject::kOtherSource), 2u);
 }
 
 TEST(SourceNumbers, OneBeyondThePlacesTakesThatOfTheOneHeardLongestAgo) {
