@@ -76,7 +76,7 @@ inline constexpr LogLine<Text> kPosesBack{"poses-back", kInfo, "poses of {} are 
 inline constexpr LogLine<Text, Text, Text> kTwoSources{
     "two-sources", kWarn,
     "{} is sent by '{}' and by '{}': poses of the latter are not used, and none while the two "
-    "contradict each other, unless the cell names the source"};
+    "contradict each other, unless 'source' in the cell tells the two apart"};
 inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWarn,
                                                           "{}: sent by '{}' now, before by '{}'"};
 inline constexpr LogLine<Text> kVelocitiesContradict{
@@ -103,8 +103,7 @@ inline constexpr LogLine<Text, Text, Text> kJointsContradict{
 inline constexpr LogLine<Text, Text, Text, Text> kTwoJointSources{
     "two-joint-sources", kWarn,
     "joints of {} are sent by '{}' and by '{}': positions of the latter are not used, and none "
-    "while "
-    "the two contradict each other, unless the cell names the source ({})"};
+    "while the two contradict each other, unless 'source' in the cell tells the two apart ({})"};
 inline constexpr LogLine<Text, Text, Text, Text> kJointsSilent{
     "joints-silent", kWarn, "no usable position of {} of {} has come ({}): {}"};
 
