@@ -96,8 +96,8 @@ Bodies found_by(PartSearch& search, const TriangleTree& tree, const PartLimits& 
   return best;
 }
 
-// The cuts that leave the least open space give the fewest parts of most meshes. They get stuck in
-// rings and cups, of which they slice off one thin piece after the other.
+// The cuts that leave the least open space give the fewest parts of most meshes. They make no
+// progress in rings and cups, because each of them removes only a thin layer.
 Bodies searched_parts(const TriangleMesh& mesh, const TriangleTree& tree, const OpenSpace& space,
                       std::span<const ConvexCell> cells, const PartLimits& limits) {
   PartSearch search(mesh, space, cells, limits);

@@ -96,8 +96,8 @@ class NewtonStep {
     if constexpr (SquaresB::kRound) w = w - parts.radius_b[i] * round_b.point;
     parts.gap[i] = w;
   }
-  // Of the three active pairs. The gap vector of the fourth is a sum of theirs with shares of sum
-  // 1, up to a multiple of x.
+  // Returns the first of the three active pairs whose weight vanishes when the fourth pair enters.
+  // The gap vector of the fourth is a sum of theirs with shares of sum 1, up to a multiple of x.
   [[nodiscard]] static std::size_t first_to_vanish(const PlacedParts& parts, Vec4 x) {
     const Vec4 u = parts.gap[1] - parts.gap[0], v = parts.gap[2] - parts.gap[0];
     const Vec4 rest = parts.gap[3] - parts.gap[0];

@@ -258,8 +258,8 @@ HWY_INLINE void to_edge_between(const ConvexBody& body, const Vertex& vertex, st
   }
 }
 
-// From two vertices to the parallel facets around them that face each other at a distance. If there
-// are two pairs of such facets, the edges between them are closer than either pair.
+// Replaces two vertices by the parallel facets around them that face each other at a distance. If
+// there are two pairs of such facets, the edges between them are closer than either pair.
 inline HWY_NOINLINE void start_level(TrackedPair& pair) {
   const Vertex& of_a = pair.a.vertices[pair.on_a.feature];
   const Vertex& of_b = pair.b.vertices[pair.on_b.feature];

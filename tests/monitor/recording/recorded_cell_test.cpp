@@ -78,8 +78,8 @@ class RecordedCell : public testing::Test {
     EXPECT_TRUE(read);
     return read.value_or(std::vector<CellError>{});
   }
-  // The errors of a recording that somebody wrote: of `cell`, which stood at `cell_file`, with one
-  // attachment.
+  // The errors of a recording of `cell` that the recorder did not make. It states where the cell's
+  // file was, and has one attachment.
   std::string errors_of_recording(const std::string& cell_file, const std::string& attachment,
                                   std::string_view bytes) {
     McapWriter writer(run);
