@@ -7,27 +7,13 @@
 #include "tests/shared/poses.hpp"
 
 namespace clearance::hard {
-namespace {
 
 using oracle::CurvedBody;
-
-CurvedBody ellipsoid_of(const Vec3& semi_axes) {
-  CurvedBody body;
-  body.shape.kind = CurvedShape::Kind::kEllipsoid;
-  body.shape.semi_axes = semi_axes;
-  return body;
-}
 
 CurvedBody truncated_cone_of(double low, double high, double half_length) {
   CurvedBody body;
   body.shape.kind = CurvedShape::Kind::kTruncatedCone;
   body.shape.discs = {Disc{-half_length, low}, Disc{half_length, high}};
-  return body;
-}
-
-CurvedBody hull_of(std::vector<Vec3> points) {
-  CurvedBody body;
-  body.points = std::move(points);
   return body;
 }
 
@@ -37,6 +23,21 @@ CurvedBody box_of(const Vec3& half) {
     body.points.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
                              i & 4 ? half.z() : -half.z());
   }
+  return body;
+}
+
+namespace {
+
+CurvedBody ellipsoid_of(const Vec3& semi_axes) {
+  CurvedBody body;
+  body.shape.kind = CurvedShape::Kind::kEllipsoid;
+  body.shape.semi_axes = semi_axes;
+  return body;
+}
+
+CurvedBody hull_of(std::vector<Vec3> points) {
+  CurvedBody body;
+  body.points = std::move(points);
   return body;
 }
 

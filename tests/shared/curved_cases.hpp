@@ -29,6 +29,11 @@ struct CurvedFamily {
 
 [[nodiscard]] std::span<const CurvedFamily> curved_families();
 
+// A cone around z whose radii are `low` and `high` at the heights -half_length and half_length, m.
+[[nodiscard]] oracle::CurvedBody truncated_cone_of(double low, double high, double half_length);
+// A box around the origin with these half lengths, m.
+[[nodiscard]] oracle::CurvedBody box_of(const Vec3& half);
+
 // The core's model of a body, or the reason for its refusal.
 [[nodiscard]] ShapeResult curved_model(const oracle::CurvedBody& body);
 

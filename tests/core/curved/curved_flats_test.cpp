@@ -17,7 +17,9 @@
 namespace clearance {
 namespace {
 
+using hard::box_of;
 using hard::CurvedCase;
+using hard::truncated_cone_of;
 using oracle::CurvedBody;
 using test::at;
 using test::made;
@@ -27,27 +29,13 @@ constexpr double kGaps[] = {1e-6, 1e-3, 0.5};
 constexpr double kTilts[] = {0.0, 1e-13, 1e-9, 1e-4};
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
-CurvedBody frustum(double low, double high, double half_length) {
-  CurvedBody body;
-  body.shape.kind = CurvedShape::Kind::kTruncatedCone;
-  body.shape.discs = {Disc{-half_length, low}, Disc{half_length, high}};
-  return body;
-}
 CurvedBody cylinder_of(double radius, double half_length) {
-  return frustum(radius, radius, half_length);
+  return truncated_cone_of(radius, radius, half_length);
 }
 CurvedBody capsule(double half_length, double radius) {
   CurvedBody body;
   body.points = {{0.0, 0.0, -half_length}, {0.0, 0.0, half_length}};
   body.radius = radius;
-  return body;
-}
-CurvedBody box_of(const Vec3& half) {
-  CurvedBody body;
-  for (int i = 0; i < 8; ++i) {
-    body.points.emplace_back(i & 1 ? half.x() : -half.x(), i & 2 ? half.y() : -half.y(),
-                             i & 4 ? half.z() : -half.z());
-  }
   return body;
 }
 
@@ -64,7 +52,8 @@ std::vector<FlatContact> parallel_contacts(double gap) {
   const CurvedBody plate = box_of({0.5, 0.4, 0.1}), drum = cylinder_of(0.3, 0.2);
   return {
       {"a cylinder on another", drum, cylinder_of(0.2, 0.4), at(0.25, 0.1, 0.6 + gap)},
-      {"a cone's base on a cylinder", drum, frustum(0.2, 0.0, 0.4), at(0.1, 0.3, 0.6 + gap)},
+      {"a cone's base on a cylinder", drum, truncated_cone_of(0.2, 0.0, 0.4),
+       at(0.1, 0.3, 0.6 + gap)},
       {"a cylinder on a box", plate, cylinder_of(0.2, 0.4), at(0.4, 0.1, 0.5 + gap)},
       {"a box on a smaller cylinder", drum, plate, at(0.3, 0.1, 0.3 + gap)},
       {"a lying cylinder on a box", plate, cylinder_of(0.2, 0.3), lying({0.1, 0.1, 0.3 + gap})},

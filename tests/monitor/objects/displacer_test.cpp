@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <tuple>
 
 #include "monitor/objects/displacements.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -9,29 +10,15 @@
 namespace clearance::test {
 namespace {
 
-void expect_same(const Displacements& a, const Displacements& b) {
-  EXPECT_EQ(a.changed, b.changed);
-  EXPECT_EQ(a.any_lost, b.any_lost);
-  EXPECT_EQ(a.most_unobserved, b.most_unobserved);
-  EXPECT_EQ(a.most_displaced, b.most_displaced);
-  EXPECT_EQ(a.newest_pose_ns, b.newest_pose_ns);
-  EXPECT_EQ(a.oldest_pose_ns, b.oldest_pose_ns);
+auto figures_of(const Displacements& d) {
+  return std::tie(d.changed, d.any_lost, d.most_unobserved, d.most_displaced, d.newest_pose_ns,
+                  d.oldest_pose_ns);
 }
 
-void expect_same(const TrackedObject& a, const TrackedObject& b) {
-  EXPECT_EQ(a.moved, b.moved);
-  EXPECT_EQ(a.newly_known, b.newly_known);
-  EXPECT_EQ(a.discontinuous, b.discontinuous);
-  EXPECT_EQ(a.plain, b.plain);
-  EXPECT_EQ(a.may_have_moved, b.may_have_moved);
-  EXPECT_EQ(a.unobserved, b.unobserved);
-  EXPECT_EQ(a.displacement, b.displacement);
-  EXPECT_EQ(a.accumulated_last_tick, b.accumulated_last_tick);
-  EXPECT_EQ(a.accumulated, b.accumulated);
-  EXPECT_EQ(a.bend, b.bend);
-  EXPECT_EQ(a.motion.shift, b.motion.shift);
-  EXPECT_EQ(a.input.late, b.input.late);
-  EXPECT_EQ(a.input.contradicted, b.input.contradicted);
+auto figures_of(const TrackedObject& o) {
+  return std::tie(o.moved, o.newly_known, o.discontinuous, o.plain, o.may_have_moved, o.unobserved,
+                  o.displacement, o.accumulated_last_tick, o.accumulated, o.bend, o.motion.shift,
+                  o.input.late, o.input.contradicted);
 }
 
 // Some objects are silent for long, some move, some leap, two sources claim one, and the time of
@@ -92,9 +79,9 @@ TEST(Displacer, LeavesUnvisitedObjectsAsAVisitWould) {
       all.displace(visited);
       some.displace(left_out);
       SCOPED_TRACE(testing::Message() << "seed " << seed << ", tick " << tick);
-      expect_same(all.result(), some.result());
+      EXPECT_EQ(figures_of(all.result()), figures_of(some.result()));
       for (std::size_t i = 0; i < scene.objects.size(); ++i)
-        expect_same(visited.objects[i], left_out.objects[i]);
+        EXPECT_EQ(figures_of(visited.objects[i]), figures_of(left_out.objects[i])) << i;
     }
   }
   EXPECT_GT(unvisited, 50'000u) << "of 189,000 states";
