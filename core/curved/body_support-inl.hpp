@@ -51,11 +51,11 @@ struct SideParts {
 };
 
 struct BodySupport {
-  bool known = false;             // false: the other members have no meaning
-  std::int32_t missing = kNone;   // a part whose support value is at least that of the active ones
-  std::int32_t farthest = kNone;  // the part with the greatest support value that is known
-  double value = 0.0;             // the support value of the body without its radius
-  Vec4 point{};                   // the mean of the active parts' support points
+  bool known = false;            // false: the other members have no meaning
+  std::int32_t missing = kNone;  // a part whose support value is at least that of the active ones
+  std::int32_t part = kNone;     // the part with the greatest support value that is known
+  double value = 0.0;            // the support value of the body without its radius
+  Vec4 point{};                  // the mean of the active parts' support points
 };
 
 // For directions nearer to the axis of a truncated cone than this, a cap is tried.
@@ -84,7 +84,7 @@ HWY_INLINE BodySupport round_support(const Side& side, const SideParts& active, 
   BodySupport found;
   found.known = true;
   found.value = largest.value;
-  found.farthest = largest.number;
+  found.part = largest.number;
   if (!active.has(largest.number)) found.missing = largest.number;
   double radius = 0.0, height = 0.0;
   for (std::size_t i = 0; i < active.count; ++i) {
@@ -131,28 +131,28 @@ HWY_INLINE BodySupport polyhedron_support(const ConvexBody& body, const SidePart
     const Vec4 p = load3(body.anchors[static_cast<std::size_t>(active.number(i))]);
     found.point = found.point + active.weight[i] * p;
     const double value = dot(m, p);
-    if (value > found.value) found.farthest = active.number(i);
+    if (value > found.value) found.part = active.number(i);
     found.value = std::max(found.value, value);
     steepest = std::max(steepest, ascent(body, active.number(i), active, m));
   }
   if (HWY_LIKELY(!(steepest > -kInfinity))) return found;
   const Support whole = support(body, vec3(m));
   if (steepest > 4.0 * kDerivativeError && !active.has(whole.anchor)) {
-    found.missing = found.farthest = whole.anchor;
+    found.missing = found.part = whole.anchor;
   }
   found.value = std::max(found.value, whole.value);
   return found;
 }
 
 // The part with the greatest support value along m (unit), and that value.
-HWY_INLINE SupportPart farthest_part(const Side& side, const SideParts& active, Vec4 m) {
+HWY_INLINE SupportPart support_part(const Side& side, const SideParts& active, Vec4 m) {
   if (side.is_round()) {
     const double length = norm(side.semi_axes() * m);
     if (side.round.count == 1) return {0, length};
     return support_part(side.round, lane(m, 2), length);
   }
   const BodySupport found = polyhedron_support(side.body, active, m);
-  return {found.farthest, found.value};
+  return {found.part, found.value};
 }
 
 HWY_INLINE BodySupport body_support(const Side& side, const SideParts& active, Vec4 m) {

@@ -127,8 +127,8 @@ class Newton {
   // distance, m.
   HWY_NOINLINE double grow() {
     const Vec4 n = over(x_, norm(x_));
-    const SupportPart a = farthest_part(a_, parts_.side(true), n);
-    const SupportPart b = farthest_part(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
+    const SupportPart a = support_part(a_, parts_.side(true), n);
+    const SupportPart b = support_part(b_, parts_.side(false), -direction_to_b(a_from_b_, n));
     add({a.number, b.number});
     return (dot(n, a_from_b_.translation) - a.value) - b.value;
   }
@@ -160,7 +160,7 @@ class Newton {
       }
     }
     // Otherwise rounding alone keeps the bounds apart.
-    if (dot(n, gap) - end.lower > tolerance_) add({a.farthest, b.farthest});
+    if (dot(n, gap) - end.lower > tolerance_) add({a.part, b.part});
     return Next::kIterate;
   }
 
