@@ -88,9 +88,7 @@ void HealthLog::update(const clearance_msg_Health& health,
     }
     other = input.other_source;
   }
-  const std::size_t refusals = refusals_.update(health);
-  refusals_.log(kLinesAtOnce - std::min(logged, kLinesAtOnce));
-  logged += refusals;
+  logged += refusals_.update(health, kLinesAtOnce - std::min(logged, kLinesAtOnce));
   if (logged > kLinesAtOnce)
     log_line(lines::kMoreLeftOut, counted(logged - kLinesAtOnce, "more line"));
   joints_.update(health.joints, senders_of_joints);

@@ -24,7 +24,13 @@ void RefusalLog::add(const clearance_msg_RejectCount& entry) {
 }
 
 // A line is due at once if it names an input that no line before did.
-std::size_t RefusalLog::update(const clearance_msg_Health& health) {
+bool RefusalLog::is_due(const Refusals& refusals) {
+  const bool is_news = !std::ranges::all_of(
+      refusals.inputs, [&](const std::string& input) { return refusals.named.contains(input); });
+  return refusals.count > 0 && (is_news || refusals.silent_s >= refusals.pause_s);
+}
+
+std::size_t RefusalLog::update(const clearance_msg_Health& health, std::size_t most) {
   for (auto& [key, refusals] : refusals_) {
     ++refusals.silent_s;
     if (++refusals.quiet_s > kOverS && refusals.count == 0) {
@@ -36,19 +42,8 @@ std::size_t RefusalLog::update(const clearance_msg_Health& health) {
   std::size_t due = 0;
   for (auto& [key, refusals] : refusals_) {
     if (refusals.count > 0) ++refusals.counted_s;
-    const bool is_news = !std::ranges::all_of(
-        refusals.inputs, [&](const std::string& input) { return refusals.named.contains(input); });
-    refusals.is_due = refusals.count > 0 && (is_news || refusals.silent_s >= refusals.pause_s);
-    if (refusals.is_due) ++due;
-  }
-  return due;
-}
-
-void RefusalLog::log(std::size_t most) {
-  for (auto& [key, refusals] : refusals_) {
+    if (!is_due(refusals) || due++ >= most) continue;
     const auto& [are_joints, cause] = key;
-    if (!std::exchange(refusals.is_due, false) || most == 0) continue;
-    --most;
     log_line(lines::kRefused, refusals.count,
              (are_joints ? "positions of " : "poses of ") + listed(refusals.inputs, kNamesALine),
              refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s), cause,
@@ -59,6 +54,7 @@ void RefusalLog::log(std::size_t most) {
     refusals.counted_s = refusals.silent_s = 0;
     refusals.pause_s = std::clamp(2 * refusals.pause_s, kFirstPauseS, kLongestPauseS);
   }
+  return due;
 }
 
 }  // namespace clearance

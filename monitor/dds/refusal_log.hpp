@@ -16,10 +16,9 @@ namespace clearance {
 
 class RefusalLog {
  public:
-  // Returns how many lines are due. Called once a second, with every health sample.
-  [[nodiscard]] std::size_t update(const clearance_msg_Health& health);
-  // Logs up to `most` of the lines that are due. The others stay due.
-  void log(std::size_t most);
+  // Logs up to `most` of the lines that are due, and returns how many were. The others are due in
+  // the next second. Called once a second, with every health sample.
+  std::size_t update(const clearance_msg_Health& health, std::size_t most);
 
  private:
   static constexpr int kFirstPauseS = 10, kLongestPauseS = 640;
@@ -34,10 +33,10 @@ class RefusalLog {
     int silent_s = 0;                 // since the last line
     int pause_s = 0;                  // until the next line, unless it names another input
     int quiet_s = 0;                  // since the last refusal
-    bool is_due = false;
   };
 
   void add(const clearance_msg_RejectCount& entry);
+  [[nodiscard]] static bool is_due(const Refusals& refusals);
 
   std::map<std::pair<std::string, std::string>, std::uint64_t> before_;  // by input and cause
   std::map<std::pair<bool, std::string>, Refusals> refusals_;            // by is-a-joint and cause

@@ -23,9 +23,7 @@ class RefusalLogTest : public testing::Test {
     clearance_msg_Health health{};
     health.rejected._buffer = entries.data();
     health.rejected._length = static_cast<std::uint32_t>(entries.size());
-    const std::size_t due = refusals.update(health);
-    refusals.log(most);
-    return due;
+    return refusals.update(health, most);
   }
   [[nodiscard]] std::size_t lines() const { return logged->count("[refused]"); }
 
