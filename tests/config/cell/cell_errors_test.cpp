@@ -193,7 +193,7 @@ const Mistake kMistakes[] = {
      "found 'source' of a fixed object"},
     {"LongSource", with_shape("sphere: {radius: 1}, source: @a_name_of_more_than_thirty_two_bytes"),
      "found a source's name of 36 bytes; expected at most 32"},
-    {"NumberedSource", with_shape("sphere: {radius: 1}, source: '@/joint_states#2'"),
+    {"NumberedSource", with_shape("sphere: {radius: 1}, source: @'/joint_states#2'"),
      "found the source '/joint_states#2'; expected a name that does not end in '#' and a number"},
     {"ZeroFrozenLimit", with_shape("sphere: {radius: 1}, frozen_limit_ms: @0"),
      "found the number 0; expected the frozen limit in ms, more than 0 and at most 86400000"},

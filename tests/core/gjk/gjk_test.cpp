@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
+#include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
 
 namespace clearance {
@@ -42,6 +45,30 @@ TEST(Refine, WidensBothBoundsByTheErrorBound) {
         EXPECT_EQ(r.normal, side * Vec3::Unit(axis));
       }
     }
+  }
+}
+
+// A quarter of the space has one vertex, with which the search begins, and rays. The points below
+// the cube are far from it.
+TEST(Refine, FindsClosestPointsOfAnUnboundedBodyThatAreFarFromItsVertices) {
+  const std::array rows{HalfSpace{Vec3::UnitZ(), 0.0}, HalfSpace{-Vec3::UnitX(), 1.0},
+                        HalfSpace{-Vec3::UnitY(), 1.0}};
+  const ConvexBody floor = test::made(polyhedron_from_halfspaces(rows)), cube = test::cube();
+  ASSERT_EQ(floor.vertices.size(), 1u);
+  for (const Vec3& place : {Vec3(0, 0, 1.5), Vec3(4, 0, 1.5), Vec3(3, 5, 1.5), Vec3(64, 1, 1.5)}) {
+    const RelativePose pose = relative_pose(Pose{}, Pose{.position = place});
+    ActiveFeature a(floor, nullptr), b(cube, &pose);
+    a.place_at_vertex(0);
+    b.place_at_vertex(0);
+    const Precision p = precision(floor, cube, pose, place.norm());
+    DistanceResult r;
+    r.lower = -kInfinity;
+    r.upper = r.distance = kInfinity;
+    refine(a, b, pose, p, r);
+    EXPECT_EQ(r.status, DistanceStatus::kConverged) << place.transpose();
+    EXPECT_LE(r.lower, 1.0);
+    EXPECT_GE(r.upper, 1.0);
+    EXPECT_LE(r.upper - r.lower, 2.0 * p.error_bound + p.gap_tolerance);
   }
 }
 

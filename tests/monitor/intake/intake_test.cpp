@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/scara_cell.hpp"
@@ -97,9 +99,9 @@ TEST_F(IntakeTest, GivesEveryFurtherWriterOfANameANameOfItsOwn) {
   }
   const std::vector<PoseBatch> all = heard.all();
   ASSERT_EQ(all.size(), 9u);
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    EXPECT_EQ(all[i].source.view(), std::array{"arm", "arm#2", "arm#3"}[i % 3]) << i;
-  }
+  const std::array names{"arm", "arm#2", "arm#3"};
+  for (std::size_t i = 0; i < all.size(); ++i)
+    EXPECT_EQ(all[i].source.view(), names.at(i % 3)) << i;
   for (const SourceTally& tally : heard.intake.sources().tallies()) EXPECT_EQ(tally.lost, 0u);
 }
 

@@ -132,6 +132,21 @@ TEST(Scheduler, EveryPairIsRefreshedInTimeAlsoWhenObjectsLeaveAndComeBack) {
   EXPECT_TRUE(lost);
 }
 
+// All pairs are those of one object, which is silent for longer than every pair's refresh takes.
+// Four times as many as usual are then refreshed in a tick: 64 instead of 16.
+TEST(Scheduler, PairsOfAnObjectThatComesBackAreRefreshedFourTimesAsFastAsUsual) {
+  Scene scene = far_apart(1600);
+  scene.refresh_s = 0.1;
+  Monitor monitor(scene);
+  int t = 0;
+  for (; t < 250; ++t) tick_with_first_at(test::at(0, 0, 0), t, monitor);
+  for (; t < 380; ++t) (void)monitor.tick({}, kStart + t * kTick);
+  ASSERT_EQ(monitor.tick({}, kStart + t * kTick).unknown, 1600u);
+  for (const int end = t + 30; t < end; ++t) tick_with_first_at(test::at(0, 0, 0), t + 1, monitor);
+  EXPECT_LE(tick_with_first_at(test::at(0, 0, 0), t + 1, monitor).oldest_evaluation_cycles, 31u)
+      << "1,600 pairs, 64 a tick";
+}
+
 TEST(Scheduler, FirstBinsAreEvaluatedEveryTick) {
   Scene scene = far_apart(20);
   scene.objects.push_back(test::fixed("near", {test::ball(0.1)}, test::at(11.0, 0.41, 0)));

@@ -7,6 +7,7 @@
 
 #include "monitor/monitor.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/swept/zone_crossings.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/poses.hpp"
 
@@ -47,6 +48,14 @@ class TwoOnTheirWay {
     const SweptBounds bounds = SweptSearch(0, view).decide(level, budget);
     queries_ = queries - budget.left();
     return bounds;
+  }
+  // Bounds without a query, of a pair that no tick has updated since B had `moved_before`, m, left
+  // to go until the start of this motion. Its bound was `lower_before` then.
+  SweptBounds from_old_bound(double lower_before, double moved_before) {
+    table_.lower[0] = lower_before;
+    objects_[1].accumulated += moved_before;
+    Budget none(0);
+    return swept_bounds_of(0, 0.0, TickView{objects_, parts_, 2, table_}, none);
   }
   [[nodiscard]] std::uint32_t queries() const { return queries_; }
   // The bounds at the end of the motion, as the search has them.
@@ -231,6 +240,18 @@ TEST(SweptSearch, ABoundAlongADirectionAllowsForTheRoundingOfTheDirection) {
   EXPECT_LE(lower, pair.at_end().lower - 0.45 * error);
   EXPECT_GE(lower, pair.at_end().lower - 2.0 * error);
   EXPECT_EQ(pair.queries(), 2u);
+}
+
+// A ball comes from 1.3 m away, passes 0.8 m in a tick that leaves the pair as it is, and arrives
+// at 0.3 m in the next one. Oracle: the distance at its end.
+TEST(SweptSearch, AnOldBoundIsReducedByAllMotionSinceThenAndByThatOfThisTick) {
+  Motion2 motion;
+  motion.from = {test::at(0, 0, 0), test::at(1.0, 0, 0)};
+  motion.to = {test::at(0, 0, 0), test::at(0.5, 0, 0)};
+  TwoOnTheirWay balls(test::ball(0.1), test::ball(0.1), motion);
+  const double lower = balls.from_old_bound(1.3, 0.5).lower;
+  EXPECT_LE(lower, balls.truth(1.0).upper);
+  EXPECT_NEAR(lower, 1.3 - 0.5 - 0.5 - 0.5, 1e-12) << "before this tick, in it, and back again";
 }
 
 TEST(SweptSearch, WithoutQueriesNothingIsTold) {

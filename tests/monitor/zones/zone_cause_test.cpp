@@ -1,6 +1,8 @@
 // The cause that the monitor states for an active zone.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "tests/monitor/small_cells.hpp"
 
 namespace clearance {
@@ -68,6 +70,40 @@ TEST(ZoneCause, IsAnObjectWhosePosesContradictEachOther) {
   // A jump of 50 m in 150 ms is refused. The position is then bounded only by 1 m/s since the pose
   // before it.
   expect(cell.tick(50.0, 150 * test::kTick), ZoneCause::kContradicted, 1);
+}
+
+TEST(ZoneCause, IsForgottenWhenTheZoneIsLeft) {
+  BallAndPost cell;
+  expect(cell.tick(std::nullopt), ZoneCause::kUnknown, 1);
+  expect(cell.tick(0.8), ZoneCause::kInactive, 0);
+  expect(cell.tick(0.45), ZoneCause::kNear, 0);
+}
+
+// The ball is far away before and after the leap. Another one is near the post, so that no tick
+// needs the distance of the first. Between the two ticks it may have been anywhere.
+TEST(ZoneCause, IsAFarObjectThatLeapsBetweenTwoTicks) {
+  Object leaping = test::moving("leaping", {test::ball(0.1)}),
+         near = test::moving("near", {test::ball(0.1)});
+  leaping.may_jump = true;
+  Scene scene =
+      test::cell_of({test::fixed("post", {test::ball(0.1)}, test::at(0, 0, 0)), leaping, near});
+  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+  Monitor monitor(scene);
+  std::int64_t now = test::kStart;
+  const auto tick = [&](double x) -> const Report& {
+    now += test::kTick;
+    const std::array samples{test::sample(1, test::at(x, 0, 0), now),
+                             test::sample(2, test::at(0.7, 0, 0), now)};
+    return monitor.tick(samples, now);
+  };
+  tick(50.0);
+  expect(tick(50.0).zones[0], ZoneCause::kInactive, 0);
+  const ZoneReport leap = tick(-2e4).zones[0];
+  expect(leap, ZoneCause::kDiscontinuous, 1);
+  EXPECT_EQ(leap.swept_clearance, -kInfinity);
+  EXPECT_GT(leap.clearance, 0.3) << "it is not there now";
+  EXPECT_FALSE(leap.certified);
+  expect(tick(-2e4).zones[0], ZoneCause::kInactive, 0);
 }
 
 TEST(ZoneCause, IsStillDistanceWhenANearObjectIsLate) {

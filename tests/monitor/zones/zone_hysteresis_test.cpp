@@ -48,6 +48,7 @@ TEST_F(ZoneHysteresisTest, EntersBelowAndLeavesAboveWithHysteresisBetween) {
   EXPECT_EQ(report_.pair, 1u);
   EXPECT_TRUE(tick(0.2, 0.12).active);
   EXPECT_FALSE(report_.changed);
+  EXPECT_EQ(report_.since_cycle, 2u) << "it entered then, and has not left";
   EXPECT_TRUE(tick(0.14, 0.16).active) << "every pair has to leave";
   EXPECT_FALSE(tick(0.16, 0.16).active);
   EXPECT_EQ(report_.since_cycle, 5u);
@@ -96,6 +97,20 @@ TEST_F(ZoneHysteresisTest, AnUnknownPairIsNotOutside) {
   EXPECT_FALSE(report_.certified);
   EXPECT_EQ(report_.pair, 0u);
   EXPECT_EQ(report_.clearance, -kInfinity);
+}
+
+TEST_F(ZoneHysteresisTest, PairsThatAreAddedTogetherProveOnlyThatTheyAreOutside) {
+  for (const double clearance : {0.2, 0.12, 0.05}) {
+    ZoneReport report = report_;
+    ZoneHysteresis update(zone_, report_);
+    update.add(0, {.status = PairStatus::kConverged, .lower = 0.33, .swept_lower = 0.33}, kMargins);
+    update.add_rest({clearance, clearance}, 1);
+    update.finish(1, report);
+    EXPECT_EQ(report.active, clearance < 0.1) << clearance;
+    EXPECT_EQ(report.certified, clearance >= 0.1) << clearance;
+    EXPECT_EQ(report.clearance, clearance);
+    EXPECT_EQ(report.pair, 1u);
+  }
 }
 
 TEST_F(ZoneHysteresisTest, AZoneOfNoPairsIsNeverActive) {
