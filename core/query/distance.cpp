@@ -177,21 +177,27 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   return result;
 }
 
-enum class LastFeatures { kStraight, kFacets };
-
-// Most queries of a moving scene end here, at the features of the last query. The order of methods
-// for facets that are not parallel any more is that of any state.
-template <LastFeatures kFeatures>
-HWY_INLINE DistanceResult from_features(const ConvexBody& a, const ConvexBody& b,
-                                        const RelativePose4& a_from_b, TrackingState& state) {
+// Most queries of a moving scene end here, at the features of the last query.
+HWY_INLINE DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
+                                                 const RelativePose4& a_from_b,
+                                                 TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
-  Transition first;
-  if constexpr (kFeatures == LastFeatures::kFacets) {
-    first = facet_facet<Tracking::kFirst>(pair);
-  } else {
-    first = transition<Tracking::kFirst>(pair);
+  const Transition first = transition<Tracking::kFirst>(pair);
+  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+    return rounded_result_of(pair);
   }
+  return after_first_transition(a, b, a_from_b, state,
+                                {pair.transitions, pair.parallel_transitions}, first);
+}
+
+// The same for two facets. The order of methods for those that are not parallel any more is that of
+// any state.
+HWY_INLINE DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b,
+                                      const RelativePose4& a_from_b, TrackingState& state) {
+  TrackedPair pair(a, b, a_from_b, state);
+  ++pair.transitions;
+  const Transition first = facet_facet<Tracking::kFirst>(pair);
   if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
@@ -205,8 +211,7 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
-  return from_features<LastFeatures::kStraight>(a, b, relative_pose4(world_from_a, world_from_b),
-                                                state);
+  return from_straight_features(a, b, relative_pose4(world_from_a, world_from_b), state);
 }
 
 DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
@@ -214,7 +219,7 @@ DistanceResult relative_from_straight_features(const ConvexBody& a, const Convex
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
-  return from_features<LastFeatures::kStraight>(a, b, good_pose4_of(a_from_b), state);
+  return from_straight_features(a, b, good_pose4_of(a_from_b), state);
 }
 
 DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
@@ -222,8 +227,7 @@ DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose&
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
-  return from_features<LastFeatures::kFacets>(a, b, relative_pose4(world_from_a, world_from_b),
-                                              state);
+  return from_facets(a, b, relative_pose4(world_from_a, world_from_b), state);
 }
 
 DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
@@ -231,10 +235,10 @@ DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
-  return from_features<LastFeatures::kFacets>(a, b, good_pose4_of(a_from_b), state);
+  return from_facets(a, b, good_pose4_of(a_from_b), state);
 }
 
-// The TrackedPair is a new one, so that the one of from_features() can stay in registers.
+// The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
 HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                                    const RelativePose4& a_from_b,
                                                    TrackingState& state, TransitionsMade start,
