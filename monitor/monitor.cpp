@@ -94,7 +94,11 @@ Monitor::Monitor(const Scene& scene, const Monitor* similar)
     : state_(std::make_unique<State>(scene, similar == nullptr
                                                 ? KnownHulls{}
                                                 : KnownHulls{similar->state_->scene.objects,
-                                                             similar->state_->culling.hulls()})) {}
+                                                             similar->state_->culling.hulls()})) {
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].absent) set_absent(i, true);
+  }
+}
 Monitor::~Monitor() = default;
 
 const Report& Monitor::tick(std::span<const PoseSample> samples,

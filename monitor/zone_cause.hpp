@@ -54,10 +54,23 @@ enum class PlacedBy { kPoses, kJointStates, kEither };
   return is_link ? PlacedBy::kJointStates : PlacedBy::kPoses;
 }
 
+// Returns the object whose poses place this one: itself, unless it is attached to another object
+// without joints in between.
+[[nodiscard]] inline std::uint32_t carrying_object(const Scene& scene, std::uint32_t object) {
+  const auto robot = std::ranges::find_if(scene.robots, [=](const Robot& each) {
+    return each.is_attached && each.links.front().object == object;
+  });
+  if (robot == scene.robots.end()) return object;
+  const Robot* at = &*robot;
+  while (at->is_attached && at->base.kind == RobotBase::Kind::kLink)
+    at = &scene.robots[at->base.robot];
+  return at->is_attached && at->base.kind == RobotBase::Kind::kObject ? at->base.object : object;
+}
+
 // The same text for a zone of a report of this scene.
 [[nodiscard]] inline std::string cause_text(const Scene& scene, const ZoneReport& zone) {
-  return cause_text(zone.cause, scene.objects[zone.cause_object].name,
-                    placed_by(scene, zone.cause_object));
+  const std::uint32_t object = carrying_object(scene, zone.cause_object);
+  return cause_text(zone.cause, scene.objects[object].name, placed_by(scene, object));
 }
 
 }  // namespace clearance

@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "config/cell/attachment_reader.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
@@ -44,10 +45,11 @@ constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 class CellReader {
  public:
   CellReader(const std::filesystem::path& file, const CellOptions& options, MeshLibrary& meshes,
-             Diagnostics& diagnostics, Revision& revision)
+             ConvexShapes& known, Diagnostics& diagnostics, Revision& revision)
       : file_(file),
         options_(options),
         meshes_(meshes),
+        known_(known),
         diagnostics_(diagnostics),
         revision_(revision) {}
 
@@ -66,6 +68,7 @@ class CellReader {
   const std::filesystem::path& file_;
   const CellOptions& options_;
   MeshLibrary& meshes_;
+  ConvexShapes& known_;
   Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // its place in the cell
@@ -119,7 +122,7 @@ void CellReader::read_topics(const YamlNode& node, Topics& topics) {
   std::map<std::string, std::string_view> taken;
   for (const auto& [key, member] : kTopicKeys) {
     std::string* const topic = &(topics.*member);
-    const YamlNode* name_node = map.optional(std::string(key));
+    const YamlNode* name_node = map.optional(key);
     const auto name = name_node == nullptr ? std::optional(*topic)
                                            : read_text(*name_node, "a topic's name", diagnostics_);
     if (!name) continue;
@@ -178,6 +181,7 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
+  const YamlNode* templates_node = map.optional("templates");
   const YamlNode* robots_node = map.optional("robots");
   const YamlNode* scenes_node = map.optional("scenes");
   const YamlNode* objects_node = robots_node == nullptr && scenes_node == nullptr
@@ -189,8 +193,11 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
-  ShapeReader shapes(quantities, meshes_, defaults.mesh_limits);
-  if (objects_node != nullptr) list = read_objects(*objects_node, defaults, quantities, shapes);
+  ShapeReader shapes(quantities, meshes_, defaults.mesh_limits, known_);
+  ObjectTemplates templates;
+  if (templates_node != nullptr) templates = read_templates(*templates_node, quantities, shapes);
+  if (objects_node != nullptr)
+    list = read_objects(*objects_node, defaults, templates, quantities, shapes);
   if (scenes_node != nullptr)
     read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
   RobotList robots;
@@ -199,6 +206,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   } else if (objects_node == nullptr && scenes_node == nullptr) {
     list.names_known = false;
   }
+  attach_objects(quantities, robots, list);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
@@ -268,40 +276,65 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
 
 }  // namespace
 
-// The revision covers the text and, through the readers, the bytes of every file that it names. If
-// a mesh has to be split, which takes seconds, the cell is read twice, so that its mistakes are
-// reported first.
-CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
-                      const CellOptions& options) {
-  Diagnostics diagnostics(file.string(),
-                          options.is_of_urdf ? CellText::kOfUrdf : CellText::kWritten);
-  const auto document = parse_yaml(yaml);
-  if (const auto* fault = std::get_if<YamlFault>(&document)) {
-    diagnostics.add(fault->line, fault->column, fault->reason);
-    return diagnostics.sorted();
-  }
-  Revision revision(options.root);
-  MeshLibrary meshes(file, revision, options.tell,
-                     options.is_of_urdf ? Advice::kUrdf : Advice::kCell);
-  const auto read = [&] {
+struct CellReadings::State {
+  State(std::filesystem::path of, CellOptions how)
+      : file(std::move(of)),
+        options(std::move(how)),
+        revision(options.root),
+        meshes(file, revision, options.tell, options.is_of_urdf ? Advice::kUrdf : Advice::kCell) {}
+
+  Cell read(const YamlNode& document, const std::string& yaml, Diagnostics& diagnostics) {
     Cell cell;
     revision = Revision(options.root);
     revision.add(yaml);
-    CellReader(file, options, meshes, diagnostics, revision)
-        .read(std::get<YamlNode>(document), cell);
+    CellReader(file, options, meshes, shapes, diagnostics, revision).read(document, cell);
     return cell;
-  };
-  Cell cell = read();
-  if (diagnostics.empty() && meshes.has_put_off()) {
-    meshes.split_from_here();
-    cell = read();
+  }
+
+  std::filesystem::path file;
+  CellOptions options;
+  Revision revision;
+  MeshLibrary meshes;
+  ConvexShapes shapes;
+};
+
+CellReadings::CellReadings(std::filesystem::path file, CellOptions options)
+    : state_(std::make_unique<State>(std::move(file), std::move(options))) {}
+CellReadings::~CellReadings() = default;
+CellReadings::CellReadings(CellReadings&&) noexcept = default;
+CellReadings& CellReadings::operator=(CellReadings&&) noexcept = default;
+
+// The revision covers the text and, through the readers, the bytes of every file that it names. If
+// a mesh has to be split, which takes seconds, the cell is read twice, so that its mistakes are
+// reported first.
+CellResult CellReadings::read(const YamlNode& document, const std::string& yaml) {
+  State& s = *state_;
+  Diagnostics diagnostics(s.file.string(),
+                          s.options.is_of_urdf ? CellText::kOfUrdf : CellText::kWritten);
+  s.meshes.begin_reading();
+  Cell cell = s.read(document, yaml, diagnostics);
+  if (diagnostics.empty() && s.meshes.has_put_off()) {
+    s.meshes.split_from_here();
+    cell = s.read(document, yaml, diagnostics);
   }
   if (!diagnostics.empty()) return diagnostics.sorted();
-  cell.scene.revision = revision.value();
+  cell.scene.revision = s.revision.value();
   cell.yaml = yaml;
-  cell.file = std::filesystem::absolute(file).lexically_normal();
-  cell.files = revision.files();
+  cell.file = std::filesystem::absolute(s.file).lexically_normal();
+  cell.files = s.revision.files();
   return cell;
+}
+
+CellResult parse_cell(const std::string& yaml, const std::filesystem::path& file,
+                      const CellOptions& options) {
+  const auto document = parse_yaml(yaml);
+  if (const auto* fault = std::get_if<YamlFault>(&document)) {
+    Diagnostics diagnostics(file.string(),
+                            options.is_of_urdf ? CellText::kOfUrdf : CellText::kWritten);
+    diagnostics.add(fault->line, fault->column, fault->reason);
+    return diagnostics.sorted();
+  }
+  return CellReadings(file, options).read(std::get<YamlNode>(document), yaml);
 }
 
 CellResult read_cell(const std::filesystem::path& file, const CellOptions& options) {

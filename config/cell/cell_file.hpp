@@ -4,12 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "config/cell/cell.hpp"
 #include "config/yaml/cell_error.hpp"
+#include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
 
@@ -29,6 +31,25 @@ struct CellOptions {
   // A directory with the files of another machine, including the cell, at the paths that they have
   // there. If empty, the files are this machine's own.
   std::filesystem::path root = {};
+};
+
+// Reads a cell again and again, as changes edit its YAML tree. Bodies, meshes and their parts that
+// the last readings had are not made again. Files that were read are not read again, except the
+// URDFs, SRDFs and planning scenes.
+class CellReadings {
+ public:
+  // `file` and `options` as for parse_cell(); what the options refer to must outlive this.
+  explicit CellReadings(std::filesystem::path file, CellOptions options = {});
+  ~CellReadings();
+  CellReadings(CellReadings&&) noexcept;
+  CellReadings& operator=(CellReadings&&) noexcept;
+
+  // `document` is the tree of the text `yaml`. The lines of mistakes are those of the tree's nodes.
+  [[nodiscard]] CellResult read(const YamlNode& document, const std::string& yaml);
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
 };
 
 // Reads the file. A file that cannot be opened is a CellError at line 1. The parts of meshes are

@@ -16,6 +16,7 @@ GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
     if (!list.objects[i].name.empty()) entries_[list.objects[i].name] = {{i}, false, false};
   }
+  count_attached();
   for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
     for (const std::string& group : list.objects[i].groups) {
       const auto [entry, is_new] = entries_.try_emplace(group, Entry{{}, true, false});
@@ -31,13 +32,32 @@ GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
   }
 }
 
+// A carrier comes before what it carries: what that one carries, too, is added to all carriers.
+void GroupIndex::count_attached() {
+  std::map<std::uint32_t, std::uint32_t> carrier_of;
+  for (const auto& [object, carrier] : list_.attachments) carrier_of[object] = carrier;
+  for (const auto& [object, first] : list_.attachments) {
+    for (auto at = carrier_of.find(object); at != carrier_of.end();
+         at = carrier_of.find(at->second)) {
+      const auto found = entries_.find(list_.objects[at->second].name);
+      if (found == entries_.end()) break;
+      Entry& entry = found->second;
+      if (entry.with_attached.empty()) entry.with_attached = entry.objects;
+      entry.with_attached.push_back(object);
+    }
+  }
+}
+
 // Unknown names are reported only when all names are known: otherwise the name may belong to an
 // object that could not be read.
-const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const std::string& name) {
+const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const std::string& name,
+                                                   Attached attached) {
   const auto found = entries_.find(name);
   if (found != entries_.end()) {
     found->second.used = true;
-    return &found->second.objects;
+    const Entry& entry = found->second;
+    const bool counts = attached == Attached::kCount && !entry.with_attached.empty();
+    return counts ? &entry.with_attached : &entry.objects;
   }
   if (list_.names_known) {
     std::vector<std::string> names;
@@ -50,7 +70,7 @@ const std::vector<std::uint32_t>* GroupIndex::find(const YamlNode& node, const s
 }
 
 // Both names are looked up even when the first is unknown, so that one run reports both.
-std::optional<Between> GroupIndex::read_between(MapReader& map) {
+std::optional<Between> GroupIndex::read_between(MapReader& map, Attached attached) {
   const YamlNode* node = map.required("between");
   if (node == nullptr) return std::nullopt;
   if (node->kind != YamlNode::Kind::kSequence || node->items.size() != 2) {
@@ -63,7 +83,7 @@ std::optional<Between> GroupIndex::read_between(MapReader& map) {
     const YamlNode& item = node->items[side];
     if (const auto name = read_name(item, "a group or an object", diagnostics_)) {
       between.names[side] = *name;
-      between.objects[side] = find(item, *name);
+      between.objects[side] = find(item, *name, attached);
     }
   }
   if (between.objects[0] == nullptr || between.objects[1] == nullptr) return std::nullopt;
@@ -81,6 +101,10 @@ std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   }
   std::sort(keys.begin(), keys.end());
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
+  if (!list_.left_out.empty()) {
+    std::erase_if(keys,
+                  [&](PairKey key) { return std::ranges::binary_search(list_.left_out, key); });
+  }
   return keys;
 }
 

@@ -9,24 +9,10 @@
 #include <vector>
 
 #include "config/cell/object_reader.hpp"
+#include "config/cell/pair_key.hpp"
 #include "config/yaml/map_reader.hpp"
 
 namespace clearance {
-
-// Two objects in one number, the smaller index first: the order of keys is the order of pairs in
-// the scene.
-using PairKey = std::uint64_t;
-
-// The arguments may stand in either order.
-[[nodiscard]] inline PairKey pair_key(std::uint32_t a, std::uint32_t b) {
-  return a < b ? PairKey{a} << 32 | b : PairKey{b} << 32 | a;
-}
-[[nodiscard]] inline std::uint32_t first_of(PairKey key) {
-  return static_cast<std::uint32_t>(key >> 32);
-}
-[[nodiscard]] inline std::uint32_t second_of(PairKey key) {
-  return static_cast<std::uint32_t>(key);
-}
 
 // A `between:` that could be read.
 struct Between {
@@ -41,11 +27,15 @@ class GroupIndex {
   // Reports a group that has an object's name. The list must outlive this.
   GroupIndex(const ObjectList& list, Diagnostics& diagnostics);
 
+  // Objects that are attached to an object count where that one is named, or do not.
+  enum class Attached : std::uint8_t { kCount, kDoNot };
+
   // Reads the key `between` of a map. Returns nothing after a diagnostic.
-  [[nodiscard]] std::optional<Between> read_between(MapReader& map);
+  [[nodiscard]] std::optional<Between> read_between(MapReader& map,
+                                                    Attached attached = Attached::kCount);
 
   // Returns every two objects, one of each side, ascending, each once. An object has no distance
-  // from itself, and two fixed objects need no watching.
+  // from itself, two fixed objects need no watching, and ObjectList::left_out is left out.
   [[nodiscard]] std::vector<PairKey> pairs(const Between& between) const;
 
   // Reports groups that no `between` names: a misspelt group would leave its objects
@@ -58,8 +48,11 @@ class GroupIndex {
     std::vector<std::uint32_t> objects;
     bool is_group = false;
     bool used = false;
+    std::vector<std::uint32_t> with_attached = {};  // empty: as `objects`
   };
-  const std::vector<std::uint32_t>* find(const YamlNode& node, const std::string& name);
+  void count_attached();
+  const std::vector<std::uint32_t>* find(const YamlNode& node, const std::string& name,
+                                         Attached attached);
 
   const ObjectList& list_;
   Diagnostics& diagnostics_;

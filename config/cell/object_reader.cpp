@@ -5,12 +5,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <set>
 #include <utility>
 
+#include "config/cell/object_parts.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/source_name.hpp"
+#include "config/text/spelling.hpp"
 
 namespace clearance {
 namespace {
@@ -45,86 +48,153 @@ void read_input_limits(MapReader& map, const Quantities& quantities, ObjectDefau
 // that one run reports every mistake.
 class ObjectReader {
  public:
-  ObjectReader(const ObjectDefaults& defaults, const Quantities& quantities, ShapeReader& shapes)
+  ObjectReader(const ObjectDefaults& defaults, const ObjectTemplates& templates,
+               const Quantities& quantities, ShapeReader& shapes)
       : defaults_(defaults),
+        templates_(templates),
         quantities_(quantities),
         diagnostics_(quantities.diagnostics()),
-        shapes_(shapes) {}
+        parts_(quantities, shapes) {}
 
   // Adds an object to `list`. If its name or a group cannot be read, it notes that the names in
   // `list` are incomplete.
   void read(const YamlNode& node, ObjectList& list);
 
  private:
-  void read_groups(const YamlNode& node, Object& object, bool& names_known);
-  void read_parts(MapReader& map, const YamlNode& node, Object& object);
-  void read_part(const YamlNode& node, std::size_t place, Object& object);
-  // A part that is refused is reported at `node`.
-  void add_part(const YamlNode& node, NamedShape shape, const std::string& name, const Pose& pose,
-                Object& object);
-  void refuse_same_part_names(const YamlNode& node, std::size_t first, const Object& object);
-  void read_motion(MapReader& map, Object& object);
-  void forbid(MapReader& map, const std::string& key, const std::string& reason);
+  void read_body(MapReader& map, const YamlNode& node, ObjectList& list, Object& object);
+  void use_template(MapReader& map, const YamlNode& name_node, ObjectList& list, Object& object);
+  void read_place(MapReader& map, Object& object);
+  void read_limits(MapReader& map, Object& object);
+  void read_attached(MapReader& map, Object& object);
+  void forbid_all(MapReader& map, std::initializer_list<const char*> keys,
+                  const std::string& reason);
 
   const ObjectDefaults& defaults_;
+  const ObjectTemplates& templates_;
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
-  ShapeReader& shapes_;
-  double mesh_error_ = 0.0;  // of the object's meshes, the largest
+  ObjectPartsReader parts_;
 };
 
-// The order matters: `fixed` decides which of the other keys an object may have.
+// Returns the place of an object's name, or of the object when it has none.
+const YamlNode& name_place(const YamlNode& object) {
+  for (const YamlEntry& entry : object.entries) {
+    if (entry.key.text == "name") return entry.value;
+  }
+  return object;
+}
+
+// The order matters: `fixed` and `attached` decide which of the other keys an object may have.
 void ObjectReader::read(const YamlNode& node, ObjectList& list) {
   Object object;
-  mesh_error_ = 0.0;
   MapReader map(node, "an object", diagnostics_);
   const YamlNode* name_node = map.required("name");
   const auto name =
       name_node == nullptr ? std::nullopt : read_name(*name_node, "an object's name", diagnostics_);
   object.name = name.value_or("");
   list.names_known = list.names_known && name.has_value();
-  if (const YamlNode* groups = map.optional("groups")) {
-    read_groups(*groups, object, list.names_known);
+  const YamlNode* fixed = map.optional("fixed");
+  if (fixed != nullptr) object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
+  if (const YamlNode* absent = map.optional("absent"))
+    object.absent = read_flag(*absent, diagnostics_).value_or(false);
+  const YamlNode* attached = map.optional("attached");
+  if (attached != nullptr && fixed != nullptr) {
+    diagnostics_.add(*fixed,
+                     "found 'fixed' of an attached object; expected one of the two: an object that "
+                     "is attached to a fixed one is fixed, too");
+    object.fixed = false;
   }
-  if (const YamlNode* fixed = map.optional("fixed")) {
-    object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
+  read_body(map, node, list, object);
+  const YamlNode* max_speed = nullptr;
+  if (attached != nullptr) {
+    max_speed = map.optional("max_speed");
+    read_attached(map, object);
+  } else {
+    read_place(map, object);
   }
-  object.margin = defaults_.margin;
-  if (const YamlNode* margin = map.optional("margin")) {
-    object.margin = quantities_.length(*margin, "the margin", kNotNegative).value_or(0.0);
-  }
-  read_motion(map, object);
-  read_parts(map, node, object);
   map.refuse_unknown_keys();
-  if (mesh_error_ > 0.0) list.mesh_errors[object.name] = mesh_error_;
+  if (attached != nullptr) {
+    list.stated.push_back({std::move(object), &name_place(node), attached, max_speed});
+    return;
+  }
   list.objects.push_back(std::move(object));
+  list.places.push_back(&name_place(node));
 }
 
-// Reports a key that has no meaning here, and would silently be ignored. Asking for it makes it
-// known, so that it is not reported again as unknown.
-void ObjectReader::forbid(MapReader& map, const std::string& key, const std::string& reason) {
-  if (const YamlNode* node = map.optional(key)) {
-    diagnostics_.add(*node, fmt::format("found '{}' of {}", key, reason));
+void ObjectReader::forbid_all(MapReader& map, std::initializer_list<const char*> keys,
+                              const std::string& reason) {
+  for (const char* key : keys) forbid(map, key, reason, diagnostics_);
+}
+
+// Reads groups, margin and shape, which a template may state as well.
+void ObjectReader::read_body(MapReader& map, const YamlNode& node, ObjectList& list,
+                             Object& object) {
+  object.margin = defaults_.margin;
+  const YamlNode* margin = map.optional("margin");
+  const YamlNode* groups = map.optional("groups");
+  if (groups != nullptr && !read_groups(*groups, object.groups, diagnostics_))
+    list.names_known = false;
+  if (const YamlNode* name = map.optional("template")) {
+    use_template(map, *name, list, object);
+  } else if (const double error = parts_.read(map, node, object); error > 0.0) {
+    list.mesh_errors[object.name] = error;
+  }
+  if (margin != nullptr)
+    object.margin = quantities_.length(*margin, "the margin", kNotNegative).value_or(0.0);
+}
+
+void ObjectReader::use_template(MapReader& map, const YamlNode& name_node, ObjectList& list,
+                                Object& object) {
+  for (const std::string& kind : ShapeReader::kinds())
+    forbid(map, kind, "an object with a template, which states its shape", diagnostics_);
+  forbid(map, "parts", "an object with a template, which states its shape", diagnostics_);
+  const auto name = read_name(name_node, "a template's name", diagnostics_);
+  if (!name) return;
+  const auto found = templates_.find(*name);
+  if (found == templates_.end()) {
+    std::vector<std::string> names;
+    for (const auto& [known, unused] : templates_) names.push_back(known);
+    diagnostics_.add(name_node, fmt::format("found the unknown template '{}'; expected one under "
+                                            "'templates'{}",
+                                            *name, did_you_mean(*name, names)));
+    list.names_known = false;  // its groups are missing
+    return;
+  }
+  const ObjectTemplate& of = found->second;
+  object.parts = of.parts;
+  object.margin = of.margin.value_or(object.margin);
+  for (const std::string& group : of.groups) {
+    if (std::ranges::find(object.groups, group) == object.groups.end())
+      object.groups.push_back(group);
+  }
+  if (of.mesh_error > 0.0) list.mesh_errors[object.name] = of.mesh_error;
+  if (!object.fixed &&
+      !std::ranges::all_of(object.parts, [](const Part& part) { return part.shape.bounded(); })) {
+    diagnostics_.add(name_node,
+                     fmt::format("found the unbounded template '{}' of a moving object; expected a "
+                                 "bounded one, or fixed: true",
+                                 *name));
   }
 }
 
 // A fixed object has a pose; a moving one has limits on what arrives.
-void ObjectReader::read_motion(MapReader& map, Object& object) {
+void ObjectReader::read_place(MapReader& map, Object& object) {
   if (object.fixed) {
     if (const YamlNode* pose = map.optional("pose")) {
       object.world_from_object = quantities_.pose(*pose).value_or(Pose{});
     }
     object.max_speed = 0.0;
-    for (const char* key :
-         {"max_speed", "age_limit_ms", "frozen_limit_ms", "may_jump", "source", "frame"}) {
-      forbid(map, key, "a fixed object; expected it of moving objects only");
-    }
+    forbid_all(map, {"max_speed", "age_limit_ms", "frozen_limit_ms", "may_jump", "source", "frame"},
+               "a fixed object; expected it of moving objects only");
     return;
   }
-  forbid(map, "pose",
-         "a moving object; expected it of fixed objects (fixed: true) or of parts: a moving "
-         "object's pose "
-         "arrives on the topic of poses");
+  forbid_all(map, {"pose"},
+             "a moving object; expected it of fixed objects (fixed: true), of parts or in "
+             "'attached': a moving object's pose arrives on the topic of poses");
+  read_limits(map, object);
+}
+
+void ObjectReader::read_limits(MapReader& map, Object& object) {
   ObjectDefaults own = defaults_;
   read_input_limits(map, quantities_, own);
   object.max_speed = own.max_speed;
@@ -136,102 +206,19 @@ void ObjectReader::read_motion(MapReader& map, Object& object) {
     object.frame = read_frame(*frame, diagnostics_).value_or("");
 }
 
-// A rule may name a group that could not be read. So, after a fault, `names_known` is set to false,
-// and rules with unknown names are not reported.
-void ObjectReader::read_groups(const YamlNode& node, Object& object, bool& names_known) {
-  if (node.kind != YamlNode::Kind::kSequence) names_known = false;
-  for (const YamlNode& item : read_list(node, "group names", diagnostics_)) {
-    const auto group = read_name(item, "a group's name", diagnostics_);
-    if (!group) {
-      names_known = false;
-    } else if (std::find(object.groups.begin(), object.groups.end(), *group) !=
-               object.groups.end()) {
-      diagnostics_.add(
-          item, fmt::format("found the group '{}' again; expected it once an object", *group));
-    } else {
-      object.groups.push_back(*group);
-    }
+// The place of an attached object follows from its carrier, which attach_objects() finds later.
+void ObjectReader::read_attached(MapReader& map, Object& object) {
+  object.max_speed = defaults_.max_speed;
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    object.max_speed = quantities_.speed(*speed, "the largest speed of any point of the object")
+                           .value_or(object.max_speed);
   }
-}
-
-// Reads `parts:`, or one shape in the object's own frame.
-void ObjectReader::read_parts(MapReader& map, const YamlNode& node, Object& object) {
-  const YamlNode* parts = map.optional("parts");
-  if (parts == nullptr) {
-    if (auto shape = shapes_.read(map, node)) {
-      const std::string name = shape->kind;
-      add_part(*shape->node, std::move(*shape), name, Pose{}, object);
-    }
-    return;
-  }
-  for (const std::string& kind : ShapeReader::kinds()) {
-    forbid(map, kind, "an object that has 'parts'; expected it inside of one of them");
-  }
-  if (parts->kind == YamlNode::Kind::kSequence && parts->items.empty()) {
-    diagnostics_.add(*parts, "found an empty list; expected at least one part");
-  }
-  std::size_t place = 0;
-  for (const YamlNode& part : read_list(*parts, "parts", diagnostics_)) {
-    read_part(part, place++, object);
-  }
-}
-
-// Reports a part whose name another part of the object has. Only parts from `first` on are new;
-// their name is at `node`.
-void ObjectReader::refuse_same_part_names(const YamlNode& node, std::size_t first,
-                                          const Object& object) {
-  for (std::size_t i = first; i < object.parts.size(); ++i) {
-    const std::string& name = object.parts[i].name;
-    const auto same = [&](const Part& part) { return part.name == name; };
-    if (std::count_if(object.parts.begin(), object.parts.end(), same) == 1) continue;
-    diagnostics_.add(
-        node, fmt::format("found the part name '{}' again; expected it once an object", name));
-    return;
-  }
-}
-
-// A part without a name is named after its shape and its place in the object: box0.
-void ObjectReader::read_part(const YamlNode& node, std::size_t place, Object& object) {
-  MapReader map(node, "a part", diagnostics_);
-  const YamlNode* name_node = map.optional("name");
-  const YamlNode* pose_node = map.optional("pose");
-  auto shape = shapes_.read(map, node);
-  map.refuse_unknown_keys();
-  std::optional<std::string> name;
-  if (name_node != nullptr) name = read_name(*name_node, "a part's name", diagnostics_);
-  const Pose pose = pose_node == nullptr ? Pose{} : quantities_.pose(*pose_node).value_or(Pose{});
-  if (!shape) return;
-  const std::size_t first = object.parts.size();
-  add_part(node, std::move(*shape), name.value_or(shape->kind + std::to_string(place)), pose,
-           object);
-  if (name) refuse_same_part_names(*name_node, first, object);
-}
-
-// A moving object must be bounded: the broad phase and the bounds between two ticks enclose it in a
-// sphere.
-void ObjectReader::add_part(const YamlNode& node, NamedShape shape, const std::string& name,
-                            const Pose& pose, Object& object) {
-  mesh_error_ = std::max(mesh_error_, shape.mesh_error);
-  for (std::size_t i = 0; i < shape.shapes.size(); ++i) {
-    if (!object.fixed && !shape.shapes[i].bounded()) {
-      diagnostics_.add(
-          node,
-          fmt::format(
-              "found an unbounded {} in a moving object; expected a bounded shape, or fixed: true",
-              shape.kind));
-      return;
-    }
-    object.parts.push_back(
-        {name_of_part(name, i, shape.shapes.size()), std::move(shape.shapes[i]), pose});
-  }
-}
-
-// Returns the place of an object's name, or of the object when it has none.
-const YamlNode& name_place(const YamlNode& object) {
-  for (const YamlEntry& entry : object.entries) {
-    if (entry.key.text == "name") return entry.value;
-  }
-  return object;
+  object.age_limit_ns = defaults_.age_limit_ns;
+  object.may_jump = defaults_.may_jump;
+  forbid_all(map, {"pose"},
+             "an attached object; expected it in 'attached', in the frame of the carrier");
+  forbid_all(map, {"age_limit_ms", "frozen_limit_ms", "may_jump", "source", "frame"},
+             "an attached object, whose place follows from its carrier; expected it there");
 }
 
 }  // namespace
@@ -272,10 +259,11 @@ ObjectDefaults read_defaults(const YamlNode& node, const Quantities& quantities)
 }
 
 ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
-                        const Quantities& quantities, ShapeReader& shapes) {
+                        const ObjectTemplates& templates, const Quantities& quantities,
+                        ShapeReader& shapes) {
   Diagnostics& diagnostics = quantities.diagnostics();
   ObjectList list;
-  ObjectReader reader(defaults, quantities, shapes);
+  ObjectReader reader(defaults, templates, quantities, shapes);
   const std::vector<YamlNode>& items = read_list(node, "objects", diagnostics);
   if (node.kind == YamlNode::Kind::kSequence && items.empty()) {
     diagnostics.add(node, "found an empty list; expected at least one object");
@@ -290,10 +278,7 @@ ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
                     items.size(), kMaxObjects));
     return list;
   }
-  for (const YamlNode& item : items) {
-    reader.read(item, list);
-    list.places.push_back(&name_place(item));
-  }
+  for (const YamlNode& item : items) reader.read(item, list);
   if (node.kind != YamlNode::Kind::kSequence) list.names_known = false;
   return list;
 }

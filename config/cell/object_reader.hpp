@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "config/cell/object_template.hpp"
+#include "config/cell/pair_key.hpp"
 #include "config/cell/shape_reader.hpp"
 #include "config/scene/scene.hpp"
 #include "config/yaml/quantities.hpp"
@@ -29,11 +31,29 @@ struct ObjectDefaults {
 [[nodiscard]] std::optional<std::string> read_source(const YamlNode& node,
                                                      Diagnostics& diagnostics);
 
+// An object with `attached`, before its carrier is known.
+struct StatedAttachment {
+  Object object;
+  const YamlNode* place;      // of its name
+  const YamlNode* attached;   // the value of that key
+  const YamlNode* max_speed;  // null: not stated
+};
+
+// An attached object of the list, and the object that carries it, which may be attached, too.
+struct Attachment {
+  std::uint32_t object, carrier;
+};
+
 // Objects with their places in the file, at which later sections report mistakes.
 struct ObjectList {
   std::vector<Object> objects;
   std::vector<const YamlNode*> places;        // of each object's name
   std::map<std::string, double> mesh_errors;  // of those with meshes (cell_file.hpp)
+  std::vector<StatedAttachment> stated;       // in the order of the file; not among `objects` yet
+  // attach_objects() (attachment_reader.hpp) makes the rest. An object that is attached to a link
+  // without shapes has no entry in `attachments`.
+  std::vector<Attachment> attachments;  // ascending by object, a carrier before what it carries
+  std::vector<PairKey> left_out;        // ascending: pairs with an attached object, never watched
   bool names_known = true;  // false: a name or group could not be read, so others may seem unknown
 };
 
@@ -43,8 +63,9 @@ struct ObjectList {
 inline constexpr std::size_t kMaxObjects = 4096;  // idl/clearance.idl
 
 // Reads `objects:`, at most kMaxObjects. An object with a mistake stays in the list, since the ids
-// of all that follow are places in it.
+// of all that follow are places in it. Attached objects are only stated.
 [[nodiscard]] ObjectList read_objects(const YamlNode& node, const ObjectDefaults& defaults,
+                                      const ObjectTemplates& templates,
                                       const Quantities& quantities, ShapeReader& shapes);
 
 // No two objects may have one name, links of robots included.

@@ -122,7 +122,10 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
   if (keys.empty()) {
     const bool itself =
         *between.objects[0] == *between.objects[1] && between.objects[0]->size() == 1;
-    return itself ? "an object has no pair with itself" : "two fixed objects never make a pair";
+    if (itself) return "an object has no pair with itself";
+    return objects_.left_out.empty() ? "two fixed objects never make a pair"
+                                     : "two fixed objects never make a pair, nor does an attached "
+                                       "object with what it is fixed to or may touch";
   }
   for (const PairKey key : keys) {
     if (const Candidate* candidate = find(key)) {
@@ -136,7 +139,7 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
 // removes nothing new is refused with the line of the first.
 void PairReader::read_exception(const YamlNode& node) {
   MapReader map(node, "an allowed collision", diagnostics_);
-  const auto between = group_index_.read_between(map);
+  const auto between = group_index_.read_between(map, GroupIndex::Attached::kDoNot);
   const YamlNode* reason_node = map.required("reason");
   map.refuse_unknown_keys();
   if (reason_node != nullptr) {

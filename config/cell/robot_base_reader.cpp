@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 
 #include "config/cell/ros_reader.hpp"
@@ -65,6 +66,14 @@ void BaseReader::stand_on(const YamlNode& node, RobotBase& base) {
       base.kind = RobotBase::Kind::kObject;
       base.object = i;
     }
+    return;
+  }
+  if (std::ranges::any_of(objects_.stated, [&](const StatedAttachment& stated) {
+        return stated.object.name == *name;
+      })) {
+    diagnostics_.add(node, fmt::format("found the attached object '{}'; expected an object that is "
+                                       "not attached, or the carrier of this one",
+                                       *name));
     return;
   }
   if (!objects_.names_known) return;

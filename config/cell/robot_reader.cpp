@@ -11,7 +11,6 @@
 
 #include "config/cell/joint_reader.hpp"
 #include "config/cell/link_parts.hpp"
-#include "config/cell/robot_base_reader.hpp"
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
@@ -51,6 +50,7 @@ class RobotReader {
 
   // Returns false when the robot's links are not known.
   bool read(const YamlNode& node, RobotList& list);
+  [[nodiscard]] PosesAtRest take_at_rest() noexcept { return std::move(at_rest_); }
 
  private:
   RobotKeys read_keys(const YamlNode& node);
@@ -312,6 +312,7 @@ RobotList read_robots(const YamlNode& node, const std::filesystem::path& file,
                     objects.objects.size(), kMaxObjects));
     break;
   }
+  list.at_rest = reader.take_at_rest();
   return list;
 }
 

@@ -7,6 +7,7 @@
 
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
+#include "config/cell/robot_base_reader.hpp"
 #include "config/cell/shape_reader.hpp"
 #include "config/scene/revision.hpp"
 #include "config/scene/robot.hpp"
@@ -18,6 +19,7 @@ struct RobotList {
   std::vector<Robot> robots;
   std::vector<JointVariable> variables;
   PairExceptions may_touch;  // by the SRDFs, or, without one, neighbours
+  PosesAtRest at_rest;       // of all links that nothing moves
 };
 
 // Reads `robots:` of the cell `file`. Every link with collision shapes is appended to `objects`, in

@@ -83,7 +83,7 @@ RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics) {
 void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnostics) {
   MapReader map(node, "the settings of ROS 2", diagnostics);
   for (const RosOutput& output : kRosOutputs) {
-    if (const YamlNode* topic = map.optional(std::string(output.key)))
+    if (const YamlNode* topic = map.optional(output.key))
       settings.outputs.*output.topic = read_output(*topic, output, diagnostics);
   }
   refuse_same_topics(node, settings.outputs, diagnostics);

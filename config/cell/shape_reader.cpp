@@ -106,11 +106,20 @@ std::optional<NamedShape> ShapeReader::read(MapReader& map, const YamlNode& at) 
 std::optional<std::variant<MeshParts, ShapeError>> ShapeReader::read_kind(const std::string& kind,
                                                                           const YamlNode& node) {
   if (kind == "mesh") return read_mesh(node);
+  std::string key = fmt::format("{} {} ", kind, static_cast<int>(quantities_.units().length));
+  add_content(node, key);
+  MeshParts one;
+  if (const auto known = known_.find(key); known != known_.end()) {
+    one.shapes.push_back(known->second);
+    return one;
+  }
+  const std::size_t before = quantities_.diagnostics().count();
   std::optional<ShapeResult> result = read_convex_shape(kind, node, quantities_);
   if (!result) return std::nullopt;
   if (auto* error = std::get_if<ShapeError>(&*result)) return std::move(*error);
-  MeshParts one;
   one.shapes.push_back(std::get<ConvexBody>(std::move(*result)));
+  if (quantities_.diagnostics().count() == before)
+    known_.emplace(std::move(key), one.shapes.front());
   return one;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -35,12 +36,17 @@ void read_part_limits(MapReader& map, const Quantities& quantities, PartLimits& 
 // Returns the name of part i of `count` parts of one shape: "palm.3".
 [[nodiscard]] std::string name_of_part(const std::string& name, std::size_t i, std::size_t count);
 
+// The bodies of shapes that were read before, by what the cell says of them: to make a polyhedron
+// exactly takes up to milliseconds.
+using ConvexShapes = std::unordered_map<std::string, ConvexBody>;
+
 // Lengths are converted to metres here; the core has SI units.
 class ShapeReader {
  public:
-  // `limits` hold for meshes that do not state their own.
-  ShapeReader(const Quantities& quantities, MeshLibrary& meshes, const PartLimits& limits)
-      : quantities_(quantities), meshes_(meshes), limits_(limits) {}
+  // `limits` hold for meshes that do not state their own. `known` gets every shape that is read.
+  ShapeReader(const Quantities& quantities, MeshLibrary& meshes, const PartLimits& limits,
+              ConvexShapes& known)
+      : quantities_(quantities), meshes_(meshes), limits_(limits), known_(known) {}
 
   // Returns the keys of shapes: "box", "sphere", ... A part has exactly one of them.
   [[nodiscard]] static std::span<const std::string> kinds();
@@ -60,6 +66,7 @@ class ShapeReader {
   const Quantities& quantities_;
   MeshLibrary& meshes_;
   PartLimits limits_;
+  ConvexShapes& known_;
 };
 
 }  // namespace clearance

@@ -72,6 +72,14 @@ std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node)
     return std::nullopt;
   }
   const auto index = static_cast<std::uint32_t>(found - names.begin());
+  if (std::ranges::any_of(list_.stated, [&](const StatedAttachment& stated) {
+        return stated.place == list_.places[index];
+      })) {
+    diagnostics_.add(node, fmt::format("found the attached object '{}'; expected one that is not "
+                                       "attached, since its carrier moves this one",
+                                       *name));
+    return std::nullopt;
+  }
   if (list_.objects[index].fixed) {
     diagnostics_.add(node,
                      fmt::format("found the fixed object '{}'; expected a moving one", *name));

@@ -76,9 +76,11 @@ MeshLibrary::MeshLibrary(const std::filesystem::path& cell, Revision& revision,
       tell_(std::move(tell)),
       advice_(advice) {}
 
-void MeshLibrary::split_from_here() {
-  splits_ = true;
+// A file that could not be used may have been replaced since.
+void MeshLibrary::begin(bool splits) {
+  splits_ = splits;
   has_put_off_ = false;
+  std::erase_if(files_, [](const auto& entry) { return entry.second.refusal.has_value(); });
   for (auto& [path, file] : files_) file.counted = false;
   for (auto& [key, made] : made_) made.counted = false;
 }

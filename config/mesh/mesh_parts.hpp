@@ -65,11 +65,14 @@ class MeshLibrary {
 
   // Tells whether parts() has returned a stand-in, because the split of a mesh was postponed.
   [[nodiscard]] bool has_put_off() const noexcept { return has_put_off_; }
-  // Call this before the cell is read a second time, with a fresh revision. From then on parts()
-  // splits meshes instead of returning stand-ins.
-  void split_from_here();
+  // Call this before the cell is read again, with a fresh revision. The files that were read are
+  // not read again. Until split_from_here(), parts() returns stand-ins.
+  void begin_reading() { begin(false); }
+  // The same, but from then on parts() splits meshes instead of returning stand-ins.
+  void split_from_here() { begin(true); }
 
  private:
+  void begin(bool splits);
   struct File {
     std::string bytes;
     std::optional<TriangleMesh> mesh;  // once it was needed; in the file's unit

@@ -120,6 +120,9 @@ struct Robot {
   std::string joint_states;
   RosStamps stamps = RosStamps::kMessage;
   RobotBase base;
+  // One link without a joint: an object of the cell that moves with the base. It has the object's
+  // name, and is no robot to a person.
+  bool is_attached = false;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;
   std::vector<std::string> notes;  // for the log: what was left out, and why

@@ -29,8 +29,10 @@ std::string summary(const Scene& scene) {
   }
   const auto published = static_cast<std::size_t>(std::count_if(
       scene.pairs.begin(), scene.pairs.end(), [](const ObjectPair& pair) { return pair.publish; }));
-  const std::string robots =
-      scene.robots.empty() ? "" : counted(scene.robots.size(), "robot") + ", ";
+  const auto attached =
+      static_cast<std::size_t>(std::ranges::count(scene.robots, true, &Robot::is_attached));
+  const std::size_t jointed = scene.robots.size() - attached;
+  const std::string robots = jointed == 0 ? "" : counted(jointed, "robot") + ", ";
   return fmt::format("{}: {} ({} moving, {} fixed), {}{}, {}, {} ({} published), {}", scene.name,
                      counted(scene.objects.size(), "object"), scene.objects.size() - fixed, fixed,
                      robots, counted(parts, "part"), counted(facets, "facet"),

@@ -42,10 +42,12 @@ struct Object {
   // A pose that repeats bit for bit for longer than this is frozen; 0: it may repeat, as that of an
   // object at rest.
   std::int64_t frozen_limit_ns = 0;
-  // For a link whose pose follows from joints: the largest distance of a point from its place by
-  // forward kinematics, m. The errors of its parts include it. 0: poses are sent.
+  // For a link, or an object that moves with one or with another object: the largest distance of a
+  // point from its place by forward kinematics, m. The errors of its parts include it. 0: poses are
+  // sent.
   double pose_error = 0.0;
   bool may_jump = false;  // its poses may jump, as a simulation's do
+  bool absent = false;    // known not to be there when the monitor starts (Monitor::set_absent)
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none
@@ -87,7 +89,9 @@ struct Scene {
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
   bool gradients = false;  // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;
-  std::vector<Robot> robots;             // each stands on the world, an object, or an earlier robot
+  // Each stands on the world, an object, or an earlier robot. Their links come after all other
+  // objects, and attached objects (Robot::is_attached) after all others.
+  std::vector<Robot> robots;
   std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;

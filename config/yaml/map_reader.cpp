@@ -13,6 +13,11 @@
 #include "config/yaml/scalar.hpp"
 
 namespace clearance {
+namespace {
+
+constexpr std::size_t kUsualKeys = 24;  // that a reader asks for
+
+}  // namespace
 
 // Keys are checked once, here: YAML allows the same key twice, and the first would hide the second.
 MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagnostics)
@@ -24,8 +29,9 @@ MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagno
     diagnostics_.add(node, fmt::format("found {}; expected {} (a map)", describe(node), what_));
     return;
   }
+  known_.reserve(kUsualKeys);
   // The first place of each key.
-  std::map<std::string, const YamlNode*> first;
+  std::map<std::string_view, const YamlNode*> first;
   for (const YamlEntry& entry : node.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) {
       diagnostics_.add(entry.key,
@@ -40,7 +46,7 @@ MapReader::MapReader(const YamlNode& node, std::string what, Diagnostics& diagno
 }
 
 // A key that is read becomes known; refuse_unknown_keys() reports all others.
-const YamlNode* MapReader::optional(const std::string& key) {
+const YamlNode* MapReader::optional(std::string_view key) {
   known_.push_back(key);
   for (const YamlEntry& entry : node_.entries) {
     if (entry.key.kind == YamlNode::Kind::kScalar && entry.key.text == key) return &entry.value;
@@ -49,7 +55,7 @@ const YamlNode* MapReader::optional(const std::string& key) {
 }
 
 // A node that is no map has been reported as such, so its missing keys are not.
-const YamlNode* MapReader::required(const std::string& key) {
+const YamlNode* MapReader::required(std::string_view key) {
   const YamlNode* value = optional(key);
   if (value == nullptr && is_map_) {
     diagnostics_.add(node_, fmt::format("found no key '{}'; expected it in {}", key, what_));
@@ -61,10 +67,11 @@ const YamlNode* MapReader::required(const std::string& key) {
 void MapReader::refuse_unknown_keys() {
   for (const YamlEntry& entry : node_.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) continue;
+    const auto known = [&] { return std::vector<std::string>(known_.begin(), known_.end()); };
     if (std::find(known_.begin(), known_.end(), entry.key.text) != known_.end()) continue;
     diagnostics_.add(entry.key,
                      fmt::format("found the unknown key '{}' in {}; expected {}{}", entry.key.text,
-                                 what_, one_of(known_), did_you_mean(entry.key.text, known_)));
+                                 what_, one_of(known()), did_you_mean(entry.key.text, known())));
   }
 }
 

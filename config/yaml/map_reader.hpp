@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/yaml/diagnostics.hpp"
@@ -19,9 +20,9 @@ class MapReader {
 
   [[nodiscard]] bool is_map() const { return is_map_; }
 
-  // Returns the value of a key, or nullptr. Asking makes the key known.
-  [[nodiscard]] const YamlNode* optional(const std::string& key);
-  [[nodiscard]] const YamlNode* required(const std::string& key);  // reports when it is missing
+  // Returns the value of a key, or nullptr. Asking makes the key known. It has to outlive this.
+  [[nodiscard]] const YamlNode* optional(std::string_view key);
+  [[nodiscard]] const YamlNode* required(std::string_view key);  // reports when it is missing
 
   // Call this after the last key was asked for.
   void refuse_unknown_keys();
@@ -31,7 +32,7 @@ class MapReader {
   std::string what_;
   Diagnostics& diagnostics_;
   bool is_map_;
-  std::vector<std::string> known_;
+  std::vector<std::string_view> known_;
 };
 
 // Returns the items of a list; where there is none, an empty list after a diagnostic. `what`

@@ -134,21 +134,22 @@ std::string describe(const YamlNode& node) {
 // There are three messages: for no number, for one that is not finite, and for one out of range.
 std::optional<double> read_number(const YamlNode& node, const Range& range, const std::string& what,
                                   Diagnostics& diagnostics) {
-  const std::string expected = fmt::format("; expected {}", expectation(what, range));
+  const auto expected = [&] { return fmt::format("; expected {}", expectation(what, range)); };
   if (node.kind != YamlNode::Kind::kScalar || scalar_type(node) != ScalarType::kNumber) {
-    diagnostics.add(node, fmt::format("found {}{}{}", describe(node), expected, number_hint(node)));
+    diagnostics.add(node,
+                    fmt::format("found {}{}{}", describe(node), expected(), number_hint(node)));
     return std::nullopt;
   }
   const Parsed parsed = parse_number(node.text);
   if (!std::isfinite(parsed.value) || !parsed.in_range) {
     diagnostics.add(
-        node, fmt::format("found {}, which is not a finite number{}", describe(node), expected));
+        node, fmt::format("found {}, which is not a finite number{}", describe(node), expected()));
     return std::nullopt;
   }
   const bool too_small =
       range.above_least ? parsed.value <= range.least : parsed.value < range.least;
   if (too_small || parsed.value > range.most) {
-    diagnostics.add(node, fmt::format("found {}{}", describe(node), expected));
+    diagnostics.add(node, fmt::format("found {}{}", describe(node), expected()));
     return std::nullopt;
   }
   return parsed.value;

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cstddef>
 #include <map>
 #include <optional>
@@ -179,6 +180,39 @@ std::optional<YamlFault> fault_of_encoding(const std::string& text) {
 }
 
 }  // namespace
+
+// Lengths precede texts, and counts precede lists.
+void add_content(const YamlNode& node, std::string& bytes) {
+  const auto add_number = [&](std::size_t number) {
+    std::array<char, 24> text;
+    const auto end = std::to_chars(text.data(), text.data() + text.size(), number);
+    bytes.append(text.data(), end.ptr);
+  };
+  switch (node.kind) {
+    case YamlNode::Kind::kNull:
+      bytes += '~';
+      return;
+    case YamlNode::Kind::kScalar:
+      bytes += node.quoted ? '"' : '\'';
+      add_number(node.text.size());
+      bytes += ' ';
+      bytes += node.text;
+      return;
+    case YamlNode::Kind::kSequence:
+      bytes += '[';
+      add_number(node.items.size());
+      for (const YamlNode& item : node.items) add_content(item, bytes);
+      return;
+    case YamlNode::Kind::kMap:
+      bytes += '{';
+      add_number(node.entries.size());
+      for (const YamlEntry& entry : node.entries) {
+        add_content(entry.key, bytes);
+        add_content(entry.value, bytes);
+      }
+      return;
+  }
+}
 
 // Exceptions of the parser end here.
 std::variant<YamlNode, YamlFault> parse_yaml(const std::string& text) {

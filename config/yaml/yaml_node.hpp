@@ -26,6 +26,10 @@ struct YamlEntry {
   YamlNode value;
 };
 
+// Appends what the value says, wherever it stands in the document. Different values append
+// different bytes.
+void add_content(const YamlNode& node, std::string& bytes);
+
 // The text is not one YAML document.
 struct YamlFault {
   int line = 1, column = 1;

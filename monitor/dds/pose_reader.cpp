@@ -69,7 +69,7 @@ std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
 }
 
 std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
-  if (scene.robots.empty()) return 0;
+  if (scene.variables.empty()) return 0;
   return std::min<std::size_t>(2 * capacity_for(scene).variables + 64, clearance_msg_kMaxJoints);
 }
 
@@ -89,7 +89,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
       wait_(participant, {}),
       ring_(kBatches) {
   open(participant, TopicKind::kPoses);
-  if (!cell.scene.robots.empty()) open(participant, TopicKind::kJointStates);
+  if (!cell.scene.variables.empty()) open(participant, TopicKind::kJointStates);
   if (intake_.hears_ros()) wait_.add(ros_.present().reader());
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch(cell.scene));

@@ -64,7 +64,7 @@ class Intake final : public Outlet {
 
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
-    return !scene_->robots.empty() || transforms_->any();
+    return !scene_->variables.empty() || transforms_->any();
   }
 
   // Returns false if the bytes are not a message of the topic's type.

@@ -28,7 +28,7 @@ void RosJointStates::change(const Cell& cell) {
 }
 
 bool RosJointStates::is_wanted(const TopicName& topic) const {
-  if (scene_->robots.empty() || topic.type != kJointStatesType) return false;
+  if (scene_->variables.empty() || topic.type != kJointStatesType) return false;
   if (!options_.topics.empty()) {
     return std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }

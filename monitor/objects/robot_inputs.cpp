@@ -14,6 +14,15 @@ std::uint32_t first_link_of(const Scene& scene) {
   return first;
 }
 
+// No joint state ever comes for a robot without variables. It follows what it stands on.
+std::vector<bool> heard_at_the_start(const Scene& scene) {
+  std::vector<bool> heard;
+  for (const Robot& robot : scene.robots)
+    heard.push_back(robot.base.kind != RobotBase::Kind::kWorld);
+  for (const JointVariable& variable : scene.variables) heard[variable.robot] = false;
+  return heard;
+}
+
 LinkState base_at(const TrackedObject& object) noexcept {
   LinkState base;
   base.known = object.input.has_value;
@@ -32,7 +41,7 @@ RobotInputs::RobotInputs(const Scene& scene)
     : scene_(scene),
       first_link_(first_link_of(scene)),
       robot_of_(scene.objects.size() - first_link_),
-      heard_(scene.robots.size()),
+      heard_(heard_at_the_start(scene)),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
       kinematics_(scene.robots) {
@@ -75,7 +84,8 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
       if (links[link].object == RobotLink::kNoObject) continue;
       const Object& object = scene_.objects[links[link].object];
       TrackedObject& state = objects[links[link].object];
-      if (!object.fixed && !state.absent) follow(kinematics_.links(robot)[link], object, state);
+      if (!object.fixed && !state.absent)
+        follow(kinematics_.links(robot)[link], object, now_ns, state);
     }
   }
 }

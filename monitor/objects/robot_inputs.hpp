@@ -15,7 +15,8 @@
 namespace clearance {
 
 // A source may send both poses and joint states of a robot's links. Once the first position of one
-// of its joints is taken, joints alone place the links, and poses sent for them are refused.
+// of its joints is taken, joints alone place the links, and poses sent for them are refused. A
+// robot without joints, as is an attached object, follows what it stands on from the start.
 class RobotInputs {
  public:
   explicit RobotInputs(const Scene& scene);
@@ -42,7 +43,7 @@ class RobotInputs {
     return is_first;
   }
 
-  // True if the object is a link that joints place.
+  // True if the object is a link that joints place, or that follows what its robot stands on.
   [[nodiscard]] bool follows_joints(std::uint32_t object) const noexcept {
     return object >= first_link_ && heard_[robot_of_[object - first_link_]];
   }

@@ -168,12 +168,18 @@ bool take_at_rest(const Object& object, const PoseSample& sample, std::int64_t s
   return true;
 }
 
-void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept {
+void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
+            TrackedObject& state) noexcept {
   const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
   state.follows_joints = true;
   state.joints_late = !known || link.late;
   state.unobserved_by_joints = known ? link.may_have_moved(state.bounding_radius) : kInfinity;
   if (!known) return;
+  if (link.late && !link.contradicted && object.max_speed < kInfinity) {
+    const double age_s = seconds(elapsed(link.stamp_ns, now_ns));
+    state.unobserved_by_joints =
+        std::min(state.unobserved_by_joints, rounded_up(object.max_speed * age_s));
+  }
   state.joints_contradicted = link.contradicted;
   state.pose = as_queries_take_it(link.pose);
   state.input.stamp_ns = link.stamp_ns;

@@ -118,9 +118,12 @@ struct alignas(64) TrackedObject {
                                 std::int64_t stamp_ns, const SampleLimits& limits,
                                 TrackedObject& state) noexcept;
 
-// Takes the state of a robot's link from its joints. A link that was known and no longer is may be
-// anywhere. The same applies if the rounding error of its pose exceeds Object::pose_error.
-void follow(const LinkState& link, const Object& object, TrackedObject& state) noexcept;
+// Takes the state of a robot's link from its joints, or from what carries it. A link that was known
+// and no longer is may be anywhere. The same applies if the rounding error of its pose exceeds
+// Object::pose_error. An object that states max_speed follows the pose of another object, without
+// joints in between: it is then within max_speed times the age of that pose.
+void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
+            TrackedObject& state) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;

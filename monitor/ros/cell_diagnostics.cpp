@@ -156,7 +156,7 @@ Sample<DiagnosticArray> CellDiagnostics::make(const clearance_msg_Health& health
                   health.dropped_reports - std::exchange(dropped_, health.dropped_reports)),
       distances_status(scene_, report), poses_status(health)};
   for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot)
-    statuses.push_back(joints_status(scene_, robot, health));
+    if (!scene_.robots[robot].is_attached) statuses.push_back(joints_status(scene_, robot, health));
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone)
     statuses.push_back(zone_status(scene_, zone, report.zones[zone]));
   if (*health.recording != '\0') statuses.push_back(recording_status(health));

@@ -1,0 +1,110 @@
+// What a command can change in a cell: each is an edit of the cell's text.
+//
+// Lengths are in metres, poses are of the object in the named frame. Names are those of the cell.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/pose.hpp"
+
+namespace clearance {
+
+// Appends an object. `yaml` is one entry of `objects`, in the units of the cell: "{name: box,
+// ...}".
+struct AddObject {
+  std::string yaml;
+};
+
+// Appends a fixed object with the body of a template of the cell.
+struct AddFromTemplate {
+  std::string template_name;
+  std::string object;
+  std::vector<std::string> groups = {};
+  Pose world_from_object = {};
+};
+
+// Refused while a rule, a zone or another entry names the object. Groups may lose it.
+struct RemoveObject {
+  std::string object;
+};
+
+// An absent object is known not to be there. What is attached to it is absent, too.
+struct SetAbsent {
+  std::string object;
+  bool absent = true;
+};
+
+// Attaches an object to a link or to another object. It loses all keys that say where it is or
+// which poses count: pose, max_speed, source ...
+struct Attach {
+  std::string object;
+  std::string to;
+  Pose carrier_from_object = {};
+  std::vector<std::string> touch = {};
+};
+
+// An attached object becomes a fixed one.
+struct Detach {
+  std::string object;
+  Pose world_from_object = {};
+};
+
+// Places a fixed object elsewhere.
+struct Place {
+  std::string object;
+  Pose world_from_object = {};
+};
+
+// Nothing: the default of the cell.
+struct SetMaxSpeed {
+  std::string object;
+  std::optional<double> m_per_s;
+};
+struct SetMargin {
+  std::string object;
+  std::optional<double> m;
+};
+struct SetAgeLimit {
+  std::string object;
+  std::optional<std::int64_t> ns;
+};
+struct SetSource {
+  std::string object;
+  std::optional<std::string> source;
+};
+
+// What the cell says of two objects or groups by exactly these two names, in either order. Refused
+// where rules with other names prevent it: one that publishes two objects that shall only be
+// watched, or an exception from them.
+struct SetPair {
+  enum class Rule : std::uint8_t {
+    kPublish,   // a rule: watched, and in every report
+    kWatch,     // a rule: watched
+    kLeaveOut,  // an exception: they may touch; needs a reason
+    kUnstated,  // neither: only what rules with other names say
+  };
+  std::string a, b;
+  Rule rule = Rule::kPublish;
+  std::string reason = {};
+};
+
+struct SetZoneThresholds {
+  std::string zone;
+  double enter_below = 0.0, leave_above = 0.0;
+};
+
+// The text of another cell, or of this one after a person has changed the file. Files that it names
+// are read anew.
+struct ReplaceCell {
+  std::string yaml;
+};
+
+using CellChange = std::variant<AddObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
+                                Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair,
+                                SetZoneThresholds, ReplaceCell>;
+
+}  // namespace clearance

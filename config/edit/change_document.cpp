@@ -1,0 +1,384 @@
+// One overload for each type of change. Each finds the entry by its name, and writes lengths in the
+// units of the cell.
+#include "config/edit/change_document.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
+#include "config/yaml/quantities.hpp"
+#include "config/yaml/scalar.hpp"
+#include "config/yaml/yaml_writer.hpp"
+
+namespace clearance {
+namespace {
+
+using Fault = std::optional<ChangeFault>;
+
+std::string text_of(const YamlNode* node) {
+  return node != nullptr && node->kind == YamlNode::Kind::kScalar ? node->text : "";
+}
+std::string name_of(const YamlNode& entry) { return text_of(find(entry, "name")); }
+
+// The two sides of `between`, in alphabetic order.
+std::pair<std::string, std::string> sides_of(const YamlNode& entry) {
+  const YamlNode* between = find(entry, "between");
+  if (between == nullptr || between->items.size() != 2) return {};
+  return std::minmax(between->items[0].text, between->items[1].text);
+}
+
+YamlNode list_of(const std::vector<std::string>& names) {
+  YamlNode list;
+  list.kind = YamlNode::Kind::kSequence;
+  for (const std::string& name : names) list.items.push_back(text_node(name));
+  return list;
+}
+
+class ChangeMaker {
+ public:
+  explicit ChangeMaker(CellDocument& document) : document_(document) {
+    const YamlNode* units = find(document.tree(), "units");
+    millimetres_ = units != nullptr && text_of(find(*units, "length")) == "mm";
+  }
+
+  Fault operator()(const AddObject& change);
+  Fault operator()(const AddFromTemplate& change);
+  Fault operator()(const RemoveObject& change);
+  Fault operator()(const SetAbsent& change);
+  Fault operator()(const Attach& change);
+  Fault operator()(const Detach& change);
+  Fault operator()(const Place& change);
+  Fault operator()(const SetMaxSpeed& change) {
+    return set_length(change.object, "max_speed", change.m_per_s);
+  }
+  Fault operator()(const SetMargin& change) {
+    return set_length(change.object, "margin", change.m);
+  }
+  Fault operator()(const SetAgeLimit& change);
+  Fault operator()(const SetSource& change);
+  Fault operator()(const SetPair& change);
+  Fault operator()(const SetZoneThresholds& change);
+  Fault operator()(const ReplaceCell&) { return std::nullopt; }
+
+ private:
+  // An entry of a list, and its place.
+  struct Found {
+    std::size_t index;
+    YamlNode node;
+  };
+  [[nodiscard]] std::variant<Found, ChangeFault> named(std::string_view list,
+                                                       const std::string& name) const;
+  // Edits a copy of the object, which then replaces it, unless `edit` returns a fault.
+  template <class Edit>
+  Fault edit_object(const std::string& name, const Edit& edit);
+  Fault set_value(const std::string& object, const std::string& key, std::optional<YamlNode> value);
+  Fault set_length(const std::string& object, const std::string& key,
+                   const std::optional<double>& value);
+  [[nodiscard]] std::vector<std::string> users_of(const std::string& name) const;
+  [[nodiscard]] YamlNode length(double metres) const;
+  [[nodiscard]] YamlNode pose(const Pose& pose) const;
+  void erase_pair(std::string_view list, const std::pair<std::string, std::string>& sides);
+
+  CellDocument& document_;
+  bool millimetres_ = false;
+};
+
+// A double in metres that is a quotient of 1000 is written as that number. Others are within one
+// rounding of the stated length.
+YamlNode ChangeMaker::length(double metres) const {
+  if (!millimetres_) return number_node(metres);
+  const double product = metres * 1000.0;
+  for (const double millimetres :
+       {product, std::nextafter(product, -HUGE_VAL), std::nextafter(product, HUGE_VAL)}) {
+    if (to_metres(millimetres, LengthUnit::kMillimetre) == metres) return number_node(millimetres);
+  }
+  return number_node(product);
+}
+
+YamlNode ChangeMaker::pose(const Pose& pose) const {
+  YamlNode node;
+  node.kind = YamlNode::Kind::kMap;
+  YamlNode xyz;
+  xyz.kind = YamlNode::Kind::kSequence;
+  for (const double each : pose.position) xyz.items.push_back(length(each));
+  set(node, "xyz", std::move(xyz));
+  const Eigen::Quaterniond& turn = pose.orientation;
+  if (turn.vec() == Vec3::Zero()) return node;
+  YamlNode quaternion;
+  quaternion.kind = YamlNode::Kind::kSequence;
+  for (const double each : {turn.x(), turn.y(), turn.z(), turn.w()})
+    quaternion.items.push_back(number_node(each));
+  set(node, "quaternion", std::move(quaternion));
+  return node;
+}
+
+std::variant<ChangeMaker::Found, ChangeFault> ChangeMaker::named(std::string_view list,
+                                                                 const std::string& name) const {
+  const std::vector<YamlNode>& items = document_.items(list);
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    names.push_back(name_of(items[i]));
+    if (names.back() == name) return Found{i, items[i]};
+  }
+  return ChangeFault{std::string(list),
+                     fmt::format("found the name '{}', which no entry of '{}' has; expected one of "
+                                 "these, and no link of a robot or object of a planning scene{}",
+                                 name, list, did_you_mean(name, names))};
+}
+
+template <class Edit>
+Fault ChangeMaker::edit_object(const std::string& name, const Edit& edit) {
+  auto found = named("objects", name);
+  if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
+  auto& [index, node] = std::get<Found>(found);
+  if (Fault fault = edit(node)) return fault;
+  document_.replace("objects", index, std::move(node));
+  return std::nullopt;
+}
+
+Fault ChangeMaker::set_value(const std::string& object, const std::string& key,
+                             std::optional<YamlNode> value) {
+  return edit_object(object, [&](YamlNode& node) -> Fault {
+    erase(node, key);
+    if (value) set(node, key, *std::move(value));
+    return std::nullopt;
+  });
+}
+
+Fault ChangeMaker::set_length(const std::string& object, const std::string& key,
+                              const std::optional<double>& value) {
+  return set_value(object, key, value ? std::optional(length(*value)) : std::nullopt);
+}
+
+Fault ChangeMaker::operator()(const AddObject& change) {
+  auto read = parse_yaml(change.yaml);
+  if (const auto* fault = std::get_if<YamlFault>(&read))
+    return ChangeFault{"objects", fault->reason};
+  auto& node = std::get<YamlNode>(read);
+  if (node.kind == YamlNode::Kind::kSequence && node.items.size() == 1) {
+    YamlNode only = std::move(node.items.front());
+    node = std::move(only);
+  }
+  if (node.kind != YamlNode::Kind::kMap || name_of(node).empty()) {
+    return ChangeFault{"objects", fmt::format("found {}; expected one entry of 'objects', a map "
+                                              "with a name",
+                                              describe(node))};
+  }
+  document_.append("objects", std::move(node));
+  return std::nullopt;
+}
+
+Fault ChangeMaker::operator()(const AddFromTemplate& change) {
+  YamlNode node;
+  set(node, "name", text_node(change.object));
+  set(node, "template", text_node(change.template_name));
+  if (!change.groups.empty()) set(node, "groups", list_of(change.groups));
+  set(node, "fixed", flag_node(true));
+  set(node, "pose", pose(change.world_from_object));
+  document_.append("objects", std::move(node));
+  return std::nullopt;
+}
+
+// Returns what names the object other than by membership: "pairs[arm, box]".
+std::vector<std::string> ChangeMaker::users_of(const std::string& name) const {
+  std::vector<std::string> users;
+  const auto add = [&](std::string_view list, const YamlNode& entry, std::size_t place) {
+    users.push_back(fmt::format("{}[{}]", list, entry_label(entry, place)));
+  };
+  for (const std::string_view list : {"pairs", "allowed_collisions", "zones"}) {
+    const std::vector<YamlNode>& items = document_.items(list);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      const auto [a, b] = sides_of(items[i]);
+      if (a == name || b == name) add(list, items[i], i);
+    }
+  }
+  const std::vector<YamlNode>& objects = document_.items("objects");
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const YamlNode* attached = find(objects[i], "attached");
+    if (attached == nullptr || name_of(objects[i]) == name) continue;
+    const YamlNode* touch = find(*attached, "touch");
+    const bool touches =
+        touch != nullptr &&
+        std::ranges::find(touch->items, name, &YamlNode::text) != touch->items.end();
+    if (text_of(find(*attached, "to")) == name || touches) add("objects", objects[i], i);
+  }
+  if (const YamlNode* robots = find(document_.tree(), "robots")) {
+    for (std::size_t i = 0; i < robots->items.size(); ++i) {
+      const YamlNode* base = find(robots->items[i], "base");
+      if (base != nullptr && text_of(find(*base, "on")) == name) add("robots", robots->items[i], i);
+    }
+  }
+  return users;
+}
+
+Fault ChangeMaker::operator()(const RemoveObject& change) {
+  const auto found = named("objects", change.object);
+  if (const auto* fault = std::get_if<ChangeFault>(&found)) return *fault;
+  const std::vector<std::string> users = users_of(change.object);
+  if (!users.empty()) {
+    constexpr std::size_t kNamed = 5;
+    return ChangeFault{
+        fmt::format("objects[{}]", change.object),
+        fmt::format("found '{}' named by {}; expected that only groups lose it: change these first",
+                    change.object, listed(users, kNamed))};
+  }
+  document_.remove("objects", std::get<Found>(found).index);
+  return std::nullopt;
+}
+
+Fault ChangeMaker::operator()(const SetAbsent& change) {
+  return set_value(change.object, "absent",
+                   change.absent ? std::optional(flag_node(true)) : std::nullopt);
+}
+
+// What says where an object is, and which poses count.
+void forget_place(YamlNode& node) {
+  for (const char* key : {"fixed", "pose", "attached", "max_speed", "age_limit_ms",
+                          "frozen_limit_ms", "may_jump", "source", "frame"}) {
+    erase(node, key);
+  }
+}
+
+Fault ChangeMaker::operator()(const Attach& change) {
+  return edit_object(change.object, [&](YamlNode& node) -> Fault {
+    forget_place(node);
+    YamlNode attached;
+    set(attached, "to", text_node(change.to));
+    set(attached, "pose", pose(change.carrier_from_object));
+    if (!change.touch.empty()) set(attached, "touch", list_of(change.touch));
+    set(node, "attached", std::move(attached));
+    return std::nullopt;
+  });
+}
+
+Fault ChangeMaker::operator()(const Detach& change) {
+  return edit_object(change.object, [&](YamlNode& node) -> Fault {
+    if (find(node, "attached") == nullptr) {
+      return ChangeFault{fmt::format("objects[{}]", change.object),
+                         fmt::format("found '{}', which is not attached; expected an attached "
+                                     "object",
+                                     change.object)};
+    }
+    forget_place(node);
+    set(node, "fixed", flag_node(true));
+    set(node, "pose", pose(change.world_from_object));
+    return std::nullopt;
+  });
+}
+
+Fault ChangeMaker::operator()(const Place& change) {
+  return edit_object(change.object, [&](YamlNode& node) -> Fault {
+    if (line_of(flag_node(true)) != text_of(find(node, "fixed"))) {
+      return ChangeFault{fmt::format("objects[{}]", change.object),
+                         fmt::format("found '{}', which is not fixed; expected fixed: true, since "
+                                     "the poses of others arrive or follow from a carrier",
+                                     change.object)};
+    }
+    set(node, "pose", pose(change.world_from_object));
+    return std::nullopt;
+  });
+}
+
+Fault ChangeMaker::operator()(const SetAgeLimit& change) {
+  std::optional<YamlNode> value;
+  if (change.ns) value = number_node(static_cast<double>(*change.ns) / 1e6);
+  return set_value(change.object, "age_limit_ms", std::move(value));
+}
+
+Fault ChangeMaker::operator()(const SetSource& change) {
+  return set_value(change.object, "source",
+                   change.source ? std::optional(text_node(*change.source)) : std::nullopt);
+}
+
+void ChangeMaker::erase_pair(std::string_view list,
+                             const std::pair<std::string, std::string>& sides) {
+  for (std::size_t i = document_.items(list).size(); i-- > 0;) {
+    if (sides_of(document_.items(list)[i]) == sides) document_.remove(list, i);
+  }
+}
+
+// A rule that stands already keeps its place.
+Fault ChangeMaker::operator()(const SetPair& change) {
+  const std::pair<std::string, std::string> sides = std::minmax(change.a, change.b);
+  const bool is_rule =
+      change.rule == SetPair::Rule::kPublish || change.rule == SetPair::Rule::kWatch;
+  const bool is_exception = change.rule == SetPair::Rule::kLeaveOut;
+  if (!is_rule && !is_exception) erase_pair("pairs", sides);
+  if (!is_exception) erase_pair("allowed_collisions", sides);
+  if (change.rule == SetPair::Rule::kUnstated) return std::nullopt;
+  const std::string_view list = is_rule ? "pairs" : "allowed_collisions";
+  const std::vector<YamlNode>& items = document_.items(list);
+  std::size_t place = 0;
+  while (place < items.size() && sides_of(items[place]) != sides) ++place;
+  YamlNode node;
+  if (place < items.size()) {
+    node = items[place];
+  } else {
+    set(node, "between", list_of({change.a, change.b}));
+  }
+  if (is_exception) {
+    set(node, "reason", text_node(change.reason));
+  } else {
+    erase(node, "publish");
+    if (change.rule == SetPair::Rule::kWatch) set(node, "publish", flag_node(false));
+  }
+  if (place < items.size()) {
+    document_.replace(list, place, std::move(node));
+  } else {
+    document_.append(list, std::move(node));
+  }
+  return std::nullopt;
+}
+
+Fault ChangeMaker::operator()(const SetZoneThresholds& change) {
+  auto found = named("zones", change.zone);
+  if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
+  auto& [index, node] = std::get<Found>(found);
+  set(node, "enter_below", length(change.enter_below));
+  set(node, "leave_above", length(change.leave_above));
+  document_.replace("zones", index, std::move(node));
+  return std::nullopt;
+}
+
+struct Touched {
+  TouchedEntry operator()(const AddObject& change) const {
+    const auto read = parse_yaml(change.yaml);
+    const auto* node = std::get_if<YamlNode>(&read);
+    if (node == nullptr) return {};
+    const bool is_list = node->kind == YamlNode::Kind::kSequence && node->items.size() == 1;
+    return {"objects", name_of(is_list ? node->items.front() : *node)};
+  }
+  TouchedEntry operator()(const SetPair& change) const {
+    const bool is_exception = change.rule == SetPair::Rule::kLeaveOut;
+    return {is_exception ? "allowed_collisions" : "pairs",
+            fmt::format("{}, {}", change.a, change.b)};
+  }
+  TouchedEntry operator()(const SetZoneThresholds& change) const { return {"zones", change.zone}; }
+  TouchedEntry operator()(const ReplaceCell&) const { return {}; }
+  template <class Change>
+  TouchedEntry operator()(const Change& change) const {
+    return {"objects", change.object};
+  }
+};
+
+}  // namespace
+
+std::optional<ChangeFault> make_change(const CellChange& change, CellDocument& document) {
+  return std::visit(ChangeMaker(document), change);
+}
+
+TouchedEntry touched_by(const CellChange& change) { return std::visit(Touched{}, change); }
+
+std::string entry_label(const YamlNode& entry, std::size_t place) {
+  if (const std::string name = name_of(entry); !name.empty()) return name;
+  const YamlNode* between = find(entry, "between");
+  if (between != nullptr && between->items.size() == 2)
+    return fmt::format("{}, {}", between->items[0].text, between->items[1].text);
+  return std::to_string(place);
+}
+
+}  // namespace clearance
