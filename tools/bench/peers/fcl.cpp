@@ -1,11 +1,14 @@
 #include <fcl/narrowphase/detail/gjk_solver_indep.h>
 #include <fcl/narrowphase/detail/gjk_solver_libccd.h>
 
+#include <exception>
 #include <variant>
 
 #include "tools/bench/peers/fcl_bodies.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/solver_rows.hpp"
+#include "tools/bench/suite/rivals.hpp"
+#include "tools/bench/suite/solver_rival.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -46,8 +49,25 @@ class WithLibccd : public Pair {
   void forget() {}
   Answer query(const Pose& a, const Pose& b) { return ask(gjk_, a, b); }
 
- private:
+ protected:
   fcl::detail::GJKSolver_libccd<double> gjk_;
+};
+
+// Where the bodies overlap, the depth as well, by FCL's EPA, which throws where it gives up.
+class WithDepth : public WithLibccd<6> {
+ public:
+  using WithLibccd<6>::WithLibccd;
+  Answer query(const Pose& world_from_a, const Pose& world_from_b) try {
+    Answer answer = ask(gjk_, world_from_a, world_from_b);
+    if (answer.distance > 0.0) return answer;
+    with_types(a_, b_, [&](const auto& a, const auto& b) {
+      gjk_.shapeSignedDistance(a, fcl_transform(world_from_a), b, fcl_transform(world_from_b),
+                               &answer.distance);
+    });
+    return answer;
+  } catch (const std::exception&) {
+    return {.distance = 0.0, .ok = false};
+  }
 };
 
 // FCL starts from minus its guess and returns its last ray with the original sign. So an unchanged
@@ -72,6 +92,11 @@ class WithOwnGjk : public Pair {
 };
 
 }  // namespace
+
+std::vector<Rival> fcl_rivals() {
+  return {solver_rival<WithDepth>("FCL", "0.7, its default: libccd, 1e-6; no warm start", true),
+          solver_rival<WithOwnGjk>("FCL, own GJK", "0.7, 1e-12, cached guess; no depth", false)};
+}
 
 void register_fcl(RowSet set) {
   const std::initializer_list<std::string_view> lacking = {"truncated_cone", "rounded_box"};
