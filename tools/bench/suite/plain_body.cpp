@@ -1,6 +1,7 @@
 #include "tools/bench/suite/plain_body.hpp"
 
 #include "tools/bench/peers/welded.hpp"
+#include "tools/bench/suite/planar_faces.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -30,7 +31,7 @@ PlainBody plain_body(const ConvexBody& body) {
   } else {
     const Welded mesh = welded(body);
     for (const Vec3& p : mesh.points) plain.points.push_back(numbers(p));
-    plain.faces = mesh.faces;
+    plain.faces = planar_faces(plain.points, mesh.faces);
     if (const auto half = box_half_extents(body)) {
       plain.kind = kBox;
       plain.half = numbers(*half);
