@@ -74,7 +74,7 @@ std::unique_ptr<Heat> heat_of(SuiteCase set, std::span<const Rival> rivals) {
   for (const auto& [a, b] : set.motion.poses) {
     heat->poses.emplace_back(plain_pose(a), plain_pose(b));
   }
-  const bool overlaps = *std::ranges::min_element(set.exact) < 0.0;
+  const bool overlaps = set.separation < 0.0;
   for (const Rival& rival : rivals) {
     auto pair = overlaps && !rival.has_depth ? nullptr : rival.pair(heat->a, heat->b);
     heat->lanes.push_back(pair ? std::make_unique<Lane>(std::move(pair), heat->poses.size())

@@ -92,7 +92,8 @@ class CoalPair final : public RivalPair {
         },
         a_, b_);
     solver_.gjk_initial_guess = coal::GJKInitialGuess::CachedGuess;
-    return apart;
+    // The largest double is its word for a GJK that has failed.
+    return std::abs(apart) < 1e300 ? apart : std::numeric_limits<double>::quiet_NaN();
   } catch (const std::exception&) {
     return std::numeric_limits<double>::quiet_NaN();
   }
