@@ -114,28 +114,29 @@ std::string draw_suite(const std::filesystem::path& svg, std::span<const RaceRow
   for (const bool cold : {false, true}) {
     std::string plots;
     for (std::size_t r = 0; r < rivals.size(); ++r) {
+      // Gnuplot's marks come in pairs, the hollow one first: squares, circles, triangles.
+      const std::size_t hollow = 4 + 2 * (2 * (r / std::size(kPlotColours)) + r % 2);
       std::string marks;
       for (const RaceRow& row : rows) {
         if (row.rival != r || row.cold != cold || !std::isnan(row.separation)) continue;
         if (std::isnan(row.max_error)) continue;
-        // Gnuplot's marks come in pairs: the hollow one, then the full one.
-        const std::size_t mark =
-            4 + 2 * (r / std::size(kPlotColours) + r % 2) + (row.failures == 0);
         marks += fmt::format("{:.6g} {:.6g} {}\n", std::max(1.0, row.p50_ns),
-                             std::max(1e-16, row.max_error), mark);
+                             std::max(1e-16, row.max_error), hollow + (row.failures == 0));
       }
       if (marks.empty()) continue;
       const std::string block = fmt::format("$marks{}_{}", name(cold), r);
+      const std::string style = fmt::format("pointsize {} linecolor rgb '{}'", r == 0 ? 1.0 : 0.7,
+                                            kPlotColours[r % std::size(kPlotColours)]);
       script += fmt::format("{} << EOD\n{}EOD\n", block, marks);
       plots += fmt::format(
-          "{}{} using 1:2:3 with points pointsize 0.8 pointtype variable linecolor rgb '{}' title "
-          "{}",
-          plots.empty() ? "" : ", ", block, kPlotColours[r % std::size(kPlotColours)],
-          plot_text(rivals[r].name));
+          "{}{} using 1:2:3 with points pointtype variable {} notitle, keyentry with points "
+          "pointtype {} {} title {}",
+          plots.empty() ? "" : ", ", block, style, hollow + 1, style, plot_text(rivals[r].name));
     }
     script += fmt::format(
         "set title '{}: largest error, m; hollow: some queries failed'\n{}\nplot {}\n", name(cold),
-        !cold ? "set key at screen 0.5, 0.02 center bottom horizontal maxrows 3" : "unset key",
+        cold ? "unset key"
+             : "set key at screen 0.5, 0.02 center bottom horizontal maxrows 3 reverse Left",
         plots.empty() ? "1e-17 notitle" : plots);
   }
   return plot_svg(svg, 1120, 620, script + "unset multiplot\n");
