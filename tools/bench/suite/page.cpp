@@ -84,7 +84,8 @@ Every case has a distance that follows from its construction ([bench/suite](../s
 contact over 1e-6 m to 10 m, and depths where they are known; [suite.csv](suite.csv) has each by itself. The rivals run in turns in one
 process, {} passes over all cases. A time is that of one query between two readings of the clock, both poses as quaternions, the least
 of all passes: it is longer than in [report.md](report.md), where queries overlap in the processor. *In a row* is the mean
-of a motion's tracked queries, one after another. *x* is the multiple of Clearance's median. A query fails that has no answer, or one
+of a motion's tracked queries, one after another. *x* is the multiple of Clearance's median
+over the whole class, also where the rival is not asked for depths; the CSV compares separation by separation. A query fails that has no answer, or one
 that is wrong by more than 1e-6 of the larger body's radius plus the distance. Answers are exact to {:.0e} m. A class that a rival has
 no shapes for, or no depths, is left out.
 
