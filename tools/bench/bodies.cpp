@@ -44,8 +44,7 @@ ConvexBody random_box(Random& random) {
   return std::get<ConvexBody>(box({x, y, random.uniform(0.05, 0.5)}));
 }
 
-ConvexBody random_link(Random& random) {
-  constexpr int kAround = 12;
+ConvexBody random_link(Random& random, int around) {
   const double length = random.uniform(0.2, 0.5);
   const double start = random.uniform(0.05, 0.09), end = random.uniform(0.04, 0.07);
   const std::array<Eigen::Vector2d, 4> rings{{{-0.5 * length - 0.4 * start, 0.7 * start},
@@ -54,8 +53,8 @@ ConvexBody random_link(Random& random) {
                                               {0.5 * length + 0.4 * end, 0.7 * end}}};
   std::vector<Vec3> points;
   for (const Eigen::Vector2d& ring : rings) {
-    for (int k = 0; k < kAround; ++k) {
-      const double angle = 2.0 * kPi * k / kAround;
+    for (int k = 0; k < around; ++k) {
+      const double angle = 2.0 * kPi * k / around;
       points.emplace_back(ring.y() * std::cos(angle), ring.y() * std::sin(angle), ring.x());
     }
   }

@@ -15,6 +15,7 @@
 #include "tools/bench/cells.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/rows.hpp"
+#include "tools/bench/suite/suite.hpp"
 #include "tools/bench/ticks.hpp"
 
 namespace {
@@ -23,6 +24,7 @@ constexpr const char* kHelp =
     R"(clearance-bench measures the core and the tick. Queries are timed in thread CPU time, ticks on the wall.
 
 Usage: clearance-bench [OPTIONS]
+       clearance-bench --suite [...]  all rivals on one set of cases with exact answers; --suite --help has its options
   --queries       the rows that tools/bench/report shows in report.md
   --curved        the rows of curved bodies and of every pair of kinds, with their peers
   --tick          the rows tick/
@@ -111,6 +113,9 @@ constexpr Part kParts[] = {
 }  // namespace
 
 int main(int argc, char** argv) {
+  if (argc > 1 && std::string_view(argv[1]) == "--suite") {
+    return clearance::bench::run_suite(std::vector<std::string>(argv + 2, argv + argc));
+  }
   std::vector<std::filesystem::path> cells, meshes;
   std::vector<std::string> options;
   for (int i = 1; i < argc; ++i) {

@@ -5,6 +5,8 @@
 #include "core/distance.hpp"
 #include "tools/bench/overlaps.hpp"
 #include "tools/bench/solver_rows.hpp"
+#include "tools/bench/suite/rivals.hpp"
+#include "tools/bench/suite/solver_rival.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -29,6 +31,10 @@ class Ours {
 };
 
 }  // namespace
+
+std::vector<Rival> clearance_rivals() {
+  return {solver_rival<Ours>("Clearance", "doubles, with its certificate; tracking state", true)};
+}
 
 void register_ours(RowSet set) {
   if (set == RowSet::kThesis) {

@@ -125,7 +125,7 @@ Truth TrueDistance::at(const Pose& world_from_a, const Pose& world_from_b) {
     if (static_cast<double>(gap) < best.gap) {
       const Real radii = static_cast<Real>(a_.radius) + static_cast<Real>(b_.radius);
       best = {std::max(0.0, static_cast<double>(length - radii)),
-              std::max(0.0, static_cast<double>(gap))};
+              std::max(0.0, static_cast<double>(gap)), (v / length).cast<double>()};
     }
     const bool known = std::any_of(corners_.begin(), corners_.end(), [&](const Corner& c) {
       return c.own_a == next.own_a && c.own_b == next.own_b;

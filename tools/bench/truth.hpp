@@ -15,6 +15,9 @@ namespace clearance::bench {
 struct Truth {
   double distance;  // 0 where the bodies overlap
   double gap;       // m: no farther from the exact distance than this, but for rounding (1e-18)
+  // Unit, from A towards B in the world; zero where the bodies overlap. Its angle to the exact
+  // normal is at most about sqrt(2 * gap / distance).
+  Vec3 normal = Vec3::Zero();
 };
 
 class TrueDistance {

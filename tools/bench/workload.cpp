@@ -70,6 +70,11 @@ std::vector<Trajectory> balls(char kind, int order) {
   return all;
 }
 
+template <int kAround>
+ConvexBody link_of(Random& random) {
+  return random_link(random, kAround);
+}
+
 std::vector<Trajectory> passing(ConvexBody (*make)(Random&), const Drift& by, double nearest,
                                 double farthest) {
   Random random(2);
@@ -146,6 +151,8 @@ std::vector<Trajectory> crossed(double separation) {
   return {{made(pair.axes_a), made(pair.axes_b), {{Pose{}, Pose{pair.apart}}}}};
 }
 
+}  // namespace
+
 std::vector<Trajectory> trajectories(const std::string& name) {
   if (name.starts_with("crossed/")) return crossed(std::stod(name.substr(8)));
   if (const std::size_t dash = name.find('-');
@@ -154,7 +161,9 @@ std::vector<Trajectory> trajectories(const std::string& name) {
   }
   if (name == "boxes") return passing(random_box, kBallDrift, 0.8, 2.0);
   if (name == "parallel-boxes") return sliding_boxes();
-  if (name == "links") return passing(random_link, kLinkDrift, 0.5, 1.5);
+  if (name == "links") return passing(link_of<12>, kLinkDrift, 0.5, 1.5);
+  if (name == "links24") return passing(link_of<6>, kLinkDrift, 0.5, 1.5);
+  if (name == "links400") return passing(link_of<100>, kLinkDrift, 0.5, 1.5);
   for (const int order : kOrders) {
     if (name.substr(1) != std::to_string(order)) continue;
     if (name[0] == 'f' || name[0] == 'v') return balls(name[0], order);
@@ -166,8 +175,6 @@ std::vector<Trajectory> trajectories(const std::string& name) {
   }
   throw std::invalid_argument(fmt::format("there is no workload named '{}'", name));
 }
-
-}  // namespace
 
 std::size_t Workload::queries() const {
   std::size_t sum = 0;

@@ -36,10 +36,13 @@ struct Workload {
 //   parallel-boxes  boxes of one orientation (half of them along the axes) that slide past each
 //                   other face to face
 //   links           hulls like those of robot links, 2 mm and 5 mrad per step
+//   links24, links400  the same with 24 and 400 vertices each
 //   A-B             two bodies of the kinds below, of 0.1 to 0.5 m, on the trajectories of links
 //   crossed/D       the standard test of chapter 5, one pose (crossed_ellipsoids.hpp)
 // Made at first use and kept. Throws std::invalid_argument for any other name.
 [[nodiscard]] const Workload& workload(const std::string& name);
+// The same without the true distances.
+[[nodiscard]] std::vector<Trajectory> trajectories(const std::string& name);
 
 inline constexpr int kTrajectorySteps = 100;
 

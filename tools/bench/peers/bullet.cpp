@@ -1,3 +1,4 @@
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btConeShape.h>
 #include <BulletCollision/CollisionShapes/btConvexHullShape.h>
@@ -11,6 +12,8 @@
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
 #include "tools/bench/solver_rows.hpp"
+#include "tools/bench/suite/rivals.hpp"
+#include "tools/bench/suite/solver_rival.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -94,6 +97,11 @@ class Bullet {
     if (body.vertices.size() == 2) {
       return std::make_shared<btCapsuleShapeZ>(body.radius, body.edges.front().end);
     }
+    if (const auto half = box_half_extents(body)) {
+      const auto box = std::make_shared<btBoxShape>(vector(*half));
+      box->setMargin(0.0);  // its constructor has taken the default margin off the half extents
+      return box;
+    }
     const auto hull = std::make_shared<btConvexHullShape>();
     for (const Vec3& p : welded(body).points) hull->addPoint(vector(p), false);
     hull->recalcLocalAabb();
@@ -116,7 +124,7 @@ class Bullet {
     return {.distance = result.distance - a_->getMargin() - b_->getMargin()};
   }
 
- private:
+ protected:
   static btVector3 in_frame(const btTransform& frame, const btVector3& v) {
     return v * frame.getBasis();  // the transpose times v
   }
@@ -124,7 +132,27 @@ class Bullet {
   btVector3 guess_{0, 0, 0};  // from B to A, in A's frame
 };
 
+// Where the bodies overlap, the depth as well, by Bullet's EPA.
+class WithDepth : public Bullet {
+ public:
+  using Bullet::Bullet;
+  Answer query(const Pose& world_from_a, const Pose& world_from_b) {
+    Answer answer = Bullet::query(world_from_a, world_from_b);
+    if (answer.distance != 0.0 || !answer.ok) return answer;
+    const btTransform a = transform_of(world_from_a), b = transform_of(world_from_b);
+    btGjkEpaSolver2::sResults result;
+    answer.ok = btGjkEpaSolver2::Penetration(a_.get(), a, b_.get(), b,
+                                             b.getOrigin() - a.getOrigin(), result);
+    answer.distance = result.distance;
+    return answer;
+  }
+};
+
 }  // namespace
+
+std::vector<Rival> bullet_rivals() {
+  return {solver_rival<WithDepth>("Bullet", "3, doubles, no margin, last separation; EPA", true)};
+}
 
 void register_bullet(RowSet set) { register_peer<Bullet>(set, "bullet"); }
 

@@ -6,6 +6,8 @@
 #include "tools/bench/peers/fcl_bodies.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/solver_rows.hpp"
+#include "tools/bench/suite/rivals.hpp"
+#include "tools/bench/suite/solver_rival.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -72,6 +74,15 @@ class WithOwnGjk : public Pair {
 };
 
 }  // namespace
+
+// Without depths: an assertion in FCL's EPA, which Debian's library contains, ends the program on
+// some pairs that touch.
+std::vector<Rival> fcl_rivals() {
+  return {
+      solver_rival<WithLibccd<6>>(
+          "FCL", "0.7, its default: libccd, 1e-6; no warm start; depths abort the program", false),
+      solver_rival<WithOwnGjk>("FCL, own GJK", "0.7, 1e-12, cached guess; no depths", false)};
+}
 
 void register_fcl(RowSet set) {
   const std::initializer_list<std::string_view> lacking = {"truncated_cone", "rounded_box"};

@@ -34,6 +34,7 @@ FclShape fcl_shape(const ConvexBody& body) {
   if (body.vertices.size() == 2) {
     return std::make_shared<fcl::Capsuled>(body.radius, body.edges.front().end);
   }
+  if (const auto half = box_half_extents(body)) return std::make_shared<fcl::Boxd>(2.0 * *half);
   return fcl_hull(body);
 }
 

@@ -5,6 +5,8 @@
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/peers/welded.hpp"
 #include "tools/bench/solver_rows.hpp"
+#include "tools/bench/suite/rivals.hpp"
+#include "tools/bench/suite/solver_rival.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -107,6 +109,7 @@ class Libccd {
     CCD_INIT(&ccd_);
     ccd_.support1 = ccd_.support2 = support;
     ccd_.max_iterations = 1000;
+    ccd_.epa_tolerance = 1e-6;
   }
   void forget() { a_.last = b_.last = 0; }
   Answer query(const Pose& world_from_a, const Pose& world_from_b) {
@@ -116,7 +119,7 @@ class Libccd {
     return {.distance = touch ? 0.0 : kInfinity};
   }
 
- private:
+ protected:
   static void place(Placed& placed, const Pose& pose) {
     placed.rotation = pose.orientation.toRotationMatrix();
     placed.position = pose.position;
@@ -125,7 +128,25 @@ class Libccd {
   ccd_t ccd_;
 };
 
+// Where the bodies overlap, their depth by libccd's EPA.
+class WithDepth : public Libccd {
+ public:
+  using Libccd::Libccd;
+  Answer query(const Pose& world_from_a, const Pose& world_from_b) {
+    place(a_, world_from_a);
+    place(b_, world_from_b);
+    ccd_real_t depth = 0.0;
+    ccd_vec3_t direction, position;
+    const int found = ccdGJKPenetration(&a_, &b_, &ccd_, &depth, &direction, &position);
+    return {.distance = found == 0 ? -depth : kInfinity, .ok = found != -2};
+  }
+};
+
 }  // namespace
+
+std::vector<Rival> libccd_rivals() {
+  return {solver_rival<WithDepth>("libccd", "2, doubles; depth, otherwise yes or no", true)};
+}
 
 // libccd has no distance that the thesis's tables could compare.
 void register_libccd(RowSet set) {

@@ -1,5 +1,7 @@
 #include "tools/bench/peers/welded.hpp"
 
+#include <algorithm>
+
 namespace clearance::bench {
 namespace {
 
@@ -48,6 +50,14 @@ Welded welded(const ConvexBody& body) {
     if (face.size() > 2) mesh.faces.push_back(face);
   }
   return mesh;
+}
+
+std::optional<Vec3> box_half_extents(const ConvexBody& body) {
+  if (body.vertices.size() != 8 || body.facets.size() != 6 || body.radius > 0.0) return {};
+  const Vec3 half = body.vertices[0].position.cwiseAbs();
+  const auto is_corner = [&](const Vertex& v) { return v.position.cwiseAbs() == half; };
+  if (!std::all_of(body.vertices.begin(), body.vertices.end(), is_corner)) return {};
+  return half;
 }
 
 }  // namespace clearance::bench

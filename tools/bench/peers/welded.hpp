@@ -4,6 +4,7 @@
 // such edges.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "core/convex_body.hpp"
@@ -16,5 +17,9 @@ struct Welded {
 };
 
 [[nodiscard]] Welded welded(const ConvexBody& body);
+
+// Of a box around the origin with sides along the axes; empty for any other body, and for a box
+// with a radius. Libraries have a shape of their own for it.
+[[nodiscard]] std::optional<Vec3> box_half_extents(const ConvexBody& body);
 
 }  // namespace clearance::bench
