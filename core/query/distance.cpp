@@ -26,6 +26,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
+// Two points, or unbounded bodies.
+DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                                 const Pose& world_from_b, TrackingState& state);
+DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                          const RelativePose& a_from_b, TrackingState& state);
 // The two entries by poses: has_straight_features(state) decides which one. Either accepts any
 // state.
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
@@ -177,31 +182,87 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   return result;
 }
 
+// Two points need no features: their states are not read.
+HWY_INLINE bool are_disjoint_points(TrackedPair& pair) {
+  ++pair.transitions;
+  meet_points(pair);
+  return HWY_LIKELY(certify<true>(pair) == TrackingEnd::kCertified);
+}
+// The relative pose is made again where it is needed as a whole, so that the others need no
+// rotation matrix.
+HWY_NOINLINE DistanceResult between_touching_points(const ConvexBody& a, const ConvexBody& b,
+                                                    const Pose& world_from_a,
+                                                    const Pose& world_from_b,
+                                                    TrackingState& state) {
+  return search_distance(a, b, pose_of(relative_pose4(world_from_a, world_from_b)), state, true);
+}
+HWY_NOINLINE DistanceResult between_points(const ConvexBody& a, const ConvexBody& b,
+                                           const Pose& world_from_a, const Pose& world_from_b,
+                                           TrackingState& state) {
+  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+  TrackedPair pair(a, b, a_from_b, state);
+  if (are_disjoint_points(pair)) return rounded_result_of(pair);
+  return between_touching_points(a, b, world_from_a, world_from_b, state);
+}
+HWY_NOINLINE DistanceResult between_points(const ConvexBody& a, const ConvexBody& b,
+                                           const RelativePose& relative, TrackingState& state,
+                                           bool depth) {
+  const RelativePose4 a_from_b = good_pose4_of(relative);
+  TrackedPair pair(a, b, a_from_b, state);
+  if (are_disjoint_points(pair)) return rounded_result_of(pair);
+  return search_distance(a, b, pose_of(a_from_b), state, depth);
+}
+
 enum class LastFeatures { kStraight, kFacets };
 
 // Most queries of a moving scene end here, at the features of the last query. The order of methods
 // for facets that are not parallel any more is that of any state.
-template <LastFeatures kFeatures>
+template <LastFeatures kFeatures, Tracking kMode = Tracking::kFirst>
 HWY_INLINE DistanceResult from_features(const ConvexBody& a, const ConvexBody& b,
                                         const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
   Transition first;
   if constexpr (kFeatures == LastFeatures::kFacets) {
-    first = facet_facet<Tracking::kFirst>(pair);
+    first = facet_facet<kMode>(pair);
   } else {
-    first = transition<Tracking::kFirst>(pair);
+    first = transition<kMode>(pair);
   }
-  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+  if (HWY_LIKELY(first == Transition::kClosest &&
+                 certify<kMode == Tracking::kFirstOfPlain>(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
   return after_first_transition(a, b, a_from_b, state,
                                 {pair.transitions, pair.parallel_transitions}, first);
 }
 
+// Two points or segments without features: see segments-inl.hpp.
+HWY_NOINLINE DistanceResult between_segments(const ConvexBody& a, const ConvexBody& b,
+                                             const RelativePose4& a_from_b, TrackingState& state) {
+  start_at_segments(a, b, a_from_b, state);
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(a, b, a_from_b, state);
+}
+
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) {
+  if (HWY_UNLIKELY(query_class(a, b) >= kTwoPoints)) {
+    return from_rare_classes(a, b, world_from_a, world_from_b, state);
+  }
+  if (HWY_UNLIKELY(!exists(a, state.a) || !exists(b, state.b))) {
+    return from_any_state(a, b, world_from_a, world_from_b, state);
+  }
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(
+      a, b, relative_pose4(world_from_a, world_from_b), state);
+}
+
+// Two points, or unbounded bodies.
+HWY_NOINLINE DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                              const Pose& world_from_a, const Pose& world_from_b,
+                                              TrackingState& state) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, world_from_a, world_from_b, state);
+  }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
@@ -211,6 +272,22 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
 
 DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                                const RelativePose& a_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(query_class(a, b) >= kTwoPoints)) {
+    return relative_from_rare_classes(a, b, a_from_b, state);
+  }
+  if (HWY_UNLIKELY(!exists(a, state.a) || !exists(b, state.b))) {
+    return relative_from_any_state(a, b, a_from_b, state, true);
+  }
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(
+      a, b, good_pose4_of(a_from_b), state);
+}
+
+HWY_NOINLINE DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                                       const RelativePose& a_from_b,
+                                                       TrackingState& state) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, a_from_b, state, true);
+  }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
@@ -262,6 +339,12 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
     return curved_pair_distance(a, b, world_from_a, world_from_b, state);
   }
+  if (HWY_UNLIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, world_from_a, world_from_b, state);
+  }
+  if (HWY_UNLIKELY(are_segments_without_features(a, b, state))) {
+    return between_segments(a, b, relative_pose4(world_from_a, world_from_b), state);
+  }
   return distance_from(a, b, relative_pose4(world_from_a, world_from_b), state, start, true);
 }
 
@@ -283,6 +366,12 @@ DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
   if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
     return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
                              : of_bad_pose(state);
+  }
+  if (HWY_UNLIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, a_from_b, state, depth);
+  }
+  if (HWY_UNLIKELY(are_segments_without_features(a, b, state)) && depth) {
+    return between_segments(a, b, good_pose4_of(a_from_b), state);
   }
   return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
 }
