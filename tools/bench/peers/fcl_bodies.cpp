@@ -1,10 +1,24 @@
 #include "tools/bench/peers/fcl_bodies.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include "tools/bench/peers/welded.hpp"
 
 namespace clearance::bench {
+namespace {
+
+// A box around the origin along the axes: six facets whose normals are axes, in opposite pairs.
+bool is_box(const ConvexBody& body) {
+  if (body.facets.size() != 6 || body.vertices.size() != 8) return false;
+  const Vec3 corner = body.vertices.front().position.cwiseAbs();
+  return std::all_of(body.facets.begin(), body.facets.end(), [&](const Facet& facet) {
+    return facet.normal.cwiseAbs().maxCoeff() == 1.0 &&
+           facet.offset == facet.normal.cwiseAbs().dot(corner);
+  });
+}
+
+}  // namespace
 
 // Faces in FCL's format: the number of vertices, then the vertices counter-clockwise.
 std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body) {
@@ -33,6 +47,9 @@ FclShape fcl_shape(const ConvexBody& body) {
   if (body.vertices.size() == 1) return std::make_shared<fcl::Sphered>(body.radius);
   if (body.vertices.size() == 2) {
     return std::make_shared<fcl::Capsuled>(body.radius, body.edges.front().end);
+  }
+  if (is_box(body)) {
+    return std::make_shared<fcl::Boxd>(2.0 * body.vertices.front().position.cwiseAbs());
   }
   return fcl_hull(body);
 }

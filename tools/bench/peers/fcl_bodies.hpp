@@ -1,6 +1,7 @@
 // Our bodies as FCL has them.
 #pragma once
 
+#include <fcl/geometry/shape/box.h>
 #include <fcl/geometry/shape/capsule.h>
 #include <fcl/geometry/shape/cone.h>
 #include <fcl/geometry/shape/convex.h>
@@ -22,10 +23,11 @@ using FclHull = fcl::Convex<double>;
 [[nodiscard]] std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body);
 
 // Curved bodies keep their shapes: ellipsoid, cylinder, cone, a capsule along z, a sphere around
-// the origin. Others become hulls.
+// the origin. So do boxes around the origin along the axes. Others become hulls.
 using FclShape = std::variant<std::shared_ptr<FclHull>, std::shared_ptr<fcl::Ellipsoidd>,
                               std::shared_ptr<fcl::Cylinderd>, std::shared_ptr<fcl::Coned>,
-                              std::shared_ptr<fcl::Capsuled>, std::shared_ptr<fcl::Sphered>>;
+                              std::shared_ptr<fcl::Capsuled>, std::shared_ptr<fcl::Sphered>,
+                              std::shared_ptr<fcl::Boxd>>;
 [[nodiscard]] FclShape fcl_shape(const ConvexBody& body);
 
 [[nodiscard]] fcl::Transform3d fcl_transform(const Pose& pose);
