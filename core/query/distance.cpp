@@ -98,6 +98,12 @@ namespace {
 // function is in another library, and a call has to save all arguments, so it is called once.
 std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
 
+// Highway's tables have no place for `noexcept`. With it the call is a jump, which saves a frame.
+template <class... Args>
+auto unthrowing(DistanceResult (*query)(Args...)) noexcept {
+  return reinterpret_cast<DistanceResult (*)(Args...) noexcept>(query);
+}
+
 HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state) noexcept {
@@ -123,7 +129,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
   const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
                           : has_facets(state)          ? HWY_DISPATCH_TABLE(from_facets)
                                                        : HWY_DISPATCH_TABLE(from_any_state);
-  return of_widths[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
+  return unthrowing(of_widths[chosen->GetIndex()])(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
@@ -135,10 +141,12 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Relative
                            ? HWY_DISPATCH_TABLE(relative_from_straight_features)
                        : has_facets(state) ? HWY_DISPATCH_TABLE(relative_from_facets)
                                            : nullptr;
-    if (known != nullptr) return known[chosen->GetIndex()](a, b, a_from_b, state);
+    if (known != nullptr) {
+      return unthrowing(known[chosen->GetIndex()])(a, b, a_from_b, state);
+    }
   }
-  return HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()](a, b, a_from_b, state,
-                                                                         options.depth);
+  return unthrowing(HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()])(
+      a, b, a_from_b, state, options.depth);
 }
 
 #endif
@@ -323,6 +331,11 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
+// False for bounded bodies one of which has facets, without a look at each special pair.
+HWY_INLINE bool may_have_closed_form(const ConvexBody& a, const ConvexBody& b) {
+  return query_class(a, b) >= kTwoPoints || (a.features[2] | b.features[2]) == 0;
+}
+
 // For states without features or with parallel ones, and for penetrating bodies.
 HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
                                         const RelativePose4& a_from_b, TrackingState& state,
@@ -336,14 +349,16 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
 HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, TransitionsMade start) {
-  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return curved_pair_distance(a, b, world_from_a, world_from_b, state);
-  }
-  if (HWY_UNLIKELY(query_class(a, b) == kTwoPoints)) {
-    return between_points(a, b, world_from_a, world_from_b, state);
-  }
-  if (HWY_UNLIKELY(are_segments_without_features(a, b, state))) {
-    return between_segments(a, b, relative_pose4(world_from_a, world_from_b), state);
+  if (HWY_UNLIKELY(may_have_closed_form(a, b))) {
+    if (a.is_curved() || b.is_curved()) {
+      return curved_pair_distance(a, b, world_from_a, world_from_b, state);
+    }
+    if (query_class(a, b) == kTwoPoints) {
+      return between_points(a, b, world_from_a, world_from_b, state);
+    }
+    if (are_segments_without_features(a, b, state)) {
+      return between_segments(a, b, relative_pose4(world_from_a, world_from_b), state);
+    }
   }
   return distance_from(a, b, relative_pose4(world_from_a, world_from_b), state, start, true);
 }
@@ -363,15 +378,15 @@ DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const
 DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
                                        const RelativePose& a_from_b, TrackingState& state,
                                        bool depth) {
-  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
-                             : of_bad_pose(state);
-  }
-  if (HWY_UNLIKELY(query_class(a, b) == kTwoPoints)) {
-    return between_points(a, b, a_from_b, state, depth);
-  }
-  if (HWY_UNLIKELY(are_segments_without_features(a, b, state)) && depth) {
-    return between_segments(a, b, good_pose4_of(a_from_b), state);
+  if (HWY_UNLIKELY(may_have_closed_form(a, b))) {
+    if (a.is_curved() || b.is_curved()) {
+      return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
+                               : of_bad_pose(state);
+    }
+    if (query_class(a, b) == kTwoPoints) return between_points(a, b, a_from_b, state, depth);
+    if (are_segments_without_features(a, b, state) && depth) {
+      return between_segments(a, b, good_pose4_of(a_from_b), state);
+    }
   }
   return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
 }
