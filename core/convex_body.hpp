@@ -76,6 +76,14 @@ struct Ray {
   bool is_line = false;  // its opposite, exactly, is one as well
 };
 
+// Selects the code of a query by one sum: both bodies' classes together are below 2 for the most
+// frequent code, 2 for two points, and more otherwise.
+enum class QueryClass : std::uint32_t {
+  kPlain = 0,  // a bounded polyhedron or a segment
+  kPoint = 1,
+  kOther = 4,  // unbounded or curved
+};
+
 struct ConvexBody {
   std::vector<Facet> facets;
   std::vector<Edge> edges;
@@ -97,6 +105,7 @@ struct ConvexBody {
   // facets on the far sides of `facet_edges`.
   std::vector<std::int32_t> neighbours, facets_beside;
   std::array<std::uint32_t, 3> features{};  // how many vertices, edges, facets
+  QueryClass query_class = QueryClass::kPlain;
   StartTable start;
 
   // A point far inside the body (for a point or segment, in its relative interior).
@@ -124,6 +133,8 @@ struct ConvexBody {
   [[nodiscard]] bool is_curved() const noexcept { return curved.kind != CurvedShape::Kind::kNone; }
   [[nodiscard]] bool bounded() const noexcept { return rays.empty(); }
   [[nodiscard]] bool is_half_space() const noexcept { return facets.size() == 1; }
+  // Is it a point or a segment: a sphere or a capsule without its radius?
+  [[nodiscard]] bool is_thin() const noexcept { return features[2] == 0 && features[0] != 0; }
 
   // Unit, away from the vertex, along the i-th of its edges.
   [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {

@@ -41,12 +41,26 @@ class DistanceBatch::Rounds {
     assert(world_from_body.size() == of_.bodies.size());
     ++rounds_;
     poses_ = world_from_body;
-    query_after_ = tracked_query();
-    judge_blocks();
+    changed_.clear();
+    if (resting_ > 0) {
+      --resting_;
+      query_all();
+      return {results_.data(), of_.pairs.size()};
+    }
+    if (slots_.pairs() > 0) {
+      dissolve_small_blocks();
+      judge_blocks();
+    }
     single_queries_ = unassigned_pairs_ + changed_.size();
+    waiting_before_ = waiting_;
+    waiting_.fill(0);
     query_unassigned();
-    query_changed();
-    slots_.close_holes();
+    if (!changed_.empty()) {
+      query_after_ = tracked_query();
+      query_changed();
+      slots_.close_holes();
+    }
+    if (slots_.pairs() == 0 && !any_will_enter()) resting_ = kRestingRounds;
     return {results_.data(), of_.pairs.size()};
   }
 
@@ -56,6 +70,8 @@ class DistanceBatch::Rounds {
     std::fill(residences_.begin(), residences_.end(), Residence{});
     std::fill(unassigned_.begin(), unassigned_.end(), 0);
     unassigned_pairs_ = 0;
+    waiting_.fill(0);
+    resting_ = 0;
     for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) unassign(pair);
   }
 
@@ -77,11 +93,45 @@ class DistanceBatch::Rounds {
   };
 
   static constexpr std::uint32_t kBits = 64;  // of a word of unassigned_
+  // Pairs of the same features for which vectors are faster than single queries.
+  static constexpr std::uint32_t kLeastPairs = 4;
+  static constexpr std::uint32_t kRestingRounds = 15;
 
   // Returns a bool and not an optional of the features. The optional would be stored in two parts
   // and loaded as one: the failed store forwarding takes up to 6 % of a batch's time.
   [[nodiscard]] bool fits_lane(std::uint32_t pair) const noexcept {
     return clearance::fits_lane(of_.a(pair), of_.b(pair), of_.states[pair]);
+  }
+
+  // A vector takes as long for one pair as for all of its lanes.
+  [[nodiscard]] bool are_enough(FeaturePair features) const noexcept {
+    return slots_.pairs_of(features) + waiting_before_[static_cast<std::size_t>(features)] >=
+           kLeastPairs;
+  }
+  // Waits until there are enough pairs with the same features. Whether the pair fits a lane is
+  // examined only then, because it takes longer.
+  [[nodiscard]] bool waits(std::uint32_t pair) noexcept {
+    const TrackingState& state = of_.states[pair];
+    if (state.a.kind > FeatureKind::kFacet || state.b.kind > FeatureKind::kFacet) return false;
+    const FeaturePair features = feature_pair(state);
+    if (are_enough(features)) return false;
+    ++waiting_[static_cast<std::size_t>(features)];
+    return true;
+  }
+  void dissolve_small_blocks() noexcept {
+    for (std::size_t i = 0; i < kFeaturePairs; ++i) {
+      const auto features = static_cast<FeaturePair>(i);
+      const std::uint32_t pairs = slots_.pairs_of(features);
+      if (pairs == 0 || pairs >= kLeastPairs - 1) continue;
+      for (const std::uint32_t index : slots_.blocks_of(features)) {
+        const BatchBlock& block = slots_.blocks()[index];
+        for (std::uint32_t lanes = block.taken; lanes != 0; lanes &= lanes - 1) {
+          const std::uint32_t pair = block.pair[static_cast<std::size_t>(std::countr_zero(lanes))];
+          slots_.leave(pair);
+          unassign(pair);
+        }
+      }
+    }
   }
 
   // Failed lanes come back as bits: pairs leave in the order of blocks and lanes, which does not
@@ -97,7 +147,6 @@ class DistanceBatch::Rounds {
       round.lists[i] = {blocks.data(), blocks.size()};
     }
     const std::size_t count = run_batch(round);
-    changed_.clear();
     for (std::size_t i = 0; i < count; ++i) {
       const FailedLanes& of = failed_lanes_[i];
       const BatchBlock& block = slots_.blocks()[of.block];
@@ -160,6 +209,18 @@ class DistanceBatch::Rounds {
     return std::isnan(poses_[a].position.x()) || std::isnan(poses_[b].position.x());
   }
 
+  // While no features are those of enough pairs, most rounds do nothing but queries.
+  void query_all() noexcept {
+    for (std::uint32_t pair = 0; pair < of_.no_pair(); ++pair) {
+      if (!is_still_nowhere(pair)) query(pair);
+    }
+    single_queries_ = of_.no_pair();
+  }
+  [[nodiscard]] bool any_will_enter() const noexcept {
+    return std::any_of(waiting_.begin(), waiting_.end(),
+                       [](std::uint32_t pairs) { return pairs >= kLeastPairs; });
+  }
+
   // Queries the unassigned pairs one by one, in order. More than one transition counts as a change:
   // the pair has other features, or vector code cannot answer it.
   void query_unassigned() noexcept {
@@ -170,7 +231,7 @@ class DistanceBatch::Rounds {
         query(pair);
         Residence& residence = residences_[pair];
         residence.add(rounds_, results_[pair].iterations != 1);
-        if (!residence.settled(rounds_)) continue;
+        if (!residence.settled(rounds_) || waits(pair)) continue;
         if (fits_lane(pair)) {
           assign(pair);
         } else {
@@ -191,7 +252,7 @@ class DistanceBatch::Rounds {
       residence.wait(Residence::kRetry);
     } else if (!fits_lane(pair)) {
       residence.wait(Residence::kNotAtAll);
-    } else if (residence.settled(rounds_)) {
+    } else if (residence.settled(rounds_) && !waits(pair)) {
       slots_.enter(pair);
       return;
     }
@@ -208,8 +269,10 @@ class DistanceBatch::Rounds {
   TrackedQuery query_after_ = nullptr;
   std::vector<std::uint64_t> unassigned_;  // a bit a pair: it is in no block
   std::vector<Residence> residences_;      // [pair]
+  // [features]: the unassigned pairs that would enter a lane, in this round and in the last one
+  std::array<std::uint32_t, kFeaturePairs> waiting_{}, waiting_before_{};
   std::size_t unassigned_pairs_ = 0, single_queries_ = 0;
-  std::uint32_t rounds_ = 0;
+  std::uint32_t rounds_ = 0, resting_ = 0;
 };
 
 DistanceBatch::DistanceBatch(std::span<const ConvexBody* const> bodies,

@@ -25,7 +25,9 @@ void BatchSlots::clear() noexcept {
   for (Settled& s : settled_) {
     s.blocks.clear();
     s.holes.clear();
+    s.pairs = 0;
   }
+  pairs_ = 0;
   free_.clear();
   for (std::size_t i = blocks_.size(); i-- > 0;) free_.push_back(static_cast<std::uint32_t>(i));
 }
@@ -34,6 +36,8 @@ void BatchSlots::clear() noexcept {
 // afterwards.
 void BatchSlots::enter(std::uint32_t pair) noexcept {
   const FeaturePair features = feature_pair(of_.states[pair]);
+  ++settled_[static_cast<std::size_t>(features)].pairs;
+  ++pairs_;
   std::vector<Slot>& holes = settled_[static_cast<std::size_t>(features)].holes;
   Slot slot;
   while (slot.block == kNowhere && !holes.empty()) {
@@ -53,7 +57,10 @@ void BatchSlots::leave(std::uint32_t pair) noexcept {
   from.pair[slot.lane] = of_.no_pair();
   from.taken &= static_cast<std::uint8_t>(~(1U << slot.lane));
   slots_[pair] = {};
-  settled_[static_cast<std::size_t>(from.features)].holes.push_back(slot);
+  Settled& of = settled_[static_cast<std::size_t>(from.features)];
+  of.holes.push_back(slot);
+  --of.pairs;
+  --pairs_;
 }
 
 void BatchSlots::fill(std::uint32_t pair) noexcept {

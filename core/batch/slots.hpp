@@ -53,6 +53,13 @@ class BatchSlots {
     return settled_[static_cast<std::size_t>(features)].blocks;
   }
 
+  // The number of pairs in all blocks.
+  [[nodiscard]] std::uint32_t pairs() const noexcept { return pairs_; }
+  // The number of pairs in them.
+  [[nodiscard]] std::uint32_t pairs_of(FeaturePair features) const noexcept {
+    return settled_[static_cast<std::size_t>(features)].pairs;
+  }
+
   // The pair has none and fits_lane().
   void enter(std::uint32_t pair) noexcept;
   // Takes the points of its last query along, to its state.
@@ -69,6 +76,7 @@ class BatchSlots {
   struct Settled {
     std::vector<std::uint32_t> blocks;  // all but the last full, but for
     std::vector<Slot> holes;            // lanes that their pair has left, and some that were
+    std::uint32_t pairs = 0;
   };
 
   void fill(std::uint32_t pair) noexcept;
@@ -80,6 +88,7 @@ class BatchSlots {
   std::uint32_t take_last(Settled& of) noexcept;
 
   BatchPairs& of_;
+  std::uint32_t pairs_ = 0;
   std::vector<Slot> slots_;  // [pair]
   std::vector<BatchBlock> blocks_;
   std::array<Settled, kFeaturePairs> settled_;

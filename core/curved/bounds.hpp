@@ -46,12 +46,14 @@ struct CurvedConclusion {
   double radius_a = 0.0, radius_b = 0.0;         // m
   Vec3 normal = Vec3::Zero();                    // unit, from A to B; this and the points: frame A
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
+  bool is_radial = false;  // the normal is that of a closed form, along the gap vector to rounding
 };
 
 // The direction, from A to B, in which radii are added. If the bodies without their radii are
 // disjoint, it is the direction of the gap vector. Then the rest of that vector is as long as the
 // distance.
 [[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found) noexcept {
+  if (found.is_radial) return found.normal;
   const Vec3 gap = found.point_on_b - found.point_on_a;
   return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;
 }

@@ -163,8 +163,9 @@ DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
-  CurvedTrackingState tracked = read(state, a, b);
   DistanceResult r;
+  if (closed_form_distance(a, b, a_from_b, state, r)) return r;
+  CurvedTrackingState tracked = read(state, a, b);
   if (!newton_distance(a, b, a_from_b, tracked, r)) {
     r = thorough_distance(a, b, a_from_b, tracked, depth);
   }

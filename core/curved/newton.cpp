@@ -7,6 +7,7 @@
 #include "core/curved/bounds.hpp"
 #include "core/curved/curved_distance.hpp"
 #include "core/curved/newton-inl.hpp"
+#include "core/curved/segment_and_cone-inl.hpp"
 #include "core/curved/tracking.hpp"
 #include "core/model/bad_pose.hpp"
 
@@ -80,6 +81,11 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   return run(squares_of_a(side_a), squares_of_b(side_b, a_from_b.rotation));
 }
 
+bool closed_form_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                             TrackingState& state, DistanceResult& r) {
+  return meet_segment_and_cone(a, b, pose4_of(a_from_b), state, r);
+}
+
 bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, DistanceResult& r) {
   return newton(a, b, pose4_of(a_from_b), state, r);
@@ -98,8 +104,9 @@ inline HWY_NOINLINE DistanceResult open_distance(const ConvexBody& a, const Conv
 DistanceResult distance_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                                  const Pose& world_from_b, TrackingState& state) {
   const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
-  CurvedTrackingState tracked = read(state, a, b);
   DistanceResult r;
+  if (meet_segment_and_cone(a, b, a_from_b, state, r)) return r;
+  CurvedTrackingState tracked = read(state, a, b);
   if (HWY_UNLIKELY(!newton(a, b, a_from_b, tracked, r))) {
     return open_distance(a, b, pose_of(a_from_b), tracked, state);
   }
@@ -113,9 +120,14 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace clearance {
 
+HWY_EXPORT(closed_form_of_relative);
 HWY_EXPORT(newton_of_relative);
 HWY_EXPORT(distance_of_poses);
 
+bool closed_form_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                          TrackingState& state, DistanceResult& result) noexcept {
+  return HWY_DYNAMIC_DISPATCH(closed_form_of_relative)(a, b, a_from_b, state, result);
+}
 bool newton_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                      CurvedTrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_relative)(a, b, a_from_b, state, result);

@@ -91,6 +91,11 @@ inline void write(const CurvedTrackingState& from, const ConvexBody& a, const Co
   state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
 }
 
+// A closed form, for the pairs that have one (newton.cpp). False: it is another pair, the bodies
+// overlap, or rounding leaves the bounds too wide.
+[[nodiscard]] bool closed_form_distance(const ConvexBody& a, const ConvexBody& b,
+                                        const RelativePose& a_from_b, TrackingState& state,
+                                        DistanceResult& result) noexcept;
 // The fast effort (newton.cpp). False: the bodies overlap or nearly touch, one of them is
 // unbounded, rounding leaves the bounds too wide, or many parts are equally near. The state is then
 // a hint for thorough_distance(). It must have passed forget_nonsense().

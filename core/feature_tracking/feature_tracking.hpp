@@ -54,6 +54,12 @@ struct TransitionsMade {
   return (a.bounded() || b.bounded()) && exists(a, state.a) && exists(b, state.b);
 }
 
+// The sum of both bodies' classes: see QueryClass.
+[[nodiscard]] inline std::uint32_t query_class(const ConvexBody& a, const ConvexBody& b) noexcept {
+  return static_cast<std::uint32_t>(a.query_class) + static_cast<std::uint32_t>(b.query_class);
+}
+inline constexpr std::uint32_t kTwoPoints = 2;
+
 // Moves the features of `state` by transitions until they are closest. Unless this ends undecided,
 // `result` (of the polyhedra, without radii) and the points of `state` belong to the last features.
 [[nodiscard]] TrackingEnd track_features(const ConvexBody& a, const ConvexBody& b,

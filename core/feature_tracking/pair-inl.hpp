@@ -253,7 +253,8 @@ inline constexpr int kMostParallel = 6;
 
 // The first transition of a query is compiled separately. Nothing there needs the pair in memory,
 // so its findings stay in registers. Otherwise boxes would cost 3 % more.
-enum class Tracking { kFirst, kFurther };
+// The first one of kPlain bodies omits the cases of unbounded ones.
+enum class Tracking { kFirstOfPlain, kFirst, kFurther };
 
 // The end of one transition.
 enum class Transition {

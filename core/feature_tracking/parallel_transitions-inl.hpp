@@ -274,7 +274,7 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   const Vec4 tilt = direction_to_b(pair.a_from_b, n) + m;
   const double tilt2 = dot(tilt, tilt);
   if (HWY_UNLIKELY(!(tilt2 <= kParallelTilt * kParallelTilt))) {
-    if constexpr (kMode == Tracking::kFirst) return Transition::kDeferred;
+    if constexpr (kMode != Tracking::kFurther) return Transition::kDeferred;
     return leave_facets(pair, n, m);
   }
   Vec4 local;

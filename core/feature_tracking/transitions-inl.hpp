@@ -12,6 +12,7 @@
 #include <cmath>
 
 #include "core/feature_tracking/parallel_transitions-inl.hpp"
+#include "core/feature_tracking/segments-inl.hpp"
 #include "core/model/edge_scan-inl.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/result_numbers.hpp"
@@ -162,7 +163,9 @@ inline HWY_NOINLINE Transition between_facets(TrackedPair& pair) {
 // four facets beside them recede along it. `kMode`: see transition().
 template <Tracking kMode>
 HWY_INLINE Transition edge_edge(TrackedPair& pair) {
-  if (!pair.a.bounded() || !pair.b.bounded()) return Transition::kUndecided;
+  if (kMode != Tracking::kFirstOfPlain && (!pair.a.bounded() || !pair.b.bounded())) {
+    return Transition::kUndecided;
+  }
   const Edge& first = pair.a.edges[pair.on_a.feature];
   const Edge& second = pair.b.edges[pair.on_b.feature];
   auto lines = lines_of(pair, first, second);
@@ -216,7 +219,7 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
       break;
   }
   // has_straight_features() admits one more pair to a first transition.
-  if constexpr (kMode == Tracking::kFirst) return facet_vertex(Owner<false>(pair));
+  if constexpr (kMode != Tracking::kFurther) return facet_vertex(Owner<false>(pair));
   switch (pair.features()) {
     case FeaturePair::kEdgeFacet:
       return edge_facet(Owner<false>(pair));
@@ -316,9 +319,10 @@ inline constexpr double kLeastWithNormal = 1e-150;
 
 // The certificate of the closest features. Their distance bounds that of the bodies from above, and
 // `certified` bounds it from below, both up to the error bound of Precision.
+template <bool kBounded = false>
 HWY_INLINE TrackingEnd certify(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
-  const Precision p = precision(
+  const Precision p = precision<kBounded>(
       pair.a, pair.b, {pose.rotation_error, pose.translation_error, pose.translation_length},
       pair.distance);
   assert(pair.distance < kLeastWithNormal ||

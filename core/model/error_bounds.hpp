@@ -42,31 +42,35 @@ struct PlacePrecision {
 // fixed and the wrong rotation rotates A about B's origin. No point of A is farther from there than
 // extent_a plus the translation. The part of the error that is not a rotation then stretches the
 // distance. Both are bounds, so the smaller one counts.
+//
+// `kBounded`: both bodies are known to be bounded.
+template <bool kBounded = false>
 [[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   assert(!(farthest < 0.0) && !(b_in_a.translation < 0.0));
+  const bool a_bounded = kBounded || a.bounded(), b_bounded = kBounded || b.bounded();
   Precision p;
   const double translation = b_in_a.translation;
   double ulps = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;
   p.extent_a = a.bounding_radius;
   p.extent_b = b.bounding_radius;
-  if (!a.bounded()) {
+  if (!a_bounded) {
     p.extent_a = std::max(p.extent_a, b.bounding_radius + translation + farthest);
     on_features += kUlp * kUlpsOnA * p.extent_a;
   }
-  if (!b.bounded()) {
+  if (!b_bounded) {
     p.extent_b = std::max(p.extent_b, a.bounding_radius + translation + farthest);
     on_features += kUlp * kUlpsOnB * p.extent_b;
   }
-  if (!a.bounded() || !b.bounded()) ulps = kGapToleranceUlps[!a.bounded() + !b.bounded()];
+  if (!a_bounded || !b_bounded) ulps = kGapToleranceUlps[!a_bounded + !b_bounded];
   p.size = p.extent_a + p.extent_b + translation;
-  const double turned = a.bounded()
+  const double turned = a_bounded
                             ? std::min(p.extent_b, p.extent_a + translation + kStretched * farthest)
                             : p.extent_b;
   p.error_bound = on_features + (kUlp * kUlpsBetween * translation + b_in_a.translation_error) +
                   b_in_a.rotation_error * turned;
   p.gap_tolerance = ulps * kUlp * p.size;
-  p.promised = (a.bounded() || b.bounded() ? kConvergedGap : kContactGap) * p.size;
+  p.promised = (a_bounded || b_bounded ? kConvergedGap : kContactGap) * p.size;
   return p;
 }
 

@@ -128,6 +128,11 @@ void add_recession_cone(ConvexBody& body) {
   body.recession_cone.inwards = inwards(body, against_normals);
 }
 
+QueryClass query_class(const ConvexBody& body) {
+  if (!body.bounded() || body.is_curved()) return QueryClass::kOther;
+  return body.is_thin() && body.edges.empty() ? QueryClass::kPoint : QueryClass::kPlain;
+}
+
 // Frees the spare capacity of the tables, which no longer grow.
 void release_spare_capacity(ConvexBody& body) {
   const auto release = [](auto&... tables) { (tables.shrink_to_fit(), ...); };
@@ -152,6 +157,7 @@ void add_query_tables(ConvexBody& body) {
   add_recession_cone(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
+  body.query_class = query_class(body);
   add_outgoing(body);
   add_neighbours(body);
   add_facet_limits(body);

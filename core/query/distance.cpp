@@ -26,6 +26,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
+// Two points, or unbounded bodies.
+DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                                 const Pose& world_from_b, TrackingState& state);
+DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                          const RelativePose& a_from_b, TrackingState& state);
 // The two entries by poses: has_straight_features(state) decides which one. Either accepts any
 // state.
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
@@ -93,6 +98,12 @@ namespace {
 // function is in another library, and a call has to save all arguments, so it is called once.
 std::atomic<const hwy::ChosenTarget*> chosen_vectors = nullptr;
 
+// Highway's tables have no place for `noexcept`. With it the call is a jump, which saves a frame.
+template <class... Args>
+auto unthrowing(DistanceResult (*query)(Args...)) noexcept {
+  return reinterpret_cast<DistanceResult (*)(Args...) noexcept>(query);
+}
+
 HWY_NOINLINE DistanceResult first_distance(const ConvexBody& a, const ConvexBody& b,
                                            const Pose& world_from_a, const Pose& world_from_b,
                                            TrackingState& state) noexcept {
@@ -118,7 +129,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
   const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
                           : has_facets(state)          ? HWY_DISPATCH_TABLE(from_facets)
                                                        : HWY_DISPATCH_TABLE(from_any_state);
-  return of_widths[chosen->GetIndex()](a, b, world_from_a, world_from_b, state);
+  return unthrowing(of_widths[chosen->GetIndex()])(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
@@ -130,10 +141,12 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Relative
                            ? HWY_DISPATCH_TABLE(relative_from_straight_features)
                        : has_facets(state) ? HWY_DISPATCH_TABLE(relative_from_facets)
                                            : nullptr;
-    if (known != nullptr) return known[chosen->GetIndex()](a, b, a_from_b, state);
+    if (known != nullptr) {
+      return unthrowing(known[chosen->GetIndex()])(a, b, a_from_b, state);
+    }
   }
-  return HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()](a, b, a_from_b, state,
-                                                                         options.depth);
+  return unthrowing(HWY_DISPATCH_TABLE(relative_from_any_state)[chosen->GetIndex()])(
+      a, b, a_from_b, state, options.depth);
 }
 
 #endif
@@ -177,49 +190,116 @@ HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   return result;
 }
 
-// Most queries of a moving scene end here, at the features of the last query.
-HWY_INLINE DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
-                                                 const RelativePose4& a_from_b,
-                                                 TrackingState& state) {
+// Two points need no features: their states are not read.
+HWY_INLINE bool are_disjoint_points(TrackedPair& pair) {
+  ++pair.transitions;
+  meet_points(pair);
+  return HWY_LIKELY(certify<true>(pair) == TrackingEnd::kCertified);
+}
+// The relative pose is made again where it is needed as a whole, so that the others need no
+// rotation matrix.
+HWY_NOINLINE DistanceResult between_touching_points(const ConvexBody& a, const ConvexBody& b,
+                                                    const Pose& world_from_a,
+                                                    const Pose& world_from_b,
+                                                    TrackingState& state) {
+  return search_distance(a, b, pose_of(relative_pose4(world_from_a, world_from_b)), state, true);
+}
+HWY_NOINLINE DistanceResult between_points(const ConvexBody& a, const ConvexBody& b,
+                                           const Pose& world_from_a, const Pose& world_from_b,
+                                           TrackingState& state) {
+  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+  TrackedPair pair(a, b, a_from_b, state);
+  if (are_disjoint_points(pair)) return rounded_result_of(pair);
+  return between_touching_points(a, b, world_from_a, world_from_b, state);
+}
+HWY_NOINLINE DistanceResult between_points(const ConvexBody& a, const ConvexBody& b,
+                                           const RelativePose& relative, TrackingState& state,
+                                           bool depth) {
+  const RelativePose4 a_from_b = good_pose4_of(relative);
+  TrackedPair pair(a, b, a_from_b, state);
+  if (are_disjoint_points(pair)) return rounded_result_of(pair);
+  return search_distance(a, b, pose_of(a_from_b), state, depth);
+}
+
+enum class LastFeatures { kStraight, kFacets };
+
+// Most queries of a moving scene end here, at the features of the last query. The order of methods
+// for facets that are not parallel any more is that of any state.
+template <LastFeatures kFeatures, Tracking kMode = Tracking::kFirst>
+HWY_INLINE DistanceResult from_features(const ConvexBody& a, const ConvexBody& b,
+                                        const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
   ++pair.transitions;
-  const Transition first = transition<Tracking::kFirst>(pair);
-  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
+  Transition first;
+  if constexpr (kFeatures == LastFeatures::kFacets) {
+    first = facet_facet<kMode>(pair);
+  } else {
+    first = transition<kMode>(pair);
+  }
+  if (HWY_LIKELY(first == Transition::kClosest &&
+                 certify<kMode == Tracking::kFirstOfPlain>(pair) == TrackingEnd::kCertified)) {
     return rounded_result_of(pair);
   }
   return after_first_transition(a, b, a_from_b, state,
                                 {pair.transitions, pair.parallel_transitions}, first);
 }
 
-// The same for two facets. The order of methods for those that are not parallel any more is that of
-// any state.
-HWY_INLINE DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b,
-                                      const RelativePose4& a_from_b, TrackingState& state) {
-  TrackedPair pair(a, b, a_from_b, state);
-  ++pair.transitions;
-  const Transition first = facet_facet<Tracking::kFirst>(pair);
-  if (HWY_LIKELY(first == Transition::kClosest && certify(pair) == TrackingEnd::kCertified)) {
-    return rounded_result_of(pair);
-  }
-  return after_first_transition(a, b, a_from_b, state,
-                                {pair.transitions, pair.parallel_transitions}, first);
+// Two points or segments without features: see segments-inl.hpp.
+HWY_NOINLINE DistanceResult between_segments(const ConvexBody& a, const ConvexBody& b,
+                                             const RelativePose4& a_from_b, TrackingState& state) {
+  start_at_segments(a, b, a_from_b, state);
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(a, b, a_from_b, state);
 }
 
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state) {
+  if (HWY_UNLIKELY(query_class(a, b) >= kTwoPoints)) {
+    return from_rare_classes(a, b, world_from_a, world_from_b, state);
+  }
+  if (HWY_UNLIKELY(!exists(a, state.a) || !exists(b, state.b))) {
+    return from_any_state(a, b, world_from_a, world_from_b, state);
+  }
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(
+      a, b, relative_pose4(world_from_a, world_from_b), state);
+}
+
+// Two points, or unbounded bodies.
+HWY_NOINLINE DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                              const Pose& world_from_a, const Pose& world_from_b,
+                                              TrackingState& state) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, world_from_a, world_from_b, state);
+  }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
-  return from_straight_features(a, b, relative_pose4(world_from_a, world_from_b), state);
+  return from_features<LastFeatures::kStraight>(a, b, relative_pose4(world_from_a, world_from_b),
+                                                state);
 }
 
 DistanceResult relative_from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                                const RelativePose& a_from_b, TrackingState& state) {
+  if (HWY_UNLIKELY(query_class(a, b) >= kTwoPoints)) {
+    return relative_from_rare_classes(a, b, a_from_b, state);
+  }
+  if (HWY_UNLIKELY(!exists(a, state.a) || !exists(b, state.b))) {
+    return relative_from_any_state(a, b, a_from_b, state, true);
+  }
+  return from_features<LastFeatures::kStraight, Tracking::kFirstOfPlain>(
+      a, b, good_pose4_of(a_from_b), state);
+}
+
+HWY_NOINLINE DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
+                                                       const RelativePose& a_from_b,
+                                                       TrackingState& state) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
+    return between_points(a, b, a_from_b, state, true);
+  }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
-  return from_straight_features(a, b, good_pose4_of(a_from_b), state);
+  return from_features<LastFeatures::kStraight>(a, b, good_pose4_of(a_from_b), state);
 }
 
 DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
@@ -227,7 +307,8 @@ DistanceResult from_facets(const ConvexBody& a, const ConvexBody& b, const Pose&
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return from_any_state(a, b, world_from_a, world_from_b, state);
   }
-  return from_facets(a, b, relative_pose4(world_from_a, world_from_b), state);
+  return from_features<LastFeatures::kFacets>(a, b, relative_pose4(world_from_a, world_from_b),
+                                              state);
 }
 
 DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
@@ -235,10 +316,10 @@ DistanceResult relative_from_facets(const ConvexBody& a, const ConvexBody& b,
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
     return relative_from_any_state(a, b, a_from_b, state, true);
   }
-  return from_facets(a, b, good_pose4_of(a_from_b), state);
+  return from_features<LastFeatures::kFacets>(a, b, good_pose4_of(a_from_b), state);
 }
 
-// The TrackedPair is a new one, so that the one of from_straight_features() can stay in registers.
+// The TrackedPair is a new one, so that the one of from_features() can stay in registers.
 HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                                    const RelativePose4& a_from_b,
                                                    TrackingState& state, TransitionsMade start,
@@ -248,6 +329,11 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
   const bool moved = first == Transition::kMoved || first == Transition::kDeferred;
   if (moved && continue_tracking(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
   return search_distance(a, b, pose_of(a_from_b), state, true);
+}
+
+// False for bounded bodies one of which has facets, without a look at each special pair.
+HWY_INLINE bool may_have_closed_form(const ConvexBody& a, const ConvexBody& b) {
+  return query_class(a, b) >= kTwoPoints || (a.features[2] | b.features[2]) == 0;
 }
 
 // For states without features or with parallel ones, and for penetrating bodies.
@@ -263,8 +349,16 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
 HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b,
                                         const Pose& world_from_a, const Pose& world_from_b,
                                         TrackingState& state, TransitionsMade start) {
-  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return curved_pair_distance(a, b, world_from_a, world_from_b, state);
+  if (HWY_UNLIKELY(may_have_closed_form(a, b))) {
+    if (a.is_curved() || b.is_curved()) {
+      return curved_pair_distance(a, b, world_from_a, world_from_b, state);
+    }
+    if (query_class(a, b) == kTwoPoints) {
+      return between_points(a, b, world_from_a, world_from_b, state);
+    }
+    if (are_segments_without_features(a, b, state)) {
+      return between_segments(a, b, relative_pose4(world_from_a, world_from_b), state);
+    }
   }
   return distance_from(a, b, relative_pose4(world_from_a, world_from_b), state, start, true);
 }
@@ -284,9 +378,15 @@ DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const
 DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
                                        const RelativePose& a_from_b, TrackingState& state,
                                        bool depth) {
-  if (HWY_UNLIKELY(a.is_curved() || b.is_curved())) {
-    return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
-                             : of_bad_pose(state);
+  if (HWY_UNLIKELY(may_have_closed_form(a, b))) {
+    if (a.is_curved() || b.is_curved()) {
+      return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
+                               : of_bad_pose(state);
+    }
+    if (query_class(a, b) == kTwoPoints) return between_points(a, b, a_from_b, state, depth);
+    if (are_segments_without_features(a, b, state) && depth) {
+      return between_segments(a, b, good_pose4_of(a_from_b), state);
+    }
   }
   return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
 }

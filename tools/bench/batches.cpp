@@ -32,12 +32,12 @@ enum class Shapes { kInCommon, kOfTheirOwn };
 // Many pairs of a workload at once, each of two bodies that move by themselves, back and forth
 // along its trajectory.
 struct Fleet {
-  Fleet(const Workload& of, Shapes whose) : load(of) {
-    copies.reserve(2 * kPairs);
+  Fleet(const Workload& of, Shapes whose, std::size_t count = kPairs) : load(of) {
+    copies.reserve(2 * count);
     const auto add = [&](const ConvexBody& shape) {
       shapes.push_back(whose == Shapes::kInCommon ? &shape : &copies.emplace_back(shape));
     };
-    for (std::uint32_t i = 0; i < kPairs; ++i) {
+    for (std::uint32_t i = 0; i < count; ++i) {
       add(*trajectory(i).a);
       add(*trajectory(i).b);
       pairs.push_back({2 * i, 2 * i + 1});
@@ -57,7 +57,7 @@ struct Fleet {
     return load.truth[pair % load.trajectories.size()][pose_of(pair, step)];
   }
   void move_to(std::size_t step) {
-    for (std::size_t i = 0; i < kPairs; ++i) {
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
       std::tie(poses[2 * i], poses[2 * i + 1]) = trajectory(i).poses[pose_of(i, step)];
     }
   }
@@ -134,6 +134,30 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
   count(state, verdict);
 }
 
+// A few pairs of robot links or boxes. A round of them is shorter than reading the clock, so all
+// rounds are timed at once, with the poses of all of them in memory.
+template <class Solver>
+void time_few(benchmark::State& state, Fleet& fleet) {
+  Solver solver(fleet);
+  std::vector<std::vector<Pose>> poses;
+  for (std::size_t step = 0; step < fleet.steps(); ++step) {
+    fleet.move_to(step);
+    poses.push_back(fleet.poses);
+    benchmark::DoNotOptimize(solver.step(fleet).data());
+  }
+  const std::size_t queries = fleet.pairs.size() * fleet.steps();
+  while (state.KeepRunningBatch(static_cast<benchmark::IterationCount>(queries))) {
+    for (std::vector<Pose>& of_step : poses) {
+      fleet.poses.swap(of_step);
+      benchmark::DoNotOptimize(solver.step(fleet).data());
+      fleet.poses.swap(of_step);
+    }
+  }
+  state.counters["ns"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * 1e-9,
+                         benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 // The mask of a target and of all narrower ones, because single queries are not compiled for every
 // target. In Highway, wider vectors have lower bits. 0: all targets of this machine.
 std::int64_t up_to(std::int64_t target) {
@@ -150,6 +174,14 @@ void register_fleet(const std::string& name, const std::string& load, std::int64
     time_fleet<Solver>(state, fleet);
     hwy::SetSupportedTargetsForTest(0);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  });
+}
+
+template <class Solver>
+void register_few(const std::string& name, const std::string& load, std::size_t count) {
+  benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
+    Fleet fleet(workload(load), Shapes::kInCommon, count);
+    time_few<Solver>(state, fleet);
   });
 }
 
@@ -170,6 +202,10 @@ void register_batches() {
     register_fleet<OneByOne>(fmt::format("batch/curved/single/{}", load), load, 0);
   }
   for (const std::string load : {"boxes", "links"}) {
+    for (const std::size_t count : {1, 2, 4, 8, 16, 32, 64}) {
+      register_few<Batched>(fmt::format("batch/few/{}/{}", load, count), load, count);
+      register_few<OneByOne>(fmt::format("batch/few/single/{}/{}", load, count), load, count);
+    }
     register_fleet<Batched>(fmt::format("batch/own/{}", load), load, 0, Shapes::kOfTheirOwn);
     register_fleet<OneByOne>(fmt::format("batch/own/single/{}", load), load, 0,
                              Shapes::kOfTheirOwn);

@@ -46,7 +46,8 @@ Rows:
                      nearness/tracked/...
   batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one; batch/AVX2/...
                      with that instruction set; batch/own/... 1,024 bodies without common shapes,
-                     batch/own/single/... one by one; batch/curved/A-B, batch/curved/single/A-B
+                     batch/own/single/... one by one; batch/curved/A-B, batch/curved/single/A-B; batch/few/boxes/8:
+                     8 pairs, batch/few/single/boxes/8 one by one; also links, and 1 to 64 pairs
   overlap/tracked/KIND/HOW, overlap/cold/...  penetration depth: boxes, links, f10, v10, f40, v40; shallow, half,
                      near, nearer, middle; no reference
   peer/WHO/...       the same by other solvers: fcl, fcl-tight, fcl-gjk, bullet, libccd, qp

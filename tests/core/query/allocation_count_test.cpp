@@ -14,14 +14,14 @@ namespace clearance {
 namespace {
 
 // A place where the compiler cannot see that the pointer is never read.
-void* volatile last = nullptr;
+void* volatile last_allocation = nullptr;
 
 template <class Allocate>
 std::uint64_t allocations_of(const Allocate& allocate) {
   const std::uint64_t before = allocations();
-  last = allocate();
+  last_allocation = allocate();
   const std::uint64_t after = allocations();
-  std::free(last);
+  std::free(last_allocation);
   return after - before;
 }
 
@@ -40,24 +40,24 @@ TEST(AllocationCount, SeesTheFunctionsOfC) {
 TEST(AllocationCount, SeesOperatorNewAndWhatEigenAllocates) {
   std::uint64_t before = allocations();
   const auto number = std::make_unique<int>(1);
-  last = number.get();
+  last_allocation = number.get();
   EXPECT_EQ(allocations() - before, 1u);
   before = allocations();
   std::vector<double> numbers(100);
-  last = numbers.data();
+  last_allocation = numbers.data();
   EXPECT_EQ(allocations() - before, 1u);
   before = allocations();
   Eigen::VectorXd vector(100);
-  last = vector.data();
+  last_allocation = vector.data();
   EXPECT_EQ(allocations() - before, 1u);
 }
 
 TEST(AllocationCount, IsOfOneThread) {
-  std::thread other([] { last = std::malloc(100); });
+  std::thread other([] { last_allocation = std::malloc(100); });
   const std::uint64_t before = allocations();
   other.join();
   EXPECT_EQ(allocations(), before);
-  std::free(last);
+  std::free(last_allocation);
 }
 
 }  // namespace

@@ -1,0 +1,114 @@
+// The closest features of two bodies that are points or segments: spheres and capsules without
+// their radii. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+//
+// The squared distance of x(s) = p + s e and y(t) = q + t f, with unit e and f, is a convex
+// quadratic function of s and t. Its minimum over the rectangle of both segments follows by three
+// clamps (V. J. Lumelsky, Inf. Process. Lett. 21, 1985; C. Ericson, Real-Time Collision
+// Detection, 5.1.9). A clamped parameter stands for an end, any other for the edge. A point is a
+// segment of length 0.
+#if defined(CLEARANCE_CORE_SEGMENTS) == defined(HWY_TARGET_TOGGLE)
+#ifdef CLEARANCE_CORE_SEGMENTS
+#undef CLEARANCE_CORE_SEGMENTS
+#else
+#define CLEARANCE_CORE_SEGMENTS
+#endif
+
+#include <algorithm>
+
+#include "core/feature_tracking/pair-inl.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace clearance::HWY_NAMESPACE {
+
+// Two bodies that are points or segments, and a state that has no features of them.
+HWY_INLINE bool are_segments_without_features(const ConvexBody& a, const ConvexBody& b,
+                                              const TrackingState& state) {
+  return a.is_thin() && b.is_thin() && state.a.kind == FeatureKind::kUnknown;
+}
+
+HWY_INLINE void to_only_vertex(Side& side) {
+  side.kind = FeatureKind::kVertex;
+  side.penetrating = false;
+  side.feature = 0;
+}
+
+// B's point in frame A. A sphere is mostly around the origin of its frame, and then the translation
+// is its place, without a product with the rotation. This is so to the bit if no coordinate is 0,
+// whose sign the product might change.
+HWY_INLINE Vec4 place_of_point(const RelativePose4& a_from_b, Vec4 local_b) {
+  const Vec4 zero = spread(0.0), t = a_from_b.translation;
+  if (HWY_LIKELY(equal(local_b, zero) && (less(zero, t * t) & 7u) == 7u)) return t;
+  return point_to_a(a_from_b, local_b);
+}
+
+// Two points. The arithmetic is that of two vertices, so that a batch gives the same bits.
+HWY_INLINE void meet_points(TrackedPair& pair) {
+  to_only_vertex(pair.on_a);
+  to_only_vertex(pair.on_b);
+  pair.point_a = load3_alone(pair.a.vertices[0].position);
+  pair.local_b = load3_alone(pair.b.vertices[0].position);
+  pair.point_b = place_of_point(pair.a_from_b, pair.local_b);
+  const Vec4 g = pair.point_b - pair.point_a;
+  pair.distance = pair.certified = norm(g);
+  pair.normal = over(g, pair.distance);
+}
+
+// In the body's frame.
+struct Segment {
+  Vec4 start, direction;  // of a point: 0
+  double length;          // m
+};
+HWY_INLINE Segment segment_of(const ConvexBody& body) {
+  if (body.features[1] == 0) return {load3_alone(body.vertices[0].position), spread(0.0), 0.0};
+  const Edge& edge = body.edges[0];
+  return {load3_of_4(edge.point), load3_of_4(edge.direction), edge.end};
+}
+
+// Branches, not selections: the queries that follow need not wait for the features.
+HWY_INLINE double to_place_on_segment(Side& side, double s, double length) {
+  if (s > 0.0) {
+    if (s < length) {
+      side.kind = FeatureKind::kEdge;
+      side.feature = 0;
+      return s;
+    }
+    side.kind = FeatureKind::kVertex;
+    side.feature = 1;
+    return length;
+  }
+  side.kind = FeatureKind::kVertex;
+  side.feature = 0;
+  return 0.0;
+}
+
+// A hint, as any features: the certificate decides. Parallel segments may have several closest
+// features, of which their edges come first.
+HWY_INLINE void start_at_segments(const ConvexBody& body_a, const ConvexBody& body_b,
+                                  const RelativePose4& a_from_b, TrackingState& state) {
+  const Segment a = segment_of(body_a), b = segment_of(body_b);
+  double s = 0.0, t = 0.0;
+  const Vec4 between = point_to_a(a_from_b, b.start) - a.start;
+  if (b.length == 0.0) {
+    to_place_on_segment(state.b, 0.0, 0.0);
+    if (a.length > 0.0) s = dot(between, a.direction);
+    to_place_on_segment(state.a, s, a.length);
+    return;
+  }
+  const Vec4 f = direction_to_a(a_from_b, b.direction);
+  if (a.length == 0.0) {
+    to_place_on_segment(state.a, 0.0, 0.0);
+    to_place_on_segment(state.b, -dot(between, f), b.length);
+    return;
+  }
+  const double cosine = dot(a.direction, f), along_e = dot(between, a.direction),
+               along_f = dot(between, f);
+  const double sine2 = 1.0 - cosine * cosine;
+  s = to_place_on_segment(state.a, (along_e - cosine * along_f) / sine2, a.length);
+  const double free_t = cosine * s - along_f;
+  t = to_place_on_segment(state.b, free_t, b.length);
+  if (t != free_t) to_place_on_segment(state.a, along_e + cosine * t, a.length);
+}
+
+}  // namespace clearance::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
