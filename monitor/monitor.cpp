@@ -81,6 +81,8 @@ struct Monitor::State {
   [[nodiscard]] TickView view() const noexcept {
     return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns};
   }
+  void make_absent(std::uint32_t object) noexcept;
+  void note_presence(std::uint32_t object) noexcept;
   void begin_first_tick() noexcept;
   void add_presence_changes() noexcept;
   void count_pairs() noexcept;
@@ -96,7 +98,7 @@ Monitor::Monitor(const Scene& scene, const Monitor* similar)
                                                 : KnownHulls{similar->state_->scene.objects,
                                                              similar->state_->culling.hulls()})) {
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (scene.objects[i].absent) set_absent(i, true);
+    if (scene.objects[i].absent) state_->make_absent(i);
   }
 }
 Monitor::~Monitor() = default;
@@ -160,15 +162,11 @@ bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
   TrackedObject& state = s.inputs.objects[object];
   if (state.absent == absent) return true;
   if (absent) {
-    make_absent(state);
-    s.culling.forget_object(object, s.table);
+    s.make_absent(object);
   } else {
     make_present(state);
+    s.note_presence(object);
   }
-  s.inputs.visits.visit(object);
-  if (std::ranges::find(s.presence_changed, object) == s.presence_changed.end())
-    s.presence_changed.push_back(object);
-  s.zones.count_absent(s.inputs.objects);
   return true;
 }
 
@@ -272,6 +270,19 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.oldest_evaluation_cycles = inputs.cycle - evaluated.oldest_refresh;
   count_pairs();
   write_minimum();
+}
+
+void Monitor::State::make_absent(std::uint32_t object) noexcept {
+  clearance::make_absent(inputs.objects[object]);
+  culling.forget_object(object, table);
+  note_presence(object);
+}
+
+void Monitor::State::note_presence(std::uint32_t object) noexcept {
+  inputs.visits.visit(object);
+  if (std::ranges::find(presence_changed, object) == presence_changed.end())
+    presence_changed.push_back(object);
+  zones.count_absent(inputs.objects);
 }
 
 // No pair has waited longer for its refresh than this monitor has run. All objects count as

@@ -11,9 +11,10 @@
 
 #include "config/cell/cell.hpp"
 #include "config/yaml/cell_error.hpp"
-#include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
+
+struct YamlNode;
 
 // A cell, or every error that can be found in one pass. Mesh paths are relative to the file.
 using CellResult = std::variant<Cell, std::vector<CellError>>;

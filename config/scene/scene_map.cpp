@@ -48,7 +48,7 @@ bool same_input(const JointVariable& a, const JointVariable& b) {
   return a.source == b.source && a.wraps == b.wraps;
 }
 bool same_input(const Object& a, const Object& b) {
-  return !a.fixed && !b.fixed && a.source == b.source && a.frame == b.frame;
+  return !a.fixed && !b.fixed && a.source == b.source && a.frame == b.frame && a.absent == b.absent;
 }
 
 // Whether the robots' variables are the same, one by one.

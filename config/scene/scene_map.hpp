@@ -25,6 +25,7 @@ struct SceneMap {
 //  - an object that is a robot's link in one scene only, or of another robot, or of a robot whose
 //    joints or base are placed otherwise;
 //  - an object or joint variable for which the scenes state different sources or frames;
+//  - an object that is absent by one of the scenes;
 //  - a robot whose joint variables are not all the same, with its links and variables.
 //
 // A pose or position that was sent for the scene before is passed on by `objects_now` and

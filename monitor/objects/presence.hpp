@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-// Makes a moving object absent, which is not absent yet. Does not allocate.
+// Makes an object absent, which is not absent yet. Does not allocate.
 void make_absent(TrackedObject& state) noexcept;
 
 // Makes the object present. No pose is in use until the next sample comes.

@@ -192,6 +192,42 @@ TEST_F(TakeOver, AFixedObjectStandsWhereTheChangedSceneSays) {
   EXPECT_NEAR(tick({}).pairs[0].distance, 2.8, 1e-12);
 }
 
+TEST_F(TakeOver, AnObjectThatTheChangedSceneHasAsAbsentIsLeftOutAndComesBackUnknown) {
+  begin(balls({"a", "b", "c"}));
+  tick({{"a", 0.0}, {"b", 0.25}, {"c", 1.0}});
+  ASSERT_TRUE(tick({}).zones[0].active);
+  Scene next = balls({"a", "b", "c"});
+  next.objects[1].absent = true;
+  change(next);
+  EXPECT_EQ(absent_pairs(tick({})), 2u);
+  EXPECT_NEAR(tick({}).minimum.distance, 0.8, 1e-12);
+  EXPECT_FALSE(tick({}).zones[0].active);
+  change(balls({"a", "b", "c"}));
+  EXPECT_EQ(tick({}).unknown, 2u) << "where it was before says nothing";
+  EXPECT_EQ(tick({{"b", 0.5}}).unknown, 0u);
+}
+
+TEST_F(TakeOver, AFixedObjectMayBeAbsentToo) {
+  const auto with_table = [](bool absent) {
+    Scene scene = test::cell_of({test::moving("a", {test::ball(0.1)}),
+                                 test::fixed("table", {test::ball(0.1)}, test::at(1, 0, 0)),
+                                 test::fixed("wall", {test::ball(0.1)}, test::at(3, 0, 0))});
+    for (ObjectPair& pair : scene.pairs) pair.publish = true;
+    scene.objects[1].absent = absent;
+    return scene;
+  };
+  begin(with_table(true));
+  EXPECT_NEAR(tick({{"a", 0.0}}).minimum.distance, 2.8, 1e-12);
+  EXPECT_EQ(absent_pairs(tick({})), 1u);
+  EXPECT_TRUE(tick({}).minimum_certified);
+  change(with_table(false));
+  EXPECT_NEAR(tick({}).minimum.distance, 0.8, 1e-12);
+  change(with_table(true));
+  const Report& report = tick({});
+  EXPECT_NEAR(report.minimum.distance, 2.8, 1e-12);
+  EXPECT_EQ(report.pairs[0].status, PairStatus::kAbsent);
+}
+
 TEST_F(TakeOver, ABodyOfAnotherShapeIsWhereTheObjectIs) {
   begin(balls({"a", "b"}));
   tick({{"a", 0.0}, {"b", 1.0}});

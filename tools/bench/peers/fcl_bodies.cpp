@@ -1,11 +1,11 @@
 #include "tools/bench/peers/fcl_bodies.hpp"
 
-#include <algorithm>
 #include <vector>
 
 #include "tools/bench/peers/welded.hpp"
 
 namespace clearance::bench {
+
 // Faces in FCL's format: the number of vertices, then the vertices counter-clockwise.
 std::shared_ptr<FclHull> fcl_hull(const ConvexBody& body) {
   const Welded mesh = welded(body);
