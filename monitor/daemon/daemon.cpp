@@ -77,7 +77,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
 
 // The thread that reads a cell goes on alone.
 Daemon::~Daemon() {
-  stop_ = true;
+  loop_ended_ = true;
   if (changing_.joinable()) changing_.join();
 }
 
@@ -117,6 +117,7 @@ void Daemon::run(StopSignal& signal) {
   }
   stop_ = true;
   ticking.join();
+  loop_ended_ = true;
   if (changing_.joinable()) changing_.join();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
@@ -164,7 +165,7 @@ void Daemon::change_cell() {
   changing_ = std::thread([this, before, changed = std::make_shared<const Cell>(*std::move(cell))] {
     name_thread("scene");
     try {
-      const SceneChanger::Outcome outcome = changer_->change(changed, stop_);
+      const SceneChanger::Outcome outcome = changer_->change(changed, loop_ended_);
       if (outcome.refusal.empty()) {
         log_line(lines::kSceneChanged, changed->scene.revision, outcome.in_force_from, before);
       } else {

@@ -98,6 +98,7 @@ class Daemon : private CellParts {
   std::shared_ptr<Reading> reading_;  // null: no cell is being read
   std::thread changing_;
   std::atomic<bool> is_changing_{false};
+  std::atomic<bool> loop_ended_{false};
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;
 };

@@ -19,11 +19,11 @@ SceneChanger::Outcome refused(std::string why) {
 }  // namespace
 
 SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
-                                           const std::atomic<bool>& stop) {
+                                           const std::atomic<bool>& loop_ended) {
   if (auto reason = restart_needed(*cell_, *cell, capacity_)) return refused(*std::move(reason));
   const std::vector<ReportSink*> sinks = parts_.prepare(cell);
   try {
-    return succeed(std::move(cell), sinks, stop);
+    return succeed(std::move(cell), sinks, loop_ended);
   } catch (...) {
     parts_.abandon();
     throw;
@@ -32,12 +32,12 @@ SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
 
 SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
                                             const std::vector<ReportSink*>& sinks,
-                                            const std::atomic<bool>& stop) {
+                                            const std::atomic<bool>& loop_ended) {
   Successor::State state = Successor::State::kTooSlow;
   for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
     // It holds what the loop no longer ticks, and is deleted here.
     Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks);
-    state = run(successor, stop);
+    state = run(successor, loop_ended);
     if (state != Successor::State::kSucceeded) continue;
     parts_.follow();
     std::swap(cell_, cell);
@@ -52,9 +52,9 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
 }
 
 // Waits until the loop has let go of the successor, too.
-Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& stop) {
+Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& loop_ended) {
   if (!loop_.offer(successor)) return Successor::State::kTooSlow;
-  while (loop_.busy() && !stop) {
+  while (loop_.busy() && !loop_ended) {
     if (successor.catch_up() == 0) std::this_thread::sleep_for(kLook);
   }
   return successor.state();

@@ -41,17 +41,18 @@ class SceneChanger {
     std::uint64_t in_force_from = 0;  // the first cycle of the changed cell
   };
   // Returns when the loop ticks this cell, or when it is refused; then the cell before stays in
-  // force. `stop` ends the wait for a loop that has ended. What prepare() throws comes through,
-  // with the cell before in force.
-  [[nodiscard]] Outcome change(std::shared_ptr<const Cell> cell, const std::atomic<bool>& stop);
+  // force. `loop_ended` is set once the thread of the loop has ended, and ends the wait for it.
+  // What prepare() throws comes through, with the cell before in force.
+  [[nodiscard]] Outcome change(std::shared_ptr<const Cell> cell,
+                               const std::atomic<bool>& loop_ended);
 
   [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
 
  private:
   [[nodiscard]] Outcome succeed(std::shared_ptr<const Cell> cell,
                                 const std::vector<ReportSink*>& sinks,
-                                const std::atomic<bool>& stop);
-  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& stop);
+                                const std::atomic<bool>& loop_ended);
+  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& loop_ended);
 
   TickLoop& loop_;
   std::shared_ptr<const Cell> cell_;
