@@ -32,6 +32,11 @@ struct alignas(64) Pose {
 };
 static_assert(sizeof(Pose) == 64 && alignof(Pose) == 64 && offsetof(Pose, orientation) == 32);
 
+// True if both have the same numbers. A quaternion and its negative differ.
+[[nodiscard]] inline bool same_pose(const Pose& a, const Pose& b) noexcept {
+  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
+}
+
 // Velocity of an object: of the origin of its frame, and its rotation; both along world axes.
 struct Twist {
   Vec3 linear = Vec3::Zero();   // m/s

@@ -62,7 +62,7 @@ class AttachmentReader {
   void attach_all();
 
  private:
-  // What carries an object.
+  // The link, robot or object that carries an object.
   struct Carrier {
     RobotBase base;
     std::optional<std::uint32_t> object;

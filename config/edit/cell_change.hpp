@@ -1,4 +1,4 @@
-// What a command can change in a cell: each is an edit of the cell's text.
+// The changes that a command can make in a cell. Each is an edit of the cell's text.
 //
 // Lengths are in metres, poses are of the object in the named frame. Names are those of the cell.
 #pragma once
@@ -77,9 +77,9 @@ struct SetSource {
   std::optional<std::string> source;
 };
 
-// What the cell says of two objects or groups by exactly these two names, in either order. Refused
-// where rules with other names prevent it: one that publishes two objects that shall only be
-// watched, or an exception from them.
+// Sets the rule for two objects or groups by exactly these two names, in either order. It is
+// refused where rules with other names prevent it: a rule that publishes two objects that shall
+// only be watched, or an exception from them.
 struct SetPair {
   enum class Rule : std::uint8_t {
     kPublish,   // a rule: watched, and in every report

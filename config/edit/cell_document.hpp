@@ -1,8 +1,9 @@
 // The text of a cell together with its YAML tree. Entries of its lists are changed in both.
 //
-// What no change touches keeps its text, with comments and anchors. A touched entry is written in
-// the form of config/yaml/yaml_writer.hpp. It gets its former text back when a later change
-// restores its content. Hence the text depends only on the first text and on the present tree.
+// Entries that no change touches keep their text, with comments and anchors. A touched entry is
+// written in the form of config/yaml/yaml_writer.hpp. It gets its former text back when a later
+// change restores its content. Hence the text depends only on the first text and on the present
+// tree.
 #pragma once
 
 #include <array>

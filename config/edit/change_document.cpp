@@ -235,7 +235,7 @@ Fault ChangeMaker::operator()(const SetAbsent& change) {
                    change.absent ? std::optional(flag_node(true)) : std::nullopt);
 }
 
-// What says where an object is, and which poses count.
+// Erases the keys that say where an object is, and which poses count.
 void forget_place(YamlNode& node) {
   for (const char* key : {"fixed", "pose", "attached", "max_speed", "age_limit_ms",
                           "frozen_limit_ms", "may_jump", "source", "frame"}) {

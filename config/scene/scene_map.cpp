@@ -66,10 +66,6 @@ bool same_variables(std::uint32_t robot_before, const Scene& before, std::uint32
   return count == 0;
 }
 
-bool same_pose(const Pose& a, const Pose& b) {
-  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 bool same_joint(const RobotJoint& a, const RobotJoint& b) {
   return a.name == b.name && a.type == b.type && a.parent == b.parent && a.axis == b.axis &&
          a.multiplier == b.multiplier && a.offset == b.offset && a.plane_x == b.plane_x &&

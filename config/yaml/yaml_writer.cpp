@@ -121,7 +121,7 @@ void add_line(const YamlNode& node, std::string& out) {
   }
 }
 
-// Adds the lines of a block, the first of which has been indented already.
+// Adds the lines of a block. The first line has been indented already.
 void add_block(const YamlNode& node, std::size_t indent, std::string& out) {
   bool is_first = true;
   const auto start_line = [&] {

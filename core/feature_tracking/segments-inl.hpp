@@ -81,8 +81,8 @@ HWY_INLINE double to_place_on_segment(Side& side, double s, double length) {
   return 0.0;
 }
 
-// A hint, as any features: the certificate decides. Parallel segments may have several closest
-// features, of which their edges come first.
+// A hint, as any features are: the certificate decides. Parallel segments may have several closest
+// features; the search then starts at their edges.
 HWY_INLINE void start_at_segments(const ConvexBody& body_a, const ConvexBody& body_b,
                                   const RelativePose4& a_from_b, TrackingState& state) {
   const Segment a = segment_of(body_a), b = segment_of(body_b);

@@ -153,24 +153,6 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Relative
 
 TrackedQuery tracked_query() noexcept { return &HWY_DYNAMIC_DISPATCH(after_transitions); }
 
-const char* name(DistanceStatus status) noexcept {
-  switch (status) {
-    case DistanceStatus::kConverged:
-      return "converged";
-    case DistanceStatus::kTouching:
-      return "touching";
-    case DistanceStatus::kOverlapping:
-      return "overlapping";
-    case DistanceStatus::kIterationLimit:
-      return "iteration_limit";
-    case DistanceStatus::kDepthNotAsked:
-      return "depth_not_asked";
-    case DistanceStatus::kBadPose:
-      return "bad_pose";
-  }
-  return "";
-}
-
 }  // namespace clearance
 #endif  // HWY_ONCE
 
@@ -331,7 +313,8 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
-// False for bounded bodies one of which has facets, without a look at each special pair.
+// A quick test before the table of closed forms: false if both bodies are bounded and one of them
+// has facets.
 HWY_INLINE bool may_have_closed_form(const ConvexBody& a, const ConvexBody& b) {
   return query_class(a, b) >= kTwoPoints || (a.features[2] | b.features[2]) == 0;
 }

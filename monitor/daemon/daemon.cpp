@@ -21,7 +21,8 @@ constexpr std::size_t kQueuedReports = 64;
 constexpr std::size_t kBatchesATick = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
-// How often a change of the cell looks whether the reports of the cell before are written.
+// The interval at which a change of the cell checks that the last reports of the former cell are
+// written.
 constexpr std::chrono::milliseconds kReportsPoll{1};
 
 // The text of a Refusal says how to get what was refused.

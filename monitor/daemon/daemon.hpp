@@ -63,7 +63,7 @@ class Daemon : private CellParts {
   [[nodiscard]] bool still_reads() const noexcept { return reading_ != nullptr; }
 
  private:
-  // What belongs to one cell.
+  // The parts that a change of the cell replaces.
   struct OfCell {
     std::shared_ptr<const Cell> cell;
     std::unique_ptr<ReportQueue> queue;

@@ -55,7 +55,7 @@ class ReportWriter {
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
  private:
-  // What belongs to one cell, and the queue of its reports.
+  // The parts that a change of the cell replaces, and the queue of the cell's reports.
   struct OfCell {
     const Cell& cell;
     ReportQueue& queue;

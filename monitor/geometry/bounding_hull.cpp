@@ -9,8 +9,7 @@ bool same(const Part& left, const Part& right) {
   return left.shape.radius == right.shape.radius && left.shape.anchors == right.shape.anchors &&
          left.shape.curved == right.shape.curved &&
          left.shape.rays.size() == right.shape.rays.size() &&
-         left.object_from_part.position == right.object_from_part.position &&
-         left.object_from_part.orientation.coeffs() == right.object_from_part.orientation.coeffs();
+         same_pose(left.object_from_part, right.object_from_part);
 }
 
 bool same_parts(const Object& left, const Object& right) {

@@ -15,8 +15,7 @@ namespace {
 constexpr const char* kStaticSuffix = "_static";
 
 bool says_the_same(const TfTree::Link& a, const TfTree::Link& b) noexcept {
-  return a.parent == b.parent && a.parent_from_child.position == b.parent_from_child.position &&
-         a.parent_from_child.orientation.coeffs() == b.parent_from_child.orientation.coeffs();
+  return a.parent == b.parent && same_pose(a.parent_from_child, b.parent_from_child);
 }
 
 // Stamps that are closer than this give no velocity.

@@ -21,32 +21,9 @@ struct MinimumSeen {
   std::int64_t now_ns = 0;
 };
 
-// All figures are since the start unless they say otherwise.
-struct LoopStatistics {
-  LoopStatistics() = default;
-  // Has its final size: filling or copying it allocates nothing.
-  explicit LoopStatistics(const Scene& scene)
-      : rejected(scene.objects.size()),
-        ages(scene.objects.size()),
-        rejected_joints(scene.variables.size()),
-        joint_ages(scene.variables.size()) {}
-
-  // For a changed scene: takes all figures but those of single objects and pairs.
-  void continue_from(const LoopStatistics& before) noexcept {
-    tick = before.tick;
-    wakeup = before.wakeup;
-    cycle = before.cycle;
-    now_ns = before.now_ns;
-    clock_steps = before.clock_steps;
-    clock_offset_ns = before.clock_offset_ns;
-    tick_second_max_ns = before.tick_second_max_ns;
-    wakeup_second_max_ns = before.wakeup_second_max_ns;
-    overruns = before.overruns;
-    skipped_cycles = before.skipped_cycles;
-    rejected_total = before.rejected_total;
-    sources = before.sources;
-  }
-
+// The figures that a change of the scene leaves as they are. All are since the start unless they
+// say otherwise.
+struct RunStatistics {
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
   std::uint64_t clock_steps = 0;        // steps of CLOCK_REALTIME,
@@ -55,15 +32,30 @@ struct LoopStatistics {
   Histogram wakeup;                     // delays of the tick thread's wake-ups
   std::int64_t tick_second_max_ns = 0;  // since the previous statistics
   std::int64_t wakeup_second_max_ns = 0;
-  std::uint64_t overruns = 0;        // ticks that ended after the next deadline
-  std::uint64_t skipped_cycles = 0;  // deadlines that passed without a tick
-  MinimumSeen minimum;               // since the scene was last changed
+  std::uint64_t overruns = 0;                            // ticks that ended after the next deadline
+  std::uint64_t skipped_cycles = 0;                      // deadlines that passed without a tick
+  std::array<std::uint64_t, kRejects> rejected_total{};  // unknown ids included
+  std::array<SourceName, kMaxSources> sources;           // by number: InputAge::source
+};
+
+// These figures are since the scene was last changed.
+struct LoopStatistics : RunStatistics {
+  LoopStatistics() = default;
+  // Has its final size: filling or copying it allocates nothing.
+  explicit LoopStatistics(const Scene& scene)
+      : rejected(scene.objects.size()),
+        ages(scene.objects.size()),
+        rejected_joints(scene.variables.size()),
+        joint_ages(scene.variables.size()) {}
+
+  // For a changed scene.
+  void continue_from(const RunStatistics& before) noexcept { RunStatistics::operator=(before); }
+
+  MinimumSeen minimum;
   std::vector<std::array<std::uint64_t, kRejects>> rejected;         // per object, by cause
-  std::array<std::uint64_t, kRejects> rejected_total{};              // unknown ids included
   std::vector<InputAge> ages;                                        // per object
   std::vector<std::array<std::uint64_t, kRejects>> rejected_joints;  // per variable of a joint
   std::vector<InputAge> joint_ages;                                  // per variable of a joint
-  std::array<SourceName, kMaxSources> sources;                       // by number: InputAge::source
 };
 
 }  // namespace clearance

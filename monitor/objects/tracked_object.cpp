@@ -40,10 +40,6 @@ Pose as_queries_take_it(const Pose& pose) noexcept {
   return out;
 }
 
-bool same_pose(const Pose& a, const Pose& b) noexcept {
-  return a.position == b.position && a.orientation.coeffs() == b.orientation.coeffs();
-}
-
 bool is_zero(const Twist& twist) noexcept {
   return twist.linear == Vec3::Zero() && twist.angular == Vec3::Zero();
 }

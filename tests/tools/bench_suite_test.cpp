@@ -218,7 +218,7 @@ TEST(SuiteProgram, WritesTableFiguresAndPicture) {
 TEST(SuiteProgram, RefusesWhatItDoesNotKnow) {
   for (const std::vector<std::string>& words :
        {std::vector<std::string>{"--suite", "--class", "teapots"},
-        {"--suite", "--rival", "nobody"},
+        {"--suite", "--rival", "solid_9"},
         {"--suite", "--steps", "1"},
         {"--suite", "--faster"}}) {
     test::ChildProcess bench(test::places::programs() + "/clearance-bench", words);

@@ -14,7 +14,6 @@
 
 #include "core/shapes.hpp"
 #include "tests/shared/allocation_count.hpp"
-#include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/vector_widths.hpp"
@@ -330,23 +329,6 @@ TEST(DistanceBatch, AsksTooFewPairsOfTheSameFeaturesSingly) {
   EXPECT_EQ(rounds(), kLeastPairs) << "two of each kind";
 }
 
-TEST(DistanceBatch, BoundsHoldAgainstTheExactTruth) {
-  for (std::uint64_t seed = 0; seed < 4; ++seed) {
-    Random random(seed);
-    const hard::HardMotion m = hard::motion_families()[0].make(random, 40);
-    DistanceJudge judge(m.a, m.b);
-    const ConvexBody* const bodies[] = {&judge.a(), &judge.b()};
-    const BodyPair pairs[] = {{0, 1}};
-    DistanceBatch batch(bodies, pairs);
-    for (const auto& [pose_a, pose_b] : m.poses) {
-      const Pose poses[] = {pose_a, pose_b};
-      const DistanceResult result = batch.evaluate(poses)[0];
-      const auto faults = judge.faults(result, judge.truth(pose_a, pose_b), pose_a, pose_b);
-      EXPECT_TRUE(faults.empty()) << m.note << " seed " << seed << ": " << faults.front();
-    }
-  }
-}
-
 // For distant bodies, rounding moves witness points off their facets, and the projection back to
 // the facet is rounded as well. The error is 1e-8 m when the boxes have returned.
 TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOfWhatComesBackFromFarAway) {
@@ -393,11 +375,6 @@ TEST(DistanceBatch, AllocatesNothing) {
   for (const auto& poses : motion.poses) (void)batch.evaluate(poses);
   batch.forget();
   EXPECT_EQ(allocations(), before);
-}
-
-TEST(DistanceBatch, OfNoPairsGivesNoResults) {
-  DistanceBatch batch({}, {});
-  EXPECT_TRUE(batch.evaluate({}).empty());
 }
 
 // Sanitizer builds omit some instruction sets (core/CMakeLists.txt).

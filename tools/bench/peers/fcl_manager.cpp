@@ -96,9 +96,7 @@ class FclCrowd {
   void move(const PoseSample& sample, std::vector<FclObject*>& moved) {
     Pose& last = last_[sample.object];
     const Pose& now = sample.world_from_object;
-    const bool stays =
-        last.position == now.position && last.orientation.coeffs() == now.orientation.coeffs();
-    if (stays && registered_) return;
+    if (same_pose(last, now) && registered_) return;
     last = now;
     for (const std::size_t part : parts_of_[sample.object]) {
       put(parts_[part], now);
