@@ -40,17 +40,6 @@ std::map<Names, std::uint32_t> pairs_by_name(const Scene& scene) {
   return pairs;
 }
 
-PairReport report_of(const Scene& scene, const Monitor& monitor, const std::string& a,
-                     const std::string& b) {
-  const auto pairs = pairs_by_name(scene);
-  const auto found = pairs.find({std::min(a, b), std::max(a, b)});
-  if (found == pairs.end()) {
-    ADD_FAILURE() << a << " - " << b << " is not watched";
-    return {};
-  }
-  return monitor.pair(found->second);
-}
-
 // The arm of scara_cell() with a box on its finger, and a ball on that box.
 Scene attached_scene(const std::string& top = "") {
   const test::ScratchFolder folder;
@@ -137,7 +126,7 @@ TEST(AttachedObjects, CountInAZoneThatNamesTheirCarrier) {
   EXPECT_EQ(scene.zones[0].pairs.size(), 3u) << "finger, box and ball against the wall";
   const Report& report = monitor.tick({}, joints(0.0, 0.0, 0.1, kStart), kStart);
   EXPECT_TRUE(report.zones[0].active) << "the box and the ball are nearer than the finger";
-  EXPECT_GT(report_of(scene, monitor, "finger", "wall").lower, 2.84);
+  EXPECT_GT(test::report_between(scene, monitor, "finger", "wall").lower, 2.84);
 }
 
 TEST(AttachedObjects, GradientsOfTheirPairsAreThoseOfTheCarriersJoints) {
@@ -168,7 +157,7 @@ TEST(AttachedObjects, TakeNoPosesOfTheirOwn) {
   const std::array sent{test::sample(box, test::at(0, 0, 0), kStart)};
   const Report& report = monitor.tick(sent, {}, kStart);
   EXPECT_EQ(report.rejected[static_cast<std::size_t>(Reject::kOtherSource)], 1u);
-  EXPECT_EQ(report_of(scene, monitor, "box", "wall").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(scene, monitor, "box", "wall").status, PairStatus::kUnknown);
 }
 
 TEST(AttachedObjects, ATickWithThemDoesNotAllocate) {
@@ -211,7 +200,7 @@ TEST(AttachedObjects, FollowAMovingObjectWithItsVelocityAndItsAge) {
   sample.twist.linear = {-0.1, 0.0, 0.0};
   monitor.tick(std::array{sample}, kStart);
   // The cart's x axis points along y of the world, the tray's along -x: the load is at (2, 0, 1).
-  const PairReport load = report_of(scene, monitor, "load", "post");
+  const PairReport load = test::report_between(scene, monitor, "load", "post");
   EXPECT_EQ(load.status, PairStatus::kConverged);
   EXPECT_NEAR(load.distance, std::sqrt(5.0) - 0.3, 1e-12);
   EXPECT_LE(load.lower, std::sqrt(5.0) - 0.3);
@@ -226,10 +215,10 @@ TEST(AttachedObjects, OnALateObjectAreUnknownUnlessTheyStateASpeed) {
     const Scene scene = cart_scene(is_stated ? ", max_speed: 2" : "");
     Monitor monitor(scene);
     monitor.tick(std::array{test::sample(0, test::at(3, 0, 0), kStart)}, kStart);
-    const double before = report_of(scene, monitor, "load", "post").lower;
+    const double before = test::report_between(scene, monitor, "load", "post").lower;
     const Report& report = monitor.tick({}, kStart + 100 * kTick);
-    EXPECT_NEAR(report_of(scene, monitor, "cart", "post").lower, 2.8 - 0.1, 1e-9);
-    const PairReport load = report_of(scene, monitor, "load", "post");
+    EXPECT_NEAR(test::report_between(scene, monitor, "cart", "post").lower, 2.8 - 0.1, 1e-9);
+    const PairReport load = test::report_between(scene, monitor, "load", "post");
     if (is_stated) {
       EXPECT_EQ(load.status, PairStatus::kStale);
       EXPECT_NEAR(load.lower, before - 0.2, 1e-9);
@@ -264,8 +253,8 @@ TEST(AttachedObjects, OfAContradictedObjectAreUnknownWhateverTheirSpeed) {
     const double x = tick % 2 == 0 ? 3.0 : 9.0;
     monitor.tick(std::array{test::sample(0, test::at(x, 0, 0), now)}, now);
   }
-  EXPECT_EQ(report_of(scene, monitor, "cart", "post").status, PairStatus::kUnknown);
-  EXPECT_EQ(report_of(scene, monitor, "load", "post").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(scene, monitor, "cart", "post").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(scene, monitor, "load", "post").status, PairStatus::kUnknown);
 }
 
 TEST(AttachedObjects, OnAFixedObjectAreFixedOnes) {
@@ -278,7 +267,7 @@ TEST(AttachedObjects, OnAFixedObjectAreFixedOnes) {
       "pairs: [{between: [still, ball]}]\n");
   Monitor monitor(scene);
   monitor.tick(std::array{test::sample(0, test::at(0, 3, 1), kStart)}, kStart);
-  EXPECT_NEAR(report_of(scene, monitor, "load", "ball").distance, 2.0 - 0.3, 1e-12);
+  EXPECT_NEAR(test::report_between(scene, monitor, "load", "ball").distance, 2.0 - 0.3, 1e-12);
   EXPECT_TRUE(scene.robots.empty());
 }
 
@@ -303,7 +292,7 @@ TEST(AbsentAtTheStart, AMovingObjectIsAbsentUntilItIsSaidToBeThere) {
   const std::array samples{test::sample(0, test::at(0, 0, 1), now),
                            test::sample(1, test::at(0, 3, 1), now)};
   EXPECT_EQ(absent_pairs(monitor.tick(samples, now)), 0u);
-  EXPECT_NEAR(report_of(scene, monitor, "load", "other").distance, 3.0 - 0.4, 1e-12);
+  EXPECT_NEAR(test::report_between(scene, monitor, "load", "other").distance, 3.0 - 0.4, 1e-12);
 }
 
 }  // namespace

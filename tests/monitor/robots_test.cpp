@@ -31,27 +31,17 @@ PoseSample pose_of(std::uint32_t object, const LinkState& link, std::int64_t now
   return sample;
 }
 
-// Returns the pair between these objects.
-PairReport between(const Scene& scene, const Monitor& monitor, const std::string& a,
-                   const std::string& b) {
-  for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
-    const std::string &first = scene.objects[scene.pairs[pair].first].name,
-                      &second = scene.objects[scene.pairs[pair].second].name;
-    if ((first == a && second == b) || (first == b && second == a)) return monitor.pair(pair);
-  }
-  ADD_FAILURE() << a << " - " << b << " is not watched";
-  return {};
-}
-
 TEST(RobotsInTheTick, DistancesFollowTheJoints) {
   const Scene cell = test::scara_cell();
   Monitor monitor(cell);
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart), kStart);
-  EXPECT_NEAR(between(cell, monitor, "finger", "wall").distance, 5.0 - 2.1 - 0.05, 1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "finger", "wall").distance, 5.0 - 2.1 - 0.05,
+              1e-12);
   const std::int64_t now = kStart + 600 * kTick;
   monitor.tick({}, joints(std::numbers::pi / 3.0, 0.0, 0.1, now), now);
-  EXPECT_NEAR(between(cell, monitor, "finger", "wall").distance, 5.0 - 1.05 - 0.05, 1e-12);
-  EXPECT_NEAR(between(cell, monitor, "upper", "wall").distance,
+  EXPECT_NEAR(test::report_between(cell, monitor, "finger", "wall").distance, 5.0 - 1.05 - 0.05,
+              1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "upper", "wall").distance,
               5.0 - 0.45 - 0.05 * std::sin(std::numbers::pi / 3.0), 1e-12);
 }
 
@@ -93,7 +83,7 @@ TEST(RobotsInTheTick, ClosingSpeedsComeFromJointVelocities) {
   samples[0].velocity = 1.0;
   samples[2].velocity = 0.3;
   monitor.tick({}, samples, kStart);
-  EXPECT_NEAR(between(cell, monitor, "finger", "wall").closing_speed, 0.3, 1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "finger", "wall").closing_speed, 0.3, 1e-12);
 }
 
 TEST(RobotsInTheTick, JointStatesAndLinkPosesOfOneMotionGiveTheSameDistances) {
@@ -133,9 +123,9 @@ TEST(RobotsInTheTick, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
   Monitor monitor(cell);
   const std::array some{joint(0, 0.0, kStart), joint(2, 0.1, kStart)};
   const Report& report = monitor.tick({}, some, kStart);
-  EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kConverged);
-  EXPECT_EQ(between(cell, monitor, "lower", "wall").status, PairStatus::kUnknown);
-  EXPECT_EQ(between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(cell, monitor, "upper", "wall").status, PairStatus::kConverged);
+  EXPECT_EQ(test::report_between(cell, monitor, "lower", "wall").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
   EXPECT_FALSE(report.minimum_certified);
 }
 
@@ -157,21 +147,22 @@ TEST(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
   const std::int64_t now = kStart + 50 * kTick;
   const std::array fresh{joint(1, 0.0, now), joint(2, 0.1, now)};
   monitor.tick({}, fresh, now);
-  const PairReport upper = between(cell, monitor, "upper", "wall");
+  const PairReport upper = test::report_between(cell, monitor, "upper", "wall");
   EXPECT_EQ(upper.status, PairStatus::kStale);
   const double reach = std::hypot(0.9, 0.05, 0.05);
   EXPECT_NEAR(upper.lower, 5.0 - 0.9 - 0.1 * reach, 2e-3);
   EXPECT_LE(upper.lower, 5.0 - 0.9 - 0.1 * reach + 1e-12);
   // The bound extends to the finger, which is 2.1 m from the shoulder and has a radius of 0.05 m.
-  const PairReport finger = between(cell, monitor, "finger", "wall");
+  const PairReport finger = test::report_between(cell, monitor, "finger", "wall");
   EXPECT_NEAR(finger.lower, 5.0 - 2.15 - 0.1 * 2.15, 1e-9);
   EXPECT_TRUE(std::isnan(finger.closing_speed));
 
   const std::int64_t later = now + 50 * kTick;
   const std::array without_elbow{joint(0, 0.0, later), joint(2, 0.1, later)};
   monitor.tick({}, without_elbow, later);
-  EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kConverged);
-  EXPECT_NEAR(between(cell, monitor, "finger", "wall").lower, 5.0 - 2.15 - 2.0 * 1.15, 1e-9);
+  EXPECT_EQ(test::report_between(cell, monitor, "upper", "wall").status, PairStatus::kConverged);
+  EXPECT_NEAR(test::report_between(cell, monitor, "finger", "wall").lower, 5.0 - 2.15 - 2.0 * 1.15,
+              1e-9);
 }
 
 // Which of the two is the driver cannot be told, unless the cell says so.
@@ -197,7 +188,7 @@ TEST(RobotsInTheTick, APublisherOfZerosThatWasLeftRunningMakesTheRobotUnknown) {
         all.push_back(sample);
       }
       monitor.tick({}, all, now);
-      const PairReport pair = between(cell, monitor, "upper", "wall");
+      const PairReport pair = test::report_between(cell, monitor, "upper", "wall");
       if (is_stated) {
         ASSERT_NEAR(pair.distance, 5.0 - 0.9 * std::cos(1.0) - 0.05 * std::sin(1.0), 1e-12);
       } else {
@@ -215,9 +206,9 @@ TEST(RobotsInTheTick, PosesOfLinksAreTakenUntilJointsAreHeard) {
   link.pose.position = Vec3(1.0, 0.0, 0.0);
   const std::array pose{pose_of(3, link, kStart)};
   monitor.tick(pose, kStart);
-  EXPECT_NEAR(between(cell, monitor, "upper", "wall").distance, 5.0 - 1.9, 1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "upper", "wall").distance, 5.0 - 1.9, 1e-12);
   monitor.tick(pose, joints(0.0, 0.0, 0.1, kStart), kStart + kTick);
-  EXPECT_NEAR(between(cell, monitor, "upper", "wall").distance, 5.0 - 0.9, 1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "upper", "wall").distance, 5.0 - 0.9, 1e-12);
   EXPECT_EQ(monitor.rejected(3)[static_cast<std::size_t>(Reject::kOtherSource)], 1u);
 }
 
@@ -226,15 +217,16 @@ TEST(RobotsInTheTick, ARobotMovesWithWhatItStandsOn) {
   Monitor monitor(cell);
   const auto still = [](std::int64_t now) { return joints(0.0, 0.0, 0.1, now); };
   monitor.tick({}, still(kStart), kStart);
-  EXPECT_EQ(between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
   LinkState cart;
   cart.pose.position = Vec3(1.5, 0.0, 0.0);
   const std::array pose{pose_of(1, cart, kStart + kTick)};
   monitor.tick(pose, still(kStart + kTick), kStart + kTick);
-  EXPECT_NEAR(between(cell, monitor, "finger", "wall").distance, 5.0 - 1.5 - 2.15, 1e-12);
+  EXPECT_NEAR(test::report_between(cell, monitor, "finger", "wall").distance, 5.0 - 1.5 - 2.15,
+              1e-12);
   const std::int64_t later = kStart + 100 * kTick;
   monitor.tick({}, still(later), later);
-  EXPECT_EQ(between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
+  EXPECT_EQ(test::report_between(cell, monitor, "finger", "wall").status, PairStatus::kUnknown);
 }
 
 TEST(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
@@ -242,12 +234,12 @@ TEST(RobotsInTheTick, StampsAreThoseOfTheSourcesClock) {
   Monitor monitor(cell);
   constexpr std::int64_t kOffset = 3'600'000'000'000;
   monitor.tick({}, joints(0.0, 0.0, 0.1, kStart + kOffset), {kStart, kOffset});
-  EXPECT_EQ(between(cell, monitor, "finger", "wall").age_b_ns +
-                between(cell, monitor, "finger", "wall").age_a_ns,
+  EXPECT_EQ(test::report_between(cell, monitor, "finger", "wall").age_b_ns +
+                test::report_between(cell, monitor, "finger", "wall").age_a_ns,
             0);
   // In a tick whose time is before that of the previous tick, ages are unknown.
   monitor.tick({}, {}, {kStart - kTick, kOffset});
-  EXPECT_EQ(between(cell, monitor, "upper", "wall").status, PairStatus::kStale);
+  EXPECT_EQ(test::report_between(cell, monitor, "upper", "wall").status, PairStatus::kStale);
 }
 
 TEST(RobotsInTheTick, UnknownVariablesAreCountedAndNothingIsAllocated) {

@@ -5,6 +5,8 @@
 // shares nothing with core/.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -146,6 +148,18 @@ using LongVec = Eigen::Matrix<long double, 3, 1>;
     }
   }
   return least;
+}
+
+// The report of the pair of these two objects, in either order.
+inline PairReport report_between(const Scene& scene, const Monitor& monitor, const std::string& a,
+                                 const std::string& b) {
+  for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
+    const std::string &first = scene.objects[scene.pairs[pair].first].name,
+                      &second = scene.objects[scene.pairs[pair].second].name;
+    if ((first == a && second == b) || (first == b && second == a)) return monitor.pair(pair);
+  }
+  ADD_FAILURE() << a << " - " << b << " is not watched";
+  return {};
 }
 
 }  // namespace clearance::test

@@ -26,14 +26,14 @@ CurvedBody box_of(const Vec3& half) {
   return body;
 }
 
-namespace {
-
 CurvedBody ellipsoid_of(const Vec3& semi_axes) {
   CurvedBody body;
   body.shape.kind = CurvedShape::Kind::kEllipsoid;
   body.shape.semi_axes = semi_axes;
   return body;
 }
+
+namespace {
 
 CurvedBody hull_of(std::vector<Vec3> points) {
   CurvedBody body;

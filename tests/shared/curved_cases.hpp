@@ -33,6 +33,7 @@ struct CurvedFamily {
 [[nodiscard]] oracle::CurvedBody truncated_cone_of(double low, double high, double half_length);
 // A box around the origin with these half lengths, m.
 [[nodiscard]] oracle::CurvedBody box_of(const Vec3& half);
+[[nodiscard]] oracle::CurvedBody ellipsoid_of(const Vec3& semi_axes);
 
 // The core's model of a body, or the reason for its refusal.
 [[nodiscard]] ShapeResult curved_model(const oracle::CurvedBody& body);

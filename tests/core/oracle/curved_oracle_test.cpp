@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/shared/curved_cases.hpp"
 #include "tests/shared/exact_oracle.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
@@ -10,15 +11,8 @@
 namespace clearance::oracle {
 namespace {
 
-CurvedBody ellipsoid_body(const Vec3& semi_axes) {
-  CurvedBody body;
-  body.shape.kind = CurvedShape::Kind::kEllipsoid;
-  body.shape.semi_axes = semi_axes;
-  return body;
-}
-
 TEST(CurvedOracle, KnowsTheThesissCrossedEllipsoidsTo27Digits) {
-  const CurvedBody a = ellipsoid_body({1, 2, 5}), b = ellipsoid_body({5, 2, 1});
+  const CurvedBody a = hard::ellipsoid_of({1, 2, 5}), b = hard::ellipsoid_of({5, 2, 1});
   const RealBounds found = curved_truth({&a, test::at(0, 0, 0)}, {&b, test::at(4, 4, 4)}, 1e-30);
   const Real known("1.29549481993874080913966969921");
   EXPECT_LE(found.lower, known + Real(1e-29));
@@ -49,7 +43,7 @@ TEST(CurvedOracle, AgreesWithRationalsOnHullsOfPoints) {
 }
 
 TEST(CurvedOracle, SaysThatBodiesMeetAndWhatADirectionProvesOfTheirDepth) {
-  const CurvedBody a = ellipsoid_body({1, 2, 5}), b = ellipsoid_body({5, 2, 1});
+  const CurvedBody a = hard::ellipsoid_of({1, 2, 5}), b = hard::ellipsoid_of({5, 2, 1});
   const PlacedCurvedBody at_a{&a, test::at(0, 0, 0)}, at_b{&b, test::at(1, 1, 1)};
   EXPECT_LT(curved_truth(at_a, at_b, 1e-20).lower, Real(-1e300));
   EXPECT_EQ(apart_along(at_a, at_b, Vec3::UnitY()), Real(-3));
