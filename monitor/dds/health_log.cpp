@@ -2,6 +2,8 @@
 #include "monitor/dds/health_log.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "config/text/sentences.hpp"
@@ -32,9 +34,16 @@ void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t no
 
 }  // namespace
 
-// No object is known at the start, so no object is late.
-HealthLog::HealthLog(const Scene& scene)
-    : stale_(scene.objects.size()), other_source_(scene.objects.size()), joints_(scene) {}
+void HealthLog::change(const Scene& scene) {
+  refusals_.begin_counts_anew();
+  joints_.change(scene);
+  std::set<std::string> inputs;
+  for (const Object& object : scene.objects) inputs.insert(object.name);
+  for (const JointVariable& variable : scene.variables) inputs.insert("joint " + variable.name);
+  const auto is_gone = [&](const auto& entry) { return !inputs.contains(entry.first); };
+  std::erase_if(poses_, is_gone);
+  std::erase_if(notes_, is_gone);
+}
 
 // The change of the offset is the sum of all steps.
 void HealthLog::log_clock(const clearance_msg_Health& health) {
@@ -74,19 +83,19 @@ void HealthLog::update(const clearance_msg_Health& health,
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
     // An object that was never known is no news. For links, the log of joints reports lateness.
     const bool stale = input.stale && input.age_ns >= 0 && !input.follows_joints;
-    if (stale != stale_[input.object] && logged++ < kLinesAtOnce) {
+    Poses& before = poses_[input.name];  // first without poses, which is not late
+    if (stale != before.stale && logged++ < kLinesAtOnce) {
       if (stale) {
         log_stale(input);
       } else {
         log_line(lines::kPosesBack, input.name);
       }
     }
-    stale_[input.object] = stale;
-    std::string& other = other_source_[input.object];
-    if (other != input.other_source && logged++ < kLinesAtOnce) {
+    before.stale = stale;
+    if (before.other_source != input.other_source && logged++ < kLinesAtOnce) {
       log_line(lines::kTwoSources, input.name, input.source, input.other_source);
     }
-    other = input.other_source;
+    before.other_source = input.other_source;
   }
   logged += refusals_.update(health, kLinesAtOnce - std::min(logged, kLinesAtOnce));
   if (logged > kLinesAtOnce)

@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <vector>
 
 #include "config/scene/scene.hpp"
 #include "monitor/dds/joint_log.hpp"
@@ -17,7 +16,11 @@ namespace clearance {
 // Logs new rejections, losses and late inputs: a few lines a second at most.
 class HealthLog {
  public:
-  explicit HealthLog(const Scene& scene);
+  // The scene must outlive this, or its use until the next call of change().
+  explicit HealthLog(const Scene& scene) : joints_(scene) {}
+  // The following samples are of this scene. What has been told of an input is not told again under
+  // the same name.
+  void change(const Scene& scene);
   // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
   // that is needed.
   void update(const clearance_msg_Health& health,
@@ -28,8 +31,11 @@ class HealthLog {
   void log_notes(const clearance_msg_Health& health);
 
   RefusalLog refusals_;
-  std::vector<bool> stale_;                // by object
-  std::vector<std::string> other_source_;  // by object
+  struct Poses {
+    bool stale = false;
+    std::string other_source;
+  };
+  std::map<std::string, Poses> poses_;  // by object
   // By input: the takeovers, and whether its velocities were told of.
   struct Note {
     std::uint32_t takeovers = 0;

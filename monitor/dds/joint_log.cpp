@@ -10,16 +10,20 @@
 #include "monitor/app/log_lines.hpp"
 
 namespace clearance {
-JointLog::JointLog(const Scene& scene)
-    : scene_(scene),
-      states_(scene.variables.size()),
-      others_(scene.variables.size()),
-      silence_said_(scene.robots.size()) {}
+void JointLog::change(const Scene& scene) {
+  scene_ = &scene;
+  std::erase_if(joints_, [&](const auto& joint) {
+    return std::ranges::find(scene.variables, joint.first, &JointVariable::name) ==
+           scene.variables.end();
+  });
+  std::erase_if(robots_, [&](const auto& robot) {
+    return std::ranges::find(scene.robots, robot.first, &Robot::name) == scene.robots.end();
+  });
+}
 
 void JointLog::update(const decltype(clearance_msg_Health::joints)& joints,
                       const std::function<std::string()>& senders) {
-  ++samples_;
-  for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot) {
+  for (std::uint32_t robot = 0; robot < scene_->robots.size(); ++robot) {
     update_robot(robot, joints, senders);
   }
 }
@@ -27,20 +31,20 @@ void JointLog::update(const decltype(clearance_msg_Health::joints)& joints,
 void JointLog::update_robot(std::uint32_t robot,
                             const decltype(clearance_msg_Health::joints)& joints,
                             const std::function<std::string()>& senders) {
-  const std::string& name = scene_.robots[robot].name;
+  const std::string& name = scene_->robots[robot].name;
   std::map<std::pair<State, State>, std::pair<Names, std::int64_t>> changes;
   std::map<std::pair<std::string, std::string>, Names> rivals;
   Names unheard;
   for (std::uint32_t i = 0; i < joints._length; ++i) {
     const clearance_msg_JointAge& joint = joints._buffer[i];
-    if (scene_.variables[joint.variable].robot != robot) continue;
+    if (scene_->variables[joint.variable].robot != robot) continue;
     const State now = joint.age_ns < 0     ? State::kUnseen
                       : joint.contradicted ? State::kContradicted
                       : joint.stale        ? State::kLate
                                            : State::kFine;
-    State& before = states_[joint.variable];
+    auto& [before, other_source] = joints_[joint.name];
     // The intake reports which frame of a base is missing.
-    if (now == State::kUnseen && !scene_.robots[robot].is_of_base(joint.variable))
+    if (now == State::kUnseen && !scene_->robots[robot].is_of_base(joint.variable))
       unheard.emplace_back(joint.name);
     if (now != before) {
       auto& [names, age_ns] = changes[{before, now}];
@@ -49,9 +53,9 @@ void JointLog::update_robot(std::uint32_t robot,
     }
     before = now;
     const std::string other = joint.other_source;
-    if (!other.empty() && other != others_[joint.variable])
+    if (!other.empty() && other != other_source)
       rivals[{joint.source, other}].emplace_back(joint.name);
-    others_[joint.variable] = other;
+    other_source = other;
   }
   for (const auto& [change, joined] : changes) {
     log_change(name, change.first, change.second, joined.first, joined.second);
@@ -60,8 +64,8 @@ void JointLog::update_robot(std::uint32_t robot,
     log_line(lines::kTwoJointSources, name, sources.first, sources.second,
              listed(names, kNamesALine));
   }
-  if (unheard.empty() || silence_said_[robot] || samples_ < kSilentSamples) return;
-  silence_said_[robot] = true;
+  auto& [samples, silence_said] = robots_[name];
+  if (++samples < kSilentSamples || unheard.empty() || std::exchange(silence_said, true)) return;
   log_line(lines::kJointsSilent, counted(unheard.size(), "joint"), name,
            listed(unheard, kNamesALine), senders());
 }

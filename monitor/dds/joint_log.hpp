@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,10 @@ class JointLog {
   // After this number of samples (seconds), the log names the joints that were never heard.
   static constexpr int kSilentSamples = 5;
 
-  // The scene must outlive this.
-  explicit JointLog(const Scene& scene);
+  // The scene must outlive this, or its use until the next call of change().
+  explicit JointLog(const Scene& scene) : scene_(&scene) {}
+  // The following samples are of this scene. Robots and joints are known by their names.
+  void change(const Scene& scene);
 
   // Called with the joints of every health sample, in order. `senders` names the senders of joint
   // states.
@@ -37,11 +40,18 @@ class JointLog {
   void log_change(const std::string& robot, State before, State now, const Names& names,
                   std::int64_t age_ns) const;
 
-  const Scene& scene_;
-  std::vector<State> states_;        // by variable
-  std::vector<std::string> others_;  // by variable: the other source that sends it
-  std::vector<bool> silence_said_;   // by robot
-  int samples_ = 0;
+  struct Joint {
+    State state = State::kUnseen;
+    std::string other_source;  // the other source that sends it
+  };
+  struct RobotOfLog {
+    int samples = 0;
+    bool silence_said = false;
+  };
+
+  const Scene* scene_;
+  std::map<std::string, Joint> joints_;
+  std::map<std::string, RobotOfLog> robots_;
 };
 
 }  // namespace clearance

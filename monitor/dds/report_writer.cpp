@@ -53,9 +53,7 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, ReportQueue& the_queue, std::
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
       gradients(cell.scene),
-      written_zones(cell.scene.zones.size()),
-      zone_log(cell.scene),
-      health_log(cell.scene) {
+      written_zones(cell.scene.zones.size()) {
   distances->daemon = separation->daemon = daemon;
 }
 
@@ -75,6 +73,8 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       health_(make_writer(participant, topics_, TopicKind::kHealth)),
       others_(participant, topics_.distances, identity_),
       now_(std::make_unique<OfCell>(cell, queue, identity_.id)),
+      zone_log_(cell.scene),
+      health_log_(cell.scene),
       queue_(&queue) {
   open_topics(cell.scene);
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
@@ -191,6 +191,8 @@ bool ReportWriter::change() {
   }
   dropped_before_ += now_->queue.dropped_reports();
   now_ = std::move(changed);
+  zone_log_.change(now_->cell.scene);
+  health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
   write_zones_again_ = true;
   write(catalogue_, &*own_catalogue(), "catalogue");
@@ -231,7 +233,7 @@ void ReportWriter::write_zones(const Report& report) {
     to_wire(now_->cell.scene, report, zone, state);
     write(zones_, &state, "zone state");
     if (!is_written && (now_->written_zones.any(zone) || active)) {
-      now_->zone_log.note(zone, report.zones[zone], report.cycle);
+      zone_log_.note(zone, report.zones[zone], report.cycle);
     }
     now_->written_zones.set(zone, active);
   }
@@ -246,8 +248,8 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
-  now_->zone_log.end_second();
-  now_->health_log.update(*sample, [this] { return poses_.senders_of_joints(); });
+  zone_log_.end_second();
+  health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
 void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {

@@ -63,8 +63,6 @@ class ReportWriter {
     Sample<clearance_msg_Separation> separation;
     GradientMessage gradients;
     WrittenZones written_zones;
-    ZoneLog zone_log;
-    HealthLog health_log;
 
     OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon);
   };
@@ -91,6 +89,8 @@ class ReportWriter {
   dds_entity_t gradients_ = 0;   // 0: no scene has asked for them yet
   OtherDaemons others_;
   std::unique_ptr<OfCell> now_;
+  ZoneLog zone_log_;
+  HealthLog health_log_;
   bool write_zones_again_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};

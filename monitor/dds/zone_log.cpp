@@ -38,7 +38,7 @@ void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
 }  // namespace
 
 void ZoneLog::note(std::uint32_t zone, const ZoneReport& report, std::uint64_t cycle) {
-  Zone& of = zones_[zone];
+  Zone& of = zones_[scene_->zones[zone].name];
   of.active = report.active;
   if (of.lines >= kLinesOfAZone || lines_ >= kLinesOfAll) {
     ++of.left_out;
@@ -46,22 +46,20 @@ void ZoneLog::note(std::uint32_t zone, const ZoneReport& report, std::uint64_t c
   }
   ++of.lines;
   ++lines_;
-  log_zone(scene_, zone, report, cycle);
+  log_zone(*scene_, zone, report, cycle);
 }
 
 void ZoneLog::end_second() {
   std::uint64_t zones = 0, others = 0;
-  for (std::size_t i = 0; i < zones_.size(); ++i) {
-    Zone& zone = zones_[i];
+  for (auto& [name, zone] : zones_) {
     if (zone.left_out > 0 && zones++ < kZonesAtOnce) {
-      log_line(lines::kZoneFlickers, scene_.zones[i].name, zone.left_out,
-               zone.active ? "active" : "not active");
+      log_line(lines::kZoneFlickers, name, zone.left_out, zone.active ? "active" : "not active");
     } else {
       others += zone.left_out;
     }
-    zone.lines = zone.left_out = 0;
   }
   if (others > 0) log_line(lines::kZonesLeftOut, counted(others, "more change"));
+  zones_.clear();
   lines_ = 0;
 }
 

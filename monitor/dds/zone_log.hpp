@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include <map>
+#include <string>
 
 #include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
@@ -14,8 +15,10 @@ class ZoneLog {
   // The most lines of one zone, and of all zones, between two calls of end_second().
   static constexpr std::uint64_t kLinesOfAZone = 4, kLinesOfAll = 40;
 
-  // The scene must outlive this.
-  explicit ZoneLog(const Scene& scene) : scene_(scene), zones_(scene.zones.size()) {}
+  // The scene must outlive this, or its use until the next call of change().
+  explicit ZoneLog(const Scene& scene) : scene_(&scene) {}
+  // The following reports are of this scene. Zones are known by their names.
+  void change(const Scene& scene) { scene_ = &scene; }
 
   // Logs a change of the zone, or counts it where its lines are used up.
   void note(std::uint32_t zone, const ZoneReport& report, std::uint64_t cycle);
@@ -28,8 +31,8 @@ class ZoneLog {
     bool active = false;
   };
 
-  const Scene& scene_;
-  std::vector<Zone> zones_;
+  const Scene* scene_;
+  std::map<std::string, Zone> zones_;
   std::uint64_t lines_ = 0;
 };
 

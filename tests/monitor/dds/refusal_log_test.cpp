@@ -98,5 +98,21 @@ TEST_F(RefusalLogTest, KeepsLinesThatHadNoPlace) {
   EXPECT_EQ(lines(), 2u);
 }
 
+TEST_F(RefusalLogTest, GoesOnAfterAChangeOfTheSceneThatBeginsCountsAnew) {
+  for (int s = 0; s < 5; ++s) {
+    refuse("cup", "too fast", 10);
+    second();
+  }
+  EXPECT_EQ(lines(), 1u);
+  counts.clear();
+  refusals.begin_counts_anew();
+  for (int s = 0; s < 8; ++s) {
+    refuse("cup", "too fast", 10);
+    second();
+  }
+  EXPECT_EQ(lines(), 2u) << logged->text();
+  EXPECT_TRUE(logged->has("110")) << "refusals since the start: " << logged->text();
+}
+
 }  // namespace
 }  // namespace clearance::test

@@ -55,5 +55,17 @@ TEST_F(ZoneLogTest, CountsTogetherWhatManyZonesDoAtOnce) {
   EXPECT_TRUE(logged->has("15 more changes of zones left out [zones-left-out]")) << logged->text();
 }
 
+TEST_F(ZoneLogTest, AChangeOfTheSceneDoesNotMakeRoomForMoreLines) {
+  ZoneLog zones(scene);
+  Scene changed = scene;
+  changed.zones.erase(changed.zones.begin());
+  for (std::uint64_t cycle = 1; cycle <= 20; ++cycle) zones.note(3, change(cycle % 2 == 1), cycle);
+  zones.change(changed);
+  for (std::uint64_t cycle = 1; cycle <= 20; ++cycle) zones.note(2, change(cycle % 2 == 1), cycle);
+  EXPECT_EQ(logged->count("zone 'zone3'"), ZoneLog::kLinesOfAZone);
+  zones.end_second();
+  EXPECT_TRUE(logged->has("zone 'zone3' changed 36 more times")) << logged->text();
+}
+
 }  // namespace
 }  // namespace clearance::test
