@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cell/command_settings.hpp"
 #include "config/cell/ros_settings.hpp"
 #include "config/cell/simulation.hpp"
 #include "config/cell/topics.hpp"
@@ -24,6 +25,8 @@ struct Cell {
   std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
   Topics topics = {};
   RosSettings ros = {};
+  CommandSettings commands = {};
+  AddedCapacity capacity = {};
   Simulation simulation = {};  // may be empty
 
   std::string yaml = {};  // the text of the cell, for recordings

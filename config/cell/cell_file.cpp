@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "config/cell/attachment_reader.hpp"
+#include "config/cell/command_reader.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
@@ -240,6 +241,10 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
   if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, cell.ros, diagnostics_);
+  if (const YamlNode* commands = map.optional("commands"))
+    cell.commands = read_commands(*commands, file_.parent_path(), diagnostics_);
+  if (const YamlNode* capacity = map.optional("capacity"))
+    cell.capacity = read_capacity(*capacity, diagnostics_);
   read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);

@@ -16,6 +16,8 @@ struct Topics {
   std::string joint_states = "clearance/joint_states";
   std::string separation = "clearance/separation";
   std::string gradients = "clearance/gradients";
+  std::string commands = "clearance/commands";
+  std::string command_results = "clearance/command_results";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -23,7 +25,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 8> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 10> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -32,6 +34,8 @@ inline constexpr std::array<TopicKey, 8> kTopicKeys = {{
     {"health", &Topics::health},
     {"separation", &Topics::separation},
     {"gradients", &Topics::gradients},
+    {"commands", &Topics::commands},
+    {"command_results", &Topics::command_results},
 }};
 
 }  // namespace clearance

@@ -43,14 +43,19 @@ struct SetAbsent {
 struct Attach {
   std::string object;
   std::string to;
-  Pose carrier_from_object = {};
+  // Nothing: where it is now relative to the carrier. Only a running monitor knows that: it fills
+  // this in before the change is made (monitor/scene_changes).
+  std::optional<Pose> carrier_from_object = {};
   std::vector<std::string> touch = {};
+  // The greatest depth by which it may overlap its carrier and what it may touch, m. A running
+  // monitor checks that once, when the object is attached. Nothing: the monitor's default.
+  std::optional<double> overlap = {};
 };
 
 // An attached object becomes a fixed one.
 struct Detach {
   std::string object;
-  Pose world_from_object = {};
+  std::optional<Pose> world_from_object = {};  // nothing: where it is now, as with Attach
 };
 
 // Places a fixed object elsewhere.
@@ -103,8 +108,13 @@ struct ReplaceCell {
   std::string yaml;
 };
 
+// The same with the text of a file: a running monitor reads it and makes this a ReplaceCell.
+struct ReadCellAgain {
+  std::string file;  // absolute, or relative to the cell's folder; empty: the cell's own file
+};
+
 using CellChange = std::variant<AddObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
                                 Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair,
-                                SetZoneThresholds, ReplaceCell>;
+                                SetZoneThresholds, ReplaceCell, ReadCellAgain>;
 
 }  // namespace clearance

@@ -38,6 +38,14 @@ YamlNode list_of(const std::vector<std::string>& names) {
   return list;
 }
 
+// Only a running monitor knows where objects are.
+ChangeFault no_pose(const std::string& object) {
+  return {fmt::format("objects[{}]", object),
+          fmt::format("found no pose for '{}'; expected one, since a cell does not say where its "
+                      "objects are now",
+                      object)};
+}
+
 class ChangeMaker {
  public:
   explicit ChangeMaker(CellDocument& document) : document_(document) {
@@ -63,6 +71,9 @@ class ChangeMaker {
   Fault operator()(const SetPair& change);
   Fault operator()(const SetZoneThresholds& change);
   Fault operator()(const ReplaceCell&) { return std::nullopt; }
+  Fault operator()(const ReadCellAgain&) {
+    return ChangeFault{"", "found a cell file to be read; expected its text here"};
+  }
 
  private:
   // An entry of a list, and its place.
@@ -244,11 +255,12 @@ void forget_place(YamlNode& node) {
 }
 
 Fault ChangeMaker::operator()(const Attach& change) {
+  if (!change.carrier_from_object) return no_pose(change.object);
   return edit_object(change.object, [&](YamlNode& node) -> Fault {
     forget_place(node);
     YamlNode attached;
     set(attached, "to", text_node(change.to));
-    set(attached, "pose", pose(change.carrier_from_object));
+    set(attached, "pose", pose(*change.carrier_from_object));
     if (!change.touch.empty()) set(attached, "touch", list_of(change.touch));
     set(node, "attached", std::move(attached));
     return std::nullopt;
@@ -256,6 +268,7 @@ Fault ChangeMaker::operator()(const Attach& change) {
 }
 
 Fault ChangeMaker::operator()(const Detach& change) {
+  if (!change.world_from_object) return no_pose(change.object);
   return edit_object(change.object, [&](YamlNode& node) -> Fault {
     if (find(node, "attached") == nullptr) {
       return ChangeFault{fmt::format("objects[{}]", change.object),
@@ -265,7 +278,7 @@ Fault ChangeMaker::operator()(const Detach& change) {
     }
     forget_place(node);
     set(node, "fixed", flag_node(true));
-    set(node, "pose", pose(change.world_from_object));
+    set(node, "pose", pose(*change.world_from_object));
     return std::nullopt;
   });
 }
@@ -359,6 +372,7 @@ struct Touched {
   }
   TouchedEntry operator()(const SetZoneThresholds& change) const { return {"zones", change.zone}; }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
+  TouchedEntry operator()(const ReadCellAgain&) const { return {}; }
   template <class Change>
   TouchedEntry operator()(const Change& change) const {
     return {"objects", change.object};

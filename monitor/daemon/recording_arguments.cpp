@@ -19,7 +19,7 @@ bool can_be_left_out(const Topic& topic) { return topic.kind != TopicKind::kCata
 
 std::string is_topic(const std::string& text) {
   std::vector<std::string> keys;
-  for (const Topic& topic : kTopics | std::views::filter(can_be_left_out))
+  for (const Topic& topic : kRecordedTopics | std::views::filter(can_be_left_out))
     keys.emplace_back(topic.key);
   if (std::ranges::find(keys, text) != keys.end()) return {};
   return fmt::format("found '{}'; expected {}", text, one_of(keys));
@@ -70,7 +70,7 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .pairs_every = pairs_every,
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),
       .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost)))};
-  for (const Topic& topic : kTopics) {
+  for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }
   return options;

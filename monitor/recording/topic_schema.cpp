@@ -102,7 +102,7 @@ std::string self_contained_idl(std::string_view idl, std::string_view type) {
 
 // This costs one comparison per topic, once for each channel.
 std::optional<TopicKind> topic_kind(std::string_view type_name) noexcept {
-  for (const Topic& topic : kTopics) {
+  for (const Topic& topic : kRecordedTopics) {
     if (type_name == topic.type->m_typename) return topic.kind;
   }
   return std::nullopt;
@@ -114,9 +114,9 @@ std::string_view type_of(TopicKind kind) noexcept {
 
 // Made once, on first use; initialisation of statics is thread-safe.
 const McapSchema& topic_schema(TopicKind kind) {
-  static const std::array<McapSchema, kTopics.size()> kSchemas = [] {
-    std::array<McapSchema, kTopics.size()> all;
-    for (const Topic& each : kTopics) {
+  static const std::array<McapSchema, kRecordedTopics.size()> kSchemas = [] {
+    std::array<McapSchema, kRecordedTopics.size()> all;
+    for (const Topic& each : kRecordedTopics) {
       all[index(each.kind)] = {each.type->m_typename, std::string(kIdlEncoding),
                                self_contained_idl(kIdlText, type_of(each.kind))};
     }

@@ -21,7 +21,7 @@ void RecordingWriter::open() {
                 McapWriterOptions{.compression = options_.compress ? McapCompression::kZstd
                                                                    : McapCompression::kStored,
                                   .overwrite = options_.overwrite});
-  for (const Topic& topic : kTopics) {
+  for (const Topic& topic : kRecordedTopics) {
     if (!holds(topic.kind)) continue;
     channels_[index(topic.kind)] =
         mcap_->add_channel(topic_schema(topic.kind), topics_.*topic.name, kCdrEncoding);

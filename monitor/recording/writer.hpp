@@ -92,7 +92,7 @@ class RecordingWriter {
   Topics topics_;
   RecordingOptions options_;
   std::optional<McapWriter> mcap_;
-  std::array<std::uint16_t, kTopics.size()> channels_{};
+  std::array<std::uint16_t, kRecordedTopics.size()> channels_{};
   std::vector<std::pair<McapSchema, std::string>> more_channels_;  // and their topics, in order
   CdrEncoder encoder_;
   std::uint64_t part_ = 1;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "clearance.h"
+#include "commands.h"
 
 namespace clearance {
 
@@ -54,6 +55,17 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_Gradients>() noexcept {
   return clearance_msg_Gradients_desc;
+}
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_Command>() noexcept {
+  return clearance_msg_Command_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_CommandResult>() noexcept {
+  return clearance_msg_CommandResult_desc;
 }
 
 // One sample of a topic type, all zero at first. Everything it points to is from dds_alloc and is

@@ -8,6 +8,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -25,12 +26,14 @@ enum class TopicKind : std::uint8_t {
   kHealth,
   kSeparation,
   kGradients,
+  kCommands,
+  kCommandResults,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
 enum class Delivery : std::uint8_t {
   kStream,   // volatile: a reader gets what is sent from now on
-  kLatched,  // transient-local, depth 1: a late reader gets the last sample of each key
+  kLatched,  // transient-local: a late reader gets the last sample of each key
 };
 
 // One row of the table.
@@ -48,7 +51,8 @@ struct Topic {
 // reports that used them. A distances writer keeps 64 reports for a client that is held up for a
 // moment. Inputs are states, of which only the newest counts: behind a lost sample, a reader waits
 // for as many samples as the writer keeps. What waits in a reader is taken at once and delays
-// nothing, so a reader may be late by 16 batches (16 ms at 1 kHz) without losing any.
+// nothing, so a reader may be late by 16 batches (16 ms at 1 kHz) without losing any. Commands are
+// repeated by their client until a result comes, so a lost one does no harm.
 inline constexpr auto kTopics = [] {
   constexpr auto row = [](TopicKind kind, const dds_topic_descriptor_t& type, Delivery delivery,
                           std::int32_t writer_depth, std::int32_t reader_depth) {
@@ -66,9 +70,16 @@ inline constexpr auto kTopics = [] {
       row(kHealth, clearance_msg_Health_desc, kLatched, 1, 1),
       row(kSeparation, clearance_msg_Separation_desc, kStream, 64, 64),
       row(kGradients, clearance_msg_Gradients_desc, kStream, 64, 64),
+      row(kCommands, clearance_msg_Command_desc, kStream, 64, 64),
+      row(kCommandResults, clearance_msg_CommandResult_desc, kLatched, 64, 64),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());
+
+// The topics that recordings and viewers have. A command is what a client asked for, and the
+// catalogue has what came of it.
+inline constexpr std::span<const Topic> kRecordedTopics =
+    std::span(kTopics).first(static_cast<std::size_t>(TopicKind::kCommands));
 
 [[nodiscard]] constexpr std::size_t index(TopicKind kind) noexcept {
   return static_cast<std::size_t>(kind);

@@ -35,7 +35,7 @@ class Subscription {
   Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer,
                const RecordingOptions& options, SceneChannels* scene)
       : writer_(writer), options_(options), scene_(scene) {
-    for (const Topic& topic : kTopics) {
+    for (const Topic& topic : kRecordedTopics) {
       readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
   }
@@ -63,7 +63,7 @@ class Subscription {
 
   // In the order of the table, so that poses stand before the reports that used them.
   void take_all() {
-    for (const Topic& topic : kTopics) {
+    for (const Topic& topic : kRecordedTopics) {
       while (taken_.size() < kMostWaiting && take_cdr(readers_[index(topic.kind)], taken_) > 0) {
       }
       // Cyclone returns waiting samples instance by instance; this restores the order of sending.
@@ -125,8 +125,8 @@ class Subscription {
   RecordingWriter& writer_;
   RecordingOptions options_;
   SceneChannels* scene_;
-  std::array<dds_entity_t, kTopics.size()> readers_{};
-  std::array<std::uint64_t, kTopics.size()> counts_{};
+  std::array<dds_entity_t, kRecordedTopics.size()> readers_{};
+  std::array<std::uint64_t, kRecordedTopics.size()> counts_{};
   std::vector<CdrSample> taken_;
   CdrDecoder decoder_;
   Sample<clearance_msg_Catalogue> catalogue_;

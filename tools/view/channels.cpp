@@ -8,7 +8,7 @@ namespace clearance::view {
 
 std::vector<Channel> channels_of(const Topics& topics) {
   std::vector<Channel> channels;
-  for (const Topic& topic : kTopics) {
+  for (const Topic& topic : kRecordedTopics) {
     channels.push_back({topics.*topic.name, topic_schema(topic.kind)});
   }
   channels.push_back({kTransformsTopic, ros::transforms_schema()});

@@ -14,7 +14,7 @@ namespace clearance::view {
 using ChannelId = std::uint32_t;
 
 // Our topics have the ids of their TopicKind; these ids follow.
-inline constexpr ChannelId kTransforms = kTopics.size(), kBodies = kTransforms + 1,
+inline constexpr ChannelId kTransforms = kRecordedTopics.size(), kBodies = kTransforms + 1,
                            kClosest = kTransforms + 2, kChannels = kTransforms + 3;
 [[nodiscard]] constexpr ChannelId channel(TopicKind kind) noexcept {
   return static_cast<ChannelId>(index(kind));

@@ -41,7 +41,7 @@ LiveSource::LiveSource(const Cell& cell, const DdsOptions& dds)
                 return true;
               }),
       ros_(participant_, intake_) {
-  for (const Topic& topic : kTopics) {
+  for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
 }
@@ -56,7 +56,7 @@ void LiveSource::advance(Server& server) {
   for (const TopicKind kind : kOnDemand) {
     if (kind == TopicKind::kDistances || server.is_wanted(channel(kind))) join(kind);
   }
-  for (const Topic& topic : kTopics) take(topic.kind);
+  for (const Topic& topic : kRecordedTopics) take(topic.kind);
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
   tell_of_the_daemon(server, now_ns);

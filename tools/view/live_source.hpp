@@ -33,7 +33,7 @@ class LiveSource final : public Source {
   const Scene& scene_;
   const Topics& topics_;
   Participant participant_;
-  std::array<dds_entity_t, kTopics.size()> readers_{};  // 0: there is none
+  std::array<dds_entity_t, kRecordedTopics.size()> readers_{};  // 0: there is none
   std::vector<CdrSample> taken_;
   Frame frame_;
   Intake intake_;  // of ROS 2's topics

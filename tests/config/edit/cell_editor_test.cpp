@@ -75,7 +75,7 @@ TEST_F(CellEdits, AnObjectThatReturnsToItsPlaceGivesTheFormerText) {
 }
 
 TEST_F(CellEdits, TheOrderOfChangesOfDifferentObjectsDoesNotShow) {
-  const CellChange a = SetMargin{"table", 0.01}, b = Attach{"box", "hand", {}},
+  const CellChange a = SetMargin{"table", 0.01}, b = Attach{"box", "hand", Pose{}},
                    c = SetPair{"hand", "table", SetPair::Rule::kPublish}, d = SetAbsent{"table"};
   const std::string text = edit({a, b, c, d}).yaml;
   editor_.emplace(open(kEditedCell));
@@ -126,7 +126,7 @@ TEST_F(CellEdits, RulesThatOthersMakeVoidAreRefused) {
 
 TEST_F(CellEdits, AListIsDoneWhollyOrNotAtAll) {
   const EditRefusal refusal = refused(
-      {RemoveObject{"box"}, Attach{"table", "hand", {}}, AddFromTemplate{"bin", "b", {}, {}},
+      {RemoveObject{"box"}, Attach{"table", "hand", Pose{}}, AddFromTemplate{"bin", "b", {}, {}},
        SetPair{"hand", "cart", SetPair::Rule::kLeaveOut, "it docks"}, ReplaceCell{kEditedCell},
        RemoveObject{"cart"}});
   EXPECT_EQ(refusal.change, 5u);
@@ -154,7 +154,7 @@ TEST_F(CellEdits, AWholeCellReplacesThisOne) {
 TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
   EXPECT_THAT(refused({RemoveObject{"cart"}}).reason, HasSubstr("pairs[spare, cart]"));
   EXPECT_THAT(refused({RemoveObject{"table"}}).reason, HasSubstr("zones[stop]"));
-  edit({Attach{"box", "cart", {}}, SetPair{"spare", "cart", SetPair::Rule::kUnstated},
+  edit({Attach{"box", "cart", Pose{}}, SetPair{"spare", "cart", SetPair::Rule::kUnstated},
         SetPair{"spare", "base", SetPair::Rule::kWatch}});
   const EditRefusal refusal = refused({SetAbsent{"cart"}, RemoveObject{"cart"}});
   EXPECT_THAT(refusal.reason, HasSubstr("objects[box]"));
@@ -164,7 +164,7 @@ TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
 }
 
 TEST_F(CellEdits, ARefusalNamesTheChangeTheFieldAndTheReason) {
-  EditRefusal refusal = refused({SetAbsent{"box"}, Attach{"box", "hnd", {}}, SetAbsent{"cart"}});
+  EditRefusal refusal = refused({SetAbsent{"box"}, Attach{"box", "hnd", Pose{}}, SetAbsent{"cart"}});
   EXPECT_EQ(refusal.change, 1u);
   EXPECT_EQ(refusal.path, "objects[box].attached.to");
   EXPECT_THAT(refusal.reason, HasSubstr("hand"));
@@ -206,14 +206,17 @@ TEST_F(CellEdits, EachImpossibleChangeIsRefused) {
       RemoveObject{"nothing"},
       RemoveObject{"hand"},
       SetAbsent{"hand"},
-      Attach{"hand", "cart", {}},
-      Attach{"box", "box", {}},
-      Attach{"box", "nowhere", {}},
-      Attach{"box", "hand", {}, {"nothing"}},
+      Attach{"hand", "cart", Pose{}},
+      Attach{"box", "box", Pose{}},
+      Attach{"box", "nowhere", Pose{}},
+      Attach{"box", "hand", Pose{}, {"nothing"}},
       Attach{"box", "hand", Pose(Vec3(1e9, 0, 0), Eigen::Quaterniond::Identity())},
       Attach{"box", "hand", Pose(Vec3(kInfinity, 0, 0), Eigen::Quaterniond::Identity())},
       Attach{"box", "hand", Pose(Vec3::Zero(), Eigen::Quaterniond(2, 1, 0, 0))},
-      Detach{"box", {}},
+      Detach{"box", Pose{}},
+      Attach{"box", "hand"},
+      Detach{"box"},
+      ReadCellAgain{},
       Place{"cart", {}},
       SetMaxSpeed{"box", 1.0},
       SetMaxSpeed{"cart", -1.0},
@@ -236,8 +239,8 @@ TEST_F(CellEdits, EachImpossibleChangeIsRefused) {
 }
 
 TEST_F(CellEdits, CirclesOfAttachedObjectsAreRefused) {
-  edit({Attach{"box", "cart", {}}});
-  EXPECT_THAT(refused({Attach{"cart", "box", {}}}).reason, HasSubstr("circle"));
+  edit({Attach{"box", "cart", Pose{}}});
+  EXPECT_THAT(refused({Attach{"cart", "box", Pose{}}}).reason, HasSubstr("circle"));
 }
 
 // The first of the two marks a value for the second one.

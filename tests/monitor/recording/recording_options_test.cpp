@@ -86,7 +86,7 @@ TEST_F(RecordingOptionsTest, TopicsThatAreLeftOutAreNotThere) {
   EXPECT_EQ(1u, count(TopicKind::kCatalogue));
   McapReader reader(run);
   ASSERT_TRUE(reader.summary());
-  EXPECT_EQ(kTopics.size() - 2, reader.summary()->channels.size());
+  EXPECT_EQ(kRecordedTopics.size() - 2, reader.summary()->channels.size());
   const OfflineReplay done = replay({.tick_hz = 1000.0, .expect_min_distance = 0.01});
   EXPECT_TRUE(done.ok()) << done.text();
   EXPECT_EQ(400u, done.ticks);

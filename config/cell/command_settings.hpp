@@ -1,0 +1,30 @@
+// Who may change the scene of a running daemon, with which files, and by how much it may grow:
+// `commands:` and `capacity:` of a cell.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace clearance {
+
+struct CommandSettings {
+  // The clients whose commands are taken; empty: there is no topic for commands.
+  std::vector<std::string> from = {};
+  // Meshes and cells that commands name lie below one of these, or below a folder of the daemon.
+  // Absolute.
+  std::vector<std::filesystem::path> folders = {};
+  friend bool operator==(const CommandSettings&, const CommandSettings&) = default;
+};
+
+// The growth for which a daemon has memory, beyond the cell that it began with.
+struct AddedCapacity {
+  std::size_t objects = 64;        // objects, and joint variables
+  std::size_t parts = 4096;        // convex parts of objects
+  std::size_t pairs = 65'536;      // watched pairs
+  std::size_t bytes = 64'000'000;  // the cell's text and the files that it names
+  friend bool operator==(const AddedCapacity&, const AddedCapacity&) = default;
+};
+
+}  // namespace clearance
