@@ -2,12 +2,16 @@
 // pairs of a robot's links that may touch, and reports or simplifies the models of objects.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstdio>
+#include <exception>
 #include <string>
 #include <utility>
 
 #include "monitor/app/options.hpp"
+#include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "tools/scene/arguments.hpp"
+#include "tools/scene/send.hpp"
 #include "tools/shared/former_spelling.hpp"
 
 namespace clearance {
@@ -20,6 +24,7 @@ constexpr const char* kFooter = R"(Exit status:
   1  a file could not be read or written, or no model of 'reduce' is within --tolerance
   2  wrong usage
   3  the cell that was written or read has errors (printed)
+  4, 6  see 'send --help'
 
 Examples:
   clearance-scene import panda.urdf --srdf panda.srdf --joints -o panda.yaml
@@ -29,7 +34,8 @@ Examples:
   clearance-scene warehouse 1000 -o warehouse.yaml
   clearance-scene report warehouse.yaml
   clearance-scene reduce panda.urdf --tolerance 0.005
-  clearance-scene reduce a.stl b.stl --distance 0.1 0.5 --speed 1 --plot models.svg)";
+  clearance-scene reduce a.stl b.stl --distance 0.1 0.5 --speed 1 --plot models.svg
+  clearance-scene send --change 'attach: {object: part, to: left_hand}')";
 
 void add_robot(CLI::App& app, RobotCellOptions& robot, const char* srdf) {
   app.add_option("URDF", robot.urdf, "The robot's URDF, with xacro expanded")
@@ -201,17 +207,21 @@ Words present_spelling(Words words) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Writes cell files, and reports or simplifies the models of objects.");
+  CLI::App app(
+      "Writes cell files, reports or simplifies the models of objects, and changes running "
+      "scenes.");
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
   ReportArguments report;
   ReduceArguments reduce;
+  SendArguments send;
   const CLI::App* const importing = add_import(app, import);
   const CLI::App* const allowing = add_allow(app, allow);
   const CLI::App* const building = add_warehouse(app, warehouse);
   const CLI::App* const reporting = add_report(app, report);
-  add_reduce(app, reduce);
+  const CLI::App* const reducing = add_reduce(app, reduce);
+  add_send(app, send);
   app.require_subcommand(1);
   app.footer(kFooter);
   Words words = present_spelling(words_of(argc, argv));
@@ -223,10 +233,18 @@ int run(int argc, char** argv) {
   if (allowing->parsed()) return allow_collisions(allow);
   if (building->parsed()) return make_warehouse(warehouse);
   if (reporting->parsed()) return report_models(report);
-  return reduce_bodies(reduce);
+  if (reducing->parsed()) return reduce_bodies(reduce);
+  return send_changes(send);
 }
 
 }  // namespace
 }  // namespace clearance
 
-int main(int argc, char** argv) { return clearance::run(argc, argv); }
+int main(int argc, char** argv) {
+  try {
+    return clearance::run(argc, argv);
+  } catch (const std::exception& error) {
+    clearance::print(stderr, "clearance-scene: {}\n", error.what());
+    return clearance::dds_exit_code(error);
+  }
+}

@@ -1,0 +1,112 @@
+// A request has the time at which it is made as its number, so that a program that starts again
+// counts on from its former requests.
+#include "monitor/client/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "monitor/commands/command_message.hpp"
+#include "monitor/participant/participant.hpp"
+
+namespace clearance::client {
+namespace {
+
+constexpr std::size_t kKeptResults = 64;
+constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent again
+constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
+
+bool has_matched(dds_entity_t writer, dds_entity_t reader) {
+  dds_publication_matched_status_t readers{};
+  dds_subscription_matched_status_t writers{};
+  return dds_get_publication_matched_status(writer, &readers) == DDS_RETCODE_OK &&
+         dds_get_subscription_matched_status(reader, &writers) == DDS_RETCODE_OK &&
+         readers.current_count > 0 && writers.current_count > 0;
+}
+
+}  // namespace
+
+Commands::Commands(Connection& connection, std::string_view client) : client_(client) {
+  if (client.empty() || client.size() > 32) {
+    throw std::invalid_argument(fmt::format(
+        "the client '{}' has {} bytes; expected a name of 1 to 32", client, client.size()));
+  }
+  Participant& participant = connection.participant();
+  const Topics& topics = connection.topics();
+  reader_ = participant.reader(TopicKind::kCommandResults, topics.command_results);
+  writer_ = participant.writer(TopicKind::kCommands, topics.commands);
+  wait_ = std::make_unique<DataWait>(participant, std::vector{reader_});
+}
+
+Commands::~Commands() {
+  wait_.reset();
+  dds_delete(writer_);
+  dds_delete(reader_);
+}
+
+bool Commands::is_heard() const { return has_matched(writer_, reader_); }
+
+bool Commands::write(const Command& command) {
+  const auto message = to_wire(command);
+  return dds_write(writer_, &*message) == DDS_RETCODE_OK;
+}
+
+std::uint64_t Commands::post(const std::vector<CellChange>& changes,
+                             const CommandOptions& options) {
+  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
+  const Command command{client_,         request_, options.scene_revision,
+                        options.dry_run, changes,  options.files};
+  return write(command) ? request_ : 0;
+}
+
+// A volatile topic: what is written before a daemon is met does not arrive.
+std::optional<CommandResult> Commands::send(const std::vector<CellChange>& changes,
+                                            const CommandOptions& options,
+                                            std::chrono::nanoseconds timeout) {
+  const std::int64_t end_ns = dds_time() + timeout.count();
+  while (!is_heard() && dds_time() < end_ns) dds_sleepfor(kLookNs);
+  if (!is_heard()) return std::nullopt;
+  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
+  const Command command{client_,         request_, options.scene_revision,
+                        options.dry_run, changes,  options.files};
+  do {
+    (void)write(command);
+    if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs))) {
+      // A busy daemon has not taken the request.
+      if (result->status != CommandStatus::kBusy) return result;
+      if (dds_time() + kAgainNs >= end_ns) return result;
+      results_.erase(request_);
+      dds_sleepfor(kAgainNs);
+    }
+  } while (dds_time() < end_ns);
+  return std::nullopt;
+}
+
+std::optional<CommandResult> Commands::result(std::uint64_t request,
+                                              std::chrono::nanoseconds timeout) {
+  return wait_for(request, dds_time() + timeout.count());
+}
+
+void Commands::take_results() {
+  void* pointer = &*message_;
+  dds_sample_info_t info;
+  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
+    if (!info.valid_data || client_ != message_->client) continue;
+    CommandResult result = from_wire(*message_);
+    results_[result.request] = std::move(result);
+    if (results_.size() > kKeptResults) results_.erase(results_.begin());
+  }
+}
+
+std::optional<CommandResult> Commands::wait_for(std::uint64_t request, std::int64_t end_ns) {
+  while (true) {
+    take_results();
+    if (const auto found = results_.find(request); found != results_.end()) return found->second;
+    const std::int64_t left_ns = end_ns - dds_time();
+    if (left_ns <= 0) return std::nullopt;
+    wait_->wait(left_ns);
+  }
+}
+
+}  // namespace clearance::client

@@ -1,0 +1,68 @@
+// Commands of a client: changes of the scene of a running daemon, and their results.
+//
+// idl/COMMANDS.md explains what can be changed, and what each status means.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "monitor/client/client.hpp"
+#include "monitor/command.hpp"
+
+namespace clearance::client {
+
+struct CommandOptions {
+  std::uint64_t scene_revision = 0;  // of the scene that the client knows; 0: not checked
+  bool dry_run = false;              // answer only, change nothing
+  std::vector<SentFile> files = {};  // that changes name as "sent:NAME"
+};
+
+// Sends commands under the name of one client, which the daemon's cell names under `commands`, and
+// which no other running program uses.
+class Commands {
+ public:
+  // Throws std::invalid_argument when the name has no bytes or more than 32.
+  Commands(Connection& connection, std::string_view client);
+  ~Commands();
+  Commands(const Commands&) = delete;
+  Commands& operator=(const Commands&) = delete;
+
+  // Sends changes that are made wholly or not at all, and waits for their result. The same request
+  // is sent again every second until the result comes. Returns nothing when none came in time: the
+  // changes may be made or not, and result() may tell later.
+  [[nodiscard]] std::optional<CommandResult> send(
+      const std::vector<CellChange>& changes, const CommandOptions& options = {},
+      std::chrono::nanoseconds timeout = std::chrono::seconds(10));
+
+  // Sends changes without waiting, and returns the number of the request. Nothing repeats it.
+  // Returns 0 when DDS did not take the message.
+  std::uint64_t post(const std::vector<CellChange>& changes, const CommandOptions& options = {});
+  // Waits up to `timeout` for the result of a request. Of results that nobody asked for, the last
+  // 64 are kept.
+  [[nodiscard]] std::optional<CommandResult> result(std::uint64_t request,
+                                                    std::chrono::nanoseconds timeout = {});
+
+  // True when a daemon takes commands on this topic. Whether it takes them from this client, the
+  // first result says.
+  [[nodiscard]] bool is_heard() const;
+
+ private:
+  bool write(const Command& command);
+  void take_results();
+  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns);
+
+  std::string client_;
+  std::uint64_t request_ = 0;  // the last one
+  dds_entity_t writer_, reader_;
+  std::unique_ptr<DataWait> wait_;
+  Sample<clearance_msg_CommandResult> message_;
+  std::map<std::uint64_t, CommandResult> results_;  // by request
+};
+
+}  // namespace clearance::client

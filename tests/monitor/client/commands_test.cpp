@@ -1,0 +1,163 @@
+// Commands of the client library over real DDS. The test plays the daemon.
+#include "monitor/client/commands.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <functional>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <variant>
+#include <vector>
+
+#include "monitor/commands/command_message.hpp"
+#include "monitor/participant/participant.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+// Answers commands in a thread of its own, from its construction on.
+class Daemon {
+ public:
+  using Answer = std::function<std::vector<CommandResult>(const Command&)>;
+  Daemon(const DdsOptions& dds, Answer answer)
+      : participant_(dds),
+        commands_(participant_.reader(TopicKind::kCommands, Topics{}.commands)),
+        results_(participant_.writer(TopicKind::kCommandResults, Topics{}.command_results)),
+        answer_(std::move(answer)),
+        thread_([this] { run(); }) {}
+  ~Daemon() {
+    ends_ = true;
+    thread_.join();
+  }
+
+ private:
+  void run() {
+    Sample<clearance_msg_Command> message;
+    void* pointer = &*message;
+    dds_sample_info_t info;
+    while (!ends_) {
+      if (dds_take(commands_, &pointer, &info, 1, 1) < 1 || !info.valid_data) {
+        std::this_thread::sleep_for(milliseconds(2));
+        continue;
+      }
+      const auto command = from_wire(*message);
+      ASSERT_TRUE(std::holds_alternative<Command>(command));
+      for (const CommandResult& result : answer_(std::get<Command>(command))) {
+        const auto answer = to_wire(result, 7);
+        check_dds(dds_write(results_, &*answer), "writing");
+      }
+    }
+  }
+
+  Participant participant_;
+  dds_entity_t commands_, results_;
+  Answer answer_;
+  std::atomic<bool> ends_{false};
+  std::thread thread_;
+};
+
+CommandResult done(const Command& command) {
+  return {.client = command.client,
+          .request = command.request,
+          .scene_revision = 9,
+          .in_force_from = 44};
+}
+
+const std::vector<CellChange> kAttach{Attach{.object = "part", .to = "hand"}};
+
+TEST(ClientCommands, GetTheResultOfTheirRequestAndNoOther) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds, [](const Command& command) {
+    EXPECT_EQ(command.client, "planner");
+    EXPECT_EQ(command.scene_revision, 5u);
+    EXPECT_TRUE(command.dry_run);
+    EXPECT_EQ(command.files.at(0).bytes, "solid");
+    EXPECT_EQ(std::get<Attach>(command.changes.at(0)).to, "hand");
+    CommandResult other = done(command), earlier = done(command);
+    other.client = "pendant";
+    other.scene_revision = 1;
+    earlier.request -= 1;
+    earlier.scene_revision = 2;
+    return std::vector{other, earlier, done(command)};
+  });
+  client::Connection connection(dds);
+  client::Commands commands(connection, "planner");
+  const auto result = commands.send(
+      kAttach, {.scene_revision = 5, .dry_run = true, .files = {{"part.stl", "solid"}}},
+      seconds(20));
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->done());
+  EXPECT_EQ(result->scene_revision, 9u);
+  EXPECT_EQ(result->in_force_from, 44u);
+}
+
+TEST(ClientCommands, SendTheSameRequestAgainUntilAResultComes) {
+  const DdsOptions dds = test::own_dds();
+  std::vector<std::uint64_t> requests;
+  Daemon daemon(dds, [&](const Command& command) {
+    requests.push_back(command.request);
+    if (requests.size() == 1) return std::vector<CommandResult>{};  // lost
+    CommandResult result = done(command);
+    if (requests.size() == 2) result.status = CommandStatus::kBusy;
+    return std::vector{result};
+  });
+  client::Connection connection(dds);
+  client::Commands commands(connection, "planner");
+  const auto result = commands.send(kAttach, {}, seconds(30));
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->done());
+  ASSERT_GE(requests.size(), 3u);
+  EXPECT_EQ(requests[0], requests[1]);
+  EXPECT_EQ(requests[0], requests[2]);
+}
+
+TEST(ClientCommands, CountUpAcrossPrograms) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
+  std::uint64_t before = 0;
+  for (int program = 0; program < 3; ++program) {
+    client::Connection connection(dds);
+    client::Commands commands(connection, "planner");
+    for (int i = 0; i < 3; ++i) {
+      const auto result = commands.send(kAttach, {}, seconds(20));
+      ASSERT_TRUE(result);
+      EXPECT_GT(result->request, before);
+      before = result->request;
+    }
+  }
+}
+
+TEST(ClientCommands, PostedOnesGetTheirResultsLater) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
+  client::Connection connection(dds);
+  client::Commands commands(connection, "planner");
+  ASSERT_TRUE(test::eventually([&] { return commands.is_heard(); }));
+  const std::uint64_t first = commands.post(kAttach), second = commands.post(kAttach);
+  EXPECT_LT(first, second);
+  ASSERT_TRUE(commands.result(second, seconds(20)));
+  EXPECT_EQ(commands.result(first).value().request, first);
+  EXPECT_FALSE(commands.result(second + 1));
+}
+
+TEST(ClientCommands, WithoutADaemonGiveUpAfterTheTimeout) {
+  client::Connection connection(test::own_dds());
+  client::Commands commands(connection, "planner");
+  EXPECT_FALSE(commands.is_heard());
+  EXPECT_FALSE(commands.send(kAttach, {}, milliseconds(50)));
+}
+
+TEST(ClientCommands, RefuseANameThatNoCellCanHave) {
+  client::Connection connection(test::own_dds());
+  EXPECT_THROW(client::Commands(connection, ""), std::invalid_argument);
+  EXPECT_THROW(client::Commands(connection, std::string(33, 'x')), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,33 @@
+// clearance-scene send: changes the scene of a running daemon.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/cell/topics.hpp"
+#include "monitor/dds/dds_arguments.hpp"
+
+namespace clearance {
+
+struct SendArguments {
+  std::string changes;              // a file, or "-" for stdin; empty: none
+  std::vector<std::string> change;  // changes in YAML
+  std::string client = "clearance-scene";
+  std::vector<std::filesystem::path> files;  // that changes name as "sent:NAME"
+  std::string revision;                      // hexadecimal; empty: not checked
+  bool dry_run = false;
+  double timeout_s = 10.0;
+  DdsArguments dds;
+  Topics topics;
+};
+
+CLI::App* add_send(CLI::App& app, SendArguments& arguments);
+
+// Returns the exit code. Throws DdsError.
+[[nodiscard]] int send_changes(const SendArguments& arguments);
+
+}  // namespace clearance
