@@ -223,6 +223,25 @@ const Pose& Monitor::pose(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].pose;
 }
 
+PresentPose Monitor::present_pose(std::uint32_t object) const noexcept {
+  using enum PresentPose::State;
+  const InputAge age = input_age(object);
+  if (age.absent) return {kAbsent};
+  if (age.contradicted) return {kContradicted};
+  if (age.age_ns < 0) return {kUnknown};
+  if (age.stale) return {kLate};
+  return {kUsable, pose(object)};
+}
+
+PresentPose Monitor::present_link(std::uint32_t robot, std::uint32_t link) const noexcept {
+  using enum PresentPose::State;
+  const LinkState& state = state_->inputs.robots.links(robot)[link];
+  if (state.contradicted) return {kContradicted};
+  if (!state.known) return {kUnknown};
+  if (state.late) return {kLate};
+  return {kUsable, state.pose};
+}
+
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.stamp_ns;
 }

@@ -32,6 +32,13 @@ struct InputAge {
   bool velocities_contradict = false;  // of a joint: its sent velocities contradict its positions
 };
 
+// Where a body is at the last tick.
+struct PresentPose {
+  enum class State : std::uint8_t { kUsable, kUnknown, kLate, kContradicted, kAbsent };
+  State state = State::kUnknown;
+  Pose world_from_body = {};  // if it is usable
+};
+
 class Monitor {
  public:
   // Allocates all memory that it ever needs. The scene must outlive the monitor. `similar`, if not
@@ -102,6 +109,10 @@ class Monitor {
 
   // World from object: the pose in use. It is meaningless if no pose is in use (input_age() is -1).
   [[nodiscard]] const Pose& pose(std::uint32_t object) const noexcept;
+
+  // Where an object, or a link of a robot, is at the last tick, and whether that can be relied on.
+  [[nodiscard]] PresentPose present_pose(std::uint32_t object) const noexcept;
+  [[nodiscard]] PresentPose present_link(std::uint32_t robot, std::uint32_t link) const noexcept;
 
   // Stamp of the pose in use; 0 if the object is fixed or no pose is in use.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;

@@ -250,20 +250,28 @@ CellEditor::Opened CellEditor::open(const std::string& yaml, const std::filesyst
   return CellEditor(std::move(state));
 }
 
-std::variant<Cell, EditRefusal> CellEditor::edit(std::span<const CellChange> changes) {
+std::variant<Cell, EditRefusal> CellEditor::propose(std::span<const CellChange> changes) {
   auto result = state_->read(changes);
-  if (std::holds_alternative<EditRefusal>(result)) {
-    state_->take_back();
-  } else {
-    state_->before.reset();
-    state_->document.keep();
-  }
+  if (std::holds_alternative<EditRefusal>(result)) take_back();
+  return result;
+}
+
+void CellEditor::keep() {
+  state_->before.reset();
+  state_->document.keep();
+}
+
+void CellEditor::take_back() { state_->take_back(); }
+
+std::variant<Cell, EditRefusal> CellEditor::edit(std::span<const CellChange> changes) {
+  auto result = propose(changes);
+  if (std::holds_alternative<Cell>(result)) keep();
   return result;
 }
 
 std::variant<Cell, EditRefusal> CellEditor::dry_run(std::span<const CellChange> changes) {
-  auto result = state_->read(changes);
-  state_->take_back();
+  auto result = propose(changes);
+  if (std::holds_alternative<Cell>(result)) take_back();
   return result;
 }
 

@@ -42,6 +42,12 @@ CellResult CellArguments::read() const {
                       : read_cell(cell, told_on_stderr());
 }
 
+CellOptions CellArguments::reading() const {
+  CellOptions options = told_on_stderr();
+  options.is_of_urdf = cell.empty();
+  return options;
+}
+
 std::vector<std::filesystem::path> CellArguments::files() const {
   if (!cell.empty()) return {cell};
   std::vector<std::filesystem::path> files = {robot.urdf};

@@ -21,6 +21,10 @@ struct CellArguments {
   // required. With `from_ros`, --robot-description is a third choice.
   void add_to(CLI::App& app, bool from_ros = false);
   [[nodiscard]] CellResult read() const;
+  // How read() reads it, for readings of a changed text.
+  [[nodiscard]] CellOptions reading() const;
+  // The text of a cell for the URDF, as its files say now.
+  [[nodiscard]] std::string robot_text() const { return single_robot_cell(robot); }
   // The name for messages: the cell file, or the URDF.
   [[nodiscard]] std::string name() const { return cell.empty() ? robot.urdf.string() : cell; }
   // Every file that the command line names.

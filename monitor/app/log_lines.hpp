@@ -43,6 +43,12 @@ inline constexpr LogLine<> kSceneUnchanged{
     "scene-unchanged", kInfo, "the cell has the revision that is in force: nothing changes"};
 inline constexpr LogLine<Text> kSceneRefused{
     "scene-refused", kWarn, "the changed cell is not used, and the one before stays in force: {}"};
+inline constexpr LogLine<Text, Count, Text, Text> kCommandRefused{
+    "command-refused", kWarn, "request {1} of '{0}' is refused ({2}): {3}"};
+inline constexpr LogLine<Text> kCommandsLeftOut{"commands-left-out", kWarn,
+                                                "{} about refused commands left out"};
+inline constexpr LogLine<Text, Count> kSceneResumed{
+    "scene-resumed", kInfo, "the scene of {} is resumed: its changes began with revision {:016x}"};
 inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
     "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
@@ -202,6 +208,9 @@ inline constexpr std::tuple kAll{kStarted,
                                  kSceneChanged,
                                  kSceneUnchanged,
                                  kSceneRefused,
+                                 kCommandRefused,
+                                 kCommandsLeftOut,
+                                 kSceneResumed,
                                  kWaitingForDescription,
                                  kDescriptionKept,
                                  kRobotNote,

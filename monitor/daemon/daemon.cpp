@@ -64,23 +64,26 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       poses_(cell, participant_),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_),
-      recording_(open_recording(cell, options, poses_, recording_health_)) {
-  const TickLoopOptions loop{
-      .max_ticks = options.max_ticks,
-      .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
-                                      PoseReader::joints_a_batch(cell.scene))};
+      recording_(open_recording(cell, options, poses_, recording_health_)),
+      revision_(cell.scene.revision) {
+  const TickLoopOptions loop{.max_ticks = options.max_ticks,
+                             .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
+                                                             PoseReader::joints_a_batch(cell))};
   std::vector<ReportSink*> sinks{now_.queue.get()};
   if (recording_) sinks.push_back(&recording_->sink());
   if (now_.ros) sinks.push_back(now_.ros.get());
   loop_ = std::make_unique<TickLoop>(cell.scene, poses_, std::move(sinks), clock_, loop);
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
+  scene_thread_ =
+      std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
+  if (cell.commands.from.empty()) return;
+  commands_ = std::make_unique<CommandPort>(
+      cell, participant_, reports_.daemon(),
+      [this](QueuedCommand command) { return put(std::move(command)); },
+      [this] { return revision_.load(); });
 }
 
-// The thread that reads a cell goes on alone.
-Daemon::~Daemon() {
-  loop_ended_ = true;
-  if (changing_.joinable()) changing_.join();
-}
+Daemon::~Daemon() { end_commands(); }
 
 Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   OfCell parts{std::move(cell), nullptr, nullptr};
@@ -111,15 +114,15 @@ void Daemon::run(StopSignal& signal) {
   std::thread ticking([&] { tick_thread(done); });
   // The thread that waits for signals needs no priority of its own.
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
+  scene_thread_->start();
+  if (commands_) commands_->start();
   while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
     if (signal.hung_up()) read_again();
-    if (reading_ && reading_->done) change_cell();
     if (recording_) recording_->watch();
   }
   stop_ = true;
   ticking.join();
-  loop_ended_ = true;
-  if (changing_.joinable()) changing_.join();
+  end_commands();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
   reports_.finish();
@@ -137,46 +140,49 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
   done = true;
 }
 
-// Reading may take long where meshes are new, so that a thread does it.
-void Daemon::read_again() {
-  if (!options_.read_again) return;
-  if (reading_) return;
-  log_line(lines::kReading, cell_file_);
-  reading_ = std::make_shared<Reading>();
-  std::thread([reading = reading_, read = options_.read_again] {
-    reading->cell = read();
-    reading->done = true;
-  }).detach();
+// The scene thread answers through the port, so that the port ends last.
+void Daemon::end_commands() {
+  loop_ended_ = true;
+  if (!scene_thread_ || still_reads_) return;
+  still_reads_ = !scene_thread_->end();
+  if (!still_reads_) commands_.reset();
 }
 
-// Called again while a change is under way, until that has ended.
-void Daemon::change_cell() {
-  if (is_changing_) return;
-  if (changing_.joinable()) changing_.join();
-  std::optional<Cell> cell = std::move(reading_->cell);
-  reading_ = nullptr;
-  if (!cell) return log_line(lines::kSceneRefused, "its mistakes are listed above");
-  const std::uint64_t before = now_.cell->scene.revision;
-  if (cell->scene.revision == before) return log_line(lines::kSceneUnchanged);
-  if (recording_) {
-    return log_line(lines::kSceneRefused,
-                    "a recording has one cell, and this daemon records (--record)");
-  }
-  is_changing_ = true;
-  changing_ = std::thread([this, before, changed = std::make_shared<const Cell>(*std::move(cell))] {
-    name_thread("scene");
-    try {
-      const SceneChanger::Outcome outcome = changer_->change(changed, loop_ended_);
-      if (outcome.refusal.empty()) {
-        log_line(lines::kSceneChanged, changed->scene.revision, outcome.in_force_from, before);
-      } else {
-        log_line(lines::kSceneRefused, outcome.refusal);
-      }
-    } catch (const std::exception& error) {
-      log_line(lines::kSceneRefused, error.what());
+bool Daemon::put(QueuedCommand command) {
+  command.answer = [this, answer = std::move(command.answer)](const CommandResult& result) {
+    note_change(result);
+    if (answer) answer(result);
+  };
+  return scene_thread_->put(std::move(command));
+}
+
+// Returns false if nothing has changed.
+bool Daemon::note_change(const CommandResult& result) {
+  if (!result.done() || result.in_force_from == 0) return false;
+  const std::uint64_t before = revision_.exchange(result.scene_revision);
+  if (before == result.scene_revision) return false;
+  log_line(lines::kSceneChanged, result.scene_revision, result.in_force_from, before);
+  return true;
+}
+
+void Daemon::read_again() {
+  log_line(lines::kReading, cell_file_);
+  const auto answer = [this](const CommandResult& result) {
+    if (result.done()) {
+      if (!note_change(result)) log_line(lines::kSceneUnchanged);
+      return;
     }
-    is_changing_ = false;
-  });
+    const bool has_mistakes = result.status == CommandStatus::kRefused && options_.list_mistakes;
+    if (has_mistakes) options_.list_mistakes();
+    log_line(lines::kSceneRefused, has_mistakes ? "its mistakes are listed above" : result.reason);
+  };
+  if (!scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer}))
+    log_line(lines::kSceneRefused, "too many commands wait: send SIGHUP again later");
+}
+
+// A recording has one cell.
+std::string Daemon::keeps_its_cell() const {
+  return recording_ ? "a recording has one cell, and this daemon records (--record)" : "";
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {

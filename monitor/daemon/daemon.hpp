@@ -8,11 +8,11 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <thread>
 
 #include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/recording.hpp"
+#include "monitor/dds/command_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
 #include "monitor/loop/report_queue.hpp"
@@ -20,6 +20,7 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/ros_writer.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
+#include "monitor/scene_changes/scene_thread.hpp"
 
 namespace clearance {
 
@@ -29,10 +30,10 @@ struct DaemonOptions {
   int fifo_priority = 0;        // of the tick thread; the other threads get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
-  std::optional<int> cpu;  // processor that the tick thread is pinned to
-  // Reads the cell again after a SIGHUP, in a thread of its own. Nothing: it has mistakes, which
-  // were logged.
-  std::function<std::optional<Cell>()> read_again;
+  std::optional<int> cpu;      // processor that the tick thread is pinned to
+  CommanderOptions commander;  // how commands and SIGHUP change the cell
+  // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
+  std::function<void()> list_mistakes;
 };
 
 // The order of the members matters: ports and queues outlive the loop that uses them.
@@ -59,8 +60,12 @@ class Daemon : private CellParts {
   // without destroying this object.
   [[nodiscard]] bool recording_hangs() const noexcept;
   // After run(): true when a cell is still being read. The program must then end without destroying
-  // static objects.
-  [[nodiscard]] bool still_reads() const noexcept { return reading_ != nullptr; }
+  // this object and static ones.
+  [[nodiscard]] bool still_reads() const noexcept { return still_reads_; }
+
+  // Any thread while run() runs: the one way in for commands, wherever they come from. Returns
+  // false if too many wait.
+  [[nodiscard]] bool put(QueuedCommand command);
 
  private:
   // The parts that a change of the cell replaces.
@@ -69,16 +74,12 @@ class Daemon : private CellParts {
     std::unique_ptr<ReportQueue> queue;
     std::unique_ptr<RosWriter> ros;
   };
-  // A cell that a thread reads. The thread has this and nothing else of the daemon.
-  struct Reading {
-    std::atomic<bool> done{false};
-    std::optional<Cell> cell;
-  };
-
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
   void tick_thread(std::atomic<bool>& done);
+  void end_commands();
   void read_again();
-  void change_cell();
+  bool note_change(const CommandResult& result);
+  [[nodiscard]] std::string keeps_its_cell() const override;
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
   void follow() override;
   void abandon() override;
@@ -95,10 +96,11 @@ class Daemon : private CellParts {
   SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
   std::unique_ptr<SceneChanger> changer_;
-  std::shared_ptr<Reading> reading_;  // null: no cell is being read
-  std::thread changing_;
-  std::atomic<bool> is_changing_{false};
   std::atomic<bool> loop_ended_{false};
+  std::atomic<std::uint64_t> revision_;  // in force
+  std::unique_ptr<SceneThread> scene_thread_;
+  std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
+  bool still_reads_ = false;
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;
 };

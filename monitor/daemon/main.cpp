@@ -20,6 +20,7 @@
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/dds/robot_description.hpp"
+#include "monitor/scene_changes/kept_scene.hpp"
 
 namespace clearance {
 namespace {
@@ -28,13 +29,14 @@ constexpr const char* kFooter = R"(Exit status:
   0  stopped by SIGINT, SIGTERM or --ticks; or --check found nothing wrong. SIGHUP reads the cell again
   1  something else failed, or --check was stopped before its end
   2  wrong usage
-  3  the cell file is wrong
+  3  the cell file is wrong, or it has changed since the scene of --keep-scene was kept
   4  DDS could not be joined, or another daemon publishes this cell already
   5  the recording could not be begun (no folder, no permission, no regular file), or it is incomplete at the end
      (deleted, moved or changed by another program, or a disk that is full or too slow); the ticks continue
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
+  clearanced config/cells/two_arms.yaml --commands planner --keep-scene scene.yaml
   clearanced --urdf panda.urdf --srdf panda.srdf --interface default --ros2 markers)";
 
 // The command line, with its defaults.
@@ -46,7 +48,8 @@ struct Arguments {
   bool record_over = false;  // replace existing files
   RecordingArguments recording;
   bool gradients = false;
-  std::vector<std::string> ros;  // ROS 2 outputs in addition to the cell's
+  std::vector<std::string> ros;       // ROS 2 outputs in addition to the cell's
+  std::vector<std::string> commands;  // clients in addition to the cell's
   DaemonOptions daemon;
 };
 
@@ -70,6 +73,12 @@ void add_ros_outputs(const std::vector<std::string>& asked, RosOutputs& outputs)
   }
 }
 
+std::string is_client(const std::string& text) {
+  if (!text.empty() && text.size() <= kMaxSourceLength) return {};
+  return fmt::format("found '{}'; expected the name of a client with 1 to {} bytes", text,
+                     kMaxSourceLength);
+}
+
 void add_options(CLI::App& app, Arguments& arguments) {
   arguments.cell.add_to(app, true);
   app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
@@ -87,6 +96,13 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "minimum_distance, speed_scaling, or all; repeatable")
       ->allow_extra_args(false)
       ->check(is_ros_output);
+  app.add_option("--commands", arguments.commands,
+                 "Take commands of this client too, which change the scene (idl/COMMANDS.md); "
+                 "repeatable")
+      ->allow_extra_args(false)
+      ->check(is_client);
+  app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
+                 "Keep the changed scene in this file, and begin with it after a crash");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
   app.add_option("--priority", arguments.daemon.fifo_priority,
@@ -116,18 +132,61 @@ int check_only(const CellArguments& cell) {
   return kOk;
 }
 
+// What the command line adds to the cell, and to every changed one.
+void finish(const Arguments& arguments, Cell& cell) {
+  cell.scene.gradients = cell.scene.gradients || arguments.gradients;
+  add_ros_outputs(arguments.ros, cell.ros.outputs);
+  for (const std::string& client : arguments.commands) {
+    std::vector<std::string>& from = cell.commands.from;
+    if (std::ranges::find(from, client) == from.end()) from.push_back(client);
+  }
+}
+
 // The summary goes to stdout at the end; the log goes to stderr during the run.
 std::optional<Cell> read_cell(const Arguments& arguments) {
   auto cell = cell_or_errors(arguments.cell.read());
-  if (!cell) return std::nullopt;
-  cell->scene.gradients = cell->scene.gradients || arguments.gradients;
-  add_ros_outputs(arguments.ros, cell->ros.outputs);
+  if (cell) finish(arguments, *cell);
   return cell;
+}
+
+// Begins with the scene that was kept, if there is one of this cell file. Returns an exit code if
+// the kept scene cannot be used.
+std::optional<int> resume(Arguments& arguments, Cell& cell) {
+  CommanderOptions& commander = arguments.daemon.commander;
+  commander.began_with = cell.scene.revision;
+  if (commander.keep_scene.empty()) return std::nullopt;
+  const std::string file = commander.keep_scene.string();
+  auto read = read_kept_scene(commander.keep_scene);
+  if (const auto* reason = std::get_if<std::string>(&read)) {
+    print(stderr, "clearanced: --keep-scene: {}\n", *reason);
+    return kBadCell;
+  }
+  const auto& kept = std::get<std::optional<KeptScene>>(read);
+  if (!kept) return std::nullopt;
+  if (kept->began_with != cell.scene.revision) {
+    print(stderr,
+          "clearanced: --keep-scene: the changes in {} began with revision {:016x} of the cell, "
+          "which has the revision {:016x} now. Remove that file to begin with the cell, or bring "
+          "the cell back\n",
+          file, kept->began_with, cell.scene.revision);
+    return kBadCell;
+  }
+  auto resumed = cell_or_errors(parse_cell(kept->yaml, cell.file, arguments.cell.reading()));
+  if (!resumed) return kBadCell;
+  finish(arguments, *resumed);
+  cell = *std::move(resumed);
+  log_line(lines::kSceneResumed, file, kept->began_with);
+  return std::nullopt;
 }
 
 int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   arguments.daemon.dds = arguments.dds.resolve(cell);
-  arguments.daemon.read_again = [arguments] { return read_cell(arguments); };
+  CommanderOptions& commander = arguments.daemon.commander;
+  commander.reading = arguments.cell.reading();
+  commander.finish = [arguments](Cell& changed) { finish(arguments, changed); };
+  if (arguments.cell.cell.empty())
+    commander.own_text = [of = arguments.cell] { return of.robot_text(); };
+  arguments.daemon.list_mistakes = [of = arguments.cell] { (void)cell_or_errors(of.read()); };
   route_dds_log();
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
@@ -177,7 +236,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (!arguments.cell.description_topic.empty()) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }
-  const auto cell = read_cell(arguments);
+  auto cell = read_cell(arguments);
   if (!cell) return kBadCell;
   if (arguments.check) {
     print_summary(cell->scene);
@@ -195,6 +254,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     arguments.daemon.record_file = *record_file;
   }
   arguments.daemon.recording = arguments.recording.options(arguments.record_over);
+  if (const auto status = resume(arguments, *cell)) return *status;
   return run_daemon(*cell, arguments, signal);
 }
 

@@ -30,9 +30,10 @@ std::size_t slots(std::size_t bytes_a_slot) {
 }
 
 // A slot of a report holds at most all pairs, a slot of a batch as many poses as the reader takes.
-ReportQueueOptions queue_options(const Scene& scene) {
-  const std::size_t samples = PoseReader::samples_a_batch(scene);
-  const std::size_t joints = PoseReader::joints_a_batch(scene);
+ReportQueueOptions queue_options(const Cell& cell) {
+  const Scene& scene = cell.scene;
+  const std::size_t samples = PoseReader::samples_a_batch(cell);
+  const std::size_t joints = PoseReader::joints_a_batch(cell);
   return {.reports = slots(sizeof(PairReport) * scene.pairs.size() +
                            sizeof(PairSeparation) * separated_count(scene).pairs),
           .inputs = slots(sizeof(PoseSample) * samples + sizeof(JointSample) * joints),
@@ -49,7 +50,7 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       file_(file.string()),
       poses_(poses),
       health_(health),
-      queue_(cell.scene, queue_options(cell.scene)),
+      queue_(cell.scene, queue_options(cell)),
       recorder_(file, cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   if (!recorder_.without_files().empty()) {

@@ -63,14 +63,14 @@ std::string ros_domain() {
 
 }  // namespace
 
-std::size_t PoseReader::samples_a_batch(const Scene& scene) noexcept {
+std::size_t PoseReader::samples_a_batch(const Cell& cell) noexcept {
   // A batch may have several poses of one object: a sensor may be faster than its sender.
-  return std::min<std::size_t>(2 * capacity_for(scene).objects + 64, clearance_msg_kMaxPoses);
+  return std::min<std::size_t>(2 * capacity_for(cell).objects + 64, clearance_msg_kMaxPoses);
 }
 
-std::size_t PoseReader::joints_a_batch(const Scene& scene) noexcept {
-  if (scene.variables.empty()) return 0;
-  return std::min<std::size_t>(2 * capacity_for(scene).variables + 64, clearance_msg_kMaxJoints);
+std::size_t PoseReader::joints_a_batch(const Cell& cell) noexcept {
+  if (cell.scene.variables.empty()) return 0;
+  return std::min<std::size_t>(2 * capacity_for(cell).variables + 64, clearance_msg_kMaxJoints);
 }
 
 // Reserves all memory before the thread starts. Later, only what is heard for the first time
@@ -81,8 +81,8 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
       where_(participant.where()),
       intake_(cell,
               {.admits_sources = true,
-               .most_samples = samples_a_batch(cell.scene),
-               .most_joints = joints_a_batch(cell.scene),
+               .most_samples = samples_a_batch(cell),
+               .most_joints = joints_a_batch(cell),
                .writer_name = [this](std::uint64_t writer) { return guid_of(writer); }},
               [this](PoseBatch& batch) { return hand_over(batch); }),
       ros_(participant, intake_),
@@ -92,8 +92,8 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant)
   if (!cell.scene.variables.empty()) open(participant, TopicKind::kJointStates);
   if (intake_.hears_ros()) wait_.add(ros_.present().reader());
   ring_.prepare([&](PoseBatch& slot) {
-    slot.samples.resize(samples_a_batch(cell.scene));
-    slot.joints.resize(joints_a_batch(cell.scene));
+    slot.samples.resize(samples_a_batch(cell));
+    slot.joints.resize(joints_a_batch(cell));
   });
 }
 

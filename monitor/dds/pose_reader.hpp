@@ -24,8 +24,8 @@ namespace clearance {
 class PoseReader final : public PoseSource {
  public:
   // The largest numbers of poses and of joints in a batch. More are counted and not used.
-  [[nodiscard]] static std::size_t samples_a_batch(const Scene& scene) noexcept;
-  [[nodiscard]] static std::size_t joints_a_batch(const Scene& scene) noexcept;
+  [[nodiscard]] static std::size_t samples_a_batch(const Cell& cell) noexcept;
+  [[nodiscard]] static std::size_t joints_a_batch(const Cell& cell) noexcept;
   // The number of batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
 

@@ -48,6 +48,8 @@ class ReportWriter {
   // After the last tick: writes the queue.
   void finish();
 
+  // This daemon, as in all its messages.
+  [[nodiscard]] std::uint64_t daemon() const noexcept { return identity_.id; }
   // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }

@@ -82,6 +82,7 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 
 // Runs one tick and gives its report to every sink.
 void TickLoop::tick_once() noexcept {
+  answer_question();
   follow_offer();
   take_in();
   const TickTime time = time_.read(clock_);
@@ -101,6 +102,24 @@ void TickLoop::tick_once() noexcept {
 bool TickLoop::offer(Successor& successor) noexcept {
   Successor* none = nullptr;
   return offered_.compare_exchange_strong(none, &successor, std::memory_order_acq_rel);
+}
+
+bool TickLoop::ask(PoseQuestion& question) noexcept {
+  PoseQuestion* none = nullptr;
+  return asked_.compare_exchange_strong(none, &question, std::memory_order_acq_rel);
+}
+
+void TickLoop::take_back(PoseQuestion& question) noexcept {
+  PoseQuestion* asked = &question;
+  asked_.compare_exchange_strong(asked, nullptr, std::memory_order_acq_rel);
+}
+
+// Its owner may delete the question as soon as it is answered.
+void TickLoop::answer_question() noexcept {
+  PoseQuestion* const question = asked_.load(std::memory_order_acquire);
+  if (question == nullptr) return;
+  asked_.store(nullptr, std::memory_order_release);
+  question->answer(*monitor_);
 }
 
 // Between two ticks. An offer that has failed is dropped.

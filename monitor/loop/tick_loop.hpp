@@ -11,6 +11,7 @@
 
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/loop/pose_question.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/loop/successor.hpp"
 #include "monitor/monitor.hpp"
@@ -49,6 +50,13 @@ class TickLoop {
   // successor.
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
 
+  // Any one thread: asks where bodies of the present scene are. The tick thread answers between two
+  // ticks, without a lock and without memory. Returns false while another question waits. The
+  // question must live until it is answered or taken back.
+  bool ask(PoseQuestion& question) noexcept;
+  // Once the loop has ended: no answer comes any more.
+  void take_back(PoseQuestion& question) noexcept;
+
   // Runs in the calling thread until `stop` is set or `max_ticks` are done.
   void run(const std::atomic<bool>& stop) noexcept;
 
@@ -58,6 +66,7 @@ class TickLoop {
  private:
   struct Former;
   void follow_offer() noexcept;
+  void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
@@ -72,6 +81,7 @@ class TickLoop {
   const Scene* scene_;
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
+  std::atomic<PoseQuestion*> asked_{nullptr};
   // How the ids of former scenes are passed on. The latest one is at changes_ - 1, modulo their
   // number.
   struct Former {

@@ -28,8 +28,7 @@ bool same_ros_outputs(const Cell& before, const Cell& now) {
 }  // namespace
 
 // Readers of topics are made when the daemon starts.
-std::optional<std::string> restart_needed(const Cell& before, const Cell& now,
-                                          const SceneCapacity& capacity) {
+std::optional<std::string> restart_needed(const Cell& before, const Cell& now) {
   const auto restart = [](const std::string& what) { return what + ", which takes a restart"; };
   const Scene &old = before.scene, &scene = now.scene;
   if (old.name != scene.name)
@@ -45,16 +44,27 @@ std::optional<std::string> restart_needed(const Cell& before, const Cell& now,
   if (old.robots.empty() && !scene.robots.empty()) return restart("the cell gets its first robot");
   if (!follows_frames(old) && follows_frames(scene))
     return restart("an object or a robot follows a frame of tf, and none did before");
-  if (scene.objects.size() > capacity.objects) {
-    return restart(fmt::format("it has {} objects, and the running daemon has room for {}",
-                               scene.objects.size(), capacity.objects));
-  }
-  if (scene.variables.size() > capacity.variables) {
-    return restart(
-        fmt::format("its joints have {} variables, and the running daemon has room for {}",
-                    scene.variables.size(), capacity.variables));
-  }
+  if (before.commands != now.commands) return restart("'commands' change");
+  if (before.capacity != now.capacity) return restart("the 'capacity' changes");
   return std::nullopt;
+}
+
+std::optional<std::string> beyond_capacity(const Cell& now, const SceneCapacity& capacity) {
+  const auto beyond = [](std::size_t count, std::size_t most, std::string_view what,
+                         std::string_view key) -> std::optional<std::string> {
+    if (count <= most) return std::nullopt;
+    return fmt::format(
+        "it has {} {}, and {} are the most that the daemon was started for (capacity: {})", count,
+        what, most, key);
+  };
+  const Scene& scene = now.scene;
+  if (auto reason = beyond(scene.objects.size(), capacity.objects, "objects", "objects"))
+    return reason;
+  if (auto reason =
+          beyond(scene.variables.size(), capacity.variables, "joint variables", "objects"))
+    return reason;
+  if (auto reason = beyond(parts_in(scene), capacity.parts, "parts", "parts")) return reason;
+  return beyond(scene.pairs.size(), capacity.pairs, "pairs", "pairs");
 }
 
 }  // namespace clearance

@@ -12,15 +12,25 @@ constexpr int kAttempts = 3;
 // The preparing thread looks for new ticks so often.
 constexpr std::chrono::microseconds kLook{50};
 
-SceneChanger::Outcome refused(std::string why) {
-  return {.refusal = std::move(why), .in_force_from = 0};
+SceneChanger::Outcome refused(CommandStatus status, std::string why) {
+  return {.status = status, .refusal = std::move(why), .in_force_from = 0};
 }
 
 }  // namespace
 
+SceneChanger::Outcome SceneChanger::check(const Cell& cell) const {
+  if (auto reason = parts_.keeps_its_cell(); !reason.empty())
+    return refused(CommandStatus::kNeedsRestart, std::move(reason));
+  if (auto reason = restart_needed(*cell_, cell))
+    return refused(CommandStatus::kNeedsRestart, *std::move(reason));
+  if (auto reason = beyond_capacity(cell, capacity_))
+    return refused(CommandStatus::kBeyondCapacity, *std::move(reason));
+  return {};
+}
+
 SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
                                            const std::atomic<bool>& loop_ended) {
-  if (auto reason = restart_needed(*cell_, *cell, capacity_)) return refused(*std::move(reason));
+  if (Outcome checked = check(*cell); !checked.refusal.empty()) return checked;
   const std::vector<ReportSink*> sinks = parts_.prepare(cell);
   try {
     return succeed(std::move(cell), sinks, loop_ended);
@@ -41,14 +51,16 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
     if (state != Successor::State::kSucceeded) continue;
     parts_.follow();
     std::swap(cell_, cell);
-    return {.refusal = "", .in_force_from = successor.in_force_from()};
+    return {.in_force_from = successor.in_force_from()};
   }
   parts_.abandon();
   if (state == Successor::State::kTooManyNames)
-    return refused("both cells together name more sources than the daemon has places for");
+    return refused(CommandStatus::kBeyondCapacity,
+                   "both cells together name more sources than the daemon has places for");
   if (state == Successor::State::kTooSlow)
-    return refused("its pairs could not be evaluated as fast as the loop ticks");
-  return refused("the loop has ended");
+    return refused(CommandStatus::kTooSlow,
+                   "its pairs could not be evaluated as fast as the loop ticks");
+  return refused(CommandStatus::kEnding, "the loop has ended");
 }
 
 // Waits until the loop has let go of the successor, too.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/command.hpp"
 #include "monitor/loop/successor.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/scene_changes/restart_needed.hpp"
@@ -20,6 +21,8 @@ namespace clearance {
 class CellParts {
  public:
   virtual ~CellParts() = default;
+  // Returns why the program keeps its cell, as the end of a sentence. Empty: it may change.
+  [[nodiscard]] virtual std::string keeps_its_cell() const { return {}; }
   // Makes the sinks of the changed cell. They get no report yet.
   virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
@@ -34,12 +37,15 @@ class SceneChanger {
  public:
   // The loop ticks `cell`. Loop and parts must outlive this.
   SceneChanger(TickLoop& loop, std::shared_ptr<const Cell> cell, CellParts& parts)
-      : loop_(loop), cell_(std::move(cell)), capacity_(capacity_for(cell_->scene)), parts_(parts) {}
+      : loop_(loop), cell_(std::move(cell)), capacity_(capacity_for(*cell_)), parts_(parts) {}
 
   struct Outcome {
-    std::string refusal;              // the end of a sentence that says why not; empty: changed
+    CommandStatus status = CommandStatus::kDone;
+    std::string refusal = {};         // the end of a sentence that says why not; empty: changed
     std::uint64_t in_force_from = 0;  // the first cycle of the changed cell
   };
+  // Returns why this cell cannot follow the present one in this loop, before anything is done.
+  [[nodiscard]] Outcome check(const Cell& cell) const;
   // Returns when the loop ticks this cell, or when it is refused; then the cell before stays in
   // force. `loop_ended` is set once the thread of the loop has ended, and ends the wait for it.
   // What prepare() throws comes through, with the cell before in force.

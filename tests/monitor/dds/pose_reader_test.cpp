@@ -119,7 +119,7 @@ TEST(PoseReader, CutsABatchThatIsTooLargeForTheCell) {
   Port port;
   Sender sender(port.cell, port.dds, "arm");
   port.wait_for(sender);
-  const std::size_t room = PoseReader::samples_a_batch(port.scene);
+  const std::size_t room = PoseReader::samples_a_batch(port.cell);
   sender.send(1, room + 5);
   sender.send(2, 1);
   const PoseBatch* batch = nullptr;

@@ -1,0 +1,74 @@
+// Decides which commands are done: by whom they are sent, in which order, and what was answered
+// before. It neither knows DDS nor looks at the changes.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "monitor/command.hpp"
+
+namespace clearance {
+
+// Any thread but that of the tick.
+class CommandLedger {
+ public:
+  // The number of a client's last requests whose results are known, and of the programs that may
+  // send under its name before more are not told apart.
+  static constexpr std::size_t kKnown = 64, kWriters = 8;
+
+  // `clients`: those whose commands are taken.
+  explicit CommandLedger(const std::vector<std::string>& clients);
+
+  struct Request {
+    std::string client;
+    std::uint64_t number = 0;
+    std::uint64_t content = 0;  // a hash of the whole command
+  };
+  enum class Next : std::uint8_t {
+    kDo,     // it is new, and pending from now on
+    kWait,   // it is pending: its result follows
+    kAnswer  // with this result
+  };
+  struct Verdict {
+    Next next = Next::kDo;
+    CommandResult result = {};
+  };
+
+  // Tells whether this client may command, and whether this writer is the only one under its name.
+  // Returns the refusal. To be called for every message, also for one that is malformed.
+  [[nodiscard]] std::optional<CommandResult> refuse_sender(const Request& request,
+                                                           std::uint64_t writer);
+  // For a request that refuse_sender() lets pass. kDo must be followed by answer() or withdraw().
+  [[nodiscard]] Verdict admit(const Request& request);
+  // The result of a pending request, which is known from now on.
+  void answer(const CommandResult& result);
+  // The pending request was not begun, and counts as not sent.
+  void withdraw(const Request& request);
+  // Forgets all writers except these, which still exist.
+  void keep_writers(std::span<const std::uint64_t> writers);
+
+ private:
+  struct Known {
+    std::uint64_t number = 0, content = 0;
+    std::optional<CommandResult> result = {};  // none: pending
+  };
+  struct Client {
+    std::vector<std::uint64_t> writers = {};
+    std::deque<Known> known = {};  // ascending by number
+    std::uint64_t forgotten = 0;   // the largest number whose result is not known any more
+    [[nodiscard]] std::uint64_t last() const noexcept {
+      return known.empty() ? forgotten : known.back().number;
+    }
+  };
+  std::mutex mutex_;
+  std::map<std::string, Client> clients_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,49 @@
+// Commands that wait until the scene thread does them. DDS, SIGHUP and MoveIt's messages all enter
+// here.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <optional>
+
+#include "monitor/command.hpp"
+
+namespace clearance {
+
+struct QueuedCommand {
+  Command command;
+  // The daemon's own: `client` is not checked, and files may lie anywhere.
+  bool is_own = false;
+  // Gets the result, in the scene thread.
+  std::function<void(const CommandResult&)> answer;
+};
+
+// Any thread but that of the tick.
+class CommandQueue {
+ public:
+  // The number of commands that may wait, and the bytes of their texts and files. One command may
+  // always wait, however large it is.
+  static constexpr std::size_t kMost = 64, kMostBytes = 128 << 20;
+
+  // Returns false, and drops it, if too much waits, or after close().
+  [[nodiscard]] bool put(QueuedCommand command);
+  // Waits for a command. Returns nothing after close().
+  [[nodiscard]] std::optional<QueuedCommand> next();
+  // What waits is dropped.
+  void close();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<QueuedCommand> waiting_;
+  std::size_t bytes_ = 0;
+  bool closed_ = false;
+};
+
+// The bytes of the texts and files of a command, roughly.
+[[nodiscard]] std::size_t bytes_of(const Command& command);
+
+}  // namespace clearance

@@ -1,0 +1,14 @@
+// Files that are there wholly or not at all, also after the machine has crashed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace clearance {
+
+// Writes a new file beside it, has the disk keep that, and gives it this name. Returns the reason
+// why that failed, as a sentence; then the former file is unchanged. Empty: it is kept.
+[[nodiscard]] std::string write_durably(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace clearance

@@ -1,0 +1,35 @@
+// How deep an object that is attached overlaps what it may touch from then on.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "config/edit/cell_change.hpp"
+#include "config/scene/scene.hpp"
+#include "monitor/scene_changes/present_poses.hpp"
+
+namespace clearance {
+
+// The depth by which an attached object may overlap if the change states none, m. What the parts of
+// both objects exceed their meshes is added.
+inline constexpr double kDefaultOverlap = 1e-3;
+
+// Names of all objects that the attached one is not watched against: those that are rigidly
+// connected to its carrier, and those that it may touch. Sorted.
+[[nodiscard]] std::vector<std::string> left_out_with(const Attach& change, const Scene& scene);
+
+struct Overlap {
+  std::string object;
+  double depth = 0.0;  // m
+};
+
+// Returns the deepest overlap of an object with one of these. `poses` has the world's poses of the
+// others and of the carrier at one instant; those that are not usable are left out, except the
+// carrier's own parts, which need none. `mesh_errors` has, by object, how far parts exceed meshes,
+// m, and lowers the depth.
+[[nodiscard]] std::optional<Overlap> deepest_overlap(
+    const Attach& change, const Scene& scene, const std::vector<std::string>& others,
+    const PresentPoses& poses, const std::map<std::string, double>& mesh_errors);
+
+}  // namespace clearance

@@ -1,0 +1,344 @@
+#include "monitor/scene_changes/scene_commander.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <exception>
+#include <system_error>
+#include <type_traits>
+#include <utility>
+
+#include "config/text/file_bytes.hpp"
+#include "monitor/scene_changes/kept_scene.hpp"
+#include "monitor/scene_changes/overlap.hpp"
+
+namespace clearance {
+namespace {
+
+// The text and the files that it names. A file that has gone counts as empty.
+std::size_t bytes_of(const Cell& cell) {
+  std::size_t bytes = cell.yaml.size();
+  for (const std::filesystem::path& file : cell.files) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(file, error);
+    if (!error) bytes += size;
+  }
+  return bytes;
+}
+
+bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto real_file = std::filesystem::weakly_canonical(file, error);
+  if (error) return false;
+  const auto real_folder = std::filesystem::weakly_canonical(folder, error);
+  if (error) return false;
+  const auto end = std::ranges::mismatch(real_folder, real_file).in1;
+  return end == real_folder.end() && real_file != real_folder;
+}
+
+// The name of the object that a change adds or places, or nothing.
+struct PlacedObject {
+  std::string operator()(const AddFromTemplate& change) const { return change.object; }
+  std::string operator()(const Place& change) const { return change.object; }
+  std::string operator()(const Detach& change) const { return change.object; }
+  template <class Change>
+  std::string operator()(const Change&) const {
+    return {};
+  }
+};
+
+CommandRefusal no_pose(std::size_t change, const std::string& object, std::string reason) {
+  return {CommandStatus::kNoPose, change, fmt::format("objects[{}].pose", object),
+          std::move(reason)};
+}
+
+}  // namespace
+
+SceneCommander::SceneCommander(SceneChanger& changer, TickLoop& loop,
+                               const std::atomic<bool>& loop_ended, CommanderOptions options)
+    : changer_(changer),
+      loop_(loop),
+      loop_ended_(loop_ended),
+      options_(std::move(options)),
+      most_bytes_(bytes_of(changer.cell()) + changer.cell().capacity.bytes),
+      sent_(changer.cell().file) {
+  options_.reading.mesh_errors = &mesh_errors_;
+}
+
+CommandResult SceneCommander::execute(const Command& command, bool is_own,
+                                      const std::function<bool()>& may_change) {
+  CommandResult result{.client = command.client, .request = command.request};
+  Work work{command, is_own, command.changes, options_.began_with};
+  Refusal refusal;
+  try {
+    refusal = do_all(work, may_change, result);
+  } catch (const std::exception& error) {
+    refusal = CommandRefusal{CommandStatus::kFailed, 0, "", error.what()};
+    editor_.reset();
+  }
+  if (refusal) {
+    sent_.take_back();
+    result.status = refusal->status;
+    result.change = static_cast<std::uint32_t>(refusal->change);
+    result.path = std::move(refusal->path);
+    result.reason = std::move(refusal->reason);
+  }
+  if (refusal || !command.dry_run) {
+    result.scene_revision = revision();
+    result.in_force_from = in_force_from_;
+  }
+  return result;
+}
+
+SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<bool()>& may_change,
+                                               CommandResult& result) {
+  const std::uint64_t known = work.command.scene_revision;
+  if (known != 0 && known != revision()) {
+    return CommandRefusal{CommandStatus::kOtherRevision, 0, "",
+                          fmt::format("found the revision {:016x}; expected {:016x}, which is in "
+                                      "force",
+                                      known, revision())};
+  }
+  if (Refusal refusal = take_files(work)) return refusal;
+  if (Refusal refusal = take_texts(work)) return refusal;
+  if (Refusal refusal = open(work)) return refusal;
+  if (Refusal refusal = take_poses(work)) return refusal;
+  auto proposed = editor_->propose(work.changes);
+  if (auto* refused = std::get_if<EditRefusal>(&proposed)) {
+    return CommandRefusal{CommandStatus::kRefused, refused->change, std::move(refused->path),
+                          std::move(refused->reason)};
+  }
+  Cell cell = std::get<Cell>(std::move(proposed));
+  if (options_.finish) options_.finish(cell);
+  Refusal refusal = check(work, cell);
+  if (!refusal && work.command.dry_run) {
+    result.scene_revision = cell.scene.revision;
+    sent_.take_back();
+    editor_->take_back();
+    return std::nullopt;
+  }
+  if (!refusal && !may_change())
+    refusal = CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
+  if (!refusal) refusal = put_in_force(work, std::move(cell));
+  if (refusal) {
+    editor_->take_back();
+  } else {
+    editor_->keep();
+  }
+  return refusal;
+}
+
+// If the text in force cannot be read any more, because a file of it has gone, a whole cell can
+// still replace it.
+SceneCommander::Refusal SceneCommander::open(const Work& work) {
+  if (editor_) return std::nullopt;
+  const Cell& cell = changer_.cell();
+  auto opened = CellEditor::open(cell.yaml, cell.file, options_.reading);
+  const auto* whole =
+      work.changes.empty() ? nullptr : std::get_if<ReplaceCell>(&work.changes.front());
+  if (std::holds_alternative<std::vector<CellError>>(opened) && whole != nullptr)
+    opened = CellEditor::open(whole->yaml, cell.file, options_.reading);
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&opened)) {
+    return CommandRefusal{whole == nullptr ? CommandStatus::kFileRefused : CommandStatus::kRefused,
+                          0, "", errors->front().text};
+  }
+  editor_.emplace(std::get<CellEditor>(std::move(opened)));
+  return std::nullopt;
+}
+
+SceneCommander::Refusal SceneCommander::take_files(Work& work) {
+  if (work.command.files.empty()) return std::nullopt;
+  auto kept = sent_.keep(work.command.files);
+  if (auto* reason = std::get_if<std::string>(&kept))
+    return CommandRefusal{CommandStatus::kFileRefused, 0, "files", std::move(*reason)};
+  const auto& paths = std::get<std::map<std::string, std::string>>(kept);
+  for (CellChange& change : work.changes) {
+    if (auto* added = std::get_if<AddObject>(&change)) added->yaml = with_paths(added->yaml, paths);
+    if (auto* whole = std::get_if<ReplaceCell>(&change))
+      whole->yaml = with_paths(whole->yaml, paths);
+  }
+  return std::nullopt;
+}
+
+SceneCommander::Refusal SceneCommander::take_texts(Work& work) {
+  const std::filesystem::path& own = changer_.cell().file;
+  for (std::size_t i = 0; i < work.changes.size(); ++i) {
+    const auto* again = std::get_if<ReadCellAgain>(&work.changes[i]);
+    if (again == nullptr) continue;
+    const bool is_own = again->file.empty();
+    const std::filesystem::path file = is_own ? own : own.parent_path() / again->file;
+    const auto refused = [&](std::string reason) {
+      return CommandRefusal{CommandStatus::kFileRefused, i, "file", std::move(reason)};
+    };
+    if (!is_own && !work.is_own && !is_allowed(file)) {
+      return refused(
+          fmt::format("found '{}'; expected a file below one of the folders that the "
+                      "cell states (commands: folders)",
+                      file.string()));
+    }
+    std::string text;
+    if (is_own && options_.own_text) {
+      text = options_.own_text();
+    } else {
+      auto read = read_bytes(file.string());
+      if (auto* fault = std::get_if<FileFault>(&read)) return refused(std::move(fault->reason));
+      text = std::get<std::string>(std::move(read));
+    }
+    work.changes[i] = ReplaceCell{std::move(text)};
+    if (!is_own || options_.keep_scene.empty()) continue;
+    if (Refusal refusal = open(work)) return refusal;
+    const auto read = editor_->dry_run(std::span(work.changes).subspan(i, 1));
+    if (const auto* cell = std::get_if<Cell>(&read)) work.began_with = cell->scene.revision;
+  }
+  return std::nullopt;
+}
+
+// An earlier change of the list may say where a body is: then the cell that it leads to has it as a
+// fixed object.
+std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& name,
+                                                           const Work& work, std::size_t change,
+                                                           const PresentPoses& poses) {
+  const auto before = std::span(work.changes).first(change);
+  const auto places = [&](const CellChange& each) {
+    return std::visit(PlacedObject{}, each) == name || std::holds_alternative<AddObject>(each) ||
+           std::holds_alternative<ReplaceCell>(each);
+  };
+  if (std::ranges::any_of(before, places)) {
+    const auto read = editor_->dry_run(before);
+    if (const auto* refused = std::get_if<EditRefusal>(&read)) {
+      return CommandRefusal{CommandStatus::kRefused, refused->change, refused->path,
+                            refused->reason};
+    }
+    const Scene& scene = std::get<Cell>(read).scene;
+    const auto object = std::ranges::find(scene.objects, name, &Object::name);
+    if (object != scene.objects.end() && object->fixed) return object->world_from_object;
+  }
+  const auto pose = poses.find(name);
+  if (pose == poses.end()) {
+    return no_pose(
+        change, name,
+        fmt::format("found no object or link '{}' in the scene; expected one, or a pose", name));
+  }
+  if (pose->second.state == PresentPose::State::kUsable) return pose->second.world_from_body;
+  return no_pose(change, name,
+                 fmt::format("found that '{}' is not known to be anywhere, since {}; expected a "
+                             "pose that is known now, or one in the change",
+                             name, why_unusable(pose->second)));
+}
+
+// All poses are of one tick, so that a carrier that moves takes the object with it exactly.
+SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
+  std::vector<std::string> names;
+  for (const CellChange& change : work.changes) {
+    if (const auto* attach = std::get_if<Attach>(&change);
+        attach != nullptr && !attach->carrier_from_object) {
+      names.insert(names.end(), {attach->object, attach->to});
+    }
+    if (const auto* detach = std::get_if<Detach>(&change);
+        detach != nullptr && !detach->world_from_object) {
+      names.push_back(detach->object);
+    }
+  }
+  if (names.empty()) return std::nullopt;
+  const auto poses = present_poses(names, changer_.cell().scene, loop_, loop_ended_);
+  if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
+  for (std::size_t i = 0; i < work.changes.size(); ++i) {
+    if (auto* attach = std::get_if<Attach>(&work.changes[i]);
+        attach != nullptr && !attach->carrier_from_object) {
+      auto object = pose_of(attach->object, work, i, *poses);
+      if (auto* refusal = std::get_if<CommandRefusal>(&object)) return std::move(*refusal);
+      auto carrier = pose_of(attach->to, work, i, *poses);
+      if (auto* refusal = std::get_if<CommandRefusal>(&carrier)) return std::move(*refusal);
+      attach->carrier_from_object = a_from_b(std::get<Pose>(carrier), std::get<Pose>(object));
+    }
+    if (auto* detach = std::get_if<Detach>(&work.changes[i]);
+        detach != nullptr && !detach->world_from_object) {
+      auto object = pose_of(detach->object, work, i, *poses);
+      if (auto* refusal = std::get_if<CommandRefusal>(&object)) return std::move(*refusal);
+      detach->world_from_object = std::get<Pose>(object);
+    }
+  }
+  return std::nullopt;
+}
+
+bool SceneCommander::is_allowed(const std::filesystem::path& file) const {
+  return is_below(file, sent_.folder()) ||
+         std::ranges::any_of(changer_.cell().commands.folders,
+                             [&](const auto& folder) { return is_below(file, folder); });
+}
+
+SceneCommander::Refusal SceneCommander::check(const Work& work, const Cell& cell) {
+  if (!work.is_own) {
+    if (Refusal refusal = check_files(cell)) return refusal;
+  }
+  if (const std::size_t bytes = bytes_of(cell); bytes > most_bytes_) {
+    return CommandRefusal{CommandStatus::kBeyondCapacity, 0, "",
+                          fmt::format("found {} bytes of the cell and its files; expected at most "
+                                      "{} (capacity: bytes)",
+                                      bytes, most_bytes_)};
+  }
+  if (cell.scene.revision == revision()) return std::nullopt;
+  if (auto checked = changer_.check(cell); !checked.refusal.empty())
+    return CommandRefusal{checked.status, 0, "", std::move(checked.refusal)};
+  return check_overlaps(work, cell);
+}
+
+// Files that the cell in force names are the daemon's.
+SceneCommander::Refusal SceneCommander::check_files(const Cell& cell) const {
+  const auto& known = changer_.cell().files;
+  for (const std::filesystem::path& file : cell.files) {
+    if (std::ranges::find(known, file) != known.end() || is_allowed(file)) continue;
+    return CommandRefusal{CommandStatus::kFileRefused, 0, "file",
+                          fmt::format("found '{}'; expected a file below one of the folders that "
+                                      "the cell states (commands: folders), or one that is sent",
+                                      file.string())};
+  }
+  return std::nullopt;
+}
+
+SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const Cell& cell) {
+  for (std::size_t i = 0; i < work.changes.size(); ++i) {
+    const auto* attach = std::get_if<Attach>(&work.changes[i]);
+    if (attach == nullptr) continue;
+    const std::vector<std::string> others = left_out_with(*attach, cell.scene);
+    const auto poses = present_poses(others, changer_.cell().scene, loop_, loop_ended_);
+    if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
+    const double most = attach->overlap.value_or(kDefaultOverlap);
+    const auto deepest = deepest_overlap(*attach, cell.scene, others, *poses, mesh_errors_);
+    if (!deepest || deepest->depth <= most) continue;
+    return CommandRefusal{CommandStatus::kOverlap, i,
+                          fmt::format("objects[{}].attached.pose", attach->object),
+                          fmt::format("found that it overlaps '{}' by {:.4g} m; expected at most "
+                                      "{:.4g} m (overlap)",
+                                      deepest->object, deepest->depth, most)};
+  }
+  return std::nullopt;
+}
+
+// The scene is kept before it is in force: what a client was told is then never lost. If the loop
+// refuses it, the former one is kept again.
+SceneCommander::Refusal SceneCommander::put_in_force(const Work& work, Cell cell) {
+  const auto keep = [&](std::uint64_t began_with, const std::string& yaml) {
+    return options_.keep_scene.empty() ? std::string()
+                                       : keep_scene(options_.keep_scene, {began_with, yaml});
+  };
+  if (std::string reason = keep(work.began_with, cell.yaml); !reason.empty())
+    return CommandRefusal{CommandStatus::kFailed, 0, "", std::move(reason)};
+  if (cell.scene.revision == revision()) {
+    options_.began_with = work.began_with;
+    return std::nullopt;
+  }
+  const std::string former = changer_.cell().yaml;
+  const auto outcome = changer_.change(std::make_shared<const Cell>(std::move(cell)), loop_ended_);
+  if (!outcome.refusal.empty()) {
+    std::string reason = outcome.refusal;
+    if (std::string also = keep(options_.began_with, former); !also.empty())
+      reason += "; and " + also;
+    return CommandRefusal{outcome.status, 0, "", std::move(reason)};
+  }
+  options_.began_with = work.began_with;
+  in_force_from_ = outcome.in_force_from;
+  return std::nullopt;
+}
+
+}  // namespace clearance

@@ -1,0 +1,44 @@
+// The thread that does commands: it takes them from its queue, one after another.
+#pragma once
+
+#include <atomic>
+#include <mutex>
+#include <thread>
+
+#include "monitor/scene_changes/command_queue.hpp"
+#include "monitor/scene_changes/scene_commander.hpp"
+
+namespace clearance {
+
+class SceneThread {
+ public:
+  SceneThread(SceneChanger& changer, TickLoop& loop, const std::atomic<bool>& loop_ended,
+              CommanderOptions options)
+      : commander_(changer, loop, loop_ended, std::move(options)) {}
+  ~SceneThread();
+  SceneThread(const SceneThread&) = delete;
+  SceneThread& operator=(const SceneThread&) = delete;
+
+  void start();
+  // Any thread but that of the tick: the one way in for commands. Returns false if too much waits,
+  // or after end(). Otherwise the answer comes, unless the program ends.
+  [[nodiscard]] bool put(QueuedCommand command) { return queue_.put(std::move(command)); }
+
+  // Once `loop_ended` is set: drops what waits, and waits for the change that is under way. Returns
+  // false if a cell is still being read, which may take long. The thread then goes on, and the
+  // program must end without destroying this or anything that the thread uses.
+  bool end();
+
+ private:
+  enum class Phase { kReading, kChanging, kEnded };
+  void run();
+  bool begin_change();
+
+  CommandQueue queue_;
+  SceneCommander commander_;
+  std::mutex mutex_;
+  Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing
+  std::thread thread_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,89 @@
+#include "monitor/scene_changes/sent_files.hpp"
+
+#include <fmt/format.h>
+
+#include <cstdint>
+#include <string_view>
+#include <system_error>
+
+#include "config/text/file_bytes.hpp"
+#include "monitor/scene_changes/durable_file.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::string_view kMark = "sent:";
+
+bool is_of_name(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '-' || c == '.';
+}
+
+// Two FNV-1a hashes with different beginnings, and the length: not against an adversary, whose
+// files are compared byte by byte.
+std::string content_name(const std::string& bytes) {
+  constexpr std::uint64_t kPrime = 0x100000001b3;
+  std::uint64_t a = 0xcbf29ce484222325, b = 0x9e3779b97f4a7c15;
+  for (const char byte : bytes) {
+    a = (a ^ static_cast<unsigned char>(byte)) * kPrime;
+    b = (b ^ static_cast<unsigned char>(byte)) * kPrime;
+  }
+  return fmt::format("{:016x}{:016x}-{}", a, b, bytes.size());
+}
+
+}  // namespace
+
+SentFiles::SentFiles(const std::filesystem::path& cell_file)
+    : folder_(cell_file.parent_path() / "clearance.sent") {}
+
+std::variant<std::map<std::string, std::string>, std::string> SentFiles::keep(
+    const std::vector<SentFile>& files) {
+  written_.clear();
+  std::map<std::string, std::string> paths;
+  for (const SentFile& file : files) {
+    const std::string name =
+        content_name(file.bytes) + std::filesystem::path(file.name).extension().string();
+    const std::filesystem::path path = folder_ / name;
+    paths[file.name] = (folder_.filename() / name).string();
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) {
+      const auto kept = read_bytes(path.string());
+      const auto* bytes = std::get_if<std::string>(&kept);
+      if (bytes != nullptr && *bytes == file.bytes) continue;
+      take_back();
+      return fmt::format("'{}' has another content than its name says; remove it", path.string());
+    }
+    std::filesystem::create_directories(folder_, error);
+    if (std::string reason = write_durably(path, file.bytes); !reason.empty()) {
+      take_back();
+      return reason;
+    }
+    written_.push_back(path);
+  }
+  return paths;
+}
+
+void SentFiles::take_back() {
+  std::error_code error;
+  for (const std::filesystem::path& file : written_) std::filesystem::remove(file, error);
+  written_.clear();
+}
+
+std::string with_paths(const std::string& yaml, const std::map<std::string, std::string>& paths) {
+  std::string text;
+  std::size_t at = 0;
+  for (;;) {
+    const std::size_t mark = yaml.find(kMark, at);
+    if (mark == std::string::npos) break;
+    std::size_t end = mark + kMark.size();
+    while (end < yaml.size() && is_of_name(yaml[end])) ++end;
+    const bool begins = mark == 0 || !is_of_name(yaml[mark - 1]);
+    const auto path = paths.find(yaml.substr(mark + kMark.size(), end - mark - kMark.size()));
+    text += yaml.substr(at, mark - at);
+    text += begins && path != paths.end() ? path->second : yaml.substr(mark, end - mark);
+    at = end;
+  }
+  return text + yaml.substr(at);
+}
+
+}  // namespace clearance
