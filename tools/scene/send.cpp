@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <chrono>
 #include <cstdio>
@@ -16,6 +18,7 @@
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/client/client.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/wire/topics.hpp"
@@ -41,7 +44,8 @@ Exit status:
 Examples:
   clearance-scene send changes.yaml --as planner
   clearance-scene send --change 'attach: {object: part, to: left_hand}' --partition lab
-  clearance-scene send --change 'read_cell_again: {}' --dry-run)";
+  clearance-scene send --change 'read_cell_again: {}' --dry-run
+  clearance-scene send attach.yaml --back detach.yaml --repeat 1000)";
 
 std::string is_hexadecimal(const std::string& text) {
   const bool fits = !text.empty() && text.size() <= 16 &&
@@ -89,6 +93,76 @@ int print_result(const CommandResult& result, bool dry_run) {
   return kOk;
 }
 
+// The time from each command to the first report that holds it.
+class Latencies {
+ public:
+  Latencies(client::Connection& connection, client::Commands& commands,
+            std::chrono::nanoseconds timeout)
+      : commands_(commands), reports_(connection, {.depth = 256}), timeout_(timeout) {}
+
+  // Returns the daemon's refusal, or a result without a status other than done. Nothing when no
+  // result or report came in time.
+  std::optional<CommandResult> send(const std::vector<CellChange>& changes,
+                                    const client::CommandOptions& options, std::size_t list) {
+    while (reports_.next()) {
+    }
+    const std::int64_t began_ns = client::now_ns();
+    auto result = commands_.send(changes, options, timeout_);
+    if (!result || !result->done()) return result;
+    const std::int64_t answered_ns = client::now_ns();
+    while (reports_->cycle < result->in_force_from) {
+      if (!reports_.next(timeout_)) return std::nullopt;
+    }
+    // A report that came before the result waits, and has its time of publishing.
+    const std::int64_t held_ns =
+        std::min(client::now_ns(), std::max(began_ns, reports_->publish_ns));
+    in_force_[list].push_back(1e-6 * static_cast<double>(held_ns - began_ns));
+    answered_[list].push_back(1e-6 * static_cast<double>(answered_ns - began_ns));
+    return result;
+  }
+
+  void print_table() {
+    print(stdout, "{:<10} {:>8}  {:>32}  {:>32}\n", "", "", "first report ms, p50 / p99.9 / max",
+          "result ms, p50 / p99.9 / max");
+    constexpr const char* kNames[] = {"CHANGES", "BACK"};
+    for (std::size_t list = 0; list < 2; ++list) {
+      std::sort(in_force_[list].begin(), in_force_[list].end());
+      std::sort(answered_[list].begin(), answered_[list].end());
+      print(stdout, "{:<10} {:>8}  {:>32}  {:>32}\n", kNames[list], in_force_[list].size(),
+            percentiles(in_force_[list]), percentiles(answered_[list]));
+    }
+  }
+
+ private:
+  static std::string percentiles(const std::vector<double>& sorted) {
+    if (sorted.empty()) return "none";
+    const auto at = [&](double share) {
+      const auto count = static_cast<double>(sorted.size());
+      return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * count))];
+    };
+    return fmt::format("{:.2f} / {:.2f} / {:.2f}", at(0.5), at(0.999), sorted.back());
+  }
+
+  client::Commands& commands_;
+  client::Reports reports_;
+  std::chrono::nanoseconds timeout_;
+  std::array<std::vector<double>, 2> in_force_, answered_;  // ms
+};
+
+int no_result(const SendArguments& arguments, const client::Connection& connection,
+              const client::Commands& commands) {
+  if (commands.is_heard()) {
+    print(stderr, "clearance-scene: no result came within {} s; the changes may be made or not\n",
+          arguments.timeout_s);
+  } else {
+    print(stderr,
+          "clearance-scene: no daemon takes commands on {} ({}); a cell allows them with "
+          "'commands: {{from: [{}]}}', and clearanced with --commands {}\n",
+          connection.where(), arguments.topics.commands, arguments.client, arguments.client);
+  }
+  return kDdsFailed;
+}
+
 }  // namespace
 
 CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
@@ -109,10 +183,18 @@ CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
                    "Refuse the changes unless this revision of the scene is in force")
       ->check(is_hexadecimal);
   send->add_flag("--dry-run", arguments.dry_run, "Only ask whether the changes would be accepted");
+  CLI::Option* const back = send->add_option("--back", arguments.back,
+                                             "A file with changes that take those of CHANGES back");
+  send->add_option("--repeat", arguments.repeats,
+                   "Send CHANGES and BACK in turns, this often, and print the time until the first "
+                   "report that holds them")
+      ->check(whole_number(1, 10'000'000))
+      ->needs(back);
   send->add_option("--timeout", arguments.timeout_s, "Wait for a result for this time, s")
       ->check(positive_number())
       ->capture_default_str();
-  for (const TopicKind kind : {TopicKind::kCommands, TopicKind::kCommandResults}) {
+  for (const TopicKind kind :
+       {TopicKind::kCommands, TopicKind::kCommandResults, TopicKind::kDistances}) {
     const Topic& each = topic(kind);
     send->add_option(fmt::format("--{}", each.key), arguments.topics.*each.name, "Topic name")
         ->capture_default_str();
@@ -153,18 +235,23 @@ int send_changes(const SendArguments& arguments) {
   client::Commands commands(connection, arguments.client);
   const auto timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(arguments.timeout_s));
-  if (const auto result = commands.send(changes, options, timeout))
-    return print_result(*result, arguments.dry_run);
-  if (commands.is_heard()) {
-    print(stderr, "clearance-scene: no result came within {} s; the changes may be made or not\n",
-          arguments.timeout_s);
-  } else {
-    print(stderr,
-          "clearance-scene: no daemon takes commands on {} ({}); a cell allows them with "
-          "'commands: {{from: [{}]}}', and clearanced with --commands {}\n",
-          connection.where(), arguments.topics.commands, arguments.client, arguments.client);
+  if (arguments.repeats == 0) {
+    const auto result = commands.send(changes, options, timeout);
+    return result ? print_result(*result, arguments.dry_run)
+                  : no_result(arguments, connection, commands);
   }
-  return kDdsFailed;
+  std::vector<CellChange> back;
+  const auto text = text_of(arguments.back);
+  if (!text) return kFailed;
+  if (const int failed = add_changes(*text, arguments.back, back); failed != kOk) return failed;
+  Latencies latencies(connection, commands, timeout);
+  for (std::uint64_t i = 0; i < 2 * arguments.repeats; ++i) {
+    const auto result = latencies.send(i % 2 == 0 ? changes : back, options, i % 2);
+    if (!result) return no_result(arguments, connection, commands);
+    if (!result->done()) return print_result(*result, false);
+  }
+  latencies.print_table();
+  return kOk;
 }
 
 }  // namespace clearance

@@ -22,7 +22,7 @@ constexpr std::int64_t kLongestStepNs =
 constexpr double kBin = 50.0 * 3.14159265358979323846 / 180.0;  // azimuth of a bin, rad
 
 // Heights of the fingertips: 30 mm below the top of the part, and above the wall.
-constexpr double kGrasp = 0.31, kCarry = 0.60;
+constexpr double kGrasp = 0.31, kCarry = 0.56;
 // Positions of the finger: its distance from the part's side is 0 at 0.018 m.
 constexpr double kOpen = 0.03, kClosed = 0.0175;
 
@@ -38,7 +38,7 @@ struct Phase {
 
 std::vector<Phase> phases() {
   return {
-      {{-kBin, 0.6, kCarry, kOpen}, 1.0},
+      {{-kBin, 0.6, kCarry, kOpen}, 2.0},
       {{-kBin, 0.6, kGrasp, kOpen}, 1.2},
       {{-kBin, 0.6, kGrasp, kClosed},
        0.3,
@@ -187,7 +187,7 @@ RunResult run(client::Connection& connection, const RunOptions& options,
               const std::function<bool()>& go_on) {
   RunResult result;
   Arm arm(connection, result, go_on);
-  if (!arm.begin({0.0, 0.45, 0.7, kOpen})) return result;
+  if (!arm.begin({kBin, 0.6, kCarry, kOpen})) return result;
   if (!arm.change({SetAbsent{.object = "part", .absent = !options.tells}})) return result;
   for (const Phase& phase : phases()) {
     if (!arm.move(phase.to, phase.seconds / options.speed)) return result;
