@@ -22,7 +22,7 @@ struct SentFile {
 
 // The changes are made wholly or not at all.
 struct Command {
-  std::string client;
+  std::string client = {};
   std::uint64_t request = 0;         // from 1; counts up
   std::uint64_t scene_revision = 0;  // of the scene that the client knows; 0: not checked
   bool dry_run = false;              // answer only, change nothing

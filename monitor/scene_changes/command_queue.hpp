@@ -14,11 +14,11 @@
 namespace clearance {
 
 struct QueuedCommand {
-  Command command;
+  Command command = {};
   // The daemon's own: `client` is not checked, and files may lie anywhere.
   bool is_own = false;
   // Gets the result, in the scene thread.
-  std::function<void(const CommandResult&)> answer;
+  std::function<void(const CommandResult&)> answer = {};
 };
 
 // Any thread but that of the tick.

@@ -329,7 +329,12 @@ SceneCommander::Refusal SceneCommander::put_in_force(const Work& work, Cell cell
     return std::nullopt;
   }
   const std::string former = changer_.cell().yaml;
-  const auto outcome = changer_.change(std::make_shared<const Cell>(std::move(cell)), loop_ended_);
+  SceneChanger::Outcome outcome;
+  try {
+    outcome = changer_.change(std::make_shared<const Cell>(std::move(cell)), loop_ended_);
+  } catch (const std::exception& error) {
+    outcome = {.status = CommandStatus::kFailed, .refusal = error.what()};
+  }
   if (!outcome.refusal.empty()) {
     std::string reason = outcome.refusal;
     if (std::string also = keep(options_.began_with, former); !also.empty())

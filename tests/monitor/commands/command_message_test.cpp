@@ -194,6 +194,17 @@ TEST(CommandMessage, MayHaveAnythingInFieldsThatAreNotStated) {
   EXPECT_TRUE(std::holds_alternative<Command>(from_wire(*message)));
 }
 
+TEST(CommandMessage, CutOffAnywhereIsNoMessage) {
+  CdrEncoder encoder;
+  CdrDecoder decoder;
+  const auto whole = encoder.encode(*to_wire(every_command()));
+  Sample<clearance_msg_Command> message;
+  ASSERT_TRUE(decoder.decode(whole, message));
+  constexpr std::size_t kPadding = 4;
+  for (std::size_t size = 0; size + kPadding < whole.size(); ++size)
+    EXPECT_FALSE(decoder.decode(whole.first(size), message)) << size;
+}
+
 TEST(CommandMessage, OfAResultKeepsEveryField) {
   const CommandResult result{.client = "planner",
                              .request = 9,

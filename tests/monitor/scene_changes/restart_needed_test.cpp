@@ -28,6 +28,7 @@ TEST(RestartNeeded, ForNoChangeOfTheScene) {
   now.scene.zones.push_back({});
   now.scene.pairs.clear();
   now.scene.budget = 7;
+  now.scene.robots.emplace_back().is_attached = true;
   EXPECT_EQ(restart_needed(before, now), std::nullopt);
 }
 

@@ -1,0 +1,54 @@
+// Commands that wait: in order, and never too many.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "monitor/scene_changes/command_queue.hpp"
+
+namespace clearance {
+namespace {
+
+QueuedCommand numbered(std::uint64_t request) {
+  return {.command = {.client = "planner", .request = request}};
+}
+
+TEST(CommandQueue, HandsCommandsOutInTheOrderInWhichTheyCame) {
+  CommandQueue queue;
+  for (std::uint64_t i = 1; i <= 3; ++i) EXPECT_TRUE(queue.put(numbered(i)));
+  for (std::uint64_t i = 1; i <= 3; ++i) EXPECT_EQ(queue.next()->command.request, i);
+}
+
+TEST(CommandQueue, TakesNoMoreThanItsCapacity) {
+  CommandQueue queue;
+  for (std::size_t i = 0; i < CommandQueue::kMost; ++i) EXPECT_TRUE(queue.put(numbered(i)));
+  EXPECT_FALSE(queue.put(numbered(1000)));
+  (void)queue.next();
+  EXPECT_TRUE(queue.put(numbered(1001)));
+  EXPECT_FALSE(queue.put(numbered(1002)));
+}
+
+TEST(CommandQueue, TakesALargeCommandAloneAndNoOtherBesideIt) {
+  CommandQueue queue;
+  QueuedCommand large = numbered(1);
+  large.command.changes = {ReplaceCell{std::string(CommandQueue::kMostBytes, 'x')}};
+  EXPECT_TRUE(queue.put(large));
+  QueuedCommand small = numbered(2);
+  small.command.changes = {AddObject{"{name: a}"}};
+  EXPECT_FALSE(queue.put(small));
+  (void)queue.next();
+  EXPECT_TRUE(queue.put(small));
+}
+
+TEST(CommandQueue, EndsAThreadThatWaitsAndTakesNothingAfterwards) {
+  CommandQueue queue;
+  std::optional<QueuedCommand> got = numbered(1);
+  std::thread waiting([&] { got = queue.next(); });
+  queue.close();
+  waiting.join();
+  EXPECT_FALSE(got);
+  EXPECT_FALSE(queue.put(numbered(2)));
+  EXPECT_FALSE(queue.next());
+}
+
+}  // namespace
+}  // namespace clearance

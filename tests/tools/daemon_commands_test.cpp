@@ -1,0 +1,276 @@
+// Commands to a running daemon, over real DDS: what they change, and what each fault of a client
+// does.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <csignal>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "monitor/client/client.hpp"
+#include "tests/shared/poses.hpp"
+#include "tests/tools/commanding_client.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+
+std::string commanded_cell(const std::string& name) {
+  std::string text = small_cell(name);
+  const std::string objects = "objects:\n";
+  text.insert(text.find(objects),
+              "commands: {from: [planner, operator]}\n"
+              "templates:\n  - {name: bin, groups: [still], box: {size: [0.1, 0.1, 0.1]}}\n");
+  return text;
+}
+
+const CellChange kBin = AddFromTemplate{"bin", "bin_1", {}, at(0, 3, 3)};
+
+class DaemonCommands : public testing::Test {
+ protected:
+  void start(const std::vector<std::string>& more = {}) {
+    daemon.emplace(kDaemon, with(with({cell.path()}, dds_arguments(dds)), more));
+    distances.settle();
+    robot.send(0.0);
+  }
+  std::unique_ptr<CommandingClient> client(const std::string& name) {
+    auto made = std::make_unique<CommandingClient>(participant, name);
+    made->meet();
+    return made;
+  }
+  // The first report of this cycle or a later one.
+  std::unique_ptr<Sample<clearance_msg_Distances>> report_from(std::uint64_t cycle) {
+    for (int i = 0; i < 10'000; ++i) {
+      auto report = distances.next();
+      if (report == nullptr || (*report)->cycle >= cycle) return report;
+    }
+    return nullptr;
+  }
+  // No cycle is missing among the reports that come in this time.
+  void expect_every_cycle(std::chrono::milliseconds time) {
+    const auto end = std::chrono::steady_clock::now() + time;
+    std::uint64_t cycle = 0;
+    while (std::chrono::steady_clock::now() < end) {
+      const auto report = distances.next();
+      ASSERT_NE(report, nullptr);
+      if (cycle != 0) {
+        ASSERT_EQ((*report)->cycle, cycle + 1);
+      }
+      cycle = (*report)->cycle;
+    }
+  }
+
+  CellFile cell{commanded_cell("commands")};
+  Cell read = cell.cell();
+  DdsOptions dds = own_dds();
+  Participant participant{dds};
+  Distances distances{participant, read};
+  Poses robot{participant, read};
+  std::optional<ChildProcess> daemon;
+};
+
+TEST_F(DaemonCommands, ChangeTheSceneFromTheCycleOfTheirResult) {
+  start();
+  const auto planner = client("planner");
+  const CommandResult result = planner->result_of({kBin});
+  ASSERT_TRUE(result.done()) << result.reason;
+  const auto report = report_from(result.in_force_from);
+  ASSERT_NE(report, nullptr);
+  EXPECT_EQ((*report)->cycle, result.in_force_from);
+  EXPECT_EQ((*report)->scene_revision, result.scene_revision);
+  EXPECT_EQ((*report)->pairs._length, 5u) << "two more with the bin";
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  EXPECT_TRUE(eventually([&] {
+    catalogue.update();
+    return catalogue.revision() == result.scene_revision;
+  }));
+  EXPECT_TRUE(catalogue.object("bin_1"));
+}
+
+TEST_F(DaemonCommands, AttachAndDetachWhereTheObjectIs) {
+  start();
+  const auto planner = client("planner");
+  ASSERT_TRUE(planner->result_of({AddFromTemplate{"bin", "bin_1", {}, at(-0.5, 0, 4)}}).done());
+  robot.send(0.0);
+  const CommandResult attached = planner->result_of({Attach{"bin_1", "left"}});
+  ASSERT_TRUE(attached.done()) << attached.reason;
+  robot.send(0.1);
+  const CommandResult detached = planner->result_of({Detach{"bin_1"}});
+  ASSERT_TRUE(detached.done()) << detached.reason;
+}
+
+TEST_F(DaemonCommands, AreOffWithoutAClientThatIsNamed) {
+  write_text(cell.path(), small_cell("commands"));
+  start();
+  const dds_entity_t writer = participant.writer(TopicKind::kCommands, Topics{}.commands);
+  const dds_entity_t reader =
+      participant.reader(TopicKind::kCommandResults, Topics{}.command_results);
+  // The daemon is known by now, as its reports come.
+  for (int i = 0; i < 100; ++i) ASSERT_NE(distances.next(), nullptr);
+  EXPECT_EQ(matched_readers(writer), 0u);
+  EXPECT_EQ(matched_writers(reader), 0u);
+}
+
+TEST_F(DaemonCommands, OfAClientOnTheCommandLineAreTakenToo) {
+  start({"--commands", "tool", "--gradients"});
+  const auto tool = client("tool");
+  EXPECT_TRUE(tool->result_of({kBin}).done());
+  EXPECT_TRUE(tool->result_of({RemoveObject{"bin_1"}}).done());
+}
+
+TEST_F(DaemonCommands, SentTwiceAreDoneOnceAndAnsweredTwice) {
+  start();
+  const auto planner = client("planner");
+  const Command command = planner->command({kBin});
+  const CommandResult first = planner->result_of(command);
+  ASSERT_TRUE(first.done()) << first.reason;
+  planner->forget();
+  const CommandResult second = planner->result_of(command);
+  EXPECT_EQ(second.status, CommandStatus::kDone) << "a second bin_1 would be refused";
+  EXPECT_EQ(second.in_force_from, first.in_force_from);
+  EXPECT_EQ(second.scene_revision, first.scene_revision);
+}
+
+TEST_F(DaemonCommands, OutOfOrderOrWithAnotherContentAreRefused) {
+  start();
+  const auto planner = client("planner");
+  Command later = planner->command({kBin});
+  later.request = 10;
+  ASSERT_TRUE(planner->result_of(later).done());
+  Command earlier = planner->command({RemoveObject{"bin_1"}});
+  earlier.request = 9;
+  EXPECT_EQ(planner->result_of(earlier).status, CommandStatus::kOutOfOrder);
+  planner->forget();
+  earlier.request = 10;
+  EXPECT_EQ(planner->result_of(earlier).status, CommandStatus::kOtherContent);
+}
+
+TEST_F(DaemonCommands, OfAClientThatIsNotNamedAreRefused) {
+  start();
+  const auto stranger = client("stranger");
+  const CommandResult result = stranger->result_of({kBin});
+  EXPECT_EQ(result.status, CommandStatus::kNotNamed);
+  EXPECT_EQ(result.scene_revision, read.scene.revision);
+  EXPECT_TRUE(eventually([&] { return daemon->told("command-refused", {"stranger"}); }));
+}
+
+TEST_F(DaemonCommands, OfTwoProgramsUnderOneNameAreRefusedUntilOneHasLeft) {
+  start();
+  const auto first = client("planner"), second = client("planner");
+  ASSERT_TRUE(first->result_of({SetMargin{"floor", 0.01}}).done());
+  Command other = second->command({SetMargin{"floor", 0.02}});
+  other.request = 2;
+  EXPECT_EQ(second->result_of(other).status, CommandStatus::kTwoWriters);
+  EXPECT_EQ(first->result_of({SetMargin{"floor", 0.03}}).status, CommandStatus::kTwoWriters);
+  first->leave();
+  EXPECT_TRUE(eventually([&] {
+    second->forget();
+    return second->result_of(other).done();
+  }));
+}
+
+TEST_F(DaemonCommands, MalformedOnesAreRefusedByTheirField) {
+  start();
+  const auto planner = client("planner");
+  const CommandResult result =
+      planner->result_of({SetMargin{"floor", 0.01}, SetMargin{"floor", std::nan("")}});
+  EXPECT_EQ(result.status, CommandStatus::kMalformed);
+  EXPECT_EQ(result.change, 1u);
+  EXPECT_EQ(result.path, "changes[1].set_margin.m");
+}
+
+// Two clients: one removes what the other attaches, at the same time. Whichever comes first is
+// done, and the scene is that of one of the two orders.
+TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
+  start();
+  const auto planner = client("planner"), other = client("operator");
+  int removed = 0, attached = 0;
+  for (int i = 0; i < 20; ++i) {
+    robot.send(0.0);
+    ASSERT_TRUE(planner->result_of({kBin}).done());
+    const Command remove = planner->command({RemoveObject{"bin_1"}});
+    const Command attach =
+        other->command({Attach{"bin_1", "left", at(0, 0, 1)}, SetAbsent{"bin_1"}});
+    planner->send(remove);
+    other->send(attach);
+    const CommandResult first = planner->result_of(remove), second = other->result_of(attach);
+    ASSERT_TRUE(first.done()) << first.reason;
+    removed += first.done() ? 1 : 0;
+    attached += second.done() ? 1 : 0;
+    EXPECT_TRUE(second.done() || second.status == CommandStatus::kRefused) << second.reason;
+  }
+  EXPECT_EQ(removed, 20);
+  EXPECT_TRUE(daemon->running());
+}
+
+// 2 s at 10 kHz. Each command is answered or refused as busy, and no report is missing.
+TEST_F(DaemonCommands, AtTenKilohertzAreAnsweredOrRefusedAsBusyAndNoTickIsMissing) {
+  start();
+  const auto planner = client("planner");
+  std::thread flood([&] {
+    const auto begin = std::chrono::steady_clock::now();
+    for (int i = 0; i < 20'000; ++i) {
+      planner->send(planner->command({SetMargin{"floor", 1e-6 * i}}));
+      std::this_thread::sleep_until(begin + std::chrono::microseconds(100) * i);
+    }
+  });
+  expect_every_cycle(std::chrono::milliseconds(2000));
+  flood.join();
+  const CommandResult last = planner->result_of({SetMargin{"floor", 0.5}});
+  EXPECT_TRUE(last.done() || last.status == CommandStatus::kBusy) << last.reason;
+  std::size_t done = 0;
+  for (const CommandResult& result : planner->all()) {
+    ASSERT_TRUE(result.done() || result.status == CommandStatus::kBusy) << result.reason;
+    done += result.done() ? 1 : 0;
+  }
+  EXPECT_GT(done, 0u);
+  EXPECT_TRUE(eventually([&] { return planner->result_of({SetMargin{"floor", 0.6}}).done(); }));
+}
+
+TEST_F(DaemonCommands, ThatWereAcceptedAreResumedAfterAKill) {
+  const ScratchFolder folder;
+  const std::vector<std::string> keep = {"--keep-scene", (folder / "scene.yaml").string()};
+  start(keep);
+  CommandResult result;
+  {
+    const auto planner = client("planner");
+    result = planner->result_of({kBin});
+    ASSERT_TRUE(result.done()) << result.reason;
+  }
+  daemon->signal(SIGKILL);
+  daemon->wait();
+  start(keep);
+  EXPECT_TRUE(eventually([&] {
+    const auto report = distances.next();
+    return report != nullptr && (*report)->scene_revision == result.scene_revision;
+  }));
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  write_text(cell.path(), commanded_cell("commands") + "# changed\n");
+  daemon.emplace(kDaemon, with(with({cell.path()}, dds_arguments(dds)), keep));
+  EXPECT_EQ(daemon->wait(), 3) << daemon->output();
+  EXPECT_THAT(daemon->output(), HasSubstr("scene.yaml"));
+}
+
+TEST_F(DaemonCommands, WithoutAKeptSceneARestartedDaemonBeginsWithItsCell) {
+  start();
+  {
+    const auto planner = client("planner");
+    ASSERT_TRUE(planner->result_of({kBin}).done());
+  }
+  daemon->signal(SIGKILL);
+  daemon->wait();
+  start();
+  EXPECT_TRUE(eventually([&] {
+    const auto report = distances.next();
+    return report != nullptr && (*report)->scene_revision == read.scene.revision;
+  }));
+}
+
+}  // namespace
+}  // namespace clearance::test
