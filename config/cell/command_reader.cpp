@@ -38,7 +38,10 @@ CommandSettings read_commands(const YamlNode& node, const std::filesystem::path&
          read_list(*folders, "folders with files that commands may name", diagnostics)) {
       const auto folder = read_text(item, "the path of a folder", diagnostics);
       if (!folder) continue;
-      if (folder->empty()) diagnostics.add(item, "found an empty path; expected that of a folder");
+      if (folder->empty()) {
+        diagnostics.add(item, "found an empty path; expected that of a folder");
+        continue;
+      }
       settings.folders.push_back(std::filesystem::absolute(directory / *folder).lexically_normal());
     }
   }

@@ -89,14 +89,17 @@ void CommandPort::take_all() {
   }
 }
 
-// Cyclone has refused what is no message at all: a truncated one never comes here.
+// Cyclone has refused what is no message at all: a truncated one never comes here. Each message is
+// decoded into an empty sample. Cyclone takes what a union holds for what it shall hold, and would
+// use a number of the last change as the pointer of a text.
 void CommandPort::take(const CdrSample& sample) {
   const std::span<const std::byte> bytes = sample.bytes();
-  if (!decoder_.decode(bytes, message_, CdrBytes::kOfReader)) return;
-  const CommandLedger::Request request{message_->client, message_->request, hash_of(bytes)};
+  Sample<clearance_msg_Command> message;
+  if (!decoder_.decode(bytes, message, CdrBytes::kOfReader)) return;
+  const CommandLedger::Request request{message->client, message->request, hash_of(bytes)};
   if (auto refused = ledger_.refuse_sender(request, sample.writer()))
     return answer_at_once(*std::move(refused));
-  auto read = from_wire(*message_);
+  auto read = from_wire(*message);
   if (auto* fault = std::get_if<MalformedField>(&read)) {
     return answer_at_once({.client = request.client,
                            .request = request.number,

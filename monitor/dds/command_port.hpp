@@ -62,7 +62,6 @@ class CommandPort {
   std::vector<CdrSample> taken_;
   std::vector<std::uint64_t> ended_;
   CdrDecoder decoder_;
-  Sample<clearance_msg_Command> message_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -137,7 +137,7 @@ void TickLoop::follow_offer() noexcept {
 
 // The ids of all former scenes are passed on to those of the changed one.
 void TickLoop::change_scene(Successor& successor) noexcept {
-  Former& last = former_[changes_++ % kFormerScenes];
+  Former& last = former_slot(scene_->revision);
   last.revision = scene_->revision;
   scene_ = &successor.scene();
   successor.succeed(monitor_, statistics_, sinks_, last.map);
@@ -148,8 +148,17 @@ void TickLoop::change_scene(Successor& successor) noexcept {
   }
 }
 
+// A scene that was in force before keeps its place, so that attaching and detaching again and again
+// does not displace the scene whose ids senders have.
+TickLoop::Former& TickLoop::former_slot(std::uint64_t revision) noexcept {
+  for (std::size_t i = 0; i < std::min(former_count_, kFormerScenes); ++i) {
+    if (former_[i].revision == revision) return former_[i];
+  }
+  return former_[former_count_++ % kFormerScenes];
+}
+
 const TickLoop::Former* TickLoop::former(std::uint64_t revision) const noexcept {
-  for (std::size_t i = 0; i < std::min(changes_, kFormerScenes); ++i) {
+  for (std::size_t i = 0; i < std::min(former_count_, kFormerScenes); ++i) {
     if (former_[i].revision == revision) return &former_[i];
   }
   return nullptr;
@@ -174,7 +183,7 @@ void TickLoop::take_in() noexcept {
 // others are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
-  if (batch.scene_revision == 0 ? changes_ == 0 : batch.scene_revision == scene_->revision) {
+  if (batch.scene_revision == 0 ? former_count_ == 0 : batch.scene_revision == scene_->revision) {
     if (!batch.empty()) sources_.append(batch, samples_, joints_);
   } else if (const Former* const scene = former(batch.scene_revision)) {
     if (!batch.empty()) use_former(*scene, batch);

@@ -72,6 +72,7 @@ class TickLoop {
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
   void use_former(const Former& scene, const PoseBatch& batch) noexcept;
+  [[nodiscard]] Former& former_slot(std::uint64_t revision) noexcept;
   [[nodiscard]] const Former* former(std::uint64_t revision) const noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
@@ -82,14 +83,14 @@ class TickLoop {
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
   std::atomic<PoseQuestion*> asked_{nullptr};
-  // How the ids of former scenes are passed on. The latest one is at changes_ - 1, modulo their
-  // number.
+  // How the ids of former scenes are passed on. When there are more than these, a new one takes the
+  // place of the one that has been there longest.
   struct Former {
     std::uint64_t revision = 0;
     SceneMap map = {};
   };
   std::array<Former, kFormerScenes> former_;
-  std::size_t changes_ = 0;
+  std::size_t former_count_ = 0;  // of scenes with another revision, those that are lost included
   SourceNumbers sources_;
   SteadyTime time_;
   PoseSource& source_;

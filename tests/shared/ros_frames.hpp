@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/vec.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "tests/shared/loopback.hpp"

@@ -104,6 +104,24 @@ TEST_F(DaemonCommands, AttachAndDetachWhereTheObjectIs) {
   ASSERT_TRUE(detached.done()) << detached.reason;
 }
 
+// Kinds whose fields lie at the same places of the union: texts, numbers, lists.
+TEST_F(DaemonCommands, OfDifferentKindsInTurnAreReadByThemselves) {
+  start();
+  const auto planner = client("planner");
+  ASSERT_TRUE(planner->result_of({kBin}).done());
+  for (int i = 0; i < 100; ++i) {
+    const std::vector<std::vector<CellChange>> lists = {
+        {Attach{"bin_1", "left", at(0, 0, 1), {"right"}}, SetMargin{"floor", 0.1}},
+        {Detach{"bin_1", at(0, 3, 3)}, SetPair{"bin_1", "left", SetPair::Rule::kPublish}},
+        {SetPair{"bin_1", "left", SetPair::Rule::kUnstated}, SetZoneThresholds{"near", 0.3, 0.4}},
+        {Place{"bin_1", at(0, 4, 3)}, SetMaxSpeed{"left", 4.0}, SetSource{"left", std::nullopt}}};
+    for (const auto& list : lists) {
+      const CommandResult result = planner->result_of(list);
+      ASSERT_TRUE(result.done()) << i << ": " << result.path << result.reason;
+    }
+  }
+}
+
 TEST_F(DaemonCommands, AreOffWithoutAClientThatIsNamed) {
   write_text(cell.path(), small_cell("commands"));
   start();

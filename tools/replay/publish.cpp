@@ -89,6 +89,9 @@ class Sender {
         return send(message, writer, separation_);
       case TopicKind::kGradients:
         return send(message, writer, gradients_);
+      case TopicKind::kCommands:
+      case TopicKind::kCommandResults:
+        break;  // recordings do not have them
     }
     return false;
   }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <limits>
 
@@ -138,7 +139,10 @@ TEST(CommandMessage, IsRefusedByTheFieldThatHasNoValue) {
       {"client", [](Message& m) { m.client[0] = '\xff'; }},
       {"request", [](Message& m) { m.request = 0; }},
       {"changes[3]",
-       [](Message& m) { m.changes._buffer[3]._d = static_cast<clearance_msg_ChangeKind>(200); }},
+       [](Message& m) {
+         const std::uint32_t none = 200;
+         std::memcpy(&m.changes._buffer[3]._d, &none, sizeof none);
+       }},
       {"changes[0].add_object.yaml", [&](Message& m) { put(change(m, 0).add_object.yaml, ""); }},
       {"changes[0].add_object.yaml",
        [&](Message& m) { put(change(m, 0).add_object.yaml, "\xc3\x28"); }},

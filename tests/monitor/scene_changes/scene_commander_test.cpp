@@ -261,6 +261,22 @@ TEST_F(SceneCommands, AreRefusedWhenTheLoopHasEnded) {
   expect_refused({Attach{"part", "hand"}}, CommandStatus::kEnding);
 }
 
+// The sender of poses has the ids of the first scene, and 41 changes later it still has them.
+TEST_F(SceneCommands, ThatAttachAndDetachAgainAndAgainKeepTheSendersOfPosesInUse) {
+  start();
+  poses->put(at(0.5, 0, 0));
+  poses->settle();
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(execute({Attach{"part", "hand", at(0, 0, 0.2)}}).done());
+    ASSERT_TRUE(execute({Detach{"part", at(1, 0, 0)}}).done());
+  }
+  ASSERT_TRUE(execute({Attach{"part", "hand", at(0, 0, 0.2)}}).done());
+  poses->put(at(0.7, 0, 0));
+  poses->settle();
+  ASSERT_TRUE(execute({Detach{"part"}}).done());
+  EXPECT_LT((object("part").world_from_object.position - Vec3(0.7, 0, 0.2)).norm(), 1e-12);
+}
+
 // Two objects whose names a change and its successors give in turn.
 TEST_F(SceneCommands, GoOnAfterARefusalWhereTheyWere) {
   start();
