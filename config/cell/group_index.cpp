@@ -98,8 +98,8 @@ std::optional<Between> GroupIndex::read_between(MapReader& map, Attached attache
     if (const auto name = read_name(item, "a group or an object", diagnostics_)) {
       between.names[side] = *name;
       between.objects[side] = find(item, *name, attached);
-      if (between.objects[side] != nullptr && between.objects[side]->empty())
-        between.may_be_empty = true;
+      const auto entry = entries_.find(*name);
+      if (entry != entries_.end() && entry->second.declared != nullptr) between.may_be_empty = true;
     }
   }
   if (between.objects[0] == nullptr || between.objects[1] == nullptr) return std::nullopt;

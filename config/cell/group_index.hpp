@@ -18,7 +18,7 @@ namespace clearance {
 struct Between {
   std::array<std::string, 2> names;
   std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by GroupIndex
-  bool may_be_empty = false;  // a side is a declared group without members
+  bool may_be_empty = false;  // a side is a declared group, whose members come and go
 };
 
 // Names of groups and objects share one namespace, so that `between` needs no prefix. A rule that
