@@ -16,11 +16,11 @@ namespace clearance::moveit {
 namespace {
 
 // Thrown and caught inside this file.
-struct Fault {
+struct ReadingEnds {
   SceneYamlFault fault;
 };
 [[noreturn]] void fail(const YamlNode& at, std::string reason) {
-  throw Fault{{at.line, std::move(reason)}};
+  throw ReadingEnds{{at.line, std::move(reason)}};
 }
 
 const YamlNode* field(const YamlNode& map, const char* name, const char* type) {
@@ -28,6 +28,36 @@ const YamlNode* field(const YamlNode& map, const char* name, const char* type) {
     fail(map, fmt::format("found {}; expected the fields of a {}", describe(map), type));
   return clearance::find(map, name);
 }
+
+using Triangle = std::array<std::uint32_t, 3>;
+struct MeshTriangle {
+  Triangle vertices = {};
+};
+struct PlaneMessage {
+  Plane coef = {};
+};
+
+// Templates below find these by name only.
+double read(const YamlNode& node, const double&);
+std::uint32_t read(const YamlNode& node, const std::uint32_t&);
+std::uint8_t read(const YamlNode& node, const std::uint8_t&);
+bool read(const YamlNode& node, const bool&);
+std::string read(const YamlNode& node, const std::string&);
+Vec3 read(const YamlNode& node, const Vec3&);
+Vec2 read(const YamlNode& node, const Vec2&);
+Eigen::Quaterniond read(const YamlNode& node, const Eigen::Quaterniond&);
+Pose read(const YamlNode& node, const Pose&);
+SolidPrimitive read(const YamlNode& node, const SolidPrimitive&);
+MeshTriangle read(const YamlNode& node, const MeshTriangle&);
+Mesh read(const YamlNode& node, const Mesh&);
+PlaneMessage read(const YamlNode& node, const PlaneMessage&);
+CollisionObject read(const YamlNode& node, const CollisionObject&);
+AttachedCollisionObject read(const YamlNode& node, const AttachedCollisionObject&);
+FixedFrame read(const YamlNode& node, const FixedFrame&);
+template <class T, std::size_t kCount>
+std::array<T, kCount> read(const YamlNode& node, const std::array<T, kCount>&);
+template <class T>
+std::vector<T> read(const YamlNode& node, const std::vector<T>&);
 
 double read(const YamlNode& node, const double&) {
   double value = 0.0;
@@ -104,9 +134,6 @@ Pose read(const YamlNode& node, const Pose&) {
   return pose;
 }
 
-template <class T>
-std::vector<T> read(const YamlNode& node, const std::vector<T>&);
-
 template <class T, std::size_t kCount>
 std::array<T, kCount> read(const YamlNode& node, const std::array<T, kCount>&) {
   if (node.kind != YamlNode::Kind::kSequence || node.items.size() != kCount)
@@ -125,11 +152,6 @@ SolidPrimitive read(const YamlNode& node, const SolidPrimitive&) {
   return primitive;
 }
 
-using Triangle = std::array<std::uint32_t, 3>;
-struct MeshTriangle {
-  Triangle vertices = {};
-};
-
 MeshTriangle read(const YamlNode& node, const MeshTriangle&) {
   MeshTriangle triangle;
   get(node, "vertex_indices", "MeshTriangle", triangle.vertices);
@@ -144,10 +166,6 @@ Mesh read(const YamlNode& node, const Mesh&) {
   get(node, "vertices", "Mesh", mesh.vertices);
   return mesh;
 }
-
-struct PlaneMessage {
-  Plane coef = {};
-};
 
 PlaneMessage read(const YamlNode& node, const PlaneMessage&) {
   PlaneMessage plane;
@@ -240,14 +258,15 @@ PlanningScene read(const YamlNode& node, const PlanningScene&) {
 
 std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text) {
   constexpr std::string_view kEnd = "\n---";
-  const std::size_t end = text.find(kEnd, 1);
-  const auto read_text = parse_yaml(end == std::string::npos ? text : text.substr(0, end + 1));
+  const std::size_t length = text.find(kEnd, 1);
+  const auto read_text =
+      parse_yaml(length == std::string::npos ? text : text.substr(0, length + 1));
   if (const auto* fault = std::get_if<YamlFault>(&read_text))
     return SceneYamlFault{fault->line, fault->reason};
   try {
     return read(std::get<YamlNode>(read_text), PlanningScene());
-  } catch (Fault& fault) {
-    return std::move(fault.fault);
+  } catch (ReadingEnds& end) {
+    return std::move(end.fault);
   }
 }
 
