@@ -201,7 +201,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (objects_node != nullptr)
     list = read_objects(*objects_node, defaults, templates, quantities, shapes);
   if (scenes_node != nullptr)
-    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, shapes, revision_, list);
+    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, shapes, revision_,
+                         list);
   RobotList robots;
   if (robots_node != nullptr) {
     robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);

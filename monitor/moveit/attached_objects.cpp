@@ -7,6 +7,9 @@
 
 namespace clearance::moveit {
 
+// MoveIt attaches objects however deep they overlap the links that they may touch.
+constexpr double kAnyDepth = 1e6;  // m
+
 // Names of links without shapes are left out: they touch nothing. The carrier may always touch.
 std::vector<std::string> MessageTranslator::touch_of(const AttachedCollisionObject& message) {
   std::vector<std::string> touch;
@@ -42,7 +45,7 @@ void MessageTranslator::attach_as_it_is(const AttachedCollisionObject& message,
   object.carrier = message.link_name;
   object.pose = carrier_from_object;
   result_.changes.emplace_back(
-      Attach{id, message.link_name, carrier_from_object, std::move(touch)});
+      Attach{id, message.link_name, carrier_from_object, std::move(touch), kAnyDepth});
 }
 
 void MessageTranslator::attach_with_shapes(const AttachedCollisionObject& message,

@@ -185,7 +185,8 @@ TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
 }
 
 TEST_F(CellEdits, ARefusalNamesTheChangeTheFieldAndTheReason) {
-  EditRefusal refusal = refused({SetAbsent{"box"}, Attach{"box", "hnd", Pose{}}, SetAbsent{"cart"}});
+  EditRefusal refusal =
+      refused({SetAbsent{"box"}, Attach{"box", "hnd", Pose{}}, SetAbsent{"cart"}});
   EXPECT_EQ(refusal.change, 1u);
   EXPECT_EQ(refusal.path, "objects[box].attached.to");
   EXPECT_THAT(refusal.reason, HasSubstr("hand"));

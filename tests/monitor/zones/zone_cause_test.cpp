@@ -113,5 +113,22 @@ TEST(ZoneCause, IsStillDistanceWhenANearObjectIsLate) {
   expect(cell.tick(std::nullopt, 25 * test::kTick), ZoneCause::kNear, 0);
 }
 
+// A group that MoveIt fills may be empty.
+TEST(ZonesWithoutPairs, AreNeverActiveAndDoNotDisturbOthers) {
+  Scene scene = test::cell_of({test::fixed("post", {test::ball(0.1)}, test::at(0, 0, 0)),
+                               test::moving("ball", {test::ball(0.1)})});
+  scene.zones = {test::zone_over(scene, 0.3, 0.4), test::zone_over(scene, 0.3, 0.4)};
+  scene.zones[0].pairs.clear();
+  Monitor monitor(scene);
+  std::int64_t now = test::kStart;
+  for (const double x : {5.0, 0.3, 0.15, 5.0, 5.0}) {
+    now += test::kTick;
+    const PoseSample sample = test::sample(1, test::at(x, 0, 0), now);
+    const Report& report = monitor.tick({&sample, 1}, now);
+    EXPECT_FALSE(report.zones[0].active);
+    EXPECT_EQ(report.zones[1].active, x < 1.0) << x;
+  }
+}
+
 }  // namespace
 }  // namespace clearance
