@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,7 @@ TEST_F(MoveItCell, AnAddedObjectIsThePoseOfTheObjectTimesThePosesOfItsParts) {
   const auto& corners = shelf->parts[0].shape.anchors;
   for (const Vec3& corner : corners)
     EXPECT_LT((corner.cwiseAbs() - Vec3(0.05, 0.1, 0.15)).norm(), kNear);
+  EXPECT_NEAR(shelf->parts[1].shape.bounding_radius, std::hypot(0.4, 0.05), 1e-9);
   EXPECT_EQ(shelf->parts[2].shape.radius, 0.07);
   EXPECT_TRUE(watches("hand", "shelf"));
   EXPECT_EQ(cell_.scene.zones[0].pairs.size(), 1u);
@@ -157,6 +159,7 @@ TEST_F(MoveItCell, MeshesPrismsConesAndPlanesAreWhatTheMessageSays) {
   const auto& parts = things->parts;
   EXPECT_TRUE(parts[4].shape.is_half_space());
   EXPECT_EQ(parts[2].object_from_part.position, Vec3(3, 0, 0));
+  EXPECT_NEAR(parts[0].shape.bounding_radius, std::hypot(0.3, 0.2), 1e-9);
   std::vector<Vec3> corners = parts[1].shape.anchors;
   ASSERT_EQ(corners.size(), 6u);
   for (const Vec3& corner : corners) EXPECT_NEAR(std::abs(corner.z()), 0.2, kNear);
