@@ -73,6 +73,7 @@ class CellReader {
   Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // its place in the cell
+  const YamlNode* ros_ = nullptr;     // likewise
 };
 
 // Both units are required: a default would silently be wrong for many cells.
@@ -200,7 +201,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (objects_node != nullptr)
     list = read_objects(*objects_node, defaults, templates, quantities, shapes);
   if (scenes_node != nullptr)
-    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, revision_, list);
+    read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, shapes, revision_,
+                         list);
   RobotList robots;
   if (robots_node != nullptr) {
     robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);
@@ -212,6 +214,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
   GroupIndex group_index(list, diagnostics_);
+  if (ros_ != nullptr && cell.ros.moveit.any())
+    group_index.declare(cell.ros.moveit.group, *ros_, "found MoveIt's messages");
   PairList pairs;
   pairs.complete = false;
   if (pairs_node != nullptr)
@@ -240,7 +244,8 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
-  if (const YamlNode* ros = map.optional("ros2")) read_ros(*ros, cell.ros, diagnostics_);
+  ros_ = map.optional("ros2");
+  if (ros_ != nullptr) read_ros(*ros_, cell.ros, diagnostics_);
   if (const YamlNode* commands = map.optional("commands"))
     cell.commands = read_commands(*commands, file_.parent_path(), diagnostics_);
   if (const YamlNode* capacity = map.optional("capacity"))

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "config/text/spelling.hpp"
 
@@ -30,6 +31,19 @@ GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
       }
     }
   }
+}
+
+void GroupIndex::declare(const std::string& group, const YamlNode& place, std::string why) {
+  Entry& entry = entries_[group];
+  if (!entry.is_group && !entry.objects.empty()) {
+    diagnostics_.add(place, fmt::format("{}, the group '{}', which is the name of an object; "
+                                        "expected another name",
+                                        why, group));
+    return;
+  }
+  entry.is_group = true;
+  entry.declared = &place;
+  entry.why = std::move(why);
 }
 
 // A carrier comes before what it carries: what that one carries, too, is added to all carriers.
@@ -84,6 +98,8 @@ std::optional<Between> GroupIndex::read_between(MapReader& map, Attached attache
     if (const auto name = read_name(item, "a group or an object", diagnostics_)) {
       between.names[side] = *name;
       between.objects[side] = find(item, *name, attached);
+      const auto entry = entries_.find(*name);
+      if (entry != entries_.end() && entry->second.declared != nullptr) between.may_be_empty = true;
     }
   }
   if (between.objects[0] == nullptr || between.objects[1] == nullptr) return std::nullopt;
@@ -116,6 +132,14 @@ void GroupIndex::refuse_unused_groups() const {
   }
   for (const auto& [name, entry] : entries_) {
     if (!entry.is_group || entry.used) continue;
+    if (entry.declared != nullptr) {
+      diagnostics_.add(
+          *entry.declared,
+          fmt::format("{}, and nothing under 'pairs' that names the group '{}' of what "
+                      "it adds; expected a rule, as {{between: [ROBOT, {}]}}",
+                      entry.why, name, name));
+      continue;
+    }
     const std::uint32_t object = entry.objects.front();
     diagnostics_.add(
         *list_.places[object],

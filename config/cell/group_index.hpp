@@ -18,6 +18,7 @@ namespace clearance {
 struct Between {
   std::array<std::string, 2> names;
   std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by GroupIndex
+  bool may_be_empty = false;  // a side is a declared group, whose members come and go
 };
 
 // Names of groups and objects share one namespace, so that `between` needs no prefix. A rule that
@@ -26,6 +27,10 @@ class GroupIndex {
  public:
   // Reports a group that has an object's name. The list must outlive this.
   GroupIndex(const ObjectList& list, Diagnostics& diagnostics);
+
+  // Makes the name of a group known that may get members later. `place` is where the cell asks for
+  // it, and `why` begins a message if nothing names the group.
+  void declare(const std::string& group, const YamlNode& place, std::string why);
 
   // Objects that are attached to an object count where that one is named, or do not.
   enum class Attached : std::uint8_t { kCount, kDoNot };
@@ -49,6 +54,8 @@ class GroupIndex {
     bool is_group = false;
     bool used = false;
     std::vector<std::uint32_t> with_attached = {};  // empty: as `objects`
+    const YamlNode* declared = nullptr;             // the place; null: by its members only
+    std::string why = {};
   };
   void count_attached();
   const std::vector<std::uint32_t>* find(const YamlNode& node, const std::string& name,

@@ -63,7 +63,7 @@ void PairReader::read_rule(const YamlNode& node) {
     return;
   }
   const std::vector<PairKey> keys = group_index_.pairs(*between);
-  if (keys.empty()) {
+  if (keys.empty() && !between->may_be_empty) {
     diagnostics_.add(node, fmt::format("found no pair between '{}' and '{}'; expected at least two "
                                        "different objects, one of them moving",
                                        between->names[0], between->names[1]));
@@ -157,7 +157,7 @@ void PairReader::read_exception(const YamlNode& node) {
     candidate->allowed_line = node.line;
     removed = true;
   }
-  if (!removed && complete_) {
+  if (!removed && complete_ && !between->may_be_empty) {
     diagnostics_.add(
         node,
         fmt::format("found an exception that changes nothing: '{}' against '{}' is not watched "

@@ -2,46 +2,171 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <string>
 #include <utility>
 #include <variant>
 
+#include "config/cell/object_parts.hpp"
+#include "config/moveit/object_entry.hpp"
+#include "config/moveit/scene_yaml.hpp"
 #include "config/text/printable.hpp"
 #include "config/urdf/planning_scene.hpp"
 #include "config/yaml/map_reader.hpp"
+#include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {
 namespace {
 
-// Reads the objects of one file; returns none after a diagnostic.
-std::vector<Object> objects_of(const YamlNode& file_node, const std::filesystem::path& directory,
-                               Revision& revision, Diagnostics& diagnostics) {
-  const auto name = read_text(file_node, "a file", diagnostics);
-  if (!name) return {};
-  const std::filesystem::path path = path_in(revision.root(), directory, *name);
-  const auto bytes = revision.read(path, *name);
-  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
-    diagnostics.add(file_node, fmt::format("found a file that cannot be used: {}; expected a path "
-                                           "relative to the cell file",
-                                           fault->reason));
-    return {};
+// A fault in a file that the cell names.
+struct FileMistake {
+  int line;  // 0: none
+  std::string reason;
+};
+
+// What is generated is at the place of the file's name in the cell.
+void place_at(const YamlNode& place, YamlNode& node) {
+  node.line = place.line;
+  node.column = place.column;
+  for (YamlNode& item : node.items) place_at(place, item);
+  for (YamlEntry& entry : node.entries) {
+    place_at(place, entry.key);
+    place_at(place, entry.value);
   }
-  revision.add_file(path, std::get<std::string>(bytes));
-  auto read = read_planning_scene(std::get<std::string>(bytes));
-  if (const auto* fault = std::get_if<PlanningSceneFault>(&read)) {
-    diagnostics.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{}: {}",
-                                           *name, fault->line, excerpt(fault->reason)));
-    return {};
+}
+
+// Reads the objects of planning scenes, one file after another.
+class PlanningSceneReader {
+ public:
+  PlanningSceneReader(const std::filesystem::path& directory, const Quantities& quantities,
+                      ShapeReader& shapes, Revision& revision)
+      : directory_(directory),
+        quantities_(quantities),
+        diagnostics_(quantities.diagnostics()),
+        parts_(quantities, shapes),
+        revision_(revision) {}
+
+  // Returns none after a diagnostic.
+  std::vector<Object> objects_of(const YamlNode& file_node);
+
+ private:
+  using Read = std::variant<std::vector<Object>, FileMistake>;
+  static Read objects_of_text(const std::string& text);
+  Read objects_of_yaml(const std::string& text, const YamlNode& file_node);
+  std::variant<Object, FileMistake> object_of(const moveit::CollisionObject& message,
+                                              const Pose& scene_from_frame, const std::string& path,
+                                              const YamlNode& file_node);
+
+  const std::filesystem::path& directory_;
+  const Quantities& quantities_;
+  Diagnostics& diagnostics_;
+  ObjectPartsReader parts_;
+  Revision& revision_;
+};
+
+PlanningSceneReader::Read PlanningSceneReader::objects_of_text(const std::string& text) {
+  auto read = read_planning_scene(text);
+  if (auto* fault = std::get_if<PlanningSceneFault>(&read))
+    return FileMistake{fault->line, std::move(fault->reason)};
+  return std::get<PlanningScene>(std::move(read)).objects;
+}
+
+std::variant<Object, FileMistake> PlanningSceneReader::object_of(
+    const moveit::CollisionObject& message, const Pose& scene_from_frame, const std::string& path,
+    const YamlNode& file_node) {
+  if (message.operation != static_cast<std::uint8_t>(moveit::Operation::kAdd)) {
+    return FileMistake{
+        0, fmt::format("{}.operation: found {}; expected 0 (ADD)", path, message.operation)};
   }
-  std::vector<Object> objects = std::get<PlanningScene>(std::move(read)).objects;
-  if (objects.empty())
-    diagnostics.add(file_node, "found a planning scene without objects; expected some");
+  auto made = moveit::body_of(message, quantities_.units().length, moveit::MeshForm::kHull);
+  if (const auto* fault = std::get_if<moveit::FieldFault>(&made))
+    return FileMistake{0, fmt::format("{}.{}: {}", path, fault->field, fault->reason)};
+  auto& body = std::get<moveit::Body>(made);
+  Object object;
+  object.name = message.id;
+  object.fixed = true;
+  object.max_speed = 0.0;
+  object.world_from_object = compose(scene_from_frame, body.frame_from_object);
+  YamlNode node;
+  set(node, "parts", std::move(body.parts));
+  place_at(file_node, node);
+  MapReader map(node, "an object of a planning scene", diagnostics_);
+  static_cast<void>(parts_.read(map, node, object));
+  return object;
+}
+
+// The poses of all objects are in one frame, that of the first object, or in a fixed frame that the
+// scene places in that one.
+PlanningSceneReader::Read PlanningSceneReader::objects_of_yaml(const std::string& text,
+                                                               const YamlNode& file_node) {
+  auto read = moveit::read_scene_yaml(text);
+  if (auto* fault = std::get_if<moveit::SceneYamlFault>(&read))
+    return FileMistake{fault->line, std::move(fault->reason)};
+  const auto& scene = std::get<moveit::PlanningScene>(read);
+  if (!scene.attached.empty()) {
+    return FileMistake{
+        0, fmt::format("found '{}', which is attached to '{}'; expected objects of "
+                       "the world: write 'attached' under 'objects' of the cell",
+                       scene.attached.front().object.id, scene.attached.front().link_name)};
+  }
+  std::map<std::string, Pose> frames;
+  for (const moveit::FixedFrame& frame : scene.fixed_frame_transforms) {
+    auto pose = moveit::checked_pose(frame.child_from_frame, "fixed_frame_transforms");
+    if (const auto* fault = std::get_if<moveit::FieldFault>(&pose))
+      return FileMistake{0, fault->field + ": " + fault->reason};
+    frames[frame.frame_id] = std::get<Pose>(pose);
+  }
+  std::vector<Object> objects;
+  const std::string first =
+      scene.collision_objects.empty() ? "" : scene.collision_objects[0].frame_id;
+  const std::string base =
+      frames.contains(first) ? scene.fixed_frame_transforms[0].child_frame_id : first;
+  for (std::size_t i = 0; i < scene.collision_objects.size(); ++i) {
+    const moveit::CollisionObject& message = scene.collision_objects[i];
+    const std::string path = fmt::format("world.collision_objects[{}]", i);
+    const auto frame = frames.find(message.frame_id);
+    if (frame == frames.end() && message.frame_id != base) {
+      return FileMistake{0, fmt::format("{}.header.frame_id: found '{}'; expected '{}', or one of "
+                                        "fixed_frame_transforms",
+                                        path, message.frame_id, base)};
+    }
+    auto object =
+        object_of(message, frame == frames.end() ? Pose{} : frame->second, path, file_node);
+    if (auto* mistake = std::get_if<FileMistake>(&object)) return std::move(*mistake);
+    objects.push_back(std::get<Object>(std::move(object)));
+  }
   return objects;
 }
 
-void read_scene(const YamlNode& node, const std::filesystem::path& directory,
-                const ObjectDefaults& defaults, const Quantities& quantities, Revision& revision,
-                ObjectList& list) {
+std::vector<Object> PlanningSceneReader::objects_of(const YamlNode& file_node) {
+  const auto name = read_text(file_node, "a file", diagnostics_);
+  if (!name) return {};
+  const std::filesystem::path path = path_in(revision_.root(), directory_, *name);
+  const auto bytes = revision_.read(path, *name);
+  if (const auto* fault = std::get_if<FileFault>(&bytes)) {
+    diagnostics_.add(file_node, fmt::format("found a file that cannot be used: {}; expected a path "
+                                            "relative to the cell file",
+                                            fault->reason));
+    return {};
+  }
+  const auto& text = std::get<std::string>(bytes);
+  revision_.add_file(path, text);
+  const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
+  auto read = is_yaml ? objects_of_yaml(text, file_node) : objects_of_text(text);
+  if (const auto* mistake = std::get_if<FileMistake>(&read)) {
+    const std::string place = mistake->line == 0 ? "" : fmt::format("{}:", mistake->line);
+    diagnostics_.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{} {}",
+                                            *name, place, excerpt(mistake->reason)));
+    return {};
+  }
+  auto& objects = std::get<std::vector<Object>>(read);
+  if (objects.empty())
+    diagnostics_.add(file_node, "found a planning scene without objects; expected some");
+  return std::move(objects);
+}
+
+void read_scene(const YamlNode& node, const ObjectDefaults& defaults, const Quantities& quantities,
+                PlanningSceneReader& reader, ObjectList& list) {
   Diagnostics& diagnostics = quantities.diagnostics();
   MapReader map(node, "a planning scene", diagnostics);
   const YamlNode* file = map.required("file");
@@ -53,7 +178,7 @@ void read_scene(const YamlNode& node, const std::filesystem::path& directory,
                          : read_name(*group_node, "the group of its objects", diagnostics);
   const Pose pose = pose_node == nullptr ? Pose{} : quantities.pose(*pose_node).value_or(Pose{});
   std::vector<Object> objects;
-  if (file != nullptr) objects = objects_of(*file, directory, revision, diagnostics);
+  if (file != nullptr) objects = reader.objects_of(*file);
   if (objects.empty() || !group) list.names_known = false;
   for (Object& object : objects) {
     YamlNode name = *file;
@@ -72,9 +197,10 @@ void read_scene(const YamlNode& node, const std::filesystem::path& directory,
 
 void read_planning_scenes(const YamlNode& node, const std::filesystem::path& directory,
                           const ObjectDefaults& defaults, const Quantities& quantities,
-                          Revision& revision, ObjectList& list) {
+                          ShapeReader& shapes, Revision& revision, ObjectList& list) {
+  PlanningSceneReader reader(directory, quantities, shapes, revision);
   for (const YamlNode& item : read_list(node, "planning scenes", quantities.diagnostics()))
-    read_scene(item, directory, defaults, quantities, revision, list);
+    read_scene(item, defaults, quantities, reader, list);
   if (list.objects.size() <= kMaxObjects) return;
   quantities.diagnostics().add(
       node, fmt::format("found {} objects with those of planning scenes; expected at most {}",

@@ -4,15 +4,17 @@
 #include <filesystem>
 
 #include "config/cell/object_reader.hpp"
+#include "config/cell/shape_reader.hpp"
 #include "config/scene/revision.hpp"
 #include "config/yaml/quantities.hpp"
 
 namespace clearance {
 
-// Adds the obstacles behind the objects of the list. Files are relative to `directory`; their bytes
+// A file ends in .scene, MoveIt's text, or in .yaml or .yml, a moveit_msgs/PlanningScene. Adds the
+// obstacles behind the objects of the list. Files are relative to `directory`; their bytes
 // go into the revision.
 void read_planning_scenes(const YamlNode& node, const std::filesystem::path& directory,
                           const ObjectDefaults& defaults, const Quantities& quantities,
-                          Revision& revision, ObjectList& list);
+                          ShapeReader& shapes, Revision& revision, ObjectList& list);
 
 }  // namespace clearance

@@ -14,30 +14,33 @@ namespace {
 constexpr Range kMarkerRates{.least = 0.1, .most = 1000.0};  // Hz
 
 // `true`: the standard topic; `false`: none; or the topic's name.
-std::string read_output(const YamlNode& node, const RosOutput& output, Diagnostics& diagnostics) {
+std::string read_topic(const YamlNode& node, std::string_view standard_topic,
+                       Diagnostics& diagnostics) {
   if (node.kind == YamlNode::Kind::kScalar && scalar_type(node) == ScalarType::kFlag) {
-    return read_flag(node, diagnostics).value_or(false) ? std::string(output.standard_topic) : "";
+    return read_flag(node, diagnostics).value_or(false) ? std::string(standard_topic) : "";
   }
   const auto topic = read_text(node, "true, false or a topic of ROS 2", diagnostics);
   if (topic && !is_ros_topic(*topic)) {
     diagnostics.add(node, fmt::format("found '{}'; expected true, false or a topic of ROS 2 with "
                                       "its namespace: {}",
-                                      *topic, output.standard_topic));
+                                      *topic, standard_topic));
   }
   return topic.value_or("");
 }
 
-void refuse_same_topics(const YamlNode& node, const RosOutputs& outputs, Diagnostics& diagnostics) {
+void refuse_same_topics(const YamlNode& node, const RosSettings& settings,
+                        Diagnostics& diagnostics) {
   std::map<std::string, std::string_view> taken;
-  for (const RosOutput& output : kRosOutputs) {
-    const std::string& topic = outputs.*output.topic;
-    if (topic.empty()) continue;
-    const auto [same, is_new] = taken.emplace(topic, output.key);
-    if (is_new) continue;
+  const auto take = [&](const std::string& topic, std::string_view key) {
+    if (topic.empty()) return;
+    const auto [same, is_new] = taken.emplace(topic, key);
+    if (is_new) return;
     diagnostics.add(node, fmt::format("found the topic '{}' for both '{}' and '{}'; expected a "
                                       "topic of its own for each",
-                                      topic, same->second, output.key));
-  }
+                                      topic, same->second, key));
+  };
+  for (const RosOutput& output : kRosOutputs) take(settings.outputs.*output.topic, output.key);
+  for (const MoveItInput& input : kMoveItInputs) take(settings.moveit.*input.topic, input.key);
 }
 
 bool is_word(char c) noexcept {
@@ -84,9 +87,17 @@ void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnost
   MapReader map(node, "the settings of ROS 2", diagnostics);
   for (const RosOutput& output : kRosOutputs) {
     if (const YamlNode* topic = map.optional(output.key))
-      settings.outputs.*output.topic = read_output(*topic, output, diagnostics);
+      settings.outputs.*output.topic = read_topic(*topic, output.standard_topic, diagnostics);
   }
-  refuse_same_topics(node, settings.outputs, diagnostics);
+  for (const MoveItInput& input : kMoveItInputs) {
+    if (const YamlNode* topic = map.optional(input.key))
+      settings.moveit.*input.topic = read_topic(*topic, input.standard_topic, diagnostics);
+  }
+  if (const YamlNode* group = map.optional("moveit_group")) {
+    settings.moveit.group = read_name(*group, "the group of what MoveIt adds", diagnostics)
+                                .value_or(settings.moveit.group);
+  }
+  refuse_same_topics(node, settings, diagnostics);
   if (const YamlNode* rate = map.optional("markers_hz")) {
     settings.markers_hz =
         read_number(*rate, kMarkerRates, "the rate of the markers in Hz", diagnostics)

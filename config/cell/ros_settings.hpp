@@ -1,5 +1,5 @@
-// The settings of a cell for ROS 2, except those of joint states: the topics that are written, and
-// the frame that is its world.
+// The settings of a cell for ROS 2, except those of joint states: the topics that are written,
+// those of MoveIt that are read, and the frame that is its world.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@ namespace clearance {
 
 // Topics by their names in ROS 2, "/diagnostics"; an empty one is not written.
 struct RosOutputs {
-  std::string markers, diagnostics, minimum_distance, speed_scaling;
+  std::string markers, diagnostics, minimum_distance, speed_scaling, monitored_planning_scene;
 };
 
 // One row an output: its key in a cell, and its topic where the cell names none.
@@ -22,15 +22,43 @@ struct RosOutput {
   std::string RosOutputs::*topic;
   std::string_view standard_topic;
 };
-inline constexpr std::array<RosOutput, 4> kRosOutputs = {{
+inline constexpr std::array<RosOutput, 5> kRosOutputs = {{
     {"markers", &RosOutputs::markers, "/clearance/markers"},
     {"diagnostics", &RosOutputs::diagnostics, "/diagnostics"},
     {"minimum_distance", &RosOutputs::minimum_distance, "/clearance/minimum_distance"},
     {"speed_scaling", &RosOutputs::speed_scaling, "/clearance/speed_scaling"},
+    {"monitored_planning_scene", &RosOutputs::monitored_planning_scene,
+     "/clearance/monitored_planning_scene"},
+}};
+
+// MoveIt's messages that keep the scene. Topics by their names in ROS 2; an empty one is not read.
+struct MoveItInputs {
+  std::string collision_object, attached_collision_object, planning_scene;
+  // The group of the objects that MoveIt adds. A rule for pairs has to name it.
+  std::string group = "moveit";
+
+  [[nodiscard]] bool any() const noexcept {
+    return !collision_object.empty() || !attached_collision_object.empty() ||
+           !planning_scene.empty();
+  }
+};
+
+// One row an input: its key in a cell, and its topic where the cell says `true`.
+struct MoveItInput {
+  std::string_view key;
+  std::string MoveItInputs::*topic;
+  std::string_view standard_topic;
+};
+inline constexpr std::array<MoveItInput, 3> kMoveItInputs = {{
+    {"collision_object", &MoveItInputs::collision_object, "/collision_object"},
+    {"attached_collision_object", &MoveItInputs::attached_collision_object,
+     "/attached_collision_object"},
+    {"planning_scene", &MoveItInputs::planning_scene, "/planning_scene"},
 }};
 
 struct RosSettings {
   RosOutputs outputs;
+  MoveItInputs moveit;
   double markers_hz = 30.0;
   // The frame of tf that is the cell's world; required where an object or a base follows a frame.
   // Empty: outputs call it "world".

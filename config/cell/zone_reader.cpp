@@ -51,7 +51,7 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
                     "expected every pair of a zone under 'pairs' or 'allowed_collisions'",
                     unwatched.size(), objects.objects[first_of(key)].name,
                     objects.objects[second_of(key)].name));
-  } else if (zone.pairs.empty()) {
+  } else if (zone.pairs.empty() && !between.may_be_empty) {
     diagnostics.add(node, fmt::format("found a zone over no pair: none between '{}' and '{}' is "
                                       "watched; expected at least one",
                                       between.names[0], between.names[1]));

@@ -19,6 +19,11 @@ struct AddObject {
   std::string yaml;
 };
 
+// Puts another entry in the place of the one with the same name. Rules that name the object stay.
+struct ReplaceObject {
+  std::string yaml;
+};
+
 // Appends a fixed object with the body of a template of the cell.
 struct AddFromTemplate {
   std::string template_name;
@@ -87,10 +92,11 @@ struct SetSource {
 // only be watched, or an exception from them.
 struct SetPair {
   enum class Rule : std::uint8_t {
-    kPublish,   // a rule: watched, and in every report
-    kWatch,     // a rule: watched
-    kLeaveOut,  // an exception: they may touch; needs a reason
-    kUnstated,  // neither: only what rules with other names say
+    kPublish,      // a rule: watched, and in every report
+    kWatch,        // a rule: watched
+    kLeaveOut,     // an exception: they may touch; needs a reason
+    kUnstated,     // neither: only what rules with other names say
+    kNoException,  // no exception; a rule stays
   };
   std::string a, b;
   Rule rule = Rule::kPublish;
@@ -113,8 +119,8 @@ struct ReadCellAgain {
   std::string file;  // absolute, or relative to the cell's folder; empty: the cell's own file
 };
 
-using CellChange = std::variant<AddObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
-                                Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair,
-                                SetZoneThresholds, ReplaceCell, ReadCellAgain>;
+using CellChange = std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent,
+                                Attach, Detach, Place, SetMaxSpeed, SetMargin, SetAgeLimit,
+                                SetSource, SetPair, SetZoneThresholds, ReplaceCell, ReadCellAgain>;
 
 }  // namespace clearance

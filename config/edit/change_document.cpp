@@ -5,12 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
-#include "config/yaml/quantities.hpp"
+#include "config/yaml/quantity_nodes.hpp"
 #include "config/yaml/scalar.hpp"
 #include "config/yaml/yaml_writer.hpp"
 
@@ -46,14 +45,31 @@ ChangeFault no_pose(const std::string& object) {
                       object)};
 }
 
+// Reads one entry of `objects`, which may stand in a list of its own.
+std::variant<YamlNode, ChangeFault> object_entry(const std::string& yaml) {
+  auto read = parse_yaml(yaml);
+  if (const auto* fault = std::get_if<YamlFault>(&read))
+    return ChangeFault{"objects", fault->reason};
+  auto& node = std::get<YamlNode>(read);
+  if (node.kind == YamlNode::Kind::kSequence && node.items.size() == 1) {
+    YamlNode only = std::move(node.items.front());
+    node = std::move(only);
+  }
+  if (node.kind != YamlNode::Kind::kMap || name_of(node).empty()) {
+    return ChangeFault{"objects", fmt::format("found {}; expected one entry of 'objects', a map "
+                                              "with a name",
+                                              describe(node))};
+  }
+  return std::move(node);
+}
+
 class ChangeMaker {
  public:
-  explicit ChangeMaker(CellDocument& document) : document_(document) {
-    const YamlNode* units = find(document.tree(), "units");
-    millimetres_ = units != nullptr && text_of(find(*units, "length")) == "mm";
-  }
+  explicit ChangeMaker(CellDocument& document)
+      : document_(document), unit_(length_unit_of(document.tree())) {}
 
   Fault operator()(const AddObject& change);
+  Fault operator()(const ReplaceObject& change);
   Fault operator()(const AddFromTemplate& change);
   Fault operator()(const RemoveObject& change);
   Fault operator()(const SetAbsent& change);
@@ -90,42 +106,13 @@ class ChangeMaker {
   Fault set_length(const std::string& object, const std::string& key,
                    const std::optional<double>& value);
   [[nodiscard]] std::vector<std::string> users_of(const std::string& name) const;
-  [[nodiscard]] YamlNode length(double metres) const;
-  [[nodiscard]] YamlNode pose(const Pose& pose) const;
+  [[nodiscard]] YamlNode length(double metres) const { return length_node(metres, unit_); }
+  [[nodiscard]] YamlNode pose(const Pose& pose) const { return pose_node(pose, unit_); }
   void erase_pair(std::string_view list, const std::pair<std::string, std::string>& sides);
 
   CellDocument& document_;
-  bool millimetres_ = false;
+  LengthUnit unit_;
 };
-
-// A double in metres that is a quotient of 1000 is written as that number. Others are within one
-// rounding of the stated length.
-YamlNode ChangeMaker::length(double metres) const {
-  if (!millimetres_) return number_node(metres);
-  const double product = metres * 1000.0;
-  for (const double millimetres :
-       {product, std::nextafter(product, -HUGE_VAL), std::nextafter(product, HUGE_VAL)}) {
-    if (to_metres(millimetres, LengthUnit::kMillimetre) == metres) return number_node(millimetres);
-  }
-  return number_node(product);
-}
-
-YamlNode ChangeMaker::pose(const Pose& pose) const {
-  YamlNode node;
-  node.kind = YamlNode::Kind::kMap;
-  YamlNode xyz;
-  xyz.kind = YamlNode::Kind::kSequence;
-  for (const double each : pose.position) xyz.items.push_back(length(each));
-  set(node, "xyz", std::move(xyz));
-  const Eigen::Quaterniond& turn = pose.orientation;
-  if (turn.vec() == Vec3::Zero()) return node;
-  YamlNode quaternion;
-  quaternion.kind = YamlNode::Kind::kSequence;
-  for (const double each : {turn.x(), turn.y(), turn.z(), turn.w()})
-    quaternion.items.push_back(number_node(each));
-  set(node, "quaternion", std::move(quaternion));
-  return node;
-}
 
 std::variant<ChangeMaker::Found, ChangeFault> ChangeMaker::named(std::string_view list,
                                                                  const std::string& name) const {
@@ -166,20 +153,19 @@ Fault ChangeMaker::set_length(const std::string& object, const std::string& key,
 }
 
 Fault ChangeMaker::operator()(const AddObject& change) {
-  auto read = parse_yaml(change.yaml);
-  if (const auto* fault = std::get_if<YamlFault>(&read))
-    return ChangeFault{"objects", fault->reason};
+  auto read = object_entry(change.yaml);
+  if (auto* fault = std::get_if<ChangeFault>(&read)) return std::move(*fault);
+  document_.append("objects", std::get<YamlNode>(std::move(read)));
+  return std::nullopt;
+}
+
+Fault ChangeMaker::operator()(const ReplaceObject& change) {
+  auto read = object_entry(change.yaml);
+  if (auto* fault = std::get_if<ChangeFault>(&read)) return std::move(*fault);
   auto& node = std::get<YamlNode>(read);
-  if (node.kind == YamlNode::Kind::kSequence && node.items.size() == 1) {
-    YamlNode only = std::move(node.items.front());
-    node = std::move(only);
-  }
-  if (node.kind != YamlNode::Kind::kMap || name_of(node).empty()) {
-    return ChangeFault{"objects", fmt::format("found {}; expected one entry of 'objects', a map "
-                                              "with a name",
-                                              describe(node))};
-  }
-  document_.append("objects", std::move(node));
+  const auto found = named("objects", name_of(node));
+  if (const auto* fault = std::get_if<ChangeFault>(&found)) return *fault;
+  document_.replace("objects", std::get<Found>(found).index, std::move(node));
   return std::nullopt;
 }
 
@@ -320,9 +306,9 @@ Fault ChangeMaker::operator()(const SetPair& change) {
   const bool is_rule =
       change.rule == SetPair::Rule::kPublish || change.rule == SetPair::Rule::kWatch;
   const bool is_exception = change.rule == SetPair::Rule::kLeaveOut;
-  if (!is_rule && !is_exception) erase_pair("pairs", sides);
+  if (change.rule == SetPair::Rule::kUnstated) erase_pair("pairs", sides);
   if (!is_exception) erase_pair("allowed_collisions", sides);
-  if (change.rule == SetPair::Rule::kUnstated) return std::nullopt;
+  if (!is_rule && !is_exception) return std::nullopt;
   const std::string_view list = is_rule ? "pairs" : "allowed_collisions";
   const std::vector<YamlNode>& items = document_.items(list);
   std::size_t place = 0;
@@ -358,15 +344,16 @@ Fault ChangeMaker::operator()(const SetZoneThresholds& change) {
 }
 
 struct Touched {
-  TouchedEntry operator()(const AddObject& change) const {
-    const auto read = parse_yaml(change.yaml);
+  static TouchedEntry entry_of(const std::string& yaml) {
+    const auto read = object_entry(yaml);
     const auto* node = std::get_if<YamlNode>(&read);
-    if (node == nullptr) return {};
-    const bool is_list = node->kind == YamlNode::Kind::kSequence && node->items.size() == 1;
-    return {"objects", name_of(is_list ? node->items.front() : *node)};
+    return node == nullptr ? TouchedEntry{} : TouchedEntry{"objects", name_of(*node)};
   }
+  TouchedEntry operator()(const AddObject& change) const { return entry_of(change.yaml); }
+  TouchedEntry operator()(const ReplaceObject& change) const { return entry_of(change.yaml); }
   TouchedEntry operator()(const SetPair& change) const {
-    const bool is_exception = change.rule == SetPair::Rule::kLeaveOut;
+    const bool is_exception =
+        change.rule == SetPair::Rule::kLeaveOut || change.rule == SetPair::Rule::kNoException;
     return {is_exception ? "allowed_collisions" : "pairs",
             fmt::format("{}, {}", change.a, change.b)};
   }

@@ -196,7 +196,7 @@ PlanningScene read(Words& words) {
     if (mark != "*") {
       words.fail(
           fmt::format("found '{}'; expected '* NAME' of an object, or '.' at the end, as in a "
-                      ".scene file (YAML is not read)",
+                      ".scene file (YAML has to be in a .yaml file)",
                       mark));
     }
     scene.objects.push_back(read_object(words));

@@ -47,6 +47,9 @@ inline constexpr LogLine<Text, Count, Text, Text> kCommandRefused{
     "command-refused", kWarn, "request {1} of '{0}' is refused ({2}): {3}"};
 inline constexpr LogLine<Text> kCommandsLeftOut{"commands-left-out", kWarn,
                                                 "{} about refused commands left out"};
+inline constexpr LogLine<Text> kMoveItLeftOut{"moveit-left-out", kWarn, "MoveIt's {}"};
+inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
+    "moveit-refused", kWarn, "a message of MoveIt on {} changes nothing: {}{}"};
 inline constexpr LogLine<Text, Count> kSceneResumed{
     "scene-resumed", kInfo, "the scene of {} is resumed: its changes began with revision {:016x}"};
 inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
@@ -210,6 +213,8 @@ inline constexpr std::tuple kAll{kStarted,
                                  kSceneRefused,
                                  kCommandRefused,
                                  kCommandsLeftOut,
+                                 kMoveItLeftOut,
+                                 kMoveItRefused,
                                  kSceneResumed,
                                  kWaitingForDescription,
                                  kDescriptionKept,

@@ -21,7 +21,8 @@ enum class ChangeText { kName, kMayBeEmpty, kYaml };
 template <class Change, class Visit, class Message, class Of>
 void visit_fields(const Visit& visit, Message& m, Of& c) {
   using enum ChangeText;
-  if constexpr (std::is_same_v<Change, AddObject> || std::is_same_v<Change, ReplaceCell>) {
+  if constexpr (std::is_same_v<Change, AddObject> || std::is_same_v<Change, ReplaceObject> ||
+                std::is_same_v<Change, ReplaceCell>) {
     visit("yaml", m.yaml, c.yaml, kYaml);
   } else if constexpr (std::is_same_v<Change, AddFromTemplate>) {
     visit("template_name", m.template_name, c.template_name, kName);
@@ -88,6 +89,8 @@ constexpr ChangeKind<Change, Member> change_kind(clearance_msg_ChangeKind kind,
 // In the order of CellChange.
 inline constexpr std::tuple kChangeKinds{
     change_kind<AddObject>(clearance_msg_CHANGE_ADD_OBJECT, "add_object", &ChangeUnion::add_object),
+    change_kind<ReplaceObject>(clearance_msg_CHANGE_REPLACE_OBJECT, "replace_object",
+                               &ChangeUnion::replace_object),
     change_kind<AddFromTemplate>(clearance_msg_CHANGE_ADD_FROM_TEMPLATE, "add_from_template",
                                  &ChangeUnion::add_from_template),
     change_kind<RemoveObject>(clearance_msg_CHANGE_REMOVE_OBJECT, "remove_object",

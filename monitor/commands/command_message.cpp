@@ -74,7 +74,7 @@ class FromWire {
     to = from;
   }
   void take(const std::string& path, std::uint8_t from, SetPair::Rule& to) const {
-    constexpr auto kLast = static_cast<std::uint8_t>(SetPair::Rule::kUnstated);
+    constexpr auto kLast = static_cast<std::uint8_t>(SetPair::Rule::kNoException);
     if (from > kLast)
       return refuse(path, fmt::format("found the rule {}; expected 0 to {}", from, kLast));
     to = static_cast<SetPair::Rule>(from);

@@ -61,7 +61,9 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
     : options_(options),
       cell_file_(cell.file.string()),
       participant_(prepare_threads(options)),
-      poses_(cell, participant_),
+      moveit_([this](QueuedCommand command) { return put(std::move(command)); }),
+      poses_(cell, participant_,
+             [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_),
       recording_(open_recording(cell, options, poses_, recording_health_)),
@@ -142,6 +144,7 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
 
 // The scene thread answers through the port, so that the port ends last.
 void Daemon::end_commands() {
+  moveit_.close();
   loop_ended_ = true;
   if (!scene_thread_ || still_reads_) return;
   still_reads_ = !scene_thread_->end();

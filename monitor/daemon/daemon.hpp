@@ -11,6 +11,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/command_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
@@ -87,6 +88,7 @@ class Daemon : private CellParts {
   DaemonOptions options_;
   std::string cell_file_;
   Participant participant_;
+  MoveItPort moveit_;
   PoseReader poses_;
   RecordingHealth recording_health_;
   OfCell now_, next_;

@@ -29,8 +29,9 @@ class PoseReader final : public PoseSource {
   // The number of batches that may wait for one tick.
   static constexpr std::size_t kBatches = 128;
 
-  // The participant must outlive this, and the cell until change() is called.
-  PoseReader(const Cell& cell, Participant& participant);
+  // The participant must outlive this, and the cell until change() is called. `use_scene` gets
+  // MoveIt's messages, in the thread that takes samples.
+  PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene = {});
   ~PoseReader() override;
 
   // Starts the thread that takes samples. Call this once, when ticks are about to begin: what

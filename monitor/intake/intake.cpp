@@ -12,6 +12,7 @@ namespace clearance {
 
 Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
     : scene_(&cell.scene),
+      hears_moveit_(options.use_scene && cell.ros.moveit.any()),
       topics_(&cell.topics),
       options_(std::move(options)),
       use_(std::move(use)),
@@ -27,6 +28,7 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
   add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
   transforms_ = add<RosTransforms>(cell, from, *this);
+  add<MoveItMessages>(cell, options_.use_scene, *this);
 }
 
 void Intake::change(const Cell& cell) {

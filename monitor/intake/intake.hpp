@@ -15,6 +15,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
+#include "monitor/intake/moveit_messages.hpp"
 #include "monitor/intake/pose_sources.hpp"
 #include "monitor/intake/ros_joint_states.hpp"
 #include "monitor/intake/ros_transforms.hpp"
@@ -33,6 +34,8 @@ struct IntakeOptions {
   std::size_t most_joints = std::numeric_limits<std::size_t>::max();
   // See RosJointStatesOptions::topics.
   std::vector<std::string> joint_topics = {};
+  // Receives MoveIt's messages that keep the scene. Empty: they are not used.
+  MoveItMessages::Use use_scene = {};
   // The name of a writer in news.
   std::function<std::string(std::uint64_t)> writer_name = [](std::uint64_t writer) {
     return std::to_string(writer);
@@ -64,7 +67,7 @@ class Intake final : public Outlet {
 
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
-    return !scene_->variables.empty() || transforms_->any();
+    return !scene_->variables.empty() || transforms_->any() || hears_moveit_;
   }
 
   // Returns false if the bytes are not a message of the topic's type.
@@ -102,6 +105,7 @@ class Intake final : public Outlet {
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
   const Scene* scene_;
+  bool hears_moveit_;
   std::vector<std::uint64_t> former_revisions_;  // of the cells before
   const Topics* topics_;
   IntakeOptions options_;

@@ -329,7 +329,7 @@ dds_entity_t Participant::reader_of_others(const std::string& name,
 
 dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
                                      const dds_listener_t* listener) {
-  const Qos qos = ros_qos(type, type.is_latched, type.depth);
+  const Qos qos = ros_qos(type, type.is_reliable, type.depth);
   return check_dds(
       dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
       fmt::format("making a reader of {}", name));

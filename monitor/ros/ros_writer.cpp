@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/dds/health.hpp"
@@ -61,15 +62,25 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReade
       diagnostics_(make_writer(participant, kRosDiagnostics, cell.ros.outputs.diagnostics)),
       minimum_distance_(make_writer(participant, kRosFloat64, cell.ros.outputs.minimum_distance)),
       speed_scaling_(make_speed_scaling_writer(participant, cell)),
+      planning_scene_(
+          make_writer(participant, kRosMonitoredScene, cell.ros.outputs.monitored_planning_scene)),
       queue_(cell.scene, {.reports = kReports}),
       numbers_(kNumbers),
       period_ns_(std::llround(1e9 / (markers_ != 0 ? cell.ros.markers_hz : kDiagnosticReportsHz))),
       cell_diagnostics_(cell.scene),
       distances_(make_distances(cell.scene)) {
+  if (planning_scene_ != 0) unwritten_scene_ = to_wire(monitored_scene(cell));
   thread_ = std::thread([this] { run(); });
 }
 
-RosWriter::~RosWriter() { finish(); }
+// Each cell has writers of its own, and a late reader gets no scene of a cell before.
+RosWriter::~RosWriter() {
+  finish();
+  for (const dds_entity_t writer :
+       {markers_, diagnostics_, minimum_distance_, speed_scaling_, planning_scene_}) {
+    if (writer != 0) dds_delete(writer);
+  }
+}
 
 void RosWriter::finish() {
   if (!thread_.joinable()) return;
@@ -86,7 +97,8 @@ void RosWriter::report(const Report& report, std::span<const SourceUse> sources)
       queue_.wake();
     }
   }
-  if (markers_ == 0 && diagnostics_ == 0) return;
+  const bool is_first = std::exchange(is_first_, false) && planning_scene_ != 0;
+  if (markers_ == 0 && diagnostics_ == 0 && !is_first) return;
   if (report.now_ns < next_ns_ && next_ns_ - report.now_ns <= period_ns_) return;
   next_ns_ = report.now_ns + period_ns_;
   queue_.report(report, sources);
@@ -106,6 +118,8 @@ void RosWriter::run() {
     write_numbers();
     while (const QueuedReport* queued = queue_.reports().front()) {
       last_ = queued->report;
+      if (unwritten_scene_) write(planning_scene_, &**unwritten_scene_);
+      unwritten_scene_.reset();
       if (markers_ != 0) write_markers(*queued);
       queue_.reports().pop();
     }

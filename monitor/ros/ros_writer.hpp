@@ -1,4 +1,5 @@
-// The daemon's output for ROS 2: the markers, diagnostics and numbers that the cell asks for.
+// The daemon's output for ROS 2: the markers, diagnostics, numbers and scenes that the cell asks
+// for.
 //
 // A thread of its own makes and writes them. The tick thread copies a number in each tick, a report
 // as often as markers are drawn, and statistics once a second. It never waits: a full queue loses
@@ -19,6 +20,7 @@
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/cell_diagnostics.hpp"
+#include "monitor/ros/monitored_scene.hpp"
 #include "monitor/visual/ros_types.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
@@ -63,11 +65,13 @@ class RosWriter final : public ReportSink {
   const PoseReader& poses_;
   const ReportQueue& published_;
   const RecordingHealth& recording_;
-  dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_;  // 0: not asked for
+  dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_,
+      planning_scene_;  // 0: not asked for
   ReportQueue queue_;
   SpscRing<Numbers> numbers_;
   std::int64_t period_ns_,
-      next_ns_ = 0;  // tick thread: the time of the next report for this thread
+      next_ns_ = 0;       // tick thread: the time of the next report for this thread
+  bool is_first_ = true;  // tick thread: no report has come
 
   // Used by the thread only.
   CellDiagnostics cell_diagnostics_;
@@ -76,6 +80,8 @@ class RosWriter final : public ReportSink {
   std::optional<Sample<ros::MarkerArray>> bodies_;  // made for the first reader
   bool bodies_due_ = false;                         // a reader has come
   std::int64_t bodies_written_ns_ = 0;
+  // The present scene, until the first report holds for it.
+  std::optional<Sample<moveit_msgs_msg_dds__PlanningScene_>> unwritten_scene_;
   std::uint64_t failed_writes_ = 0;
   std::atomic<bool> stop_{false};
   std::thread thread_;

@@ -8,10 +8,17 @@
 #include <functional>
 #include <mutex>
 #include <optional>
+#include <string>
 
+#include "config/cell/cell.hpp"
+#include "core/pose.hpp"
 #include "monitor/command.hpp"
 
 namespace clearance {
+
+// Returns where an object or a link of the scene in force is now, in the world; nothing: its pose
+// is not usable.
+using AskPose = std::function<std::optional<Pose>(const std::string& name)>;
 
 struct QueuedCommand {
   Command command = {};
@@ -19,6 +26,9 @@ struct QueuedCommand {
   bool is_own = false;
   // Gets the result, in the scene thread.
   std::function<void(const CommandResult&)> answer = {};
+  // Makes the command when its turn comes, in the scene thread, if it depends on the cell in force.
+  // One without changes is not done, and has no result.
+  std::function<Command(const Cell& cell, const AskPose& pose)> make = {};
 };
 
 // Any thread but that of the tick.

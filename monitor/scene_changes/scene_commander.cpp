@@ -227,6 +227,15 @@ std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& na
 }
 
 // All poses are of one tick, so that a carrier that moves takes the object with it exactly.
+std::optional<Pose> SceneCommander::present_pose(const std::string& name) {
+  const auto poses = present_poses({name}, cell().scene, loop_, loop_ended_);
+  if (!poses) return std::nullopt;
+  const auto found = poses->find(name);
+  if (found == poses->end() || found->second.state != PresentPose::State::kUsable)
+    return std::nullopt;
+  return found->second.world_from_body;
+}
+
 SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
   std::vector<std::string> names;
   for (const CellChange& change : work.changes) {

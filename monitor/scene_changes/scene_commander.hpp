@@ -28,8 +28,8 @@ struct CommanderOptions {
   CellOptions reading = {};
   // Adds to a cell what the command line of the program asks for. May be empty.
   std::function<void(Cell&)> finish = {};
-  // Makes the text of a cell that has no file, as its robot's files say now. Empty: the text is that
-  // of Cell::file.
+  // Makes the text of a cell that has no file, as its robot's files say now. Empty: the text is
+  // that of Cell::file.
   std::function<std::string()> own_text = {};
   // Keeps every accepted scene in this file (kept_scene.hpp). Empty: none is kept.
   std::filesystem::path keep_scene = {};
@@ -48,6 +48,11 @@ class SceneCommander {
   // long; if it returns false, the command is refused because the program ends.
   [[nodiscard]] CommandResult execute(const Command& command, bool is_own,
                                       const std::function<bool()>& may_change);
+
+  // The cell in force.
+  [[nodiscard]] const Cell& cell() const noexcept { return changer_.cell(); }
+  // Returns where an object or a link is now, in the world; nothing if its pose is not usable.
+  [[nodiscard]] std::optional<Pose> present_pose(const std::string& name);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return changer_.cell().scene.revision; }
 

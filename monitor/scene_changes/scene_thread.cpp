@@ -21,13 +21,21 @@ void SceneThread::run() {
       if (phase_ == Phase::kEnded) return;
       phase_ = Phase::kReading;
     }
-    const CommandResult result =
-        commander_.execute(next->command, next->is_own, [this] { return begin_change(); });
+    if (next->make) {
+      next->command = next->make(commander_.cell(), [this](const std::string& name) {
+        return commander_.present_pose(name);
+      });
+    }
+    const bool is_empty = next->make && next->command.changes.empty();
+    const CommandResult result = is_empty ? CommandResult{}
+                                          : commander_.execute(next->command, next->is_own,
+                                                               [this] { return begin_change(); });
     {
       const std::lock_guard lock(mutex_);
       if (phase_ == Phase::kEnded) return;
       phase_ = Phase::kChanging;
     }
+    if (is_empty) continue;
     if (next->answer) next->answer(result);
   }
 }

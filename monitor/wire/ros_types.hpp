@@ -50,6 +50,7 @@ struct RosType {
   std::int32_t depth;  // samples that may wait, of all writers together: such topics have no keys
   // Samples that a writer keeps. There are few of a state, as in kTopics.
   std::int32_t writer_depth = depth;
+  bool is_reliable = is_latched;  // a reader of it is; other readers take what comes
 };
 
 inline constexpr RosType kRosJointState{

@@ -38,6 +38,28 @@ TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
               mistake_at("cell.yaml:4:16", "'never'"));
 }
 
+TEST(RosSettingsOfACell, DeclareTheGroupOfWhatMoveItAdds) {
+  const auto cell = [](const std::string& ros, const std::string& rules) {
+    return cell_text("ros2: {" + ros + "}\n" + kBoxes + rules);
+  };
+  const std::string rule = "  - {between: [arm, moveit]}\n";
+  const std::string zone =
+      "zones: [{name: near, between: [arm, moveit], enter_below: 1, leave_above: 2}]\n";
+  const Cell good = read_good(cell("planning_scene: true, collision_object: /a/b", rule + zone));
+  EXPECT_EQ(good.ros.moveit.planning_scene, "/planning_scene");
+  EXPECT_EQ(good.ros.moveit.collision_object, "/a/b");
+  EXPECT_TRUE(good.ros.moveit.attached_collision_object.empty());
+  EXPECT_EQ(good.scene.pairs.size(), 2u);
+  EXPECT_TRUE(good.scene.zones[0].pairs.empty());
+  EXPECT_THAT(errors_of(cell("planning_scene: true", "")), mistake_at("cell.yaml:4:7", "'moveit'"));
+  EXPECT_THAT(
+      errors_of(cell("planning_scene: true, moveit_group: left", "  - {between: [arm, left]}\n")),
+      mistake_at("cell.yaml:4:7", "'left'"));
+  EXPECT_THAT(errors_of(cell("world_frame: map", rule)), mistake_at("cell.yaml:11:21", "'moveit'"));
+  EXPECT_THAT(errors_of(cell("planning_scene: /a, collision_object: /a", rule)),
+              mistake_at("cell.yaml:4:7", "'/a'"));
+}
+
 TEST(RosSettingsOfACell, SayWhichFramesThingsFollow) {
   const std::string boxes =
       "objects:\n  - {name: box, frame: /box_link, sphere: {radius: 1}}\n"

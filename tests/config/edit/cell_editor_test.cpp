@@ -53,6 +53,27 @@ TEST_F(CellEdits, AnObjectIsAddedByItsTextOrFromATemplate) {
   EXPECT_THAT(cell.yaml, HasSubstr("- {name: ball, groups: [things], sphere: {radius: 100}}\n"));
 }
 
+TEST_F(CellEdits, AReplacedObjectKeepsItsPlaceAndTheRulesThatNameIt) {
+  const Cell cell =
+      edit({ReplaceObject{"{name: table, fixed: true, groups: [things], sphere: {radius: 100}}"}});
+  EXPECT_EQ(cell.scene.objects[0].name, "table");
+  EXPECT_EQ(named(cell, "table").parts[0].shape.radius, 0.1);
+  EXPECT_EQ(named(cell, "table").world_from_object.position, Vec3::Zero());
+  EXPECT_EQ(cell.scene.zones[0].pairs.size(), 1u);
+  const EditRefusal unknown = refused({ReplaceObject{"{name: tables, sphere: {radius: 100}}"}});
+  EXPECT_EQ(unknown.path, "objects");
+}
+
+TEST_F(CellEdits, AnExceptionIsTakenBackAloneWhileItsRuleStays) {
+  edit({SetPair{"hand", "box", SetPair::Rule::kWatch}});
+  const std::string before = editor_->text();
+  const Cell left_out = edit({SetPair{"hand", "box", SetPair::Rule::kLeaveOut, "tested"}});
+  EXPECT_EQ(pair(left_out, "hand", "box"), nullptr);
+  const Cell cell = edit({SetPair{"box", "hand", SetPair::Rule::kNoException}});
+  EXPECT_NE(pair(cell, "hand", "box"), nullptr);
+  EXPECT_EQ(cell.yaml, before);
+}
+
 TEST_F(CellEdits, AMovedObjectIsWhereItWasSaidToBe) {
   const Pose turned(Vec3(0.1, 0.2, 0.3), Eigen::Quaterniond(0.5, 0.5, -0.5, 0.5));
   const Cell cell = edit({Place{"table", turned}, Attach{"box", "tip", turned, {"cart"}}});
@@ -164,7 +185,8 @@ TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
 }
 
 TEST_F(CellEdits, ARefusalNamesTheChangeTheFieldAndTheReason) {
-  EditRefusal refusal = refused({SetAbsent{"box"}, Attach{"box", "hnd", Pose{}}, SetAbsent{"cart"}});
+  EditRefusal refusal =
+      refused({SetAbsent{"box"}, Attach{"box", "hnd", Pose{}}, SetAbsent{"cart"}});
   EXPECT_EQ(refusal.change, 1u);
   EXPECT_EQ(refusal.path, "objects[box].attached.to");
   EXPECT_THAT(refusal.reason, HasSubstr("hand"));

@@ -108,7 +108,7 @@ TEST(PlanningScene, SaysWhatItMakesOfMeshesAndPlanes) {
 TEST(PlanningScene, FaultsAreNamedWithTheirLine) {
   EXPECT_EQ(fault_of(""),
             "1: found ''; expected '* NAME' of an object, or '.' at the end, as in a "
-            ".scene file (YAML is not read)");
+            ".scene file (YAML has to be in a .yaml file)");
   EXPECT_THAT(fault_of("s\n* a\n1\nocttree\n"), mistake_at("4", "'octtree'"));
   EXPECT_THAT(fault_of("s\n* a\n1\nbox\n1 1 wide\n"), mistake_at("5", "'wide'"));
   EXPECT_THAT(fault_of("s\n* a\n1\nbox\n1 1 0\n0 0 0\n0 0 0 1\n"), mistake_at("5", "box"));

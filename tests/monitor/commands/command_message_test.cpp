@@ -47,7 +47,9 @@ std::vector<CellChange> every_change() {
           SetZoneThresholds{"stop", 0.1, 0.2},
           ReplaceCell{"name: x"},
           ReadCellAgain{""},
-          ReadCellAgain{"cells/b.yaml"}};
+          ReadCellAgain{"cells/b.yaml"},
+          ReplaceObject{"{name: ü, sphere: {radius: 2}}"},
+          SetPair{"a", "b", SetPair::Rule::kNoException}};
 }
 
 Command every_command() {
@@ -166,7 +168,7 @@ TEST(CommandMessage, IsRefusedByTheFieldThatHasNoValue) {
        [&](Message& m) { change(m, 11).set_max_speed.m_per_s.value = -INFINITY; }},
       {"changes[17].set_source.source",
        [&](Message& m) { put(change(m, 17).set_source.source.value, ""); }},
-      {"changes[19].set_pair.rule", [&](Message& m) { change(m, 19).set_pair.rule = 4; }},
+      {"changes[19].set_pair.rule", [&](Message& m) { change(m, 19).set_pair.rule = 5; }},
       {"changes[20].set_pair.reason",
        [&](Message& m) { put(change(m, 20).set_pair.reason, std::string(1001, 'r')); }},
       {"changes[22].set_zone_thresholds.leave_above",

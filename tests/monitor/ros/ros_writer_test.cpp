@@ -17,7 +17,7 @@ using test::eventually;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
 using Float64 = std_msgs_msg_dds__Float64_;
 
-// A ball that approaches a post at x = 1, with all four outputs.
+// A ball that approaches a post at x = 1, with all outputs.
 Cell told_cell() {
   Cell cell;
   Scene& scene = cell.scene;
@@ -114,6 +114,16 @@ TEST_F(RosWriterTest, TheScalingOfZonesIsNothingWhileAPairOverlapsOrIsUnknown) {
   EXPECT_TRUE(comes(1.0, [&] { tick(0.0); }));
   now += 1'000'000'000;
   EXPECT_TRUE(comes(0.0, [&] { hand_over(monitor.tick({}, now += test::kTick)); }));
+}
+
+TEST_F(RosWriterTest, TheSceneIsThereForALateReader) {
+  tick(0.0);
+  RosReader<moveit_msgs_msg_dds__PlanningScene_> scene_reader(
+      client, kRosMonitoredScene, "rt/told/clearance/monitored_planning_scene");
+  ASSERT_TRUE(eventually([&] { return scene_reader.take(); }));
+  const moveit::PlanningScene heard = moveit::from_wire(scene_reader.last());
+  ASSERT_EQ(heard.collision_objects.size(), 1u);
+  EXPECT_EQ(heard.collision_objects[0].id, "post");
 }
 
 TEST(RosWriter, PublishesNoScalingInACellWithoutZones) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <utility>
 
 #include "tests/monitor/small_cells.hpp"
 
@@ -111,6 +112,26 @@ TEST(ZoneCause, IsStillDistanceWhenANearObjectIsLate) {
   cell.tick(0.45);
   cell.tick(0.45);
   expect(cell.tick(std::nullopt, 25 * test::kTick), ZoneCause::kNear, 0);
+}
+
+// A group that MoveIt fills may be empty.
+TEST(ZonesWithoutPairs, AreNeverActiveAndDoNotDisturbOthers) {
+  Scene scene = test::cell_of({test::fixed("post", {test::ball(0.1)}, test::at(0, 0, 0)),
+                               test::moving("ball", {test::ball(0.1)})});
+  scene.zones = {test::zone_over(scene, 0.3, 0.4), test::zone_over(scene, 0.3, 0.4)};
+  scene.zones[0].pairs.clear();
+  Monitor monitor(scene);
+  std::int64_t now = test::kStart;
+  // A zone is active in the tick after one inside, too: the ball was in it since then.
+  for (const auto& [x, is_active] :
+       {std::pair(5.0, false), std::pair(0.3, true), std::pair(0.15, true), std::pair(5.0, true),
+        std::pair(5.0, false)}) {
+    now += test::kTick;
+    const PoseSample sample = test::sample(1, test::at(x, 0, 0), now);
+    const Report& report = monitor.tick({&sample, 1}, now);
+    EXPECT_FALSE(report.zones[0].active);
+    EXPECT_EQ(report.zones[1].active, is_active) << x;
+  }
 }
 
 }  // namespace

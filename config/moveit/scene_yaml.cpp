@@ -1,0 +1,273 @@
+// One function for each type of message. A field that is missing keeps the default of ROS 2.
+#include "config/moveit/scene_yaml.hpp"
+
+#include <fmt/format.h>
+
+#include <charconv>
+#include <cstdint>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "config/yaml/scalar.hpp"
+#include "config/yaml/yaml_writer.hpp"
+
+namespace clearance::moveit {
+namespace {
+
+// Thrown and caught inside this file.
+struct ReadingEnds {
+  SceneYamlFault fault;
+};
+[[noreturn]] void fail(const YamlNode& at, std::string reason) {
+  throw ReadingEnds{{at.line, std::move(reason)}};
+}
+
+const YamlNode* field(const YamlNode& map, const char* name, const char* type) {
+  if (map.kind != YamlNode::Kind::kMap)
+    fail(map, fmt::format("found {}; expected the fields of a {}", describe(map), type));
+  return clearance::find(map, name);
+}
+
+using Triangle = std::array<std::uint32_t, 3>;
+struct MeshTriangle {
+  Triangle vertices = {};
+};
+struct PlaneMessage {
+  Plane coef = {};
+};
+
+// Templates below find these by name only.
+double read(const YamlNode& node, const double&);
+std::uint32_t read(const YamlNode& node, const std::uint32_t&);
+std::uint8_t read(const YamlNode& node, const std::uint8_t&);
+bool read(const YamlNode& node, const bool&);
+std::string read(const YamlNode& node, const std::string&);
+Vec3 read(const YamlNode& node, const Vec3&);
+Vec2 read(const YamlNode& node, const Vec2&);
+Eigen::Quaterniond read(const YamlNode& node, const Eigen::Quaterniond&);
+Pose read(const YamlNode& node, const Pose&);
+SolidPrimitive read(const YamlNode& node, const SolidPrimitive&);
+MeshTriangle read(const YamlNode& node, const MeshTriangle&);
+Mesh read(const YamlNode& node, const Mesh&);
+PlaneMessage read(const YamlNode& node, const PlaneMessage&);
+CollisionObject read(const YamlNode& node, const CollisionObject&);
+AttachedCollisionObject read(const YamlNode& node, const AttachedCollisionObject&);
+FixedFrame read(const YamlNode& node, const FixedFrame&);
+template <class T, std::size_t kCount>
+std::array<T, kCount> read(const YamlNode& node, const std::array<T, kCount>&);
+template <class T>
+std::vector<T> read(const YamlNode& node, const std::vector<T>&);
+
+double read(const YamlNode& node, const double&) {
+  double value = 0.0;
+  const std::string& text = node.text;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (node.kind != YamlNode::Kind::kScalar || node.quoted || result.ec != std::errc() ||
+      result.ptr != text.data() + text.size()) {
+    fail(node, fmt::format("found {}; expected a number", describe(node)));
+  }
+  return value;
+}
+
+std::uint32_t read(const YamlNode& node, const std::uint32_t&) {
+  const double value = read(node, double());
+  constexpr double kMost = std::numeric_limits<std::uint32_t>::max();
+  if (!(value >= 0.0 && value <= kMost) || value != static_cast<std::uint32_t>(value))
+    fail(node, fmt::format("found {}; expected a whole number", node.text));
+  return static_cast<std::uint32_t>(value);
+}
+
+// Tools of ROS 2 print a `byte` as a text of this one byte: "\x03".
+std::uint8_t read(const YamlNode& node, const std::uint8_t&) {
+  if (node.kind == YamlNode::Kind::kScalar && node.quoted && node.text.size() == 1)
+    return static_cast<std::uint8_t>(node.text.front());
+  const std::uint32_t value = read(node, std::uint32_t());
+  if (value > std::numeric_limits<std::uint8_t>::max())
+    fail(node, fmt::format("found {}; expected 0 to 255", value));
+  return static_cast<std::uint8_t>(value);
+}
+
+bool read(const YamlNode& node, const bool&) {
+  if (node.kind == YamlNode::Kind::kScalar && !node.quoted) {
+    if (node.text == "true" || node.text == "1") return true;
+    if (node.text == "false" || node.text == "0") return false;
+  }
+  fail(node, fmt::format("found {}; expected true or false", describe(node)));
+}
+
+std::string read(const YamlNode& node, const std::string&) {
+  if (node.kind == YamlNode::Kind::kNull) return "";
+  if (node.kind != YamlNode::Kind::kScalar)
+    fail(node, fmt::format("found {}; expected a text", describe(node)));
+  return node.text;
+}
+
+template <class T>
+void get(const YamlNode& map, const char* name, const char* type, T& value) {
+  if (const YamlNode* node = field(map, name, type)) value = read(*node, T());
+}
+
+Vec3 read(const YamlNode& node, const Vec3&) {
+  Vec3 point = Vec3::Zero();
+  get(node, "x", "Point", point.x());
+  get(node, "y", "Point", point.y());
+  get(node, "z", "Point", point.z());
+  return point;
+}
+
+Vec2 read(const YamlNode& node, const Vec2&) { return read(node, Vec3()).head<2>(); }
+
+Eigen::Quaterniond read(const YamlNode& node, const Eigen::Quaterniond&) {
+  Eigen::Quaterniond turn = Pose{}.orientation;
+  get(node, "x", "Quaternion", turn.x());
+  get(node, "y", "Quaternion", turn.y());
+  get(node, "z", "Quaternion", turn.z());
+  get(node, "w", "Quaternion", turn.w());
+  return turn;
+}
+
+Pose read(const YamlNode& node, const Pose&) {
+  Pose pose;
+  get(node, "position", "Pose", pose.position);
+  get(node, "orientation", "Pose", pose.orientation);
+  return pose;
+}
+
+template <class T, std::size_t kCount>
+std::array<T, kCount> read(const YamlNode& node, const std::array<T, kCount>&) {
+  if (node.kind != YamlNode::Kind::kSequence || node.items.size() != kCount)
+    fail(node, fmt::format("found {}; expected a list of {}", describe(node), kCount));
+  std::array<T, kCount> values;
+  for (std::size_t i = 0; i < kCount; ++i) values[i] = read(node.items[i], T());
+  return values;
+}
+
+SolidPrimitive read(const YamlNode& node, const SolidPrimitive&) {
+  SolidPrimitive primitive;
+  get(node, "type", "SolidPrimitive", primitive.type);
+  get(node, "dimensions", "SolidPrimitive", primitive.dimensions);
+  if (const YamlNode* polygon = field(node, "polygon", "SolidPrimitive"))
+    get(*polygon, "points", "Polygon", primitive.polygon);
+  return primitive;
+}
+
+MeshTriangle read(const YamlNode& node, const MeshTriangle&) {
+  MeshTriangle triangle;
+  get(node, "vertex_indices", "MeshTriangle", triangle.vertices);
+  return triangle;
+}
+
+Mesh read(const YamlNode& node, const Mesh&) {
+  Mesh mesh;
+  std::vector<MeshTriangle> triangles;
+  get(node, "triangles", "Mesh", triangles);
+  for (const MeshTriangle& each : triangles) mesh.triangles.push_back(each.vertices);
+  get(node, "vertices", "Mesh", mesh.vertices);
+  return mesh;
+}
+
+PlaneMessage read(const YamlNode& node, const PlaneMessage&) {
+  PlaneMessage plane;
+  get(node, "coef", "Plane", plane.coef);
+  return plane;
+}
+
+std::string frame_of(const YamlNode& node, const char* type) {
+  std::string frame;
+  if (const YamlNode* header = field(node, "header", type))
+    get(*header, "frame_id", "Header", frame);
+  return frame;
+}
+
+CollisionObject read(const YamlNode& node, const CollisionObject&) {
+  constexpr const char* kType = "CollisionObject";
+  CollisionObject object;
+  object.frame_id = frame_of(node, kType);
+  get(node, "pose", kType, object.pose);
+  get(node, "id", kType, object.id);
+  get(node, "primitives", kType, object.primitives);
+  get(node, "primitive_poses", kType, object.primitive_poses);
+  get(node, "meshes", kType, object.meshes);
+  get(node, "mesh_poses", kType, object.mesh_poses);
+  std::vector<PlaneMessage> planes;
+  get(node, "planes", kType, planes);
+  for (const PlaneMessage& plane : planes) object.planes.push_back(plane.coef);
+  get(node, "plane_poses", kType, object.plane_poses);
+  get(node, "subframe_names", kType, object.subframe_names);
+  get(node, "subframe_poses", kType, object.subframe_poses);
+  get(node, "operation", kType, object.operation);
+  return object;
+}
+
+AttachedCollisionObject read(const YamlNode& node, const AttachedCollisionObject&) {
+  constexpr const char* kType = "AttachedCollisionObject";
+  AttachedCollisionObject attached;
+  get(node, "link_name", kType, attached.link_name);
+  get(node, "object", kType, attached.object);
+  get(node, "touch_links", kType, attached.touch_links);
+  return attached;
+}
+
+FixedFrame read(const YamlNode& node, const FixedFrame&) {
+  constexpr const char* kType = "TransformStamped";
+  FixedFrame frame;
+  frame.frame_id = frame_of(node, kType);
+  get(node, "child_frame_id", kType, frame.child_frame_id);
+  if (const YamlNode* transform = field(node, "transform", kType)) {
+    get(*transform, "translation", "Transform", frame.child_from_frame.position);
+    get(*transform, "rotation", "Transform", frame.child_from_frame.orientation);
+  }
+  return frame;
+}
+
+template <class T>
+std::vector<T> read(const YamlNode& node, const std::vector<T>&) {
+  std::vector<T> list;
+  if (node.kind == YamlNode::Kind::kNull) return list;
+  if (node.kind != YamlNode::Kind::kSequence)
+    fail(node, fmt::format("found {}; expected a list", describe(node)));
+  for (const YamlNode& item : node.items) list.push_back(read(item, T()));
+  return list;
+}
+
+PlanningScene read(const YamlNode& node, const PlanningScene&) {
+  constexpr const char* kType = "PlanningScene";
+  PlanningScene scene;
+  get(node, "name", kType, scene.name);
+  get(node, "is_diff", kType, scene.is_diff);
+  get(node, "fixed_frame_transforms", kType, scene.fixed_frame_transforms);
+  if (const YamlNode* state = field(node, "robot_state", kType)) {
+    get(*state, "attached_collision_objects", "RobotState", scene.attached);
+    get(*state, "is_diff", "RobotState", scene.robot_state_is_diff);
+  }
+  const YamlNode* world = field(node, "world", kType);
+  if (world == nullptr)
+    fail(node, "found no 'world'; expected the fields of a moveit_msgs/PlanningScene");
+  get(*world, "collision_objects", "PlanningSceneWorld", scene.collision_objects);
+  if (const YamlNode* with_pose = field(*world, "octomap", "PlanningSceneWorld")) {
+    if (const YamlNode* octomap = field(*with_pose, "octomap", "OctomapWithPose")) {
+      const YamlNode* data = field(*octomap, "data", "Octomap");
+      scene.has_octomap = data != nullptr && !data->items.empty();
+    }
+  }
+  return scene;
+}
+
+}  // namespace
+
+std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text) {
+  constexpr std::string_view kEnd = "\n---";
+  const std::size_t length = text.find(kEnd, 1);
+  const auto read_text =
+      parse_yaml(length == std::string::npos ? text : text.substr(0, length + 1));
+  if (const auto* fault = std::get_if<YamlFault>(&read_text))
+    return SceneYamlFault{fault->line, fault->reason};
+  try {
+    return read(std::get<YamlNode>(read_text), PlanningScene());
+  } catch (ReadingEnds& end) {
+    return std::move(end.fault);
+  }
+}
+
+}  // namespace clearance::moveit

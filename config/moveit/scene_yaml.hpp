@@ -1,0 +1,21 @@
+// Reads a planning scene of MoveIt as YAML, as `ros2 topic echo --once --full-length` prints a
+// moveit_msgs/PlanningScene.
+#pragma once
+
+#include <string>
+#include <variant>
+
+#include "config/moveit/message.hpp"
+
+namespace clearance::moveit {
+
+struct SceneYamlFault {
+  int line;
+  std::string reason;  // "found ...; expected ..."
+};
+
+// Reads one document; "---" behind it ends the text. Of the robot's state, only what is attached is
+// read. Colours, types and stamps are skipped. The first fault ends the reading.
+[[nodiscard]] std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text);
+
+}  // namespace clearance::moveit

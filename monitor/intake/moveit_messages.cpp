@@ -1,0 +1,56 @@
+#include "monitor/intake/moveit_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <utility>
+
+#include "monitor/wire/moveit_types.hpp"
+
+namespace clearance {
+namespace {
+
+using Type = moveit::RawScene::Type;
+
+// A row an input: the port is its place.
+struct Input {
+  std::string MoveItInputs::*topic;
+  std::string_view type;
+  const RosType* delivery;
+  Type of;
+};
+constexpr std::array<Input, 3> kInputs = {{
+    {&MoveItInputs::collision_object, "moveit_msgs/msg/CollisionObject", &kRosCollisionObject,
+     Type::kCollisionObject},
+    {&MoveItInputs::attached_collision_object, "moveit_msgs/msg/AttachedCollisionObject",
+     &kRosAttachedCollisionObject, Type::kAttachedCollisionObject},
+    {&MoveItInputs::planning_scene, "moveit_msgs/msg/PlanningScene", &kRosPlanningScene,
+     Type::kPlanningScene},
+}};
+
+}  // namespace
+
+std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
+  for (std::uint32_t port = 0; port < kInputs.size(); ++port) {
+    const Input& input = kInputs[port];
+    if (topic.type != input.type || topic.name != inputs_->*input.topic) continue;
+    out_.tell({.cause = News::Cause::kTopicHeard,
+               .is_warning = !use_,
+               .text = use_ ? fmt::format("the scene of MoveIt on {}", topic.name)
+                            : fmt::format("messages of {} are not used: a replay of a bag does not "
+                                          "change the scene",
+                                          topic.name)});
+    if (!use_) return std::nullopt;
+    return Wanted{port, input.delivery};
+  }
+  return std::nullopt;
+}
+
+bool MoveItMessages::decode(std::uint32_t port, const RawMessage& message, const Now&,
+                            TopicCounts&) {
+  const Input& input = kInputs[port];
+  use_({input.of, inputs_->*input.topic, {message.cdr.begin(), message.cdr.end()}, message.bytes});
+  return true;
+}
+
+}  // namespace clearance

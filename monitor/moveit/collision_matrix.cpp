@@ -1,0 +1,62 @@
+#include "monitor/moveit/collision_matrix.hpp"
+
+#include <fmt/format.h>
+
+namespace clearance::moveit {
+
+std::optional<FieldFault> CollisionMatrix::set(const AllowedCollisionMatrix& matrix) {
+  const std::size_t count = matrix.entry_names.size();
+  if (matrix.entry_values.size() != count) {
+    return FieldFault{"entry_values", fmt::format("found {} rows for {} names; expected one each",
+                                                  matrix.entry_values.size(), count)};
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (matrix.entry_values[i].size() == count) continue;
+    return FieldFault{fmt::format("entry_values[{}].enabled", i),
+                      fmt::format("found {} values for {} names; expected one each",
+                                  matrix.entry_values[i].size(), count)};
+  }
+  if (matrix.default_entry_values.size() != matrix.default_entry_names.size()) {
+    return FieldFault{
+        "default_entry_values",
+        fmt::format("found {} values for {} names; expected one each",
+                    matrix.default_entry_values.size(), matrix.default_entry_names.size())};
+  }
+  is_set_ = true;
+  rows_ = matrix.entry_values;
+  places_.clear();
+  for (std::size_t i = 0; i < count; ++i) places_[matrix.entry_names[i]] = i;
+  defaults_.clear();
+  for (std::size_t i = 0; i < matrix.default_entry_names.size(); ++i)
+    defaults_[matrix.default_entry_names[i]] = matrix.default_entry_values[i];
+  return std::nullopt;
+}
+
+void CollisionMatrix::forget(const std::string& name) {
+  places_.erase(name);
+  defaults_.erase(name);
+}
+
+bool CollisionMatrix::allows(const std::string& a, const std::string& b) const {
+  const auto row = places_.find(a), column = places_.find(b);
+  if (row != places_.end() && column != places_.end())
+    return rows_[row->second][column->second] && rows_[column->second][row->second];
+  const auto of_a = defaults_.find(a), of_b = defaults_.find(b);
+  if (of_a == defaults_.end() && of_b == defaults_.end()) return false;
+  return (of_a == defaults_.end() || of_a->second) && (of_b == defaults_.end() || of_b->second);
+}
+
+std::vector<CellChange> CollisionMatrix::exceptions(const KnownScene& scene) const {
+  std::vector<CellChange> changes;
+  if (!is_set_) return changes;
+  for (const auto& [a, b] : scene.exceptions) {
+    if (!allows(a, b)) changes.emplace_back(SetPair{a, b, SetPair::Rule::kNoException});
+  }
+  for (const auto& [a, b] : scene.watched) {
+    if (allows(a, b))
+      changes.emplace_back(SetPair{a, b, SetPair::Rule::kLeaveOut, std::string(kMatrixReason)});
+  }
+  return changes;
+}
+
+}  // namespace clearance::moveit

@@ -1,0 +1,62 @@
+#include "monitor/moveit/scene_keeper.hpp"
+
+#include <fmt/format.h>
+
+#include <optional>
+#include <utility>
+
+#include "monitor/moveit/from_wire.hpp"
+
+namespace clearance::moveit {
+namespace {
+
+template <class Wire>
+std::optional<Translation> translated(const RawScene& message, CdrDecoder& decoder,
+                                      SceneTranslator& translator, const KnownScene& scene,
+                                      const PresentPoses& poses) {
+  Sample<Wire> sample;
+  if (!decoder.decode(message.cdr, sample, message.bytes)) return std::nullopt;
+  return translator.translate(from_wire(*sample), scene, poses);
+}
+
+}  // namespace
+
+void SceneKeeper::say(std::string sentence, Work& work) {
+  if (said_.size() < kMostSaid && said_.insert(sentence).second)
+    work.news.push_back(std::move(sentence));
+}
+
+SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
+                                    const PresentPoses& poses) {
+  const KnownScene scene = known_scene(cell);
+  std::optional<Translation> done;
+  switch (message.type) {
+    case RawScene::Type::kCollisionObject:
+      done = translated<moveit_msgs_msg_dds__CollisionObject_>(message, decoder_, translator_,
+                                                               scene, poses);
+      break;
+    case RawScene::Type::kAttachedCollisionObject:
+      done = translated<moveit_msgs_msg_dds__AttachedCollisionObject_>(message, decoder_,
+                                                                       translator_, scene, poses);
+      break;
+    case RawScene::Type::kPlanningScene:
+      done = translated<moveit_msgs_msg_dds__PlanningScene_>(message, decoder_, translator_, scene,
+                                                             poses);
+      break;
+  }
+  Work work;
+  if (!done) {
+    say(fmt::format("{}: a message does not decode as its type, and is not used", message.topic),
+        work);
+    return work;
+  }
+  for (const FieldFault& fault : done->refused)
+    say(fmt::format("{}: {}: {}", message.topic, fault.field, fault.reason), work);
+  for (const std::string& what : done->not_understood)
+    say(fmt::format("{}: {} is not used", message.topic, what), work);
+  work.changes = std::move(done->changes);
+  work.files = std::move(done->files);
+  return work;
+}
+
+}  // namespace clearance::moveit

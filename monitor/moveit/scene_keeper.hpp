@@ -1,0 +1,50 @@
+// Makes changes of the cell from the bytes of MoveIt's messages, and says what it cannot use.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/moveit/scene_translator.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance::moveit {
+
+// A message as it came: decoding it may take long, and has no place in a thread that takes poses.
+struct RawScene {
+  enum class Type : std::uint8_t { kCollisionObject, kAttachedCollisionObject, kPlanningScene };
+  Type type = Type::kPlanningScene;
+  std::string topic = {};
+  std::vector<std::byte> cdr = {};
+  CdrBytes bytes = CdrBytes::kUnchecked;
+};
+
+// To be used by one thread.
+class SceneKeeper {
+ public:
+  struct Work {
+    std::vector<CellChange> changes = {};  // empty: nothing is to be done
+    std::vector<MeshFile> files = {};      // that the changes name
+    std::vector<std::string> news = {};    // sentences for a person, each once
+  };
+  // The changes assume `cell`, whose text has to be Cell::yaml, and the poses of now.
+  [[nodiscard]] Work take(const RawScene& message, const Cell& cell, const PresentPoses& poses);
+
+  // To be made after the changes of a message are in force, and after those of others.
+  [[nodiscard]] std::vector<CellChange> exceptions(const Cell& cell) const {
+    return translator_.exceptions(known_scene(cell));
+  }
+
+ private:
+  static constexpr std::size_t kMostSaid = 1000;
+  void say(std::string sentence, Work& work);
+
+  SceneTranslator translator_;
+  CdrDecoder decoder_;
+  std::set<std::string> said_;
+};
+
+}  // namespace clearance::moveit

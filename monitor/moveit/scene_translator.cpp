@@ -1,0 +1,99 @@
+// PlanningScene, and the ways in.
+#include "monitor/moveit/scene_translator.hpp"
+
+#include <fmt/format.h>
+
+#include "monitor/moveit/message_translator.hpp"
+
+namespace clearance::moveit {
+
+void MessageTranslator::set_frames(const PlanningScene& message) {
+  if (!message.is_diff) kept_.world_from_frame_.clear();
+  for (std::size_t i = 0; i < message.fixed_frame_transforms.size(); ++i) {
+    const FixedFrame& frame = message.fixed_frame_transforms[i];
+    if (frame.frame_id == frame.child_frame_id) continue;
+    guarded([&] {
+      const std::string path = fmt::format("fixed_frame_transforms[{}].", i);
+      const auto world = world_from(frame.child_frame_id);
+      if (!world) {
+        fail(path + "child_frame_id", fmt::format("found '{}', whose place is not known; expected "
+                                                  "'{}'",
+                                                  frame.child_frame_id, scene_.world));
+      }
+      const Pose pose = value_of(checked_pose(frame.child_from_frame, "transform"), path);
+      kept_.world_from_frame_[frame.frame_id] = compose(*world, pose);
+    });
+  }
+}
+
+void MessageTranslator::drop_gone() {
+  std::vector<std::string> ids;
+  for (const auto& [id, object] : scene_.objects) {
+    if (object.is_gone) ids.push_back(id);
+  }
+  for (const std::string& id : ids) drop(id);
+}
+
+// In MoveIt's order: frames, the robot's state, pairs, the world.
+void MessageTranslator::translate(const PlanningScene& message) {
+  set_frames(message);
+  for (auto& [id, object] : scene_.objects) {
+    const bool is_replaced =
+        object.where == Where::kAttached ? !message.robot_state_is_diff : !message.is_diff;
+    object.is_gone = object.is_moveits && is_replaced;
+  }
+  for (std::size_t i = 0; i < message.attached.size(); ++i) {
+    const AttachedCollisionObject& attached = message.attached[i];
+    const std::string path = fmt::format("robot_state.attached_collision_objects[{}].", i);
+    if (message.robot_state_is_diff ||
+        attached.object.operation == static_cast<std::uint8_t>(Operation::kAdd)) {
+      translate(attached, path);
+    } else {
+      result_.refused.push_back({path + "object.operation",
+                                 fmt::format("found {} in a robot_state that is no diff; expected "
+                                             "0 (ADD)",
+                                             attached.object.operation)});
+    }
+  }
+  if (!message.is_diff || !message.allowed_collision_matrix.entry_names.empty()) {
+    if (auto fault = kept_.matrix_.set(message.allowed_collision_matrix)) {
+      fault->field.insert(0, "allowed_collision_matrix.");
+      result_.refused.push_back(*std::move(fault));
+    }
+  }
+  for (const LinkNumber& padding : message.link_padding) {
+    if (padding.value != 0.0)
+      result_.not_understood.push_back(fmt::format("link_padding of '{}'", padding.link_name));
+  }
+  for (const LinkNumber& scale : message.link_scale) {
+    if (scale.value != 1.0)
+      result_.not_understood.push_back(fmt::format("link_scale of '{}'", scale.link_name));
+  }
+  for (std::size_t i = 0; i < message.collision_objects.size(); ++i)
+    translate(message.collision_objects[i], fmt::format("world.collision_objects[{}].", i));
+  if (message.has_octomap) result_.not_understood.emplace_back("world.octomap");
+  drop_gone();
+}
+
+Translation SceneTranslator::translate(const CollisionObject& message, const KnownScene& scene,
+                                       const PresentPoses& poses) {
+  MessageTranslator translator(*this, scene, poses);
+  translator.translate(message, "");
+  return translator.result();
+}
+
+Translation SceneTranslator::translate(const AttachedCollisionObject& message,
+                                       const KnownScene& scene, const PresentPoses& poses) {
+  MessageTranslator translator(*this, scene, poses);
+  translator.translate(message, "");
+  return translator.result();
+}
+
+Translation SceneTranslator::translate(const PlanningScene& message, const KnownScene& scene,
+                                       const PresentPoses& poses) {
+  MessageTranslator translator(*this, scene, poses);
+  translator.translate(message);
+  return translator.result();
+}
+
+}  // namespace clearance::moveit

@@ -1,0 +1,59 @@
+// Translates MoveIt's messages into changes of the cell.
+//
+// No DDS, no files and no clock. README.md says what each message means here.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "config/edit/cell_change.hpp"
+#include "config/moveit/message.hpp"
+#include "config/moveit/object_entry.hpp"
+#include "monitor/moveit/collision_matrix.hpp"
+#include "monitor/moveit/known_scene.hpp"
+
+namespace clearance::moveit {
+
+// Changes to be made wholly or not at all, in this order.
+struct Translation {
+  std::vector<CellChange> changes = {};
+  std::vector<MeshFile> files = {};  // that the changes name
+  // Each leaves out the object, or the list, that it names; the rest of the message counts.
+  std::vector<FieldFault> refused = {};
+  // What is in no change, in words: "link_scale of 'hand'". The caller says each once.
+  std::vector<std::string> not_understood = {};
+};
+
+// Keeps what MoveIt keeps between messages and a cell does not: fixed frames, subframes of objects
+// and the collision matrix. To be used by one thread.
+class SceneTranslator {
+ public:
+  // The changes assume `scene`, and the poses of now.
+  [[nodiscard]] Translation translate(const CollisionObject& message, const KnownScene& scene,
+                                      const PresentPoses& poses);
+  [[nodiscard]] Translation translate(const AttachedCollisionObject& message,
+                                      const KnownScene& scene, const PresentPoses& poses);
+  [[nodiscard]] Translation translate(const PlanningScene& message, const KnownScene& scene,
+                                      const PresentPoses& poses);
+
+  // Call this with the changed scene after each translation: the pairs that the collision matrix
+  // allows are those of the changed scene. Empty: nothing is left to do.
+  [[nodiscard]] std::vector<CellChange> exceptions(const KnownScene& scene) const {
+    return matrix_.exceptions(scene);
+  }
+
+ private:
+  friend class MessageTranslator;
+  struct Subframe {
+    std::string object;
+    Pose object_from_subframe;
+  };
+  std::map<std::string, Pose> world_from_frame_;  // fixed_frame_transforms
+  std::map<std::string, Subframe> subframes_;     // by "object/subframe"
+  CollisionMatrix matrix_;
+};
+
+}  // namespace clearance::moveit

@@ -1,0 +1,53 @@
+// The types of MoveIt that we read and write, as wire/ros_types.hpp has those of ROS 2.
+#pragma once
+
+#include "monitor/wire/ros_types.hpp"
+#include "moveit.h"
+
+namespace clearance {
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<moveit_msgs_msg_dds__CollisionObject_>() noexcept {
+  return moveit_msgs_msg_dds__CollisionObject__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<moveit_msgs_msg_dds__AttachedCollisionObject_>() noexcept {
+  return moveit_msgs_msg_dds__AttachedCollisionObject__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<moveit_msgs_msg_dds__PlanningScene_>() noexcept {
+  return moveit_msgs_msg_dds__PlanningScene__desc;
+}
+
+// A message that is lost is a change that is lost, so readers are reliable. MoveIt's writers are,
+// too, and volatile.
+inline constexpr RosType kRosCollisionObject{
+    &moveit_msgs_msg_dds__CollisionObject__desc,
+    "typehash=RIHS01_74b0acd6d56be032bf4f764b2c2633f50588b5fb2bd71e97206c59052747cf7e;",
+    false,
+    256,
+    16,
+    true};
+inline constexpr RosType kRosAttachedCollisionObject{
+    &moveit_msgs_msg_dds__AttachedCollisionObject__desc,
+    "typehash=RIHS01_7fdfe7951a33a857f20fc42c9ed410a38d06dd0c209ac774ecea746dc487dc41;",
+    false,
+    256,
+    16,
+    true};
+inline constexpr RosType kRosPlanningScene{
+    &moveit_msgs_msg_dds__PlanningScene__desc,
+    "typehash=RIHS01_0f58540ad5eab4b9ea827d53b763c793d8cabd202b3b301fcee25afa4ce1bd80;",
+    false,
+    256,
+    16,
+    true};
+
+// The scene that a daemon publishes: a late reader gets the present one.
+inline constexpr RosType kRosMonitoredScene{kRosPlanningScene.descriptor,
+                                            kRosPlanningScene.user_data, true, 1};
+
+}  // namespace clearance

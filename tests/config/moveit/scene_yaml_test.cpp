@@ -1,0 +1,205 @@
+// Planning scenes as YAML, as ROS 2 prints them.
+//
+// Oracle: the same scene in MoveIt's text format, which another reader reads.
+#include "config/moveit/scene_yaml.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+#include <variant>
+
+#include "tests/config/cells.hpp"
+#include "tests/shared/mistake_at.hpp"
+#include "tests/shared/scratch_folder.hpp"
+
+namespace clearance {
+namespace {
+
+using test::mistake_at;
+
+const std::string kText = R"(kitchen
+* table top
+1 2 0.5
+0 0 0.6 0.8
+2
+box
+2 1 0.1
+0 0 -0.05
+0 0 0 1
+0 0 0 0
+cylinder
+0.05 0.5
+0.9 0 -0.35
+0 0 0 1
+0.5 0.5 0.5 1
+0
+* rock
+0 0 2
+0 0 0 1
+1
+mesh
+4 4
+0 0 0
+1 0 0
+0 1 0
+0 0 1
+0 1 2
+0 1 3
+0 2 3
+1 2 3
+0 0 1
+0 0 0 1
+0 0 0 0
+0
+* ground
+0 0 0
+0 0 0 1
+1
+plane
+0 0 1 0.25
+0 0 0
+0 0 0 1
+0 0 0 0
+0
+.
+)";
+
+const std::string kHeader = "header: {stamp: {sec: 0, nanosec: 0}, frame_id: world}";
+const std::string kYaml = R"(name: kitchen
+robot_state:
+  joint_state:
+    header: {stamp: {sec: 1, nanosec: 2}, frame_id: world}
+    name: [a]
+    position: [0.5]
+    velocity: []
+    effort: []
+  attached_collision_objects: []
+  is_diff: false
+robot_model_name: panda
+fixed_frame_transforms:
+- header: {stamp: {sec: 0, nanosec: 0}, frame_id: world}
+  child_frame_id: world
+  transform:
+    translation: {x: 0.0, y: 0.0, z: 0.0}
+    rotation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}
+world:
+  collision_objects:
+  - )" + kHeader + R"(
+    pose:
+      position: {x: 1.0, y: 2.0, z: 0.5}
+      orientation: {x: 0.0, y: 0.0, z: 0.6, w: 0.8}
+    id: table top
+    type: {key: '', db: ''}
+    primitives:
+    - type: 1
+      dimensions: [2.0, 1.0, 0.1]
+      polygon: {points: []}
+    - type: 3
+      dimensions: [0.5, 0.05]
+      polygon: {points: []}
+    primitive_poses:
+    - position: {x: 0.0, y: 0.0, z: -0.05}
+      orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}
+    - position: {x: 0.9, y: 0.0, z: -0.35}
+      orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}
+    meshes: []
+    operation: "\0"
+  - )" + kHeader + R"(
+    pose:
+      position: {x: 0.0, y: 0.0, z: 2.0}
+      orientation: {x: 0.0, y: 0.0, z: 0.0, w: 1.0}
+    id: rock
+    meshes:
+    - triangles:
+      - vertex_indices: [0, 1, 2]
+      - vertex_indices: [0, 1, 3]
+      - vertex_indices: [0, 2, 3]
+      - vertex_indices: [1, 2, 3]
+      vertices: [{x: 0.0, y: 0.0, z: 0.0}, {x: 1.0, y: 0.0, z: 0.0}, {x: 0.0, y: 1.0, z: 0.0}, {x: 0.0, y: 0.0, z: 1.0}]
+    mesh_poses:
+    - position: {x: 0.0, y: 0.0, z: 1.0}
+    operation: 0
+  - )" + kHeader + R"(
+    id: ground
+    planes:
+    - coef: [0.0, 0.0, 1.0, 0.25]
+    plane_poses: []
+  octomap:
+    octomap: {binary: false, id: '', resolution: 0.0, data: []}
+is_diff: false
+---
+)";
+
+class YamlScenes : public testing::Test {
+ protected:
+  [[nodiscard]] std::string cell(const std::string& file) const {
+    return "name: test\nunits: {length: mm, angle: deg}\nscenes: [{file: " + file +
+           ", group: kitchen, pose: {xyz: [0, 0, 100]}}]\n"
+           "objects: [{name: hand, sphere: {radius: 50}}]\n"
+           "pairs: [{between: [hand, kitchen]}]\n";
+  }
+  Scene read(const std::string& file, const std::string& text) {
+    test::write_text(folder_ / file, text);
+    return scene_of(cell(file), folder_ / "cell.yaml");
+  }
+  std::string mistakes(std::string from, const std::string& to) {
+    std::string text = kYaml;
+    text.replace(text.find(from), from.size(), to);
+    test::write_text(folder_ / "kitchen.yaml", text);
+    return errors_of(cell("kitchen.yaml"), folder_ / "cell.yaml");
+  }
+  const test::ScratchFolder folder_;
+};
+
+TEST_F(YamlScenes, HaveTheObjectsOfTheSameSceneAsText) {
+  const Scene text = read("kitchen.scene", kText), yaml = read("kitchen.yaml", kYaml);
+  ASSERT_EQ(yaml.objects.size(), 4u);
+  ASSERT_EQ(text.objects.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Object &a = text.objects[i], &b = yaml.objects[i];
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.fixed, b.fixed);
+    EXPECT_EQ(a.groups, b.groups);
+    ASSERT_EQ(a.parts.size(), b.parts.size());
+    for (std::size_t p = 0; p < a.parts.size(); ++p) {
+      const Pose in_a = compose(a.world_from_object, a.parts[p].object_from_part);
+      const Pose in_b = compose(b.world_from_object, b.parts[p].object_from_part);
+      EXPECT_LT((in_a.position - in_b.position).norm(), 1e-12) << a.name;
+      EXPECT_LT(in_a.orientation.angularDistance(in_b.orientation), 1e-12) << a.name;
+      EXPECT_EQ(a.parts[p].shape.anchors.size(), b.parts[p].shape.anchors.size());
+      EXPECT_NEAR(a.parts[p].shape.radius, b.parts[p].shape.radius, 1e-15);
+      EXPECT_EQ(a.parts[p].shape.is_half_space(), b.parts[p].shape.is_half_space());
+    }
+  }
+  EXPECT_EQ(text.pairs.size(), yaml.pairs.size());
+}
+
+TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
+  EXPECT_THAT(mistakes("world:\n", "worlds:\n"), mistake_at(":3:17", "kitchen.yaml:1", "'world'"));
+  EXPECT_THAT(mistakes("type: 1\n", "type: box\n"), mistake_at(":3:17", "kitchen.yaml:", "'box'"));
+  EXPECT_THAT(mistakes("type: 1\n", "type: 7\n"),
+              mistake_at(":3:17", "world.collision_objects[0].primitives[0].type", "7"));
+  EXPECT_THAT(mistakes("[0.5, 0.05]", "[0.5]"),
+              mistake_at(":3:17", "world.collision_objects[0].primitives[1].dimensions"));
+  EXPECT_THAT(mistakes("operation: \"\\0\"", "operation: 1"),
+              mistake_at(":3:17", "world.collision_objects[0].operation"));
+  EXPECT_THAT(mistakes("attached_collision_objects: []",
+                       "attached_collision_objects: [{link_name: hand, object: {id: tool}}]"),
+              mistake_at(":3:17", "'tool'", "'hand'"));
+  EXPECT_THAT(mistakes("vertex_indices: [1, 2, 3]", "vertex_indices: [1, 2, 4]"),
+              mistake_at(":3:17", "meshes[0].triangles[3]"));
+  EXPECT_THAT(mistakes("frame_id: world}\n    id: ground", "frame_id: moon}\n    id: ground"),
+              mistake_at(":3:17", "world.collision_objects[2].header.frame_id", "'moon'"));
+  EXPECT_THAT(mistakes("is_diff: false\nrobot", "is_diff: [\nrobot"), mistake_at(":3:17"));
+}
+
+TEST_F(YamlScenes, CutOffAnywhereAreRefusedOrRead) {
+  for (std::size_t length = 0; length < kYaml.size(); length += 7)
+    static_cast<void>(moveit::read_scene_yaml(kYaml.substr(0, length)));
+  EXPECT_TRUE(std::holds_alternative<moveit::SceneYamlFault>(
+      moveit::read_scene_yaml(kYaml.substr(0, kYaml.find("world:\n")))));
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,109 @@
+// What is wrong in MoveIt's messages is named by its field, and the rest counts.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <string>
+
+#include "tests/monitor/moveit/moveit_cell.hpp"
+
+namespace clearance::moveit {
+namespace {
+
+using testing::ElementsAre;
+
+const Pose kSomewhere = {{0.5, -1.5, 0.25}, test::turned({1.0, 2.0, 3.0}, 0.7)};
+
+TEST_F(MoveItCell, MalformedMessagesAreRefusedByTheirField) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto with = [](auto change) {
+    CollisionObject message = box_object("shelf", kSomewhere);
+    change(message);
+    return message;
+  };
+  using Message = CollisionObject;
+  EXPECT_EQ(refused(with([](Message& m) { m.operation = 4; })), "operation");
+  EXPECT_EQ(refused(with([](Message& m) { m.frame_id = "moon"; })), "header.frame_id");
+  EXPECT_EQ(refused(with([](Message& m) { m.frame_id = ""; })), "header.frame_id");
+  EXPECT_EQ(refused(with([](Message& m) { m.frame_id = "cart"; })), "header.frame_id");
+  EXPECT_EQ(refused(with([](Message& m) { m.id = ""; })), "id");
+  EXPECT_EQ(refused(with([](Message& m) { m.id = "a,b"; })), "id");
+  EXPECT_EQ(refused(with([](Message& m) { m.id = "<octomap>"; })), "id");
+  EXPECT_EQ(refused(with([](Message& m) { m.id = "hand"; })), "id");
+  EXPECT_EQ(refused(with([](Message& m) { m.id = "table"; })), "id");
+  EXPECT_EQ(refused(with([](Message& m) { m.primitives.clear(); })), "primitives");
+  EXPECT_EQ(refused(with([](Message& m) { m.primitives[0].type = 9; })), "primitives[0].type");
+  EXPECT_EQ(refused(with([](Message& m) { m.primitives[0].dimensions.pop_back(); })),
+            "primitives[0].dimensions");
+  EXPECT_EQ(refused(with([&](Message& m) { m.primitives[0].dimensions[1] = nan; })),
+            "primitives[0].dimensions");
+  EXPECT_EQ(refused(with([](Message& m) { m.primitives[0].dimensions[2] = 0.0; })),
+            "primitives[0].dimensions");
+  EXPECT_EQ(refused(with([](Message& m) {
+              m.primitives[0] = {SolidPrimitive::kPrism, {1.0}};
+            })),
+            "primitives[0].polygon");
+  EXPECT_EQ(refused(with([&](Message& m) { m.pose.position.x() = nan; })), "pose.position");
+  EXPECT_EQ(refused(with([](Message& m) { m.pose.orientation.coeffs() *= 2.0; })),
+            "pose.orientation");
+  EXPECT_EQ(refused(with([](Message& m) { m.primitive_poses.push_back({}); })), "primitive_poses");
+  EXPECT_EQ(refused(with([](Message& m) { m.planes = {{0, 0, 0, 1}}; })), "planes[0].coef");
+  EXPECT_EQ(refused(with([](Message& m) {
+              m.meshes.push_back({{{0, 1, 3}}, {{}, {}, {}}});
+            })),
+            "meshes[0].triangles[0]");
+  EXPECT_EQ(refused(with([](Message& m) { m.subframe_names = {"tip"}; })), "subframe_poses");
+  EXPECT_EQ(refused(operation(Operation::kRemove, "table")), "id");
+  EXPECT_EQ(refused(operation(Operation::kRemove, "nothing")), "id");
+  EXPECT_EQ(refused(operation(Operation::kMove, "cart")), "id");
+  EXPECT_EQ(refused(operation(Operation::kMove, "hand")), "id");
+
+  AttachedCollisionObject attach;
+  attach.link_name = "hands";
+  attach.object = box_object("part", kSomewhere);
+  EXPECT_EQ(refused(attach), "link_name");
+  attach.link_name = "finger";  // its joints are unknown
+  EXPECT_EQ(refused(attach), "link_name");
+  attach.link_name = "hand";
+  attach.object = operation(Operation::kAdd, "part");
+  EXPECT_EQ(refused(attach), "object.id");
+  attach.object.planes = {{0, 0, 1, 0}};
+  EXPECT_EQ(refused(attach), "object.planes");
+  attach.object = operation(Operation::kMove, "part");
+  EXPECT_EQ(refused(attach), "object.operation");
+
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.allowed_collision_matrix.entry_names = {"hand"};
+  EXPECT_EQ(refused(scene), "allowed_collision_matrix.entry_values");
+  scene.allowed_collision_matrix = {};
+  scene.collision_objects = {with([](Message& m) { m.primitives[0].type = 0; })};
+  EXPECT_EQ(refused(scene), "world.collision_objects[0].primitives[0].type");
+}
+
+TEST_F(MoveItCell, TheRestOfAMessageCountsWhereOneObjectIsRefused) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.collision_objects = {box_object("a", kSomewhere), box_object("b", kSomewhere),
+                             box_object("c", kSomewhere)};
+  scene.collision_objects[1].frame_id = "moon";
+  const Translation done = send(scene);
+  ASSERT_EQ(done.refused.size(), 1u);
+  EXPECT_EQ(done.refused[0].field, "world.collision_objects[1].header.frame_id");
+  EXPECT_NE(object("a"), nullptr);
+  EXPECT_EQ(object("b"), nullptr);
+  EXPECT_NE(object("c"), nullptr);
+}
+
+TEST_F(MoveItCell, WhatIsNotUnderstoodIsNamed) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.link_padding = {{"hand", 0.01}, {"finger", 0.0}};
+  scene.link_scale = {{"hand", 1.0}, {"finger", 1.1}};
+  scene.has_octomap = true;
+  EXPECT_THAT(send(scene).not_understood,
+              ElementsAre("link_padding of 'hand'", "link_scale of 'finger'", "world.octomap"));
+}
+
+}  // namespace
+}  // namespace clearance::moveit
