@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "config/edit/contact_entry.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/quantities.hpp"
@@ -62,6 +63,8 @@ class ChangeMaker {
   Fault operator()(const SetSource& change);
   Fault operator()(const SetPair& change);
   Fault operator()(const SetZoneThresholds& change);
+  Fault operator()(const AllowContact& change);
+  Fault operator()(const WithdrawContact& change);
   Fault operator()(const ReplaceCell&) { return std::nullopt; }
 
  private:
@@ -189,7 +192,7 @@ std::vector<std::string> ChangeMaker::users_of(const std::string& name) const {
   const auto add = [&](std::string_view list, const YamlNode& entry, std::size_t place) {
     users.push_back(fmt::format("{}[{}]", list, entry_label(entry, place)));
   };
-  for (const std::string_view list : {"pairs", "allowed_collisions", "zones"}) {
+  for (const std::string_view list : {"pairs", "allowed_collisions", "zones", "contacts"}) {
     const std::vector<YamlNode>& items = document_.items(list);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const auto [a, b] = sides_of(items[i]);
@@ -344,6 +347,25 @@ Fault ChangeMaker::operator()(const SetZoneThresholds& change) {
   return std::nullopt;
 }
 
+// An entry that stands already keeps its place.
+Fault ChangeMaker::operator()(const AllowContact& change) {
+  YamlNode entry = contact_entry(change, [this](double metres) { return length(metres); });
+  const auto found = named("contacts", change.contact);
+  if (const auto* known = std::get_if<Found>(&found)) {
+    document_.replace("contacts", known->index, std::move(entry));
+  } else {
+    document_.append("contacts", std::move(entry));
+  }
+  return std::nullopt;
+}
+
+Fault ChangeMaker::operator()(const WithdrawContact& change) {
+  auto found = named("contacts", change.contact);
+  if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
+  document_.remove("contacts", std::get<Found>(found).index);
+  return std::nullopt;
+}
+
 struct Touched {
   TouchedEntry operator()(const AddObject& change) const {
     const auto read = parse_yaml(change.yaml);
@@ -358,6 +380,10 @@ struct Touched {
             fmt::format("{}, {}", change.a, change.b)};
   }
   TouchedEntry operator()(const SetZoneThresholds& change) const { return {"zones", change.zone}; }
+  TouchedEntry operator()(const AllowContact& change) const { return {"contacts", change.contact}; }
+  TouchedEntry operator()(const WithdrawContact& change) const {
+    return {"contacts", change.contact};
+  }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
   template <class Change>
   TouchedEntry operator()(const Change& change) const {

@@ -142,6 +142,11 @@ inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{
 inline constexpr LogLine<Text, Count, Text, Text> kZoneDiscontinuous{
     "zone-discontinuous", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 
+inline constexpr LogLine<Text, Count, Text, Text> kZoneContactTooDeep{
+    "zone-contact-too-deep", kInfo, "zone '{}' entered at cycle {} because {}: {}"};
+inline constexpr LogLine<Text, Count, Text, Text> kZoneContactTooLate{
+    "zone-contact-too-late", kInfo, "zone '{}' entered at cycle {} because {}: {}"};
+
 inline constexpr LogLine<Text, Count, Text> kZoneFlickers{
     "zone-flickers", kWarn,
     "zone '{}' changed {} more times in the last second; it is {} at present"};
@@ -237,6 +242,8 @@ inline constexpr std::tuple kAll{kStarted,
                                  kZoneUnknown,
                                  kZoneContradicted,
                                  kZoneDiscontinuous,
+                                 kZoneContactTooDeep,
+                                 kZoneContactTooLate,
                                  kZoneFlickers,
                                  kZonesLeftOut,
                                  kDdsWarning,
