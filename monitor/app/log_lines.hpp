@@ -152,6 +152,15 @@ inline constexpr LogLine<Text, Count, Text> kZoneFlickers{
     "zone '{}' changed {} more times in the last second; it is {} at present"};
 inline constexpr LogLine<Text> kZonesLeftOut{"zones-left-out", kWarn, "{} of zones left out"};
 
+// ---- Contacts that are allowed
+
+inline constexpr LogLine<Text, Text> kContactAllowed{"contact-allowed", kInfo, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactEnded{"contact-ended", kInfo, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactTooDeep{"contact-too-deep", kWarn, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactTooLate{"contact-too-late", kWarn, "{}: {}"};
+inline constexpr LogLine<Text> kContactsLeftOut{"contacts-left-out", kWarn,
+                                                "{} of contacts left out"};
+
 // ---- DDS and ROS 2
 
 inline constexpr LogLine<Text> kDdsWarning{"dds-warning", kWarn, "dds: {}"};
@@ -246,6 +255,11 @@ inline constexpr std::tuple kAll{kStarted,
                                  kZoneContactTooLate,
                                  kZoneFlickers,
                                  kZonesLeftOut,
+                                 kContactAllowed,
+                                 kContactEnded,
+                                 kContactTooDeep,
+                                 kContactTooLate,
+                                 kContactsLeftOut,
                                  kDdsWarning,
                                  kDdsError,
                                  kDdsLeftOut,

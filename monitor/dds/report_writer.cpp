@@ -55,6 +55,7 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, ReportQueue& the_queue, std::
       gradients(cell.scene),
       written_zones(cell.scene.zones.size()),
       zone_log(cell.scene),
+      contact_log(cell.scene),
       health_log(cell.scene) {
   distances->daemon = separation->daemon = daemon;
 }
@@ -189,6 +190,9 @@ bool ReportWriter::change() {
     gone.zone = zone;
     if (zone >= zones.size()) dds_dispose(zones_, &gone);
   }
+  if (!next.first->scene.contacts.empty())
+    changed->contact_log.take_over(now_->contact_log,
+                                   scene_map(now_->cell.scene, next.first->scene));
   dropped_before_ += now_->queue.dropped_reports();
   now_ = std::move(changed);
   open_topics(now_->cell.scene);
@@ -211,6 +215,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     write(gradients_, &gradients, "gradients");
   }
   write_zones(queued.report);
+  now_->contact_log.note(queued.report.contacts);
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -247,6 +252,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
   now_->zone_log.end_second();
+  now_->contact_log.end_second();
   now_->health_log.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/cell/cell.hpp"
+#include "monitor/dds/contact_log.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"
@@ -64,6 +65,7 @@ class ReportWriter {
     GradientMessage gradients;
     WrittenZones written_zones;
     ZoneLog zone_log;
+    ContactLog contact_log;
     HealthLog health_log;
 
     OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon);
