@@ -98,7 +98,7 @@ Scene published_cell() {
   zone.separation.emplace();
   zone.separation->human_is_first = {1, 1};
   for (ObjectPair& pair : scene.pairs) pair.publish = true;
-  scene.contacts.push_back({.name = "lift", .depth = 0.002, .pairs = {3, 2}});
+  scene.contacts.emplace_back().pairs = {3, 2};
   return scene;
 }
 
