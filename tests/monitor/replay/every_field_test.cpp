@@ -184,7 +184,9 @@ TEST_F(EveryField, OfAContactIsCompared) {
   Kept& message = messages_.at(place_of(TopicKind::kDistances, 3));
   message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& content) {
     reserve_sequence(content.contacts, 1);
-    content.contacts._buffer[content.contacts._length++] = {.depth = 0.001};
+    clearance_msg_ContactState& contact = content.contacts._buffer[content.contacts._length++];
+    contact = {};
+    contact.depth = 0.001;
   });
   expect_named<clearance_msg_Distances>(TopicKind::kDistances, 3);
 }
