@@ -63,7 +63,11 @@ class ChangeMaker {
   Fault operator()(const SetSource& change);
   Fault operator()(const SetPair& change);
   Fault operator()(const SetZoneThresholds& change);
-  Fault operator()(const AllowContact& change);
+  Fault operator()(const AllowContact& change) {
+    allow_contact(
+        change, [this](double metres) { return length(metres); }, document_);
+    return std::nullopt;
+  }
   Fault operator()(const WithdrawContact& change);
   Fault operator()(const ReplaceCell&) { return std::nullopt; }
 
@@ -347,18 +351,6 @@ Fault ChangeMaker::operator()(const SetZoneThresholds& change) {
   return std::nullopt;
 }
 
-// An entry that stands already keeps its place.
-Fault ChangeMaker::operator()(const AllowContact& change) {
-  YamlNode entry = contact_entry(change, [this](double metres) { return length(metres); });
-  const auto found = named("contacts", change.contact);
-  if (const auto* known = std::get_if<Found>(&found)) {
-    document_.replace("contacts", known->index, std::move(entry));
-  } else {
-    document_.append("contacts", std::move(entry));
-  }
-  return std::nullopt;
-}
-
 Fault ChangeMaker::operator()(const WithdrawContact& change) {
   auto found = named("contacts", change.contact);
   if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
@@ -381,9 +373,7 @@ struct Touched {
   }
   TouchedEntry operator()(const SetZoneThresholds& change) const { return {"zones", change.zone}; }
   TouchedEntry operator()(const AllowContact& change) const { return {"contacts", change.contact}; }
-  TouchedEntry operator()(const WithdrawContact& change) const {
-    return {"contacts", change.contact};
-  }
+  TouchedEntry operator()(const WithdrawContact& of) const { return {"contacts", of.contact}; }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
   template <class Change>
   TouchedEntry operator()(const Change& change) const {

@@ -16,8 +16,6 @@ YamlNode integer_node(std::int64_t value) {
   return node;
 }
 
-}  // namespace
-
 YamlNode contact_entry(const AllowContact& change,
                        const std::function<YamlNode(double metres)>& length) {
   YamlNode between;
@@ -39,6 +37,22 @@ YamlNode contact_entry(const AllowContact& change,
   set(entry, "by", text_node(change.by));
   set(entry, "reason", text_node(change.reason));
   return entry;
+}
+
+}  // namespace
+
+// An entry that stands already keeps its place.
+void allow_contact(const AllowContact& change, const std::function<YamlNode(double metres)>& length,
+                   CellDocument& document) {
+  YamlNode entry = contact_entry(change, length);
+  const std::vector<YamlNode>& items = document.items("contacts");
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    const YamlNode* name = find(items[i], "name");
+    if (name == nullptr || name->text != change.contact) continue;
+    document.replace("contacts", i, std::move(entry));
+    return;
+  }
+  document.append("contacts", std::move(entry));
 }
 
 }  // namespace clearance

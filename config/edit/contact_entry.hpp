@@ -4,12 +4,14 @@
 #include <functional>
 
 #include "config/edit/cell_change.hpp"
+#include "config/edit/cell_document.hpp"
 #include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
 
-// `length` writes metres in the unit of the cell.
-[[nodiscard]] YamlNode contact_entry(const AllowContact& change,
-                                     const std::function<YamlNode(double metres)>& length);
+// Appends the entry, or replaces that of the same name. `length` writes metres in the unit of the
+// cell.
+void allow_contact(const AllowContact& change, const std::function<YamlNode(double metres)>& length,
+                   CellDocument& document);
 
 }  // namespace clearance
