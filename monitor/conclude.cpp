@@ -18,6 +18,13 @@ PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
   return bounds;
 }
 
+void judge(const TickView& view, const ZoneCrossings& crossings, Contacts& contacts) noexcept {
+  for (std::size_t i = 0; i < contacts.reports().size(); ++i) {
+    constexpr auto kClosely = SweptPrecision::kByRelativeDisplacement;
+    contacts.judge(i, bounds_in_tick(contacts.pair(i), kClosely, crossings, view), view);
+  }
+}
+
 // Computes the bounds of every updated pair once, and passes them at once to all that need them. A
 // second pass over the published pairs costs a small tick a twentieth of its time.
 Conclusion conclude(const Published& published, const Displacements& displaced,

@@ -1,5 +1,5 @@
-// Stage 'conclude' of a tick: zones, minimum and the reports of published pairs. It uses the pairs
-// that the tick has updated, and the bounds that hold for all others.
+// Stages 'judge' and 'conclude' of a tick: contacts, zones, minimum and the reports of published
+// pairs. It uses the pairs that the tick has updated, and the bounds that hold for all others.
 #pragma once
 
 #include <cstdint>
@@ -29,6 +29,9 @@ struct Published {
 [[nodiscard]] PairBounds bounds_in_tick(std::uint32_t pair, SweptPrecision precision,
                                         const ZoneCrossings& crossings,
                                         const TickView& view) noexcept;
+
+// Decides for every pair with a contact whether that is as allowed.
+void judge(const TickView& view, const ZoneCrossings& crossings, Contacts& contacts) noexcept;
 
 // Also advances the zones to this tick. `reports` are those of the published pairs, in their order.
 [[nodiscard]] Conclusion conclude(const Published& published, const Displacements& displaced,

@@ -3,6 +3,7 @@
 //   ingest         samples of poses and joints -> Inputs: the values in use of objects and joints
 //   displace       Inputs                      -> Displacements: how far each object moved
 //   pose           moved objects               -> parts placed in the world
+//   allow          time, Contacts              -> Contacts: which allowances are in force
 //   cull           Displacements               -> Culling: updated pairs, bounds of all others
 //   schedule       updated pairs, budget       -> Schedule: pairs to evaluate now, budget to keep
 //   evaluate       Schedule                    -> PairTable: evaluated bounds of the urgent pairs
@@ -10,6 +11,7 @@
 //   refresh        Schedule, kept budget       -> PairTable, Evaluated: round-robin
 //   sweep          ZoneCrossings, kept budget  -> ZoneCrossings: bounds since the last tick
 //   cull again     PairTable                   -> Culling: active pairs that are far now
+//   judge          PairTable, ZoneCrossings    -> Contacts: whether contacts are as allowed
 //   conclude       PairTable, ZoneCrossings    -> Zones, minimum, published pairs of the Report
 //   separate       published pairs             -> zones with `separation` of the Report
 //   differentiate  published pairs, links      -> gradients of the Report
@@ -22,6 +24,7 @@
 
 #include "config/scene/refresh_share.hpp"
 #include "monitor/conclude.hpp"
+#include "monitor/contacts/contacts.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/gradients/differentiate.hpp"
@@ -70,6 +73,7 @@ struct Monitor::State {
   Culling culling;                              // cull, evaluate, refresh and cull again
   Evaluated evaluated;                          // refresh
   ZoneCrossings crossings;                      // cross and sweep
+  Contacts contacts;                            // allow and judge
   Zones zones;                                  // conclude
   Conclusion conclusion;                        // conclude
   const Separations separations;
@@ -116,6 +120,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table, s.inputs.time.now_ns);
   check_displaced(displaced.changed, s.first_part, tick);
 
+  s.contacts.begin_tick(s.inputs.cycle, s.inputs.time.now_ns);
   Budget budget(s.scene.budget);
   s.culling.cull(displaced.changed, s.evaluated.smallest_upper, tick, budget);
   check_updated(s.culling, tick);
@@ -130,6 +135,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.crossings.sweep(s.culling.updated(), s.zones, tick, budget);
   s.culling.cull_active(tick);
 
+  judge(tick, s.crossings, s.contacts);
   s.conclusion =
       conclude(s.published, displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
@@ -145,6 +151,7 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   CLEARANCE_INVARIANT(s.displacer.is_first());
   if (!numbers.add_named(s.named_sources)) return false;
   clearance::take_over(before.state_->inputs, map, s.scene, numbers, s.inputs);
+  s.contacts.take_over(before.state_->contacts, map);
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
   return true;
@@ -261,7 +268,8 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
               scheduler.left_out(), share, known_hulls),
       crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
-      zones(the_scene, zone_levels),
+      contacts(the_scene),
+      zones(the_scene, zone_levels, contacts),
       separations(the_scene, zone_levels),
       differentiation(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
@@ -272,6 +280,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
   report.zones.assign(zones.reports().begin(), zones.reports().end());
+  report.contacts.assign(contacts.reports().begin(), contacts.reports().end());
   separations.prepare(report);
   report.gradients = unknown_gradients(differentiation.rows());
 }
@@ -284,6 +293,7 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.oldest_pose_ns = displacer.result().oldest_pose_ns;
   report.rejected = inputs.rejected;
   std::ranges::copy(zones.reports(), report.zones.begin());
+  std::ranges::copy(contacts.reports(), report.contacts.begin());
 
   report.queries = queries;
   report.oldest_evaluation_cycles = inputs.cycle - evaluated.oldest_refresh;

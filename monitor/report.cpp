@@ -38,6 +38,42 @@ const char* name(ZoneCause cause) noexcept {
       return "discontinuous";
     case ZoneCause::kContradicted:
       return "contradicted";
+    case ZoneCause::kContactTooDeep:
+      return "contact_too_deep";
+    case ZoneCause::kContactTooLate:
+      return "contact_too_late";
+  }
+  return "";
+}
+
+const char* name(ContactStatus status) noexcept {
+  switch (status) {
+    case ContactStatus::kUnknown:
+      return "unknown";
+    case ContactStatus::kAllowed:
+      return "allowed";
+    case ContactStatus::kTooDeep:
+      return "too_deep";
+    case ContactStatus::kEnded:
+      return "ended";
+    case ContactStatus::kTooLate:
+      return "too_late";
+    case ContactStatus::kAbsent:
+      return "absent";
+  }
+  return "";
+}
+
+const char* name(ContactEnded ended) noexcept {
+  switch (ended) {
+    case ContactEnded::kNot:
+      return "not";
+    case ContactEnded::kByDistance:
+      return "by_distance";
+    case ContactEnded::kByTime:
+      return "by_time";
+    case ContactEnded::kByCycle:
+      return "by_cycle";
   }
   return "";
 }

@@ -78,13 +78,18 @@ enum class ZoneCause : std::uint8_t {
   // An object is late and may have moved unobserved. If its poses were on time, the pair would be
   // outside.
   kLate = 2,
-  kUnknown = 3,        // an object has no pose
-  kDiscontinuous = 4,  // the motion between the last two poses of an object is not known
-  kContradicted = 5,   // like kLate, but an object's poses contradict each other or the cell
+  kUnknown = 3,         // an object has no pose
+  kDiscontinuous = 4,   // the motion between the last two poses of an object is not known
+  kContradicted = 5,    // like kLate, but an object's poses contradict each other or the cell
+  kContactTooDeep = 6,  // the pair has an allowed contact, and may be deeper than that allows
+  kContactTooLate = 7,  // the pair may touch after its allowed contact has ended
 };
 [[nodiscard]] const char* name(ZoneCause cause) noexcept;
 
 struct ZoneReport {
+  // Pairs whose ContactReport has the status kAllowed do not count here: they make no zone active,
+  // and are in none of these figures.
+  //
   // True if swept_lower less both margins is below the threshold for some pair. The threshold
   // depends on the state (hysteresis). A pair that came too near and went away again between two
   // ticks has therefore entered, for this tick. An unknown pair has the lower bound -infinity, so
@@ -144,6 +149,44 @@ struct ZoneSeparation {
   SeparationValidity validity = SeparationValidity::kUnknown;
   std::uint32_t pair = 0;  // the pair with the least scaling, then the least `remaining`
   double remaining = 0.0, speed_limit = 0.0, scaling = 0.0;
+};
+
+// Whether the contact that is allowed for a pair is as allowed.
+enum class ContactStatus : std::uint8_t {
+  // In force or not, but a pose is not known, late, contradicted or after a discontinuity. Zones
+  // treat the pair like any other.
+  kUnknown = 0,
+  kAllowed = 1,  // in force; certified to be no deeper than allowed since the last tick
+  kTooDeep = 2,  // in force; may have been deeper than allowed since the last tick
+  kEnded = 3,    // not in force any more; the pair is certified not to touch
+  kTooLate = 4,  // not in force any more; the pair may touch
+  kAbsent = 5,   // an object is known not to be there
+};
+[[nodiscard]] const char* name(ContactStatus status) noexcept;
+
+// The condition that ended an allowance: ContactEnd of config/scene/contact.hpp.
+enum class ContactEnded : std::uint8_t {
+  kNot = 0,
+  kByDistance = 1,
+  kByTime = 2,  // duration or time
+  kByCycle = 3,
+};
+[[nodiscard]] const char* name(ContactEnded ended) noexcept;
+
+// A pair for which the scene allows a contact. The pair's distance is in Report::pairs as always.
+struct ContactReport {
+  std::uint32_t contact = 0, pair = 0;  // indices into Scene::contacts and Scene::pairs
+  ContactStatus status = ContactStatus::kUnknown;
+  ContactEnded ended = ContactEnded::kNot;
+  // The pair is certified to have been no deeper than this at any instant since the last tick, m:
+  // max(0, -swept_lower). Infinity: not known.
+  double depth = 0.0;
+  // The tick in which the allowance came into force, and its time.
+  std::uint64_t since_cycle = 0;
+  std::int64_t since_ns = 0;
+  // The first tick in which it is not in force any more, and its time; 0: it is in force.
+  std::uint64_t ended_cycle = 0;
+  std::int64_t ended_ns = 0;
 };
 
 // Whether the closest points of a pair are the only ones. If they are not, its distance has no
@@ -211,6 +254,9 @@ struct Report {
   std::vector<ZoneSeparation> separated_zones;
   std::vector<PairSeparation> separated_pairs;
   Gradients gradients;
+  // contact_pairs() of the scene, in ascending order of pairs; sized once. `minimum` and
+  // `lower_all` include these pairs: an entry here says whether the contact is allowed.
+  std::vector<ContactReport> contacts;
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
 };
 

@@ -27,6 +27,9 @@ enum class Meaning : std::uint8_t {
   kZoneCause,
   kValidity,
   kGradientStatus,
+  kContact,  // index into Scene::contacts
+  kContactStatus,
+  kContactEnded,
   kDelivery,  // sender, time and inputs of the message: not a result of the tick
 };
 
@@ -118,6 +121,22 @@ struct ZoneSeparationFields {
   }
 };
 
+// ContactReport, and ContactState on the wire.
+struct ContactFields {
+  template <class Visit, class... Contact>
+  static constexpr void for_each(Visit&& visit, Contact&... contact) {
+    visit(Field{"contact", Meaning::kContact}, contact.contact...);
+    visit(Field{"pair", Meaning::kPair}, contact.pair...);
+    visit(Field{"status", Meaning::kContactStatus}, contact.status...);
+    visit(Field{"ended", Meaning::kContactEnded}, contact.ended...);
+    visit(Field{"depth"}, contact.depth...);
+    visit(Field{"since_cycle", Meaning::kCycle}, contact.since_cycle...);
+    visit(Field{"since_ns"}, contact.since_ns...);
+    visit(Field{"ended_cycle", Meaning::kCycle}, contact.ended_cycle...);
+    visit(Field{"ended_ns"}, contact.ended_ns...);
+  }
+};
+
 // GradientAlternative, in the report and on the wire.
 struct GradientAlternativeFields {
   template <class Visit, class... Alternative>
@@ -171,6 +190,7 @@ struct DistanceFields {
     visit(Field{"lower_all"}, report.lower_all...);
     visit(Field{"swept_lower_all"}, report.swept_lower_all...);
     visit(Field{"pairs"}, report.pairs...);
+    visit(Field{"contacts"}, report.contacts...);
   }
 };
 struct ReportFields {
@@ -196,6 +216,8 @@ template <>
 struct FieldsOf<PairSeparation> : PairSeparationFields {};
 template <>
 struct FieldsOf<ZoneSeparation> : ZoneSeparationFields {};
+template <>
+struct FieldsOf<ContactReport> : ContactFields {};
 template <>
 struct FieldsOf<GradientAlternative> : GradientAlternativeFields {};
 template <>
@@ -248,6 +270,7 @@ static_assert(fields_detail::kListIsComplete<PairReport>);
 static_assert(fields_detail::kListIsComplete<ZoneReport>);
 static_assert(fields_detail::kListIsComplete<PairSeparation>);
 static_assert(fields_detail::kListIsComplete<ZoneSeparation>);
+static_assert(fields_detail::kListIsComplete<ContactReport>);
 static_assert(fields_detail::kListIsComplete<GradientAlternative>);
 static_assert(fields_detail::kListIsComplete<Gradients>);
 static_assert(fields_detail::kListIsComplete<Report>);

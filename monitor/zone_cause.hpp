@@ -43,6 +43,10 @@ enum class PlacedBy { kPoses, kJointStates, kEither };
       return inputs + " are discontinuous";
     case ZoneCause::kContradicted:
       return inputs + " contradict each other or the cell";
+    case ZoneCause::kContactTooDeep:
+      return "a contact is deeper than allowed";
+    case ZoneCause::kContactTooLate:
+      return "a contact is later than allowed";
   }
   return "";
 }

@@ -12,6 +12,7 @@
 
 #include "config/cell/attachment_reader.hpp"
 #include "config/cell/command_reader.hpp"
+#include "config/cell/contact_reader.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
@@ -192,6 +193,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* pairs_node = map.required("pairs");
   const YamlNode* allowed_node = map.optional("allowed_collisions");
   const YamlNode* zones_node = map.optional("zones");
+  const YamlNode* contacts_node = map.optional("contacts");
   const YamlNode* simulation_node = map.optional("simulation");
 
   ObjectList list;
@@ -223,6 +225,10 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
         read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
   if (zones_node != nullptr)
     cell.scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
+  if (contacts_node != nullptr) {
+    cell.scene.contacts =
+        read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
+  }
   if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
     cell.simulation = read_simulation(*simulation_node, list, quantities);

@@ -143,9 +143,10 @@ void GroupIndex::refuse_unused_groups() const {
     const std::uint32_t object = entry.objects.front();
     diagnostics_.add(
         *list_.places[object],
-        fmt::format("found the group '{}' of object '{}', which nothing under 'pairs', "
-                    "'allowed_collisions' or 'zones' names; expected every group to be used{}",
-                    name, list_.objects[object].name, did_you_mean(name, used)));
+        fmt::format(
+            "found the group '{}' of object '{}', which nothing under 'pairs', "
+            "'allowed_collisions', 'zones' or 'contacts' names; expected every group to be used{}",
+            name, list_.objects[object].name, did_you_mean(name, used)));
   }
 }
 

@@ -11,8 +11,6 @@
 namespace clearance {
 namespace {
 
-constexpr std::size_t kMaxPublished = 4096;  // idl/clearance.idl, kMaxPairs
-
 // Reads rules first, then exceptions from them; finish() makes the rest the pairs of the scene.
 class PairReader {
  public:
@@ -201,6 +199,14 @@ PairList PairReader::finish(const YamlNode& rules) {
 }
 
 }  // namespace
+
+std::optional<std::uint32_t> pair_index(const std::vector<ObjectPair>& pairs, PairKey key) {
+  const auto found = std::lower_bound(
+      pairs.begin(), pairs.end(), key,
+      [](const ObjectPair& a, PairKey b) { return pair_key(a.first, a.second) < b; });
+  if (found == pairs.end() || pair_key(found->first, found->second) != key) return std::nullopt;
+  return static_cast<std::uint32_t>(found - pairs.begin());
+}
 
 // Exceptions are read after all rules: they refer to what the rules as a whole watch.
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,

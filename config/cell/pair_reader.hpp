@@ -17,6 +17,13 @@ struct PairList {
   bool complete = true;           // false: a rule could not be read, and its pairs are missing
 };
 
+// The largest number of pairs that a report can carry (idl/clearance.idl, kMaxPairs).
+inline constexpr std::size_t kMaxPublished = 4096;
+
+// Returns the place of a pair in a list that is sorted by key.
+[[nodiscard]] std::optional<std::uint32_t> pair_index(const std::vector<ObjectPair>& pairs,
+                                                      PairKey key);
+
 // Pairs that may touch by a robot's description, and the line of the robot.
 using PairExceptions = std::vector<std::pair<PairKey, int>>;
 

@@ -17,17 +17,6 @@ namespace {
 
 // The largest number of zones that fit into the catalogue message.
 constexpr std::size_t kMaxZones = 256;  // idl/clearance.idl
-// The same for pairs: those in zones with `separation`, and those that are published.
-constexpr std::size_t kMaxPairs = 4096;
-
-// Returns the place of a pair in the scene's list, which is sorted by key.
-std::optional<std::uint32_t> index_of(const std::vector<ObjectPair>& pairs, PairKey key) {
-  const auto found = std::lower_bound(
-      pairs.begin(), pairs.end(), key,
-      [](const ObjectPair& a, PairKey b) { return pair_key(a.first, a.second) < b; });
-  if (found == pairs.end() || pair_key(found->first, found->second) != key) return std::nullopt;
-  return static_cast<std::uint32_t>(found - pairs.begin());
-}
 
 // Fills in the watched pairs between the two sides of a zone. A pair that is neither watched nor
 // allowed to touch is refused, since it could never make the zone active.
@@ -36,7 +25,7 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
                Zone& zone) {
   std::vector<PairKey> unwatched;
   for (const PairKey key : group_index.pairs(between)) {
-    if (const auto index = index_of(list.pairs, key)) {
+    if (const auto index = pair_index(list.pairs, key)) {
       zone.pairs.push_back(*index);
     } else if (!std::binary_search(list.allowed.begin(), list.allowed.end(), key)) {
       unwatched.push_back(key);
@@ -144,11 +133,11 @@ void publish_separated_pairs(const YamlNode& node, const std::vector<Zone>& zone
   if (separated == 0) return;
   const auto published =
       static_cast<std::size_t>(std::ranges::count(pairs, true, &ObjectPair::publish));
-  if (std::max(separated, published) <= kMaxPairs) return;
+  if (std::max(separated, published) <= kMaxPublished) return;
   diagnostics.add(node, fmt::format("found {} pairs in zones with 'separation', which are "
                                     "published, and {} published pairs in all; expected at most "
                                     "{} of either: put fewer objects on each side of the zones",
-                                    separated, published, kMaxPairs));
+                                    separated, published, kMaxPublished));
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <variant>
 #include <vector>
 
+#include "config/scene/contact.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -108,6 +109,19 @@ struct SetZoneThresholds {
   double enter_below = 0.0, leave_above = 0.0;
 };
 
+// Allows a contact between two objects or groups. An entry of the same name is replaced: with the
+// same depth and end it goes on, with others it begins anew.
+struct AllowContact {
+  std::string contact;  // its name
+  std::string a, b;
+  double depth = 0.0;  // m, > 0
+  ContactEnd end = {};
+  std::string by, reason;
+};
+struct WithdrawContact {
+  std::string contact;
+};
+
 // The text of another cell, or of this one after a person has changed the file. Files that it names
 // are read anew.
 struct ReplaceCell {
@@ -121,6 +135,7 @@ struct ReadCellAgain {
 
 using CellChange = std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent,
                                 Attach, Detach, Place, SetMaxSpeed, SetMargin, SetAgeLimit,
-                                SetSource, SetPair, SetZoneThresholds, ReplaceCell, ReadCellAgain>;
+                                SetSource, SetPair, SetZoneThresholds, AllowContact, WithdrawContact,
+                                ReplaceCell, ReadCellAgain>;
 
 }  // namespace clearance

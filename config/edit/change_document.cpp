@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/edit/contact_entry.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/quantity_nodes.hpp"
@@ -86,6 +87,12 @@ class ChangeMaker {
   Fault operator()(const SetSource& change);
   Fault operator()(const SetPair& change);
   Fault operator()(const SetZoneThresholds& change);
+  Fault operator()(const AllowContact& change) {
+    allow_contact(
+        change, [this](double metres) { return length(metres); }, document_);
+    return std::nullopt;
+  }
+  Fault operator()(const WithdrawContact& change);
   Fault operator()(const ReplaceCell&) { return std::nullopt; }
   Fault operator()(const ReadCellAgain&) {
     return ChangeFault{"", "found a cell file to be read; expected its text here"};
@@ -186,7 +193,7 @@ std::vector<std::string> ChangeMaker::users_of(const std::string& name) const {
   const auto add = [&](std::string_view list, const YamlNode& entry, std::size_t place) {
     users.push_back(fmt::format("{}[{}]", list, entry_label(entry, place)));
   };
-  for (const std::string_view list : {"pairs", "allowed_collisions", "zones"}) {
+  for (const std::string_view list : {"pairs", "allowed_collisions", "zones", "contacts"}) {
     const std::vector<YamlNode>& items = document_.items(list);
     for (std::size_t i = 0; i < items.size(); ++i) {
       const auto [a, b] = sides_of(items[i]);
@@ -343,6 +350,13 @@ Fault ChangeMaker::operator()(const SetZoneThresholds& change) {
   return std::nullopt;
 }
 
+Fault ChangeMaker::operator()(const WithdrawContact& change) {
+  auto found = named("contacts", change.contact);
+  if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
+  document_.remove("contacts", std::get<Found>(found).index);
+  return std::nullopt;
+}
+
 struct Touched {
   static TouchedEntry entry_of(const std::string& yaml) {
     const auto read = object_entry(yaml);
@@ -358,6 +372,8 @@ struct Touched {
             fmt::format("{}, {}", change.a, change.b)};
   }
   TouchedEntry operator()(const SetZoneThresholds& change) const { return {"zones", change.zone}; }
+  TouchedEntry operator()(const AllowContact& change) const { return {"contacts", change.contact}; }
+  TouchedEntry operator()(const WithdrawContact& of) const { return {"contacts", of.contact}; }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
   TouchedEntry operator()(const ReadCellAgain&) const { return {}; }
   template <class Change>

@@ -33,11 +33,13 @@ std::string summary(const Scene& scene) {
       static_cast<std::size_t>(std::ranges::count(scene.robots, true, &Robot::is_attached));
   const std::size_t jointed = scene.robots.size() - attached;
   const std::string robots = jointed == 0 ? "" : counted(jointed, "robot") + ", ";
-  return fmt::format("{}: {} ({} moving, {} fixed), {}{}, {}, {} ({} published), {}", scene.name,
+  const std::string contacts =
+      scene.contacts.empty() ? "" : ", " + counted(scene.contacts.size(), "contact") + " allowed";
+  return fmt::format("{}: {} ({} moving, {} fixed), {}{}, {}, {} ({} published), {}{}", scene.name,
                      counted(scene.objects.size(), "object"), scene.objects.size() - fixed, fixed,
                      robots, counted(parts, "part"), counted(facets, "facet"),
                      counted(scene.pairs.size(), "pair"), published,
-                     counted(scene.zones.size(), "zone"));
+                     counted(scene.zones.size(), "zone"), contacts);
 }
 
 }  // namespace clearance

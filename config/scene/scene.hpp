@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scene/contact.hpp"
 #include "config/scene/robot.hpp"
 #include "config/scene/separation.hpp"
 #include "core/convex_body.hpp"
@@ -95,6 +96,8 @@ struct Scene {
   std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
   std::vector<Zone> zones;
+  std::vector<AllowedContact>
+      contacts;  // their pairs are published, and in no zone with `separation`
 };
 
 // Counts the zones with `separation`, and their pairs, each once a zone.

@@ -1,8 +1,11 @@
 #include "config/scene/scene_map.hpp"
 
+#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <string_view>
 #include <unordered_map>
+#include <utility>
 
 namespace clearance {
 namespace {
@@ -42,6 +45,32 @@ std::vector<std::uint32_t> robot_of_objects(const Scene& scene) {
     }
   }
   return robots;
+}
+
+// The names of both objects, in alphabetic order.
+std::pair<std::string_view, std::string_view> names_of(const ContactPair& pair,
+                                                       const Scene& scene) {
+  const ObjectPair& objects = scene.pairs[pair.pair];
+  return std::minmax(std::string_view(scene.objects[objects.first].name),
+                     std::string_view(scene.objects[objects.second].name));
+}
+
+std::vector<std::uint32_t> by_contact(const Scene& before, const Scene& now) {
+  using Key = std::pair<std::string_view, std::pair<std::string_view, std::string_view>>;
+  std::map<Key, std::uint32_t> index;
+  const std::vector<ContactPair> old = contact_pairs(before);
+  for (std::uint32_t i = 0; i < old.size(); ++i)
+    index.emplace(Key{before.contacts[old[i].contact].name, names_of(old[i], before)}, i);
+  std::vector<std::uint32_t> found;
+  for (const ContactPair& pair : contact_pairs(now)) {
+    const AllowedContact& contact = now.contacts[pair.contact];
+    const auto same = index.find({contact.name, names_of(pair, now)});
+    const bool goes_on = same != index.end() && [&](const AllowedContact& was) {
+      return was.depth == contact.depth && was.end == contact.end;
+    }(before.contacts[old[same->second].contact]);
+    found.push_back(goes_on ? same->second : SceneMap::kNone);
+  }
+  return found;
 }
 
 bool same_input(const JointVariable& a, const JointVariable& b) {
@@ -103,6 +132,7 @@ SceneMap scene_map(const Scene& before, const Scene& now) {
                .robots = by_name(before.robots, now.robots),
                .variables = by_name(before.variables, now.variables),
                .zones = by_name(before.zones, now.zones),
+               .contact_pairs = by_contact(before, now),
                .objects_now = by_name(now.objects, before.objects),
                .variables_now = by_name(now.variables, before.variables)};
   for (std::uint32_t robot = 0; robot < now.robots.size(); ++robot) {

@@ -15,6 +15,7 @@ struct SceneMap {
 
   // By index in the changed scene: the index in the scene before.
   std::vector<std::uint32_t> objects, robots, variables, zones;
+  std::vector<std::uint32_t> contact_pairs;  // indices into contact_pairs() of both scenes
   // By index in the scene before: the index in the changed scene.
   std::vector<std::uint32_t> objects_now, variables_now;
 };
@@ -27,6 +28,8 @@ struct SceneMap {
 //  - an object or joint variable for which the scenes state different sources or frames;
 //  - an object that is absent by one of the scenes;
 //  - a robot whose joint variables are not all the same, with its links and variables.
+// A pair of a contact has a counterpart if a contact of the same name, depth and end is allowed for
+// objects of the same names. Any other allowance begins anew.
 //
 // A pose or position that was sent for the scene before is passed on by `objects_now` and
 // `variables_now`, which need the name alone.

@@ -6,6 +6,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -18,15 +20,15 @@ namespace {
 constexpr std::size_t kLine = 140;
 
 // The keys of maps, in the order in which they are written. All others follow by the alphabet.
-constexpr std::array<std::string_view, 45> kOrder = {
-    "name",           "between",      "file",      "template",  "groups",   "fixed",
-    "absent",         "attached",     "from",      "to",        "xyz",      "rpy",
-    "quaternion",     "parts",        "box",       "sphere",    "capsule",  "prism",
-    "polyhedron",     "half_space",   "mesh",      "ellipsoid", "cylinder", "cone",
-    "truncated_cone", "normal",       "offset",    "through",   "size",     "semi_axes",
-    "lower_radius",   "upper_radius", "radius",    "length",    "centre",   "rounding",
-    "pose",           "touch",        "margin",    "max_speed", "publish",  "reason",
-    "enter_below",    "leave_above",  "separation"};
+constexpr std::array<std::string_view, 48> kOrder = {
+    "name",           "between",      "file",   "template",    "groups",      "fixed",
+    "absent",         "attached",     "from",   "to",          "xyz",         "rpy",
+    "quaternion",     "parts",        "box",    "sphere",      "capsule",     "prism",
+    "polyhedron",     "half_space",   "mesh",   "ellipsoid",   "cylinder",    "cone",
+    "truncated_cone", "normal",       "offset", "through",     "size",        "semi_axes",
+    "lower_radius",   "upper_radius", "radius", "length",      "centre",      "rounding",
+    "pose",           "touch",        "margin", "max_speed",   "publish",     "depth",
+    "until",          "by",           "reason", "enter_below", "leave_above", "separation"};
 
 std::pair<std::size_t, std::string_view> rank_of(const YamlEntry& entry) {
   const auto known = std::ranges::find(kOrder, std::string_view(entry.key.text));
@@ -73,6 +75,15 @@ std::string quoted(const std::string& text) {
   return out + '"';
 }
 
+// A whole number that a double would round, such as a time in ns.
+std::optional<std::int64_t> large_integer(const char* begin, const char* end) {
+  constexpr std::int64_t kExact = std::int64_t{1} << 53;
+  std::int64_t value = 0;
+  const auto result = std::from_chars(begin, end, value);
+  if (result.ec != std::errc() || result.ptr != end) return std::nullopt;
+  return value > kExact || value < -kExact ? std::optional(value) : std::nullopt;
+}
+
 std::string scalar_text(const YamlNode& node) {
   switch (scalar_type(node)) {
     case ScalarType::kFlag:
@@ -80,6 +91,7 @@ std::string scalar_text(const YamlNode& node) {
     case ScalarType::kNumber: {
       const char* begin = node.text.data() + (node.text.front() == '+' ? 1 : 0);
       const char* end = node.text.data() + node.text.size();
+      if (const auto integer = large_integer(begin, end)) return fmt::format("{}", *integer);
       double value = 0.0;
       const auto result = std::from_chars(begin, end, value);
       const bool read = result.ec == std::errc() && result.ptr == end && std::isfinite(value);

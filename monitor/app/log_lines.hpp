@@ -151,10 +151,24 @@ inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{
 inline constexpr LogLine<Text, Count, Text, Text> kZoneDiscontinuous{
     "zone-discontinuous", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 
+inline constexpr LogLine<Text, Count, Text, Text> kZoneContactTooDeep{
+    "zone-contact-too-deep", kInfo, "zone '{}' entered at cycle {} because {}: {}"};
+inline constexpr LogLine<Text, Count, Text, Text> kZoneContactTooLate{
+    "zone-contact-too-late", kInfo, "zone '{}' entered at cycle {} because {}: {}"};
+
 inline constexpr LogLine<Text, Count, Text> kZoneFlickers{
     "zone-flickers", kWarn,
     "zone '{}' changed {} more times in the last second; it is {} at present"};
 inline constexpr LogLine<Text> kZonesLeftOut{"zones-left-out", kWarn, "{} of zones left out"};
+
+// ---- Contacts that are allowed
+
+inline constexpr LogLine<Text, Text> kContactAllowed{"contact-allowed", kInfo, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactEnded{"contact-ended", kInfo, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactTooDeep{"contact-too-deep", kWarn, "{}: {}"};
+inline constexpr LogLine<Text, Text> kContactTooLate{"contact-too-late", kWarn, "{}: {}"};
+inline constexpr LogLine<Text> kContactsLeftOut{"contacts-left-out", kWarn,
+                                                "{} of contacts left out"};
 
 // ---- DDS and ROS 2
 
@@ -251,8 +265,15 @@ inline constexpr std::tuple kAll{kStarted,
                                  kZoneUnknown,
                                  kZoneContradicted,
                                  kZoneDiscontinuous,
+                                 kZoneContactTooDeep,
+                                 kZoneContactTooLate,
                                  kZoneFlickers,
                                  kZonesLeftOut,
+                                 kContactAllowed,
+                                 kContactEnded,
+                                 kContactTooDeep,
+                                 kContactTooLate,
+                                 kContactsLeftOut,
                                  kDdsWarning,
                                  kDdsError,
                                  kDdsLeftOut,

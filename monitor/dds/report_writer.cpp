@@ -53,7 +53,8 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, ReportQueue& the_queue, std::
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
       gradients(cell.scene),
-      written_zones(cell.scene.zones.size()) {
+      written_zones(cell.scene.zones.size()),
+      contact_log(cell.scene) {
   distances->daemon = separation->daemon = daemon;
 }
 
@@ -189,6 +190,9 @@ bool ReportWriter::change() {
     gone.zone = zone;
     if (zone >= zones.size()) dds_dispose(zones_, &gone);
   }
+  if (!next.first->scene.contacts.empty())
+    changed->contact_log.take_over(now_->contact_log,
+                                   scene_map(now_->cell.scene, next.first->scene));
   dropped_before_ += now_->queue.dropped_reports();
   now_ = std::move(changed);
   zone_log_.change(now_->cell.scene);
@@ -213,6 +217,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     write(gradients_, &gradients, "gradients");
   }
   write_zones(queued.report);
+  now_->contact_log.note(queued.report.contacts);
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -249,6 +254,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
   zone_log_.end_second();
+  now_->contact_log.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 

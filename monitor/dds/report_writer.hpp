@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/cell/cell.hpp"
+#include "monitor/dds/contact_log.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"
@@ -65,6 +66,7 @@ class ReportWriter {
     Sample<clearance_msg_Separation> separation;
     GradientMessage gradients;
     WrittenZones written_zones;
+    ContactLog contact_log;
 
     OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon);
   };

@@ -29,6 +29,10 @@ void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
       return log_line(lines::kZoneContradicted, name, cycle, cause, pair);
     case ZoneCause::kDiscontinuous:
       return log_line(lines::kZoneDiscontinuous, name, cycle, cause, pair);
+    case ZoneCause::kContactTooDeep:
+      return log_line(lines::kZoneContactTooDeep, name, cycle, cause, pair);
+    case ZoneCause::kContactTooLate:
+      return log_line(lines::kZoneContactTooLate, name, cycle, cause, pair);
     default:
       return log_line(lines::kZoneNear, name, cycle, cause, pair, zone.clearance,
                       zone.swept_clearance);

@@ -27,6 +27,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
   const SeparatedCount separated = separated_count(scene);
+  const std::size_t contacts = contact_pairs(scene).size();
   const Gradients gradients = unknown_gradients(gradient_rows(scene));
   reports_.prepare([&](QueuedReport& slot) {
     slot.report.pairs.resize(static_cast<std::size_t>(published));
@@ -34,6 +35,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.report.separated_zones.resize(separated.zones);
     slot.report.separated_pairs.resize(separated.pairs);
     slot.report.gradients = gradients;
+    slot.report.contacts.resize(contacts);
   });
   statistics_.prepare([&](LoopStatistics& slot) { slot = LoopStatistics(scene); });
   if (keeps_inputs_) {

@@ -46,6 +46,12 @@ std::string text(const Scene& scene, Meaning meaning, std::uint64_t value) {
       return word_or_number(static_cast<ZoneCause>(value));
     case Meaning::kValidity:
       return word_or_number(static_cast<SeparationValidity>(value));
+    case Meaning::kContact:
+      return name_of(scene.contacts, value);
+    case Meaning::kContactStatus:
+      return word_or_number(static_cast<ContactStatus>(value));
+    case Meaning::kContactEnded:
+      return word_or_number(static_cast<ContactEnded>(value));
     case Meaning::kGradientStatus:
       return word_or_number(static_cast<GradientStatus>(value));
     default:

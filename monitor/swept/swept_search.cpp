@@ -95,7 +95,8 @@ SweptSearch::Instant SweptSearch::query_at(double s, Budget& budget) noexcept {
   const Pose frame = pose_at(from_b_ ? motion_b_ : motion_a_, s);
   const Mat3 into = frame.orientation.normalized().toRotationMatrix().transpose();
   instant.centre = into * (other.sphere_in_world.centre - frame.position);
-  if (directed_) {
+  // Only a direction that separates bounds the distance at other instants.
+  if (directed_ && bounds.lower >= 0.0) {
     instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
   }
   return instant;

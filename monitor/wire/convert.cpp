@@ -38,6 +38,22 @@ void fill(const Object& object, std::uint32_t id, clearance_msg_CatalogueObject&
     out.parts._buffer[out.parts._length++] = duplicate(part.name);
 }
 
+// What has no end is infinite or 0.
+void fill(const AllowedContact& contact, std::uint32_t id, clearance_msg_CatalogueContact& out) {
+  out.id = id;
+  out.name = duplicate(contact.name);
+  out.group_a = duplicate(contact.group_a);
+  out.group_b = duplicate(contact.group_b);
+  out.depth = contact.depth;
+  out.end_distance = contact.end.distance;
+  out.end_duration_ns =
+      contact.end.duration_ns == ContactEnd::kNoTime ? -1 : contact.end.duration_ns;
+  out.end_time_ns = contact.end.time_ns == ContactEnd::kNoTime ? 0 : contact.end.time_ns;
+  out.last_cycle = contact.end.last_cycle == ContactEnd::kNoCycle ? 0 : contact.end.last_cycle;
+  out.by = duplicate(contact.by);
+  out.reason = duplicate(contact.reason);
+}
+
 // Thresholds in m, as in the scene.
 void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) {
   out.id = id;
@@ -57,6 +73,7 @@ Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   Sample<clearance_msg_Distances> sample;
   reserve_sequence(sample->pairs, static_cast<std::size_t>(published));
   reserve_sequence(sample->sources, clearance_msg_kMaxSources);
+  reserve_sequence(sample->contacts, contact_pairs(scene).size());
   return sample;
 }
 
@@ -123,6 +140,10 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell) {
   reserve_sequence(sample->joints, scene.variables.size());
   for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
     sample->joints._buffer[sample->joints._length++] = {i, duplicate(scene.variables[i].name)};
+  }
+  reserve_sequence(sample->contacts, scene.contacts.size());
+  for (std::uint32_t i = 0; i < scene.contacts.size(); ++i) {
+    fill(scene.contacts[i], i, sample->contacts._buffer[sample->contacts._length++]);
   }
   return sample;
 }

@@ -103,6 +103,10 @@ struct FieldsOf<clearance_msg_PairDistance> : PairFields {
   static constexpr std::string_view kType = "PairDistance";
 };
 template <>
+struct FieldsOf<clearance_msg_ContactState> : ContactFields {
+  static constexpr std::string_view kType = "ContactState";
+};
+template <>
 struct FieldsOf<clearance_msg_Distances> : DistancesMessageFields {
   static constexpr std::string_view kType = "Distances";
 };

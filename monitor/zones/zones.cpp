@@ -17,6 +17,13 @@ ZoneCause cause_of(const TrackedObject& object) noexcept {
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
 
+// The cause that the contact of a pair in a zone gives; kNear: none.
+ZoneCause cause_of(const ContactReport* contact) noexcept {
+  if (contact == nullptr) return ZoneCause::kNear;
+  if (contact->status == ContactStatus::kTooDeep) return ZoneCause::kContactTooDeep;
+  return contact->status == ContactStatus::kTooLate ? ZoneCause::kContactTooLate : ZoneCause::kNear;
+}
+
 // Returns true when the pair would be inside, now or since the last tick, if all its poses had been
 // on time.
 bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObject& b,
@@ -29,9 +36,10 @@ bool is_near(const ZoneReport& report, const TrackedObject& a, const TrackedObje
 
 }  // namespace
 
-Zones::Zones(const Scene& scene, const ZoneLevels& levels)
+Zones::Zones(const Scene& scene, const ZoneLevels& levels, const Contacts& contacts)
     : scene_(scene),
       levels_(levels),
+      contacts_(contacts),
       reports_(scene.zones.size()),
       added_(scene.zones.size()),
       absent_(scene.zones.size()) {
@@ -89,6 +97,8 @@ void Zones::begin_tick() noexcept {
 }
 
 double Zones::undecided(std::uint32_t pair, double lower, double swept_lower) const noexcept {
+  if (const double allowed = contacts_.least_allowed(pair); allowed < kInfinity)
+    return swept_lower < allowed && allowed <= lower ? allowed : -kInfinity;
   double farthest = -kInfinity;
   for (const ZoneLevels::Membership& in : levels_.zones_of(pair)) {
     const double level = rounded_up(updates_[in.zone].threshold() + in.margins);
@@ -98,8 +108,9 @@ double Zones::undecided(std::uint32_t pair, double lower, double swept_lower) co
 }
 
 void Zones::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
+  const bool is_allowed = contacts_.allow(pair);
   for (const ZoneLevels::Membership& in : levels_.zones_of(pair)) {
-    updates_[in.zone].add(pair, bounds, in.margins);
+    if (!is_allowed) updates_[in.zone].add(pair, bounds, in.margins);
     ++added_[in.zone];
   }
 }
@@ -139,7 +150,8 @@ void Zones::add_lost(std::uint32_t zone, std::span<const TrackedObject> objects)
 }
 
 // The weightier cause of the pair's two objects counts. If both are late, the one that may have
-// moved farther counts.
+// moved farther counts. A pair in an allowed contact would be outside if its poses were on time,
+// however near it is.
 void Zones::explain(std::span<const TrackedObject> objects) noexcept {
   for (std::size_t z = 0; z < reports_.size(); ++z) {
     ZoneReport& report = reports_[z];
@@ -147,8 +159,14 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     report.cause_object = 0;
     if (!report.active || report.pair >= scene_.pairs.size()) continue;
     const std::uint32_t a = scene_.pairs[report.pair].first, b = scene_.pairs[report.pair].second;
+    const ContactReport* contact = contacts_.find(report.pair);
+    if (const ZoneCause cause = cause_of(contact); cause != ZoneCause::kNear) {
+      report.cause = cause;
+      continue;
+    }
     const double level = ZoneLevels::threshold(scene_.zones[z], !report.changed);
-    if (is_near(report, objects[a], objects[b], level)) continue;
+    const bool is_excused = contact != nullptr && contact->ended == ContactEnded::kNot;
+    if (!is_excused && is_near(report, objects[a], objects[b], level)) continue;
     const ZoneCause of_a = cause_of(objects[a]), of_b = cause_of(objects[b]);
     const bool is_a = of_a != of_b ? of_a > of_b : objects[a].unobserved >= objects[b].unobserved;
     report.cause = is_a ? of_a : of_b;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/scene/scene_map.hpp"
+#include "monitor/contacts/contacts.hpp"
 #include "monitor/objects/tracked_object.hpp"
 #include "monitor/zones/zone_hysteresis.hpp"
 
@@ -15,8 +16,8 @@ namespace clearance {
 
 class Zones {
  public:
-  // Scene and levels must outlive it.
-  Zones(const Scene& scene, const ZoneLevels& levels);
+  // Scene, levels and contacts must outlive it. Pairs that the contacts allow make no zone active.
+  Zones(const Scene& scene, const ZoneLevels& levels, const Contacts& contacts);
 
   // Before the first tick: zones that the scene before had are as active as they were there. `map`
   // has the zones of both scenes.
@@ -29,7 +30,8 @@ class Zones {
   [[nodiscard]] bool watch(std::uint32_t pair) const noexcept { return levels_.has(pair); }
 
   // Considers the zones of the pair that it is outside by `lower` but not by `swept_lower`. Returns
-  // the largest of their thresholds, m, or -infinity if there is no such zone.
+  // the largest of their thresholds, m, or -infinity if there is no such zone. While a contact of
+  // the pair is in force, minus its depth takes the place of all thresholds.
   [[nodiscard]] double undecided(std::uint32_t pair, double lower,
                                  double swept_lower) const noexcept;
 
@@ -58,6 +60,7 @@ class Zones {
 
   const Scene& scene_;
   const ZoneLevels& levels_;
+  const Contacts& contacts_;
   // By zone.
   std::vector<ZoneReport> reports_;      // of the last tick: whether it was active, and since when
   std::vector<ZoneHysteresis> updates_;  // from there to this tick

@@ -8,6 +8,7 @@
 
 #include "monitor/app/log_line.hpp"
 #include "monitor/zone_cause.hpp"
+#include "tools/watch/contact_lines.hpp"
 #include "tools/watch/number_text.hpp"
 #include "tools/watch/separation_lines.hpp"
 
@@ -315,6 +316,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
     add_minimum(lines, feed, context.now_ns, size.columns);
     add_zones(lines, feed, size.columns);
     add_separation(lines, feed, size.columns);
+    add_contacts(lines, feed, size.columns);
     add_counts(lines, feed, size.columns);
     add_health(lines, feed, context, size.columns);
     add_inputs(lines, feed, size.columns);
@@ -348,6 +350,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
     if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
   }
   for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);
+  for (const std::string& each : contact_texts(feed)) text += fmt::format("  {}", each);
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
                         health->tick_p50_us, health->tick_p999_us, health->tick_max_us,

@@ -225,8 +225,8 @@ const Mistake kMistakes[] = {
     {"UnusedGroup",
      "objects: [{name: a, groups: [arm], sphere: {radius: 1}}, {name: @b, groups: [amr], sphere: "
      "{radius: 1}}]\npairs: [{between: [arm, b]}]\n",
-     "found the group 'amr' of object 'b', which nothing under 'pairs', 'allowed_collisions' "
-     "or 'zones' names; expected every group to be used; did you mean 'arm'?"},
+     "found the group 'amr' of object 'b', which nothing under 'pairs', 'allowed_collisions', "
+     "'zones' or 'contacts' names; expected every group to be used; did you mean 'arm'?"},
     {"GroupNamedAsAnObject",
      "objects: [{name: @a, groups: [b], sphere: {radius: 1}}, {name: b, sphere: {radius: "
      "1}}]\npairs: [{between: [a, b]}]\n",

@@ -172,6 +172,48 @@ TEST_F(CellEdits, AWholeCellReplacesThisOne) {
   EXPECT_EQ(edit({}).scene.name, "next");
 }
 
+TEST_F(CellEdits, AContactIsAllowedReplacedAndWithdrawn) {
+  AllowContact change{"lift", "box", "hand", 0.002, {}, "planner", "it is grasped"};
+  change.end = {.distance = 0.01,
+                .duration_ns = 1'500'000,
+                .time_ns = 1'700'000'000'123'456'789,
+                .last_cycle = 9'007'199'254'740'993};
+  const Cell cell = edit({change});
+  EXPECT_THAT(cell.yaml, HasSubstr("contacts:\n  - name: lift\n"));
+  ASSERT_EQ(cell.scene.contacts.size(), 1u);
+  const AllowedContact& contact = cell.scene.contacts[0];
+  EXPECT_EQ(contact.depth, 0.002);
+  EXPECT_TRUE(contact.end == change.end);
+  EXPECT_EQ(contact.by, "planner");
+  ASSERT_EQ(contact.pairs.size(), 1u);
+  EXPECT_EQ(cell.scene.pairs[contact.pairs[0]].publish, true);
+  EXPECT_THAT(refused({RemoveObject{"box"}}).reason, HasSubstr("contacts[lift]"));
+
+  change.end = {};
+  change.depth = 0.003;
+  const Cell replaced = edit({change});
+  ASSERT_EQ(replaced.scene.contacts.size(), 1u);
+  EXPECT_EQ(replaced.scene.contacts[0].depth, 0.003);
+  EXPECT_TRUE(replaced.scene.contacts[0].end == ContactEnd{});
+  EXPECT_EQ(edit({WithdrawContact{"lift"}}).yaml, kEditedCell);
+  EXPECT_EQ(refused({WithdrawContact{"lift"}}).path, "contacts");
+}
+
+TEST_F(CellEdits, AContactThatTheLoaderRefusesIsRefused) {
+  const AllowContact good{"lift", "box", "hand", 0.002, {}, "planner", "it is grasped"};
+  AllowContact change = good;
+  change.depth = 0.0;
+  EXPECT_EQ(refused({change}).path, "contacts[lift].depth");
+  change = good;
+  change.b = "table";
+  const EditRefusal refusal = refused({SetAbsent{"cart"}, change});
+  EXPECT_EQ(refusal.change, 1u) << "both are fixed";
+  EXPECT_EQ(refusal.path, "contacts[lift]");
+  change = good;
+  change.contact = "again";
+  EXPECT_EQ(refused({good, change}).path, "contacts[again]") << "one contact for a pair";
+}
+
 TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
   EXPECT_THAT(refused({RemoveObject{"cart"}}).reason, HasSubstr("pairs[spare, cart]"));
   EXPECT_THAT(refused({RemoveObject{"table"}}).reason, HasSubstr("zones[stop]"));

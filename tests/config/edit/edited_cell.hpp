@@ -103,6 +103,15 @@ inline void expect_same(const Cell& a, const Cell& b) {
     EXPECT_EQ(a.scene.zones[i].enter_below, b.scene.zones[i].enter_below);
     EXPECT_EQ(a.scene.zones[i].leave_above, b.scene.zones[i].leave_above);
   }
+  ASSERT_EQ(a.scene.contacts.size(), b.scene.contacts.size());
+  for (std::size_t i = 0; i < a.scene.contacts.size(); ++i) {
+    EXPECT_EQ(a.scene.contacts[i].name, b.scene.contacts[i].name);
+    EXPECT_EQ(a.scene.contacts[i].pairs, b.scene.contacts[i].pairs);
+    EXPECT_EQ(a.scene.contacts[i].depth, b.scene.contacts[i].depth);
+    EXPECT_TRUE(a.scene.contacts[i].end == b.scene.contacts[i].end);
+    EXPECT_EQ(a.scene.contacts[i].by, b.scene.contacts[i].by);
+    EXPECT_EQ(a.scene.contacts[i].reason, b.scene.contacts[i].reason);
+  }
 }
 
 class CellEdits : public testing::Test {

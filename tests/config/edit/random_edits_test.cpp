@@ -30,7 +30,7 @@ CellChange random_change(Random& random) {
   const auto maybe = [&](double value) {
     return below(3) == 0 ? std::nullopt : std::optional(value);
   };
-  switch (below(13)) {
+  switch (below(15)) {
     case 0:
       return AddObject{
           "{name: p" + std::to_string(below(4)) +
@@ -56,6 +56,20 @@ CellChange random_change(Random& random) {
       return SetMargin{name, maybe(random.uniform(-0.01, 0.1))};
     case 11:
       return SetPair{name, other, static_cast<SetPair::Rule>(below(4)), "drawn"};
+    case 12: {
+      ContactEnd end;
+      if (below(2) == 0) end.distance = random.uniform(-0.001, 0.1);
+      if (below(2) == 0) end.time_ns = 1'700'000'000'123'456'789;
+      return AllowContact{"c" + std::to_string(below(3)),
+                          name,
+                          other,
+                          random.uniform(-0.001, 0.01),
+                          end,
+                          "drawn",
+                          "drawn"};
+    }
+    case 13:
+      return WithdrawContact{"c" + std::to_string(below(3))};
     default:
       return SetZoneThresholds{"stop", random.uniform(0.0, 0.1), random.uniform(0.05, 0.2)};
   }

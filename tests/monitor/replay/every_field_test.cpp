@@ -41,7 +41,7 @@ struct Alter {
       within([&] { for_each_field(*this, value); });
     } else if constexpr (MessageSequence<Value>) {
       if (value._length > 0) within([&] { (*this)(field, value._buffer[0]); });
-      if (is_next(field) && value._length > 0) --value._length;
+      if (value._length > 0 && is_next(field)) --value._length;
     } else if constexpr (std::is_same_v<Value, clearance_msg_Vector3>) {
       for (double* axis : {&value.x, &value.y, &value.z}) change(field, *axis);
     } else if constexpr (std::is_array_v<Value>) {
@@ -177,6 +177,18 @@ TEST_F(EveryField, OfAMessageIsComparedButWhatNoTickDetermines) {
   expect_named<clearance_msg_ZoneState>(TopicKind::kZones, 1);
   expect_named<clearance_msg_Separation>(TopicKind::kSeparation, 30);
   expect_named<clearance_msg_Gradients>(TopicKind::kGradients, 30);
+}
+
+// No cell of a recording has a contact yet.
+TEST_F(EveryField, OfAContactIsCompared) {
+  Kept& message = messages_.at(place_of(TopicKind::kDistances, 3));
+  message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& content) {
+    reserve_sequence(content.contacts, 1);
+    clearance_msg_ContactState& contact = content.contacts._buffer[content.contacts._length++];
+    contact = {};
+    contact.depth = 0.001;
+  });
+  expect_named<clearance_msg_Distances>(TopicKind::kDistances, 3);
 }
 
 TEST_F(EveryField, OfARecordingIsNamedByItsReplay) {

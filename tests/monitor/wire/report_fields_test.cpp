@@ -49,6 +49,7 @@ Report numbered_report(const Scene& scene, std::uint64_t first) {
   report.zones.resize(scene.zones.size());
   report.separated_zones.resize(1);
   report.separated_pairs.resize(2);
+  report.contacts.resize(contact_pairs(scene).size());
   report.gradients.rates.resize(rows.variables.size());
   report.gradients.drifts.resize(rows.rows.size());
   report.gradients.alternatives.resize(rows.rows.size());
@@ -97,6 +98,7 @@ Scene published_cell() {
   zone.separation.emplace();
   zone.separation->human_is_first = {1, 1};
   for (ObjectPair& pair : scene.pairs) pair.publish = true;
+  scene.contacts.emplace_back().pairs = {3, 2};
   return scene;
 }
 
