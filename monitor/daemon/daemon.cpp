@@ -39,8 +39,9 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
   return options.dds;
 }
 
-std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions& options,
-                                          const PoseReader& poses, RecordingHealth& health) {
+std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
+                                          const DaemonOptions& options, const PoseReader& poses,
+                                          RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
   return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
 }
@@ -63,7 +64,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       poses_(cell, participant_),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_),
-      recording_(open_recording(cell, options, poses_, recording_health_)) {
+      recording_(open_recording(now_.cell, options, poses_, recording_health_)) {
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
       .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell.scene) +
@@ -157,10 +158,6 @@ void Daemon::change_cell() {
   if (!cell) return log_line(lines::kSceneRefused, "its mistakes are listed above");
   const std::uint64_t before = now_.cell->scene.revision;
   if (cell->scene.revision == before) return log_line(lines::kSceneUnchanged);
-  if (recording_) {
-    return log_line(lines::kSceneRefused,
-                    "a recording has one cell, and this daemon records (--record)");
-  }
   is_changing_ = true;
   changing_ = std::thread([this, before, changed = std::make_shared<const Cell>(*std::move(cell))] {
     name_thread("scene");
@@ -180,15 +177,17 @@ void Daemon::change_cell() {
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
   next_ = parts_of(cell);
-  reports_.continue_with(*cell, *next_.queue);
   std::vector<ReportSink*> sinks{next_.queue.get()};
+  if (ReportSink* const sink = recording_ ? recording_->prepare(cell) : nullptr)
+    sinks.push_back(sink);
   if (next_.ros) sinks.push_back(next_.ros.get());
   return sinks;
 }
 
-// Returns when no other thread uses the cell before.
-void Daemon::follow() {
-  now_.queue->close();
+// Returns when no other thread uses the cell before, except a recording: a disk may be slow.
+void Daemon::follow(const SceneInForce& since) {
+  reports_.continue_with(*next_.cell, since, *next_.queue);
+  if (recording_) recording_->follow(since);
   poses_.change(*next_.cell);
   while (reports_.is_to_continue()) std::this_thread::sleep_for(kReportsPoll);
   if (now_.ros) now_.ros->finish();
@@ -197,7 +196,7 @@ void Daemon::follow() {
 }
 
 void Daemon::abandon() {
-  reports_.stay();
+  if (recording_) recording_->abandon();
   next_ = {};
 }
 

@@ -80,7 +80,7 @@ class Daemon : private CellParts {
   void read_again();
   void change_cell();
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
-  void follow() override;
+  void follow(const SceneInForce& since) override;
   void abandon() override;
 
   DaemonOptions options_;

@@ -39,7 +39,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
     Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks);
     state = run(successor, loop_ended);
     if (state != Successor::State::kSucceeded) continue;
-    parts_.follow();
+    parts_.follow(successor.in_force());
     std::swap(cell_, cell);
     return {.refusal = "", .in_force_from = successor.in_force_from()};
   }

@@ -24,7 +24,7 @@ class CellParts {
   virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
   // cell before may go.
-  virtual void follow() = 0;
+  virtual void follow(const SceneInForce& since) = 0;
   // The changed cell is given up, and so is what prepare() made.
   virtual void abandon() = 0;
 };

@@ -1,10 +1,13 @@
 // SIGHUP makes a running daemon read its cell again, over real DDS.
+#include <fmt/format.h>
+
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "monitor/client/client.hpp"
@@ -119,13 +122,110 @@ TEST_F(DaemonReload, ManyChangesInARowLoseNothing) {
   EXPECT_EQ(unknown, 0u);
 }
 
-TEST_F(DaemonReload, ADaemonThatRecordsKeepsItsCell) {
+TEST_F(DaemonReload, ARecordingOfManyChangesReplaysBitForBitWithoutTheFilesOfTheCell) {
   const ScratchFolder folder;
-  start({"--record", (folder / "run.mcap").string()});
-  reload(replaced(text, "enter_below: 0.3", "enter_below: 0.31"));
-  run_until_told("scene-refused");
+  const std::string file = (folder / "run.mcap").string();
+  start({"--record", file});
+  run_until_told("started");
+  const std::string wall =
+      "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: {size: [9, 1, "
+      "9]}}\n  - {name: floor,";
+  const std::vector<std::string> texts = {
+      replaced(text, "  - {name: floor,", wall),
+      replaced(
+          text, "groups: [arm], box: {size: [0.2, 0.3, 0.2]}",
+          "attached: {to: left, pose: {xyz: [1, 0, 0]}}, groups: [arm], box: {size: [0.2, 0.3, "
+          "0.2]}"),
+      text};
+  for (const std::string& each : texts) {
+    // Without the motion of the attached object.
+    const std::size_t mover = each.find("    - {object: right");
+    reload(each.find("attached") == std::string::npos
+               ? each
+               : each.substr(0, mover) + each.substr(each.find('\n', mover) + 1));
+    const std::uint64_t expected = cell.cell().scene.revision;
+    for (int tick = 0; revision != expected; ++tick) {
+      ASSERT_LT(tick, 2000) << daemon->output();
+      run_until_told("started");
+    }
+    for (int i = 0; i < 20; ++i) run_until_told("started");
+  }
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  std::ofstream(cell.path()) << "gone";
+  const std::string table = (folder / "t.csv").string();
+  ChildProcess replay(kReplay, {"check", file, "--compare", "--csv", table});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  const std::string rows = read_text(table);
+  EXPECT_NE(rows.find(",wall,"), std::string::npos);
+  EXPECT_NE(rows.find(fmt::format("{:016x}\n", revision)), std::string::npos);
+}
+
+// A client that comes after a change gets the catalogue of the cell in force, and since when.
+TEST_F(DaemonReload, ALateClientGetsThePresentCellAndSinceWhen) {
+  start();
+  run_until_told("started");
+  reload(replaced(text, "enter_below: 0.3", "enter_below: 0.31"));
+  run_until_told("scene-changed");
+  for (int i = 0; i < 20; ++i) run_until_told("scene-changed");
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  client::Zones zones(connection);
+  ASSERT_TRUE(eventually([&] {
+    catalogue.update();
+    zones.update();
+    return catalogue.message() != nullptr && zones.states().size() == 1;
+  }));
+  EXPECT_EQ(catalogue.revision(), cell.cell().scene.revision);
+  EXPECT_EQ(catalogue.message()->in_force_from, first_of_revision);
+  EXPECT_LT(catalogue.message()->began_after, first_of_revision);
+  EXPECT_GT(catalogue.message()->began_after, 0u);
+}
+
+// A client's loop knows names only, and its pair has another id in the changed cell.
+TEST_F(DaemonReload, AClientThatKnowsNamesFollowsWithoutARestart) {
+  start();
+  run_until_told("started");
+  client::Connection connection(dds);
+  client::Reports reports(connection);
+  client::Catalogue names(connection);
+  client::Pair pair(names, "right", "floor");
+  std::set<std::uint32_t> ids;
+  std::set<std::uint64_t> revisions;
+  std::uint64_t without = 0, wrong = 0;
+  const auto follow = [&] {
+    run_until_told("started");
+    while (reports.next()) {
+      revisions.insert(reports->scene_revision);
+      EXPECT_FALSE(reports.check().other_daemon);
+      EXPECT_EQ(reports.check().missed, 0u);
+      const clearance_msg_PairDistance* const found = pair.in(*reports);
+      without += found == nullptr;
+      if (found == nullptr) continue;
+      ids.insert(found->pair);
+      wrong += names.pair_name(*found, reports->scene_revision) != "right - floor";
+    }
+  };
+  ASSERT_TRUE(eventually([&] {
+    follow();
+    return !ids.empty();
+  }));
+  without = 0;
+  const auto reorder = [&](const std::string& changed) {
+    reload(changed);
+    const std::uint64_t expected = cell.cell().scene.revision;
+    ASSERT_TRUE(eventually([&] { return follow(), revisions.contains(expected); }));
+    for (int i = 0; i < 20; ++i) follow();
+  };
+  const std::string right = "  - {name: right, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}\n";
+  reorder(replaced(replaced(text, right, ""), "objects:\n", "objects:\n" + right));
+  reorder(replaced(text, "  - {name: floor,",
+                   "  - {name: wall, fixed: true, box: {size: [1, 1, 1]}}\n  - {name: floor,"));
+  reorder(text);
+  EXPECT_EQ(revisions.size(), 3u);
+  EXPECT_GE(ids.size(), 2u);
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_LE(without, 6u) << "reports that overtook their catalogue";
 }
 
 }  // namespace
