@@ -16,7 +16,7 @@ void pass_on(std::span<const std::uint32_t> now, std::vector<std::uint32_t>& ids
 bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
                       std::vector<JointSample>& joints) noexcept {
   const bool in_force =
-      batch.scene_revision == 0 ? changes_ == 0 : batch.scene_revision == revision_;
+      batch.scene_revision == 0 ? !has_changed_ : batch.scene_revision == revision_;
   const Former* const before = in_force ? nullptr : former(batch.scene_revision);
   if (!in_force && before == nullptr) return false;
   if (batch.empty()) return true;
@@ -33,6 +33,7 @@ void SceneIds::change(std::uint64_t revision, SceneMap& map) noexcept {
   Former& last = former_[changes_++ % kFormerScenes];
   last.revision = std::exchange(revision_, revision);
   std::swap(last.map, map);
+  has_changed_ = true;
   for (Former& scene : former_) {
     if (&scene == &last) continue;
     pass_on(last.map.objects_now, scene.map.objects_now);

@@ -35,7 +35,9 @@ class SceneIds {
  public:
   static constexpr std::size_t kFormerScenes = 8;
 
-  explicit SceneIds(const Scene& scene) : revision_(scene.revision), sources_(scene) {}
+  // `followed`: this scene followed others, which are not known.
+  explicit SceneIds(const Scene& scene, bool followed = false)
+      : revision_(scene.revision), sources_(scene), has_changed_(followed) {}
 
   // Appends the samples of a batch for the scene in force. Those of a batch for one of the last
   // kFormerScenes scenes are passed on where the scene in force has the objects and joints. Returns
@@ -65,6 +67,7 @@ class SceneIds {
   SourceNumbers sources_;
   std::array<Former, kFormerScenes> former_;
   std::size_t changes_ = 0;
+  bool has_changed_;
 };
 
 }  // namespace clearance

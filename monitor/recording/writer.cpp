@@ -12,13 +12,6 @@
 #include "monitor/recording/recorded_cell.hpp"
 
 namespace clearance {
-namespace {
-
-// Keys of the metadata.
-constexpr const char *kBeganAfter = "began_after", *kInForceFrom = "in_force_from";
-
-}  // namespace
-
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                                  const RecordingOptions& options)
     : file_(file), topics_(topics), options_(options) {
@@ -119,8 +112,8 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
   if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
   if (catalogue.daemon != 0) about_["daemon"] = std::to_string(catalogue.daemon);
   if (catalogue.in_force_from != 0) {
-    about_[kBeganAfter] = std::to_string(catalogue.began_after);
-    about_[kInForceFrom] = std::to_string(catalogue.in_force_from);
+    about_["began_after"] = std::to_string(catalogue.began_after);
+    about_["in_force_from"] = std::to_string(catalogue.in_force_from);
   }
   end_chunk();
   mcap_->metadata(kRecordingMetadata, about_);
@@ -167,9 +160,6 @@ bool RecordingWriter::roll(std::int64_t log_ns) {
   for (const Attached& file : attached_) write_attachment(file);
   if (!about_.empty()) {
     about_["part"] = std::to_string(part_);
-    // This file begins with that scene.
-    about_.erase(kBeganAfter);
-    about_.erase(kInForceFrom);
     mcap_->metadata(kRecordingMetadata, about_);
   }
   if (catalogue_) {

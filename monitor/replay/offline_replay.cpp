@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -152,9 +153,8 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   if (!result_.error.empty()) return std::move(result_);
   result_.notes = feed_.objects().notes();
   run_ticks(on_tick);
-  if (feed_.log() != nullptr) {
-    for (const std::string& note : feed_.log()->notes()) result_.notes.push_back(note);
-  }
+  if (feed_.log() != nullptr)
+    std::ranges::copy(feed_.log()->notes(), std::back_inserter(result_.notes));
   result_.damage = feed_.damage();
   result_.batches = feed_.batches();
   if (!result_.stopped && result_.error.empty()) judge_the_whole();
@@ -259,7 +259,8 @@ void Replay::end_tick(const TickInput& input, const Report& report,
   }
   if (options_.compare) {
     // Bounds for other poses say nothing about these.
-    const bool comparable = input.complete || *options_.compare == Comparison::kBits;
+    const bool complete = input.complete && loop_.is_complete();
+    const bool comparable = complete || *options_.compare == Comparison::kBits;
     if (in_window && comparable && !differs_) compare(input, report);
     zones_.replayed(report, cycle_offset_);
   }
@@ -337,8 +338,7 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
 
 // Notes at the end what was left out, as totals.
 void Replay::note_counts() {
-  for (const std::string& note : feed_.notes(options_.compare.has_value()))
-    result_.notes.push_back(note);
+  std::ranges::copy(feed_.notes(options_.compare.has_value()), std::back_inserter(result_.notes));
   const auto note = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
   };

@@ -4,21 +4,23 @@
 
 namespace clearance {
 
-RecordedLoop::RecordedLoop(SceneHistory& history) : history_(history) { start(history.first()); }
+RecordedLoop::RecordedLoop(SceneHistory& history) : history_(history) {
+  start(history.first(), history.begins_changed());
+}
 
-void RecordedLoop::start(const Cell& cell) {
+void RecordedLoop::start(const Cell& cell, bool followed) {
   cell_ = &cell;
   since_ = {};
   next_ = nullptr;
   monitor_ = std::make_unique<Monitor>(cell.scene);
-  ids_ = std::make_unique<SceneIds>(cell.scene);
+  ids_ = std::make_unique<SceneIds>(cell.scene, followed);
 }
 
 // A daemon that was started anew has no history, and may have another cell. Where the recording
 // does not describe that one, the cell stays.
 void RecordedLoop::restart(const clearance_msg_Distances& report) {
   const Cell* const cell = history_.cell(report.scene_revision);
-  start(cell != nullptr ? *cell : *cell_);
+  start(cell != nullptr ? *cell : *cell_, false);
   begun_ = false;
 }
 
@@ -27,9 +29,7 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
   poses_.clear();
   joints_.clear();
-  for (const PoseBatch& batch : input.batches) {
-    if (!ids_->append(batch, poses_, joints_)) ++of_other_scenes_;
-  }
+  for (const PoseBatch& batch : input.batches) take(batch);
   const Report& report = monitor_->tick(poses_, joints_, input.time);
   if (next_) {
     keep_mapped(next_->map.objects_now, &PoseSample::object, 0, poses_);
@@ -37,6 +37,15 @@ const Report* RecordedLoop::tick(const TickInput& input) {
     next_->monitor->tick(poses_, joints_, input.time);
   }
   return input.recorded == nullptr || change_after(*input.recorded) ? &report : nullptr;
+}
+
+void RecordedLoop::take(const PoseBatch& batch) {
+  if (ids_->append(batch, poses_, joints_)) {
+    if (!unclear_.empty()) unclear_.erase(batch.source.c_str());
+    return;
+  }
+  ++of_other_scenes_;
+  if (history_.begins_changed() && batch.scene_revision != 0) unclear_.insert(batch.source.c_str());
 }
 
 // The changes that are in force with this report. The first one of a recording begins where it can

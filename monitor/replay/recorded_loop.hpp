@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -32,6 +33,9 @@ class RecordedLoop {
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
+  // False: a batch may be missing that the daemon used, because it was made for a scene before the
+  // recording began.
+  [[nodiscard]] bool is_complete() const noexcept { return unclear_.empty(); }
   // The number of batches that were made for no scene that is known.
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
 
@@ -45,7 +49,8 @@ class RecordedLoop {
     std::uint64_t began_after;  // the cycle of the replay
   };
 
-  void start(const Cell& cell);
+  void start(const Cell& cell, bool followed);
+  void take(const PoseBatch& batch);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
   void succeed();
@@ -62,6 +67,7 @@ class RecordedLoop {
   std::uint64_t from_ = 0;  // changes up to this cycle of the daemon are made, or were before
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
+  std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
   std::uint64_t of_other_scenes_ = 0;
   std::string error_;
 };

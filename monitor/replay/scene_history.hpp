@@ -28,6 +28,12 @@ class SceneHistory {
   // Whether the recording describes other scenes than the first one.
   [[nodiscard]] bool has_changes() const noexcept;
 
+  // Whether the first cell had followed another one before the recording begins. Batches for that
+  // one cannot be told from others.
+  [[nodiscard]] bool begins_changed() const noexcept {
+    return !described_.empty() && described_.front().since.from > 0;
+  }
+
   // The next change of this run of the daemon whose first cycle is after `cycle`; null: none.
   [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::uint64_t cycle) const;
 

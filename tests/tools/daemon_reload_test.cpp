@@ -130,19 +130,17 @@ TEST_F(DaemonReload, ARecordingOfManyChangesReplaysBitForBitWithoutTheFilesOfThe
   const std::string wall =
       "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: {size: [9, 1, "
       "9]}}\n  - {name: floor,";
-  const std::vector<std::string> texts = {
-      replaced(text, "  - {name: floor,", wall),
-      replaced(
-          text, "groups: [arm], box: {size: [0.2, 0.3, 0.2]}",
-          "attached: {to: left, pose: {xyz: [1, 0, 0]}}, groups: [arm], box: {size: [0.2, 0.3, "
-          "0.2]}"),
-      text};
+  // The right box hangs on the left one: it has no motion of its own, and no distance from it.
+  std::string attached = replaced(text, "groups: [arm], box: {size: [0.2, 0.3, 0.2]}",
+                                  "attached: {to: left, pose: {xyz: [1, 0, 0]}}, groups: [arm], "
+                                  "box: {size: [0.2, 0.3, 0.2]}");
+  attached = replaced(attached, "  - {between: [left, right], publish: true}\n", "");
+  attached = replaced(attached, "between: [arm, arm]", "between: [arm, still]");
+  attached = attached.substr(0, attached.find("    - {object: right"));
+  const std::vector<std::string> texts = {replaced(text, "  - {name: floor,", wall), attached,
+                                          text};
   for (const std::string& each : texts) {
-    // Without the motion of the attached object.
-    const std::size_t mover = each.find("    - {object: right");
-    reload(each.find("attached") == std::string::npos
-               ? each
-               : each.substr(0, mover) + each.substr(each.find('\n', mover) + 1));
+    reload(each);
     const std::uint64_t expected = cell.cell().scene.revision;
     for (int tick = 0; revision != expected; ++tick) {
       ASSERT_LT(tick, 2000) << daemon->output();
@@ -220,7 +218,8 @@ TEST_F(DaemonReload, AClientThatKnowsNamesFollowsWithoutARestart) {
   const std::string right = "  - {name: right, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}\n";
   reorder(replaced(replaced(text, right, ""), "objects:\n", "objects:\n" + right));
   reorder(replaced(text, "  - {name: floor,",
-                   "  - {name: wall, fixed: true, box: {size: [1, 1, 1]}}\n  - {name: floor,"));
+                   "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: "
+                   "{size: [1, 1, 1]}}\n  - {name: floor,"));
   reorder(text);
   EXPECT_EQ(revisions.size(), 3u);
   EXPECT_GE(ids.size(), 2u);

@@ -23,7 +23,7 @@ namespace clearance::test {
 
 class ChangingRun : public testing::Test {
  protected:
-  static constexpr int kTicks = 240;
+  static constexpr int kTicks = 235;
 
   // The cells in their order. Objects have other ids in each.
   ChangingRun() {

@@ -130,6 +130,7 @@ TEST_F(ChangingRun, InSeveralFilesReplaysAsOneAndFromAnyFileOn) {
     const OfflineReplay alone =
         replay_offline(std::get<Cell>(*first), file, {.compare = Comparison::kBounds});
     EXPECT_TRUE(alone.ok()) << file << alone.text();
+    EXPECT_GT(alone.compared, 4u);
   }
 }
 
