@@ -13,6 +13,11 @@ bool follows_frames(const Scene& scene) {
          std::ranges::any_of(scene.robots, has_frame, &Robot::base);
 }
 
+// Attached objects are robots of the scene that hear no joint states.
+bool has_robot(const Scene& scene) {
+  return !std::ranges::all_of(scene.robots, &Robot::is_attached);
+}
+
 bool same_topics(const Cell& before, const Cell& now) {
   return std::ranges::all_of(kTopicKeys, [&](const TopicKey& key) {
     return before.topics.*key.name == now.topics.*key.name;
@@ -42,7 +47,7 @@ std::optional<std::string> restart_needed(const Cell& before, const Cell& now,
   }
   if (!same_topics(before, now)) return restart("names of 'topics' change");
   if (!same_ros_outputs(before, now)) return restart("the outputs of 'ros2' change");
-  if (old.robots.empty() && !scene.robots.empty()) return restart("the cell gets its first robot");
+  if (!has_robot(old) && has_robot(scene)) return restart("the cell gets its first robot");
   if (!follows_frames(old) && follows_frames(scene))
     return restart("an object or a robot follows a frame of tf, and none did before");
   if (scene.objects.size() > capacity.objects) {
