@@ -9,7 +9,7 @@ const { browser, page, errors } = await openBrowser();
 const facts = () => page.evaluate(() => {
   const { scene, report, pairs } = window.clearance.state;
   return {
-    revision: scene.revision, of_report: String(report?.scene_revision), objects: scene.objects.map(({ name }) => name),
+    revision: scene.revision, of_this_cell: Number(report?.scene_revision) === Number(scene.revision), objects: scene.objects.map(({ name }) => name),
     unnamed: report?.pairs.filter(({ pair }) => !pairs[pair]).length,
   };
 });

@@ -64,7 +64,7 @@ drawLegend();
 
 // Ids of a report of another cell mean other objects. A recording may be shown with a cell that was edited since.
 function isOfAnotherCell({ scene_revision, pairs }) {
-  if (!pairs || scene_revision === undefined || String(scene_revision) === scene.revision) return false;
+  if (!pairs || scene_revision === undefined || Number(scene_revision) === Number(scene.revision)) return false;
   return !timeline || pairs.some(({ pair }) => !state.pairs[pair]);
 }
 
