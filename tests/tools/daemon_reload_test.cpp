@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "monitor/client/client.hpp"
+#include "monitor/recording/recorded_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -157,6 +158,32 @@ TEST_F(DaemonReload, ARecordingOfManyChangesReplaysBitForBitWithoutTheFilesOfThe
   const std::string rows = read_text(table);
   EXPECT_NE(rows.find(",wall,"), std::string::npos);
   EXPECT_NE(rows.find(fmt::format("{:016x}\n", revision)), std::string::npos);
+}
+
+// A recorder that listens reads the changed cell's file, and the catalogue says when it came.
+TEST_F(DaemonReload, ARecorderThatListensKeepsTheChangedCellWithItsFiles) {
+  const ScratchFolder folder;
+  const std::string file = (folder / "run.mcap").string();
+  ChildProcess recorder(kRecord, with({"-o", file, "--cell", cell.path()}, dds_arguments(dds)));
+  start();
+  run_until_told("started");
+  reload(replaced(text, "  - {name: floor,",
+                  "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: "
+                  "{size: [9, 1, 9]}}\n  - {name: floor,"));
+  run_until_told("scene-changed");
+  for (int i = 0; i < 200; ++i) run_until_told("scene-changed");
+  recorder.signal(SIGTERM);
+  EXPECT_EQ(recorder.wait(), 0) << recorder.output();
+  std::ofstream(cell.path()) << "gone";
+  const auto described = described_scenes({file});
+  ASSERT_GE(described.size(), 2u);
+  EXPECT_EQ(described.back().revision, revision);
+  EXPECT_EQ(described.back().since.from, first_of_revision);
+  EXPECT_EQ(described.back().cell_file, cell.path());
+  const std::string table = (folder / "t.csv").string();
+  ChildProcess replay(kReplay, {"check", file, "--compare-bounds", "--csv", table});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  EXPECT_NE(read_text(table).find(",wall,"), std::string::npos);
 }
 
 // A client that comes after a change gets the catalogue of the cell in force, and since when.
