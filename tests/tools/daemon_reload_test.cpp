@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <optional>
 #include <set>
@@ -167,14 +168,18 @@ TEST_F(DaemonReload, ARecorderThatListensKeepsTheChangedCellWithItsFiles) {
   ChildProcess recorder(kRecord, with({"-o", file, "--cell", cell.path()}, dds_arguments(dds)));
   start();
   run_until_told("started");
+  const std::string rock = (folder / "rock.obj").string();
+  write_text(rock, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
   reload(replaced(text, "  - {name: floor,",
-                  "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: "
-                  "{size: [9, 1, 9]}}\n  - {name: floor,"));
+                  "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, mesh: "
+                  "{file: " +
+                      rock + "}}\n  - {name: floor,"));
   run_until_told("scene-changed");
   for (int i = 0; i < 200; ++i) run_until_told("scene-changed");
   recorder.signal(SIGTERM);
   EXPECT_EQ(recorder.wait(), 0) << recorder.output();
   std::ofstream(cell.path()) << "gone";
+  std::filesystem::remove(rock);
   const auto described = described_scenes({file});
   ASSERT_GE(described.size(), 2u);
   EXPECT_EQ(described.back().revision, revision);
