@@ -30,7 +30,7 @@ bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
 
 // The ids of all former scenes are passed on to those of the changed one.
 void SceneIds::change(std::uint64_t revision, SceneMap& map) noexcept {
-  Former& last = former_[changes_++ % kFormerScenes];
+  Former& last = slot(revision_);
   last.revision = std::exchange(revision_, revision);
   std::swap(last.map, map);
   has_changed_ = true;
@@ -41,8 +41,17 @@ void SceneIds::change(std::uint64_t revision, SceneMap& map) noexcept {
   }
 }
 
+// A scene that was in force before keeps its place, so that attaching and detaching again and again
+// does not displace the scene whose ids senders have.
+SceneIds::Former& SceneIds::slot(std::uint64_t revision) noexcept {
+  for (std::size_t i = 0; i < std::min(count_, kFormerScenes); ++i) {
+    if (former_[i].revision == revision) return former_[i];
+  }
+  return former_[count_++ % kFormerScenes];
+}
+
 const SceneIds::Former* SceneIds::former(std::uint64_t revision) const noexcept {
-  for (std::size_t i = 0; i < std::min(changes_, kFormerScenes); ++i) {
+  for (std::size_t i = 0; i < std::min(count_, kFormerScenes); ++i) {
     if (former_[i].revision == revision) return &former_[i];
   }
   return nullptr;

@@ -55,18 +55,19 @@ class SceneIds {
   [[nodiscard]] const SourceNumbers& sources() const noexcept { return sources_; }
 
  private:
-  // A scene before, and how its ids are passed on. The latest one is at changes_ - 1, modulo their
-  // number.
+  // A scene before, and how its ids are passed on. When there are more than these, a new one takes
+  // the place of the one that has been there longest.
   struct Former {
     std::uint64_t revision = 0;
     SceneMap map = {};
   };
+  [[nodiscard]] Former& slot(std::uint64_t revision) noexcept;
   [[nodiscard]] const Former* former(std::uint64_t revision) const noexcept;
 
   std::uint64_t revision_;
   SourceNumbers sources_;
   std::array<Former, kFormerScenes> former_;
-  std::size_t changes_ = 0;
+  std::size_t count_ = 0;  // of scenes with another revision, those that are lost included
   bool has_changed_;
 };
 
