@@ -123,7 +123,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 // Returns null and says why when the recording cannot be shown.
-std::unique_ptr<Source> recording_source(const Cell& cell, const Arguments& arguments,
+std::unique_ptr<Source> recording_source(const std::shared_ptr<const Cell>& cell,
+                                         const Arguments& arguments,
                                          std::optional<TemporaryFolder>& scratch,
                                          StopSignal& stop) {
   std::filesystem::path file = arguments.recording;
@@ -133,7 +134,7 @@ std::unique_ptr<Source> recording_source(const Cell& cell, const Arguments& argu
     if (!scratch->error().empty()) throw std::runtime_error(scratch->error());
     const std::filesystem::path computed = *scratch / "replay.mcap";
     const std::string error = view::replay_into(
-        cell, file, computed, [&bar](double share) { bar.show(share, "replayed"); },
+        *cell, file, computed, [&bar](double share) { bar.show(share, "replayed"); },
         [&stop] { return stop.wait(0); });
     bar.finish();
     if (!error.empty()) {
@@ -142,27 +143,28 @@ std::unique_ptr<Source> recording_source(const Cell& cell, const Arguments& argu
     }
     file = computed;
   }
-  view::Timeline timeline = view::read_timeline(cell.scene, file);
+  auto scenes = std::make_unique<SceneHistory>(*cell, std::vector{file}, [](Scene&) {});
+  view::Timeline timeline = view::read_timeline(*scenes, file);
   if (!timeline.error.empty()) {
     print(stderr, "clearance-view: {}\n", timeline.error);
     return nullptr;
   }
-  return std::make_unique<view::RecordingSource>(cell.scene, file, std::move(timeline));
+  return std::make_unique<view::RecordingSource>(cell, std::move(scenes), file,
+                                                 std::move(timeline));
 }
 
 view::Resource resource(std::string type, std::string body) {
   return {std::move(type), std::make_shared<const std::string>(std::move(body))};
 }
 
-// The page's files, the cell and the time line, each made once.
-std::map<std::string, view::Resource> resources(const Cell& cell, const Source& source) {
+// The page's files and the time line, each made once.
+std::map<std::string, view::Resource> resources(const Source& source) {
   std::map<std::string, view::Resource> all;
   for (const view::PageFile& file : view::page_files()) {
     all[std::string(file.path)] =
         resource(std::string(view::content_type(file.path)), std::string(file.text));
   }
   all["/"] = all["/index.html"];
-  all["/scene.json"] = resource("application/json", view::scene_json(cell));
   all["/timeline.json"] = resource("application/json", source.timeline());
   return all;
 }
@@ -184,18 +186,55 @@ view::Resource history(const Source& source, const std::string& query) {
   return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
 }
 
-view::Content content_of(const Cell& cell, Source& source, view::Visuals& visuals) {
+// What the page draws of the cell that is shown.
+class Drawn {
+ public:
+  explicit Drawn(const Source& source) : source_(source) {}
+  [[nodiscard]] view::Resource scene() {
+    update();
+    return scene_;
+  }
+  [[nodiscard]] view::Resource visuals() {
+    update();
+    return visuals_->get();
+  }
+
+ private:
+  void update() {
+    if (cell_ == source_.cell()) return;
+    visuals_.reset();
+    cell_ = source_.cell();
+    scene_ = resource("application/json", view::scene_json(*cell_));
+    visuals_.emplace(*cell_);
+  }
+
+  const Source& source_;
+  std::shared_ptr<const Cell> cell_;
+  view::Resource scene_;
+  std::optional<view::Visuals> visuals_;
+};
+
+// The page loads the cell again when its revision changes.
+nlohmann::json parameters_of(const Source& source) {
+  nlohmann::json all = source.parameters();
+  all.push_back(
+      {{"name", "scene.revision"}, {"value", std::to_string(source.cell()->scene.revision)}});
+  return all;
+}
+
+view::Content content_of(const Cell& cell, Source& source, Drawn& drawn) {
   return {.name = cell.scene.name,
           .channels = view::channels_of(cell.topics),
           .get =
-              [found = resources(cell, source), &source, &visuals](const std::string& path,
-                                                                   const std::string& query) {
+              [found = resources(source), &source, &drawn](const std::string& path,
+                                                           const std::string& query) {
                 if (path == "/history.json") return history(source, query);
-                if (path == "/visuals.json") return visuals.get();
+                if (path == "/visuals.json") return drawn.visuals();
+                if (path == "/scene.json") return drawn.scene();
                 const auto entry = found.find(path);
                 return entry == found.end() ? view::Resource{} : entry->second;
               },
-          .parameters = [&source] { return source.parameters(); },
+          .parameters = [&source] { return parameters_of(source); },
           .set_parameter = [&source](const std::string& name,
                                      const nlohmann::json& value) { source.set(name, value); }};
 }
@@ -249,21 +288,22 @@ int serve(const Arguments& arguments, Server& server, Source& source, StopSignal
   return kOk;
 }
 
-int run_view(const Cell& cell, const Arguments& arguments, StopSignal& stop) {
+int run_view(const std::shared_ptr<const Cell>& cell, const Arguments& arguments,
+             StopSignal& stop) {
   std::optional<TemporaryFolder> scratch;
   std::unique_ptr<Source> source;
   if (arguments.recording.empty()) {
     route_dds_log();
-    source = std::make_unique<view::LiveSource>(cell, arguments.dds.resolve(cell));
+    source = std::make_unique<view::LiveSource>(cell, arguments.dds.resolve(*cell));
   } else {
     source = recording_source(cell, arguments, scratch, stop);
     if (!source) return kFailed;
     if (stop.wait(0)) return kIncomplete;
   }
   const bool pictures = !arguments.screenshots.empty();
-  view::Visuals visuals(cell);
+  Drawn drawn(*source);
   Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port, arguments.allowed,
-                content_of(cell, *source, visuals));
+                content_of(*cell, *source, drawn));
   return pictures ? take_screenshots(arguments, server, *source)
                   : serve(arguments, server, *source, stop);
 }
@@ -282,9 +322,9 @@ int run(int argc, char** argv, StopSignal& stop) {
     if (!can_create("clearance-view", picture, arguments.force)) return kFailed;
   }
   start_log("clearance-view", "error");
-  const auto cell = cell_or_errors(arguments.cell.read());
+  auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;
-  return run_view(*cell, arguments, stop);
+  return run_view(std::make_shared<const Cell>(*std::move(cell)), arguments, stop);
 }
 
 }  // namespace

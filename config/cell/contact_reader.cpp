@@ -30,7 +30,6 @@ class ContactReader {
 
  private:
   void read_name_of(const YamlNode& node, AllowedContact& contact);
-  [[nodiscard]] ContactEnd read_end(const YamlNode& node) const;
   [[nodiscard]] std::string read_sentence(MapReader& map, const char* key,
                                           const std::string& what) const;
   void fill(const YamlNode& node, const Between& between, AllowedContact& contact);
@@ -63,42 +62,6 @@ void ContactReader::read_name_of(const YamlNode& node, AllowedContact& contact) 
                           "line {})",
                           contact.name, same->second));
   }
-}
-
-// An empty end would read like an end and be none.
-ContactEnd ContactReader::read_end(const YamlNode& node) const {
-  ContactEnd end;
-  MapReader map(node, "the end of a contact", diagnostics_);
-  const YamlNode* distance = map.optional("distance");
-  const YamlNode* duration = map.optional("duration_ms");
-  const YamlNode* time = map.optional("time_ns");
-  const YamlNode* cycle = map.optional("cycle");
-  map.refuse_unknown_keys();
-  if (distance != nullptr) {
-    end.distance = quantities_.length(*distance, "the distance that ends the contact", kPositive)
-                       .value_or(end.distance);
-  }
-  if (duration != nullptr) {
-    end.duration_ns =
-        quantities_.milliseconds(*duration, "how long the contact is allowed", kNotNegative)
-            .value_or(end.duration_ns);
-  }
-  if (time != nullptr) {
-    end.time_ns = read_integer(*time, 1, kMost, "the time of the end in ns", diagnostics_)
-                      .value_or(end.time_ns);
-  }
-  if (cycle != nullptr) {
-    if (const auto last = read_integer(*cycle, 1, kMost, "the last cycle", diagnostics_))
-      end.last_cycle = static_cast<std::uint64_t>(*last);
-  }
-  const bool is_empty =
-      distance == nullptr && duration == nullptr && time == nullptr && cycle == nullptr;
-  if (map.is_map() && is_empty) {
-    diagnostics_.add(node,
-                     "found an end without a condition; expected distance, duration_ms, time_ns or "
-                     "cycle, or no 'until'");
-  }
-  return end;
 }
 
 std::string ContactReader::read_sentence(MapReader& map, const char* key,
@@ -158,7 +121,8 @@ AllowedContact ContactReader::read(const YamlNode& node) {
     contact.depth =
         quantities_.length(*depth, "the greatest depth of the contact", kPositive).value_or(0.0);
   }
-  if (const YamlNode* until = map.optional("until")) contact.end = read_end(*until);
+  if (const YamlNode* until = map.optional("until"))
+    contact.end = read_contact_end(*until, quantities_);
   contact.by = read_sentence(map, "by", "who allows the contact");
   contact.reason = read_sentence(map, "reason", "the reason why these may touch");
   map.refuse_unknown_keys();
@@ -167,6 +131,43 @@ AllowedContact ContactReader::read(const YamlNode& node) {
 }
 
 }  // namespace
+
+// An empty end would read like an end and be none.
+ContactEnd read_contact_end(const YamlNode& node, const Quantities& quantities) {
+  Diagnostics& diagnostics = quantities.diagnostics();
+  ContactEnd end;
+  MapReader map(node, "the end of a contact", diagnostics);
+  const YamlNode* distance = map.optional("distance");
+  const YamlNode* duration = map.optional("duration_ms");
+  const YamlNode* time = map.optional("time_ns");
+  const YamlNode* cycle = map.optional("cycle");
+  map.refuse_unknown_keys();
+  if (distance != nullptr) {
+    end.distance = quantities.length(*distance, "the distance that ends the contact", kPositive)
+                       .value_or(end.distance);
+  }
+  if (duration != nullptr) {
+    end.duration_ns =
+        quantities.milliseconds(*duration, "how long the contact is allowed", kNotNegative)
+            .value_or(end.duration_ns);
+  }
+  if (time != nullptr) {
+    end.time_ns = read_integer(*time, 1, kMost, "the time of the end in ns", diagnostics)
+                      .value_or(end.time_ns);
+  }
+  if (cycle != nullptr) {
+    if (const auto last = read_integer(*cycle, 1, kMost, "the last cycle", diagnostics))
+      end.last_cycle = static_cast<std::uint64_t>(*last);
+  }
+  const bool is_empty =
+      distance == nullptr && duration == nullptr && time == nullptr && cycle == nullptr;
+  if (map.is_map() && is_empty) {
+    diagnostics.add(node,
+                    "found an end without a condition; expected distance, duration_ms, time_ns or "
+                    "cycle, or no 'until'");
+  }
+  return end;
+}
 
 std::vector<AllowedContact> read_contacts(const YamlNode& node, const ObjectList& objects,
                                           const std::vector<Zone>& zones, GroupIndex& group_index,

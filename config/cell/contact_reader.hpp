@@ -9,6 +9,9 @@
 
 namespace clearance {
 
+// Reads `until:`, with at least one condition.
+[[nodiscard]] ContactEnd read_contact_end(const YamlNode& node, const Quantities& quantities);
+
 // The pairs become published ones. Refuses a contact over no watched pair, since an ended one would
 // come into force again with its pair. Refuses a pair of two contacts, and one of a zone with
 // `separation`: contact with a person is never allowed.

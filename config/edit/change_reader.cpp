@@ -9,6 +9,7 @@
 #include <string_view>
 #include <utility>
 
+#include "config/cell/contact_reader.hpp"
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
@@ -21,7 +22,7 @@
 namespace clearance {
 namespace {
 
-constexpr Range kAgeLimit{.least = 0.001, .most = 86'400'000.0};  // ms
+constexpr Range kTime{.least = 0.001, .most = 86'400'000.0};  // ms
 
 class ChangeReader {
  public:
@@ -40,6 +41,12 @@ class ChangeReader {
 
   std::optional<CellChange> add_object(const YamlNode& node) {
     if (node.kind == YamlNode::Kind::kMap) return AddObject{line_of(node)};
+    diagnostics_.add(node,
+                     fmt::format("found {}; expected one entry of 'objects'", describe(node)));
+    return std::nullopt;
+  }
+  std::optional<CellChange> replace_object(const YamlNode& node) {
+    if (node.kind == YamlNode::Kind::kMap) return ReplaceObject{line_of(node)};
     diagnostics_.add(node,
                      fmt::format("found {}; expected one entry of 'objects'", describe(node)));
     return std::nullopt;
@@ -114,7 +121,7 @@ class ChangeReader {
     SetAgeLimit change;
     name(map, "object", change.object);
     if (const YamlNode* limit = map.optional("age_limit_ms"))
-      change.ns = quantities_.milliseconds(*limit, "the age limit", kAgeLimit);
+      change.ns = quantities_.milliseconds(*limit, "the age limit", kTime);
     return finished(map, std::move(change));
   }
   std::optional<CellChange> set_source(const YamlNode& node) {
@@ -134,6 +141,13 @@ class ChangeReader {
       change.enter_below = quantities_.length(*enter, "the threshold").value_or(0.0);
     if (const YamlNode* leave = map.required("leave_above"))
       change.leave_above = quantities_.length(*leave, "the threshold").value_or(0.0);
+    return finished(map, std::move(change));
+  }
+  std::optional<CellChange> allow_contact(const YamlNode& node);
+  std::optional<CellChange> withdraw_contact(const YamlNode& node) {
+    MapReader map(node, "a change 'withdraw_contact'", diagnostics_);
+    WithdrawContact change;
+    name(map, "contact", change.contact);
     return finished(map, std::move(change));
   }
   std::optional<CellChange> replace_cell(const YamlNode& node);
@@ -175,11 +189,12 @@ class ChangeReader {
 };
 
 std::optional<CellChange> ChangeReader::set_pair(const YamlNode& node) {
-  constexpr std::array<std::pair<std::string_view, SetPair::Rule>, 4> kRules = {{
+  constexpr std::array<std::pair<std::string_view, SetPair::Rule>, 5> kRules = {{
       {"publish", SetPair::Rule::kPublish},
       {"watch", SetPair::Rule::kWatch},
       {"leave_out", SetPair::Rule::kLeaveOut},
       {"unstated", SetPair::Rule::kUnstated},
+      {"no_exception", SetPair::Rule::kNoException},
   }};
   MapReader map(node, "a change 'set_pair'", diagnostics_);
   SetPair change;
@@ -200,13 +215,39 @@ std::optional<CellChange> ChangeReader::set_pair(const YamlNode& node) {
     if (found != kRules.end()) {
       change.rule = found->second;
     } else if (text) {
-      diagnostics_.add(*rule, fmt::format("found '{}'; expected publish, watch, leave_out or "
-                                          "unstated",
+      diagnostics_.add(*rule, fmt::format("found '{}'; expected publish, watch, leave_out, "
+                                          "unstated or no_exception",
                                           *text));
     }
   }
   if (const YamlNode* reason = map.optional("reason")) {
     if (auto text = read_text(*reason, "a reason", diagnostics_)) change.reason = *std::move(text);
+  }
+  return finished(map, std::move(change));
+}
+
+std::optional<CellChange> ChangeReader::allow_contact(const YamlNode& node) {
+  MapReader map(node, "a change 'allow_contact'", diagnostics_);
+  AllowContact change;
+  name(map, "contact", change.contact);
+  if (const YamlNode* between = map.required("between")) {
+    std::vector<std::string> sides;
+    names(map, "between", sides);
+    if (sides.size() != 2) {
+      diagnostics_.add(*between, "found no two names; expected two objects or groups");
+    } else {
+      change.a = sides[0];
+      change.b = sides[1];
+    }
+  }
+  if (const YamlNode* depth = map.required("depth"))
+    change.depth = quantities_.length(*depth, "the greatest depth", kPositive).value_or(0.0);
+  if (const YamlNode* until = map.optional("until"))
+    change.end = read_contact_end(*until, quantities_);
+  for (const auto& [key, text] : {std::pair{"by", &change.by}, {"reason", &change.reason}}) {
+    const YamlNode* value = map.optional(key);
+    if (value == nullptr) continue;
+    if (auto read = read_text(*value, "a text", diagnostics_)) *text = *std::move(read);
   }
   return finished(map, std::move(change));
 }
@@ -229,8 +270,9 @@ std::optional<CellChange> ChangeReader::replace_cell(const YamlNode& node) {
 }
 
 std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
-  static constexpr std::array<Kind, 15> kKinds = {{
+  static constexpr std::array<Kind, 18> kKinds = {{
       {"add_object", &ChangeReader::add_object},
+      {"replace_object", &ChangeReader::replace_object},
       {"add_from_template", &ChangeReader::add_from_template},
       {"remove_object", &ChangeReader::remove_object},
       {"set_absent", &ChangeReader::set_absent},
@@ -243,6 +285,8 @@ std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
       {"set_source", &ChangeReader::set_source},
       {"set_pair", &ChangeReader::set_pair},
       {"set_zone_thresholds", &ChangeReader::set_zone_thresholds},
+      {"allow_contact", &ChangeReader::allow_contact},
+      {"withdraw_contact", &ChangeReader::withdraw_contact},
       {"replace_cell", &ChangeReader::replace_cell},
       {"read_cell_again", &ChangeReader::read_cell_again},
   }};

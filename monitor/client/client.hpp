@@ -8,13 +8,16 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/cell/topics.hpp"
@@ -99,37 +102,91 @@ using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`
 [[nodiscard]] const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
                                                      std::optional<std::uint32_t> pair);
 
-// The names behind the ids, at the last update().
+// The names behind the ids, at the last update(). A daemon that changes its cell while it runs
+// sends another catalogue, with another revision and other ids. The last kKept of them stay known,
+// since reports of the cell before may still wait to be read.
 class Catalogue {
  public:
+  static constexpr std::size_t kKept = 9;
+
   explicit Catalogue(Connection& connection);
   void update();
 
-  // Null until one has come. Another daemon or another cell has another revision.
+  // The latest one; null until one has come.
   [[nodiscard]] const clearance_msg_Catalogue* message() const noexcept {
-    return known_ ? &*message_ : nullptr;
+    return kept_.empty() ? nullptr : &*kept_.front();
   }
-  // The revision that its ids belong to; 0 until one has come.
-  [[nodiscard]] std::uint64_t revision() const noexcept { return message_->scene_revision; }
+  // The one that the ids of messages with this `scene_revision` belong to; null: it has not come.
+  [[nodiscard]] const clearance_msg_Catalogue* message(std::uint64_t revision) const noexcept;
+  // The revision of the latest one; 0 until one has come.
+  [[nodiscard]] std::uint64_t revision() const noexcept {
+    return kept_.empty() ? 0 : kept_.front()->scene_revision;
+  }
 
-  // Ids by name; a pair's objects may stand in any order. Nothing when there is no such object or
-  // pair, or no catalogue yet.
+  // Ids by name in the latest catalogue; a pair's objects may stand in any order. Nothing when
+  // there is no such object or pair, or no catalogue yet. Object and Pair keep names through
+  // changes.
   [[nodiscard]] std::optional<std::uint32_t> object(std::string_view name) const;
   [[nodiscard]] std::optional<std::uint32_t> pair(std::string_view a, std::string_view b) const;
   [[nodiscard]] std::optional<std::uint32_t> joint(std::string_view name) const;
 
   // Names by id, "object 7" for an unknown one. The name of a pair includes the closest parts:
-  // "hand.finger - table".
-  [[nodiscard]] std::string object_name(std::uint32_t object) const;
-  [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
-  [[nodiscard]] std::string joint_name(std::uint32_t joint) const;
+  // "hand.finger - table". `revision` is that of the message with the id; without it, the id is of
+  // the latest catalogue.
+  [[nodiscard]] std::string object_name(std::uint32_t object,
+                                        std::optional<std::uint64_t> revision = {}) const;
+  [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair,
+                                      std::optional<std::uint64_t> revision = {}) const;
+  [[nodiscard]] std::string joint_name(std::uint32_t joint,
+                                       std::optional<std::uint64_t> revision = {}) const;
 
  private:
-  [[nodiscard]] std::string part_name(std::uint32_t object, std::uint32_t part) const;
+  [[nodiscard]] const clearance_msg_Catalogue* known(std::optional<std::uint64_t> revision) const;
 
   dds_entity_t reader_;
-  Sample<clearance_msg_Catalogue> message_, scratch_;
-  bool known_ = false;
+  Sample<clearance_msg_Catalogue> scratch_;
+  std::list<Sample<clearance_msg_Catalogue>> kept_;  // the latest one first
+};
+
+// An object by its name, whatever its id is at the time. The catalogue outlives it.
+class Object {
+ public:
+  Object(Catalogue& catalogue, std::string name) : catalogue_(catalogue), name_(std::move(name)) {}
+
+  [[nodiscard]] const std::string& name() const noexcept { return name_; }
+  // Its id in messages with this `scene_revision`. Nothing: that scene lacks it, or its catalogue
+  // has not come. Reads the catalogue when the revision is a new one.
+  [[nodiscard]] std::optional<std::uint32_t> id(std::uint64_t revision);
+
+ private:
+  Catalogue& catalogue_;
+  std::string name_;
+  std::optional<std::uint64_t> revision_;  // that of `id_`
+  std::optional<std::uint32_t> id_;
+};
+
+// A pair of objects by their names, in any order, whatever its id is at the time. The catalogue
+// outlives it.
+class Pair {
+ public:
+  Pair(Catalogue& catalogue, std::string a, std::string b)
+      : catalogue_(catalogue), a_(std::move(a)), b_(std::move(b)) {}
+
+  // As Object::id().
+  [[nodiscard]] std::optional<std::uint32_t> id(std::uint64_t revision);
+  // The pair in this report; null when the report's scene has no such pair or does not publish it,
+  // or when the catalogue of that scene has not come.
+  [[nodiscard]] const clearance_msg_PairDistance* in(const clearance_msg_Distances& report) {
+    return find(report, id(report.scene_revision));
+  }
+  // The same in a message of gradients.
+  [[nodiscard]] const clearance_msg_PairGradient* in(const clearance_msg_Gradients& gradients);
+
+ private:
+  Catalogue& catalogue_;
+  std::string a_, b_;
+  std::optional<std::uint64_t> revision_;  // that of `id_`
+  std::optional<std::uint32_t> id_;
 };
 
 // The daemon's health at the last update(); it comes once a second.
@@ -200,8 +257,9 @@ class PoseWriter {
   PoseWriter(const PoseWriter&) = delete;
   PoseWriter& operator=(const PoseWriter&) = delete;
 
-  // `scene_revision` is that of the catalogue with the objects' ids; 0 is not checked. Returns
-  // false when DDS did not take the poses, or when there are more than clearance_msg_kMaxPoses.
+  // `scene_revision` is that of the catalogue with the objects' ids (Object::id). 0 is not checked,
+  // and is refused after a change of the cell. Returns false when DDS did not take the poses, or
+  // when there are more than clearance_msg_kMaxPoses.
   bool write(std::span<const clearance_msg_ObjectPose> poses, std::uint64_t scene_revision);
   [[nodiscard]] bool is_heard() const;
 

@@ -56,6 +56,31 @@ std::optional<std::uint32_t> id_of(const Sequence& named, std::string_view name)
   return std::nullopt;
 }
 
+std::optional<std::uint32_t> object_in(const clearance_msg_Catalogue* names,
+                                       std::string_view name) {
+  return names == nullptr ? std::nullopt : id_of(names->objects, name);
+}
+
+std::optional<std::uint32_t> pair_in(const clearance_msg_Catalogue* names, std::string_view a,
+                                     std::string_view b) {
+  const auto first = object_in(names, a), second = object_in(names, b);
+  if (!first || !second) return std::nullopt;
+  for (const clearance_msg_CataloguePair& pair : list(names->pairs)) {
+    const bool same = pair.object_a == *first && pair.object_b == *second;
+    const bool swapped = pair.object_a == *second && pair.object_b == *first;
+    if (same || swapped) return pair.id;
+  }
+  return std::nullopt;
+}
+
+std::string part_name(const clearance_msg_Catalogue& names, std::uint32_t object,
+                      std::uint32_t part) {
+  if (object >= names.objects._length) return fmt::format("object {}", object);
+  const clearance_msg_CatalogueObject& found = names.objects._buffer[object];
+  if (found.parts._length < 2 || part >= found.parts._length) return found.name;
+  return fmt::format("{}.{}", found.name, found.parts._buffer[part]);
+}
+
 }  // namespace
 
 Connection::Connection(const DdsOptions& options, const Topics& topics)
@@ -136,51 +161,89 @@ const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
 Catalogue::Catalogue(Connection& connection)
     : reader_(make_reader(connection, TopicKind::kCatalogue)) {}
 
+// A catalogue that comes again, from a daemon that was started again, replaces the one before.
 void Catalogue::update() {
-  while (take_newer(reader_, message_, scratch_)) known_ = true;
+  while (take_one(reader_, *scratch_)) {
+    std::erase_if(kept_, [this](const Sample<clearance_msg_Catalogue>& known) {
+      return known->scene_revision == scratch_->scene_revision;
+    });
+    kept_.emplace_front();
+    std::swap(*kept_.front(), *scratch_);
+    if (kept_.size() > kKept) kept_.pop_back();
+  }
+}
+
+const clearance_msg_Catalogue* Catalogue::message(std::uint64_t revision) const noexcept {
+  for (const Sample<clearance_msg_Catalogue>& known : kept_) {
+    if (known->scene_revision == revision) return &*known;
+  }
+  return nullptr;
+}
+
+const clearance_msg_Catalogue* Catalogue::known(std::optional<std::uint64_t> revision) const {
+  return revision ? message(*revision) : message();
 }
 
 std::optional<std::uint32_t> Catalogue::object(std::string_view name) const {
-  return id_of(message_->objects, name);
+  return object_in(message(), name);
 }
 
 std::optional<std::uint32_t> Catalogue::joint(std::string_view name) const {
-  return id_of(message_->joints, name);
+  return message() == nullptr ? std::nullopt : id_of(message()->joints, name);
 }
 
 std::optional<std::uint32_t> Catalogue::pair(std::string_view a, std::string_view b) const {
-  const auto first = object(a), second = object(b);
-  if (!first || !second) return std::nullopt;
-  for (const clearance_msg_CataloguePair& pair : list(message_->pairs)) {
-    const bool same = pair.object_a == *first && pair.object_b == *second;
-    const bool swapped = pair.object_a == *second && pair.object_b == *first;
-    if (same || swapped) return pair.id;
+  return pair_in(message(), a, b);
+}
+
+std::string Catalogue::object_name(std::uint32_t object,
+                                   std::optional<std::uint64_t> revision) const {
+  const clearance_msg_Catalogue* const names = known(revision);
+  if (names == nullptr || object >= names->objects._length) return fmt::format("object {}", object);
+  return names->objects._buffer[object].name;
+}
+
+std::string Catalogue::joint_name(std::uint32_t joint,
+                                  std::optional<std::uint64_t> revision) const {
+  const clearance_msg_Catalogue* const names = known(revision);
+  if (names == nullptr || joint >= names->joints._length) return fmt::format("joint {}", joint);
+  return names->joints._buffer[joint].name;
+}
+
+std::string Catalogue::pair_name(const clearance_msg_PairDistance& pair,
+                                 std::optional<std::uint64_t> revision) const {
+  const clearance_msg_Catalogue* const names = known(revision);
+  if (names == nullptr || pair.pair >= names->pairs._length)
+    return fmt::format("pair {}", pair.pair);
+  const clearance_msg_CataloguePair& objects = names->pairs._buffer[pair.pair];
+  return clearance::pair_name(part_name(*names, objects.object_a, pair.part_a),
+                              part_name(*names, objects.object_b, pair.part_b));
+}
+
+std::optional<std::uint32_t> Object::id(std::uint64_t revision) {
+  if (revision_ == revision) return id_;
+  if (catalogue_.message(revision) == nullptr) catalogue_.update();
+  const clearance_msg_Catalogue* const names = catalogue_.message(revision);
+  if (names == nullptr) return std::nullopt;
+  revision_ = revision;
+  return id_ = object_in(names, name_);
+}
+
+std::optional<std::uint32_t> Pair::id(std::uint64_t revision) {
+  if (revision_ == revision) return id_;
+  if (catalogue_.message(revision) == nullptr) catalogue_.update();
+  const clearance_msg_Catalogue* const names = catalogue_.message(revision);
+  if (names == nullptr) return std::nullopt;
+  revision_ = revision;
+  return id_ = pair_in(names, a_, b_);
+}
+
+const clearance_msg_PairGradient* Pair::in(const clearance_msg_Gradients& gradients) {
+  const std::optional<std::uint32_t> pair = id(gradients.scene_revision);
+  for (const clearance_msg_PairGradient& published : list(gradients.pairs)) {
+    if (published.pair == pair) return &published;
   }
-  return std::nullopt;
-}
-
-std::string Catalogue::object_name(std::uint32_t object) const {
-  if (object >= message_->objects._length) return fmt::format("object {}", object);
-  return message_->objects._buffer[object].name;
-}
-
-std::string Catalogue::joint_name(std::uint32_t joint) const {
-  if (joint >= message_->joints._length) return fmt::format("joint {}", joint);
-  return message_->joints._buffer[joint].name;
-}
-
-std::string Catalogue::part_name(std::uint32_t object, std::uint32_t part) const {
-  if (object >= message_->objects._length) return object_name(object);
-  const clearance_msg_CatalogueObject& found = message_->objects._buffer[object];
-  if (found.parts._length < 2 || part >= found.parts._length) return found.name;
-  return fmt::format("{}.{}", found.name, found.parts._buffer[part]);
-}
-
-std::string Catalogue::pair_name(const clearance_msg_PairDistance& pair) const {
-  if (pair.pair >= message_->pairs._length) return fmt::format("pair {}", pair.pair);
-  const clearance_msg_CataloguePair& objects = message_->pairs._buffer[pair.pair];
-  return clearance::pair_name(part_name(objects.object_a, pair.part_a),
-                              part_name(objects.object_b, pair.part_b));
+  return nullptr;
 }
 
 Health::Health(Connection& connection) : reader_(make_reader(connection, TopicKind::kHealth)) {}

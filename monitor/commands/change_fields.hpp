@@ -64,6 +64,19 @@ void visit_fields(const Visit& visit, Message& m, Of& c) {
     visit("zone", m.zone, c.zone, kName);
     visit("enter_below", m.enter_below, c.enter_below);
     visit("leave_above", m.leave_above, c.leave_above);
+  } else if constexpr (std::is_same_v<Change, AllowContact>) {
+    visit("contact", m.contact, c.contact, kName);
+    visit("a", m.a, c.a, kName);
+    visit("b", m.b, c.b, kName);
+    visit("depth", m.depth, c.depth);
+    visit("distance", m.distance, c.end.distance);
+    visit("duration_ns", m.duration_ns, c.end.duration_ns);
+    visit("time_ns", m.time_ns, c.end.time_ns);
+    visit("last_cycle", m.last_cycle, c.end.last_cycle);
+    visit("by", m.by, c.by, kMayBeEmpty);
+    visit("reason", m.reason, c.reason, kMayBeEmpty);
+  } else if constexpr (std::is_same_v<Change, WithdrawContact>) {
+    visit("contact", m.contact, c.contact, kName);
   } else {
     static_assert(std::is_same_v<Change, ReadCellAgain>, "a change without its list of fields");
     visit("file", m.file, c.file, kMayBeEmpty);
@@ -108,6 +121,10 @@ inline constexpr std::tuple kChangeKinds{
     change_kind<SetPair>(clearance_msg_CHANGE_SET_PAIR, "set_pair", &ChangeUnion::set_pair),
     change_kind<SetZoneThresholds>(clearance_msg_CHANGE_SET_ZONE_THRESHOLDS, "set_zone_thresholds",
                                    &ChangeUnion::set_zone_thresholds),
+    change_kind<AllowContact>(clearance_msg_CHANGE_ALLOW_CONTACT, "allow_contact",
+                              &ChangeUnion::allow_contact),
+    change_kind<WithdrawContact>(clearance_msg_CHANGE_WITHDRAW_CONTACT, "withdraw_contact",
+                                 &ChangeUnion::withdraw_contact),
     change_kind<ReplaceCell>(clearance_msg_CHANGE_REPLACE_CELL, "replace_cell",
                              &ChangeUnion::replace_cell),
     change_kind<ReadCellAgain>(clearance_msg_CHANGE_READ_CELL_AGAIN, "read_cell_again",

@@ -94,6 +94,20 @@ class FromWire {
     to.orientation = turn;
   }
   void take(const std::string&, std::int64_t from, std::int64_t& to) const { to = from; }
+  // The ends of a contact: those that are not stated stay.
+  void take(const std::string& path, const clearance_msg_StatedNumber& from, double& to) const {
+    if (from.is_stated) take(path, from.value, to);
+  }
+  void take(const std::string&, const clearance_msg_StatedTime& from, std::int64_t& to) const {
+    if (from.is_stated) to = from.value;
+  }
+  void take(const std::string& path, const clearance_msg_StatedTime& from,
+            std::uint64_t& to) const {
+    if (!from.is_stated) return;
+    if (from.value < 0)
+      return refuse(path, fmt::format("found {}; expected a cycle from 0 on", from.value));
+    to = static_cast<std::uint64_t>(from.value);
+  }
   template <class From, class To, class... Kind>
   void take(const std::string& path, const From& from, std::optional<To>& to, Kind... kind) const {
     if (from.is_stated) take(path, from.value, to.emplace(), kind...);
@@ -124,6 +138,15 @@ struct ToWire {
     const Eigen::Quaterniond& q = from.orientation;
     to.position = {from.position.x(), from.position.y(), from.position.z()};
     to.orientation = {q.x(), q.y(), q.z(), q.w()};
+  }
+  static void put(double from, clearance_msg_StatedNumber& to) {
+    to = {.is_stated = from != ContactEnd{}.distance, .value = from};
+  }
+  static void put(std::int64_t from, clearance_msg_StatedTime& to) {
+    to = {.is_stated = from != ContactEnd::kNoTime, .value = from};
+  }
+  static void put(std::uint64_t from, clearance_msg_StatedTime& to) {
+    to = {.is_stated = from != ContactEnd::kNoCycle, .value = static_cast<std::int64_t>(from)};
   }
   template <class From, class To>
   static void put(const std::optional<From>& from, To& to) {

@@ -40,8 +40,9 @@ DdsOptions prepare_threads(const DaemonOptions& options) {
   return options.dds;
 }
 
-std::unique_ptr<Recording> open_recording(const Cell& cell, const DaemonOptions& options,
-                                          const PoseReader& poses, RecordingHealth& health) {
+std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
+                                          const DaemonOptions& options, const PoseReader& poses,
+                                          RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
   return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
 }
@@ -66,7 +67,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_),
-      recording_(open_recording(cell, options, poses_, recording_health_)),
+      recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
@@ -183,22 +184,19 @@ void Daemon::read_again() {
     log_line(lines::kSceneRefused, "too many commands wait: send SIGHUP again later");
 }
 
-// A recording has one cell.
-std::string Daemon::keeps_its_cell() const {
-  return recording_ ? "a recording has one cell, and this daemon records (--record)" : "";
-}
-
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
   next_ = parts_of(cell);
-  reports_.continue_with(*cell, *next_.queue);
   std::vector<ReportSink*> sinks{next_.queue.get()};
+  if (ReportSink* const sink = recording_ ? recording_->prepare(cell) : nullptr)
+    sinks.push_back(sink);
   if (next_.ros) sinks.push_back(next_.ros.get());
   return sinks;
 }
 
-// Returns when no other thread uses the cell before.
-void Daemon::follow() {
-  now_.queue->close();
+// Returns when no other thread uses the cell before, except a recording: a disk may be slow.
+void Daemon::follow(const SceneInForce& since) {
+  reports_.continue_with(*next_.cell, since, *next_.queue);
+  if (recording_) recording_->follow(since);
   poses_.change(*next_.cell);
   while (reports_.is_to_continue()) std::this_thread::sleep_for(kReportsPoll);
   if (now_.ros) now_.ros->finish();
@@ -207,7 +205,7 @@ void Daemon::follow() {
 }
 
 void Daemon::abandon() {
-  reports_.stay();
+  if (recording_) recording_->abandon();
   next_ = {};
 }
 

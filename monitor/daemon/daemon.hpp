@@ -80,9 +80,8 @@ class Daemon : private CellParts {
   void end_commands();
   void read_again();
   bool note_change(const CommandResult& result);
-  [[nodiscard]] std::string keeps_its_cell() const override;
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
-  void follow() override;
+  void follow(const SceneInForce& since) override;
   void abandon() override;
 
   DaemonOptions options_;

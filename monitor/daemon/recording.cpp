@@ -43,20 +43,21 @@ ReportQueueOptions queue_options(const Cell& cell) {
 
 }  // namespace
 
+Recording::Part::Part(std::shared_ptr<const Cell> the_cell)
+    : cell(std::move(the_cell)), queue(cell->scene, queue_options(*cell)) {}
+
 // The file and its catalogue are written before the first tick, so that errors show at the start.
 Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
-                     const Cell& cell, const PoseReader& poses, RecordingHealth& health)
-    : scene_(cell.scene),
-      file_(file.string()),
+                     std::shared_ptr<const Cell> cell, const PoseReader& poses,
+                     RecordingHealth& health)
+    : file_(file.string()),
       poses_(poses),
       health_(health),
-      queue_(cell.scene, queue_options(cell)),
-      recorder_(file, cell, SystemClock().realtime_ns(), options) {
+      recorder_(file, *cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
-  if (!recorder_.without_files().empty()) {
-    log_line(lines::kRecordingWithoutFiles, recorder_.without_files());
-  }
+  tell_of_missing_files();
   health_.begin(file_);
+  parts_.push_back(std::make_unique<Part>(std::move(cell)));
   thread_ = std::thread([this] { run(); });
 }
 
@@ -65,7 +66,10 @@ Recording::~Recording() { finish(); }
 // Ends the thread when the queue is empty. A second call does nothing.
 void Recording::finish() {
   if (!thread_.joinable()) return;
-  queue_.close();
+  {
+    const std::lock_guard lock(mutex_);
+    parts_.back()->queue.close();
+  }
   wait_for_the_disk();
   hangs_ = !ended_;
   if (hangs_) {
@@ -88,41 +92,93 @@ void Recording::wait_for_the_disk() const {
   }
 }
 
-// Empties the queue until it is closed.
+ReportSink* Recording::prepare(std::shared_ptr<const Cell> cell) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (parts_.size() >= kMostWaiting) {
+      fail(fmt::format("the disk is too slow: {} changes of the cell wait for it", kMostWaiting));
+    }
+  }
+  if (health_.failed()) return nullptr;
+  prepared_ = std::make_unique<Part>(std::move(cell));
+  return &prepared_->queue;
+}
+
+void Recording::follow(const SceneInForce& since) {
+  const std::lock_guard lock(mutex_);
+  parts_.back()->queue.close();
+  if (!prepared_) return;
+  prepared_->since = since;
+  parts_.push_back(std::move(prepared_));
+  parts_[parts_.size() - 2]->queue.wake();
+}
+
+// Empties one queue after the other, each until it is closed.
 void Recording::run() {
   name_thread("record");
   // A file can wait: this thread needs no priority.
   if (const Refusal refusal = use_fifo_scheduling(0)) log_line(lines::kSystemRefuses, *refusal);
-  for (bool closed = false; !closed;) {
-    queue_.wait();
-    closed = queue_.closed();  // read before the queue, so that nothing remains in it
-    record_all();
-  }
+  do {
+    Part* part = nullptr;
+    {
+      const std::lock_guard lock(mutex_);
+      part = parts_.front().get();
+    }
+    for (bool closed = false; !closed;) {
+      part->queue.wait();
+      closed = part->queue.closed();  // read before the queue, so that nothing remains in it
+      record_all(*part);
+    }
+  } while (next_part());
   recorder_.close();
   count(0);
   ended_ = true;
 }
 
+// Returns false if no other cell follows. The recorder uses the cell before until it has changed.
+bool Recording::next_part() {
+  Part* next = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    if (parts_.size() == 1) return false;
+    next = parts_[1].get();
+  }
+  recorder_.change(*next->cell, next->since);
+  tell_of_missing_files();
+  count(0);
+  const std::lock_guard lock(mutex_);
+  reports_dropped_before_ += parts_.front()->queue.dropped_reports();
+  inputs_dropped_before_ += parts_.front()->queue.dropped_inputs();
+  parts_.pop_front();
+  return true;
+}
+
 // The batches that a report used are in the queue before it; batches for later reports may be there
 // as well.
-void Recording::record_all() {
-  while (const QueuedReport* queued = queue_.reports().front()) {
-    while (const PoseBatch* batch = queue_.inputs().front()) {
+void Recording::record_all(Part& part) {
+  ReportQueue& queue = part.queue;
+  while (const QueuedReport* queued = queue.reports().front()) {
+    while (const PoseBatch* batch = queue.inputs().front()) {
       recorder_.poses(*batch);
-      queue_.inputs().pop();
+      queue.inputs().pop();
       count(1);
     }
     recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
-    queue_.reports().pop();
+    queue.reports().pop();
     count(1);
     tell_of_new_files();
   }
-  while (const LoopStatistics* statistics = queue_.statistics().front()) {
-    recorder_.health(*make_health(scene_, *statistics, poses_, queue_.dropped_reports(), health_));
-    queue_.statistics().pop();
+  while (const LoopStatistics* statistics = queue.statistics().front()) {
+    recorder_.health(*make_health(part.cell->scene, *statistics, poses_, dropped().first, health_));
+    queue.statistics().pop();
     recorder_.check();
     count(0);
   }
+}
+
+void Recording::tell_of_missing_files() const {
+  if (recorder_.without_files().empty()) return;
+  log_line(lines::kRecordingWithoutFiles, recorder_.without_files());
 }
 
 void Recording::tell_of_new_files() {
@@ -136,13 +192,29 @@ void Recording::tell_of_new_files() {
 void Recording::count(std::uint64_t messages) {
   ++steps_;
   if (recorder_.ok()) return;
-  if (!health_.failed()) health_.fail(recorder_.error());
+  fail(recorder_.error());
   unwritten_ += messages;
 }
 
+void Recording::fail(const std::string& why) {
+  if (!failing_.exchange(true)) health_.fail(why);
+}
+
+// Reports and batches that found a queue full.
+std::pair<std::uint64_t, std::uint64_t> Recording::dropped() const {
+  const std::lock_guard lock(mutex_);
+  std::pair sum(reports_dropped_before_, inputs_dropped_before_);
+  for (const auto& part : parts_) {
+    sum.first += part->queue.dropped_reports();
+    sum.second += part->queue.dropped_inputs();
+  }
+  return sum;
+}
+
 // Messages that found the queue full, and messages after the file had failed.
-std::uint64_t Recording::missing() const noexcept {
-  return queue_.dropped_reports() + queue_.dropped_inputs() + unwritten_;
+std::uint64_t Recording::missing() const {
+  const auto [reports, inputs] = dropped();
+  return reports + inputs + unwritten_;
 }
 
 // Logs a failure once, and a slow disk once a second while messages are lost.
@@ -152,12 +224,11 @@ void Recording::watch() {
     if (!std::exchange(failure_logged_, true)) log_line(lines::kRecordingStopped, health_.state());
     return;
   }
-  const std::uint64_t dropped = queue_.dropped_reports() + queue_.dropped_inputs();
+  const auto [reports, inputs] = dropped();
   const std::int64_t now_ns = SystemClock().monotonic_ns();
-  if (dropped == dropped_logged_ || now_ns - logged_ns_ < kLogEveryNs) return;
-  log_line(lines::kDiskTooSlow, counted(queue_.dropped_reports(), "report"),
-           counted(queue_.dropped_inputs(), "batch", "batches"));
-  dropped_logged_ = dropped;
+  if (reports + inputs == dropped_logged_ || now_ns - logged_ns_ < kLogEveryNs) return;
+  log_line(lines::kDiskTooSlow, counted(reports, "report"), counted(inputs, "batch", "batches"));
+  dropped_logged_ = reports + inputs;
   logged_ns_ = now_ns;
 }
 

@@ -2,10 +2,15 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
+#include <deque>
 #include <filesystem>
+#include <memory>
+#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
+#include <utility>
 
 #include "config/cell/cell.hpp"
 #include "monitor/dds/pose_reader.hpp"
@@ -21,20 +26,30 @@ class RecordError : public std::runtime_error {
 };
 
 // Batches and reports go into the file in the order in which the ticks used and made them. So an
-// offline replay gives the same reports. A slow, full or missing disk never delays a tick or a
+// offline replay gives the same reports. Where the cell changes, its description stands in front of
+// its first report. A slow, full or missing disk never delays a tick or a
 // report. Messages that find the queue full or the file failed are missing: they are counted, log
 // and health name them, and complete() is false.
 class Recording {
  public:
   // Throws RecordError when the file cannot be made, is no regular file, or exists and may not be
   // overwritten.
-  Recording(const std::filesystem::path& file, const RecordingOptions& options, const Cell& cell,
-            const PoseReader& poses, RecordingHealth& health);
+  Recording(const std::filesystem::path& file, const RecordingOptions& options,
+            std::shared_ptr<const Cell> cell, const PoseReader& poses, RecordingHealth& health);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  [[nodiscard]] ReportSink& sink() noexcept { return queue_; }
+  // Of the first cell.
+  [[nodiscard]] ReportSink& sink() noexcept { return parts_.front()->queue; }
+  // The cell may change: returns the sink of the changed one. Null if the disk is so slow that the
+  // reports of kMostWaiting cells wait for it: the recording then ends with those. The preparing
+  // thread calls these three.
+  [[nodiscard]] ReportSink* prepare(std::shared_ptr<const Cell> cell);
+  // It has changed: what comes into that sink follows in the file. Does not wait for the disk.
+  void follow(const SceneInForce& since);
+  // It has not.
+  void abandon() { prepared_ = nullptr; }
   // Updates log and health with the faults since the last call. It is called regularly, by a thread
   // that may not wait.
   void watch();
@@ -50,19 +65,37 @@ class Recording {
   [[nodiscard]] std::string summary() const;
 
  private:
+  static constexpr std::size_t kMostWaiting = 4;
+
+  // The queue of one cell.
+  struct Part {
+    explicit Part(std::shared_ptr<const Cell> the_cell);
+    std::shared_ptr<const Cell> cell;
+    SceneInForce since;
+    ReportQueue queue;
+  };
+
   void run();
-  void record_all();
+  void record_all(Part& part);
+  [[nodiscard]] bool next_part();
+  void fail(const std::string& why);
+  void tell_of_missing_files() const;
+  [[nodiscard]] std::pair<std::uint64_t, std::uint64_t> dropped() const;
   void wait_for_the_disk() const;
   void count(std::uint64_t messages);
   void tell_of_new_files();
-  [[nodiscard]] std::uint64_t missing() const noexcept;
+  [[nodiscard]] std::uint64_t missing() const;
 
-  const Scene& scene_;
   std::string file_;         // the first one
   std::uint64_t files_ = 1;  // files that the log has named
   const PoseReader& poses_;
   RecordingHealth& health_;
-  ReportQueue queue_;
+  mutable std::mutex mutex_;  // guards the next two
+  // The first one is being recorded, and the loop writes to the last one.
+  std::deque<std::unique_ptr<Part>> parts_;
+  std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;  // by queues that are gone
+  std::unique_ptr<Part> prepared_;
+  std::atomic<bool> failing_{false};  // the first one to set it says why
   Recorder recorder_;
   std::atomic<std::uint64_t> steps_{0};      // messages given to the recorder
   std::atomic<std::uint64_t> unwritten_{0};  // reports and batches after an error

@@ -47,8 +47,10 @@ std::int64_t lease_ns(double rate_hz) noexcept {
   return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
 }
 
-ReportWriter::OfCell::OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon)
+ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
+                             ReportQueue& the_queue, std::uint64_t daemon)
     : cell(the_cell),
+      since(in_force),
       queue(the_queue),
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
@@ -73,10 +75,11 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       zones_(make_writer(participant, topics_, TopicKind::kZones)),
       health_(make_writer(participant, topics_, TopicKind::kHealth)),
       others_(participant, topics_.distances, identity_),
-      now_(std::make_unique<OfCell>(cell, queue, identity_.id)),
+      now_(std::make_unique<OfCell>(cell, SceneInForce(), queue, identity_.id)),
       zone_log_(cell.scene),
       health_log_(cell.scene),
-      queue_(&queue) {
+      queue_(&queue),
+      written_(&queue) {
   open_topics(cell.scene);
   check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
   thread_ = std::thread([this] { run(); });
@@ -90,24 +93,21 @@ void ReportWriter::finish() {
   {
     const std::lock_guard lock(mutex_);
     queue_->close();
-    if (next_.second != nullptr) next_.second->close();
   }
   thread_.join();
 }
 
-void ReportWriter::continue_with(const Cell& cell, ReportQueue& queue) {
+void ReportWriter::continue_with(const Cell& cell, const SceneInForce& since, ReportQueue& queue) {
+  auto next = std::make_unique<OfCell>(cell, since, queue, identity_.id);
   const std::lock_guard lock(mutex_);
-  next_ = {&cell, &queue};
-}
-
-void ReportWriter::stay() {
-  const std::lock_guard lock(mutex_);
-  next_ = {nullptr, nullptr};
+  next_ = std::move(next);
+  queue_->close();
+  queue_ = &queue;
 }
 
 bool ReportWriter::is_to_continue() const {
   const std::lock_guard lock(mutex_);
-  return next_.first != nullptr;
+  return queue_ != written_;
 }
 
 // Topics that only some cells need.
@@ -129,7 +129,7 @@ std::uint32_t ReportWriter::distance_readers() const {
 }
 
 Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
-  auto catalogue = make_catalogue(now_->cell);
+  auto catalogue = make_catalogue(now_->cell, now_->since);
   catalogue->daemon = identity_.id;
   return catalogue;
 }
@@ -170,14 +170,13 @@ void ReportWriter::write_all() {
 // Returns false if no other cell follows. Zones of the same name are as they were. Their ids may be
 // others, so all states are written again, and those of ids that are gone are withdrawn.
 bool ReportWriter::change() {
-  std::pair<const Cell*, ReportQueue*> next;
+  std::unique_ptr<OfCell> changed;
   {
     const std::lock_guard lock(mutex_);
-    next = next_;
+    changed = std::move(next_);
   }
-  if (next.first == nullptr) return false;
-  const std::vector<Zone>& zones = next.first->scene.zones;
-  auto changed = std::make_unique<OfCell>(*next.first, *next.second, identity_.id);
+  if (changed == nullptr) return false;
+  const std::vector<Zone>& zones = changed->cell.scene.zones;
   for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
     const auto same = std::ranges::find(zones, now_->cell.scene.zones[zone].name, &Zone::name);
     if (same != zones.end()) {
@@ -190,9 +189,10 @@ bool ReportWriter::change() {
     gone.zone = zone;
     if (zone >= zones.size()) dds_dispose(zones_, &gone);
   }
-  if (!next.first->scene.contacts.empty())
+  if (!changed->cell.scene.contacts.empty()) {
     changed->contact_log.take_over(now_->contact_log,
-                                   scene_map(now_->cell.scene, next.first->scene));
+                                   scene_map(now_->cell.scene, changed->cell.scene));
+  }
   dropped_before_ += now_->queue.dropped_reports();
   now_ = std::move(changed);
   zone_log_.change(now_->cell.scene);
@@ -201,8 +201,7 @@ bool ReportWriter::change() {
   write_zones_again_ = true;
   write(catalogue_, &*own_catalogue(), "catalogue");
   const std::lock_guard lock(mutex_);
-  queue_ = &now_->queue;
-  next_ = {nullptr, nullptr};
+  written_ = &now_->queue;
   return true;
 }
 

@@ -7,7 +7,6 @@
 #include <memory>
 #include <mutex>
 #include <thread>
-#include <utility>
 
 #include "config/cell/cell.hpp"
 #include "monitor/dds/contact_log.hpp"
@@ -17,6 +16,7 @@
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/zone_log.hpp"
+#include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -38,12 +38,10 @@ class ReportWriter {
                const PoseReader& poses, const RecordingHealth& recording);
   ~ReportWriter();  // finishes
 
-  // The cell will change: once the present queue is closed and empty, the catalogue of this cell
+  // The cell has changed: closes the present queue. Once that is empty, the catalogue of this cell
   // and the reports of this queue follow. Both must outlive this. The topics have the same names.
-  void continue_with(const Cell& cell, ReportQueue& queue);
-  // It will not change after all.
-  void stay();
-  // True while the present queue is not empty yet after continue_with().
+  void continue_with(const Cell& cell, const SceneInForce& since, ReportQueue& queue);
+  // True while the queue before is not empty yet after continue_with().
   [[nodiscard]] bool is_to_continue() const;
 
   // After the last tick: writes the queue.
@@ -61,6 +59,7 @@ class ReportWriter {
   // The parts that a change of the cell replaces, and the queue of the cell's reports.
   struct OfCell {
     const Cell& cell;
+    SceneInForce since;
     ReportQueue& queue;
     Sample<clearance_msg_Distances> distances;
     Sample<clearance_msg_Separation> separation;
@@ -68,7 +67,8 @@ class ReportWriter {
     WrittenZones written_zones;
     ContactLog contact_log;
 
-    OfCell(const Cell& the_cell, ReportQueue& the_queue, std::uint64_t daemon);
+    OfCell(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
+           std::uint64_t daemon);
   };
 
   void run();
@@ -98,9 +98,10 @@ class ReportWriter {
   bool write_zones_again_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
-  mutable std::mutex mutex_;  // guards `next_`, and `queue_` where another thread reads it
-  std::pair<const Cell*, ReportQueue*> next_{nullptr, nullptr};
-  ReportQueue* queue_;  // that of `now_`
+  mutable std::mutex mutex_;      // guards the next three
+  std::unique_ptr<OfCell> next_;  // null: no other cell follows
+  ReportQueue* queue_;            // the last one
+  const ReportQueue* written_;    // the one that is being written
   std::thread thread_;
 };
 

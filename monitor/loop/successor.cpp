@@ -52,13 +52,8 @@ template <class Sample>
 void Successor::take(SpscRing<Sample>& ring, std::size_t count, std::span<const std::uint32_t> now,
                      std::uint32_t Sample::*input, std::vector<Sample>& taken) noexcept {
   taken.clear();
-  for (; count > 0; --count) {
-    Sample sample = *ring.front();
-    ring.pop();
-    const std::uint32_t before = sample.*input;
-    sample.*input = before < now.size() ? now[before] : SceneMap::kNone;
-    if (sample.*input != SceneMap::kNone) taken.push_back(sample);
-  }
+  for (; count > 0; --count, ring.pop()) taken.push_back(*ring.front());
+  keep_mapped(now, input, 0, taken);
 }
 
 std::size_t Successor::catch_up() noexcept {
@@ -77,12 +72,12 @@ std::size_t Successor::catch_up() noexcept {
 }
 
 void Successor::succeed(std::unique_ptr<Monitor>& monitor, LoopStatistics& statistics,
-                        std::vector<ReportSink*>& sinks, SceneMap& map) noexcept {
+                        std::vector<ReportSink*>& sinks, SceneIds& ids) noexcept {
   statistics_.continue_from(statistics);
   std::swap(statistics_, statistics);
   std::swap(monitor_, monitor);
   std::swap(sinks_, sinks);
-  std::swap(map_, map);
+  ids.change(scene_.revision, map_);
   in_force_from_ = monitor->cycle() + 1;
   state_.store(State::kSucceeded, std::memory_order_release);
 }

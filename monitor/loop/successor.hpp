@@ -20,7 +20,8 @@
 #include <vector>
 
 #include "config/scene/scene_map.hpp"
-#include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/scene_ids.hpp"
+#include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
@@ -59,6 +60,9 @@ class Successor {
   // The cycle after which it took over, and the first one that it reports. 0: not yet.
   [[nodiscard]] std::uint64_t began_after() const noexcept { return began_after_.load(); }
   [[nodiscard]] std::uint64_t in_force_from() const noexcept { return in_force_from_.load(); }
+  [[nodiscard]] SceneInForce in_force() const noexcept {
+    return {.began_after = began_after(), .from = in_force_from()};
+  }
 
   // The preparing thread: runs the ticks that wait. Returns their number.
   std::size_t catch_up() noexcept;
@@ -76,7 +80,7 @@ class Successor {
   }
   // What the loop ticks and gives away from now on, exchanged for what it did so before.
   void succeed(std::unique_ptr<Monitor>& monitor, LoopStatistics& statistics,
-               std::vector<ReportSink*>& sinks, SceneMap& map) noexcept;
+               std::vector<ReportSink*>& sinks, SceneIds& ids) noexcept;
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
 

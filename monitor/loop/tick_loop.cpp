@@ -6,35 +6,13 @@
 #include <cmath>
 
 namespace clearance {
-namespace {
-
-// Gives the samples from `first` on the ids of the changed scene, and drops those that it has not.
-template <class Sample>
-void keep_mapped(std::span<const std::uint32_t> now, std::uint32_t Sample::*input,
-                 std::size_t first, std::vector<Sample>& samples) noexcept {
-  std::size_t kept = first;
-  for (std::size_t i = first; i < samples.size(); ++i) {
-    const std::uint32_t before = samples[i].*input;
-    if (before >= now.size() || now[before] == SceneMap::kNone) continue;
-    samples[kept] = samples[i];
-    samples[kept++].*input = now[before];
-  }
-  samples.resize(kept);
-}
-
-// `ids` lead to ids of the scene before the last change, and lead to those of the changed one then.
-void pass_on(std::span<const std::uint32_t> now, std::vector<std::uint32_t>& ids) noexcept {
-  for (std::uint32_t& id : ids) id = id < now.size() ? now[id] : SceneMap::kNone;
-}
-
-}  // namespace
 
 // All memory of the tick is sized here: the loop itself allocates nothing.
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
     : scene_(&scene),
       monitor_(std::make_unique<Monitor>(scene)),
-      sources_(scene),
+      ids_(scene),
       source_(source),
       sinks_(std::move(sinks)),
       clock_(clock),
@@ -127,7 +105,7 @@ void TickLoop::follow_offer() noexcept {
   Successor* const next = offered_.load(std::memory_order_acquire);
   if (next == nullptr) return;
   if (next->state() == Successor::State::kOffered) {
-    next->begin(*monitor_, sources_);
+    next->begin(*monitor_, ids_.sources());
   } else if (next->has_caught_up(monitor_->cycle())) {
     change_scene(*next);
   }
@@ -135,33 +113,9 @@ void TickLoop::follow_offer() noexcept {
     offered_.store(nullptr, std::memory_order_release);
 }
 
-// The ids of all former scenes are passed on to those of the changed one.
 void TickLoop::change_scene(Successor& successor) noexcept {
-  Former& last = former_slot(scene_->revision);
-  last.revision = scene_->revision;
   scene_ = &successor.scene();
-  successor.succeed(monitor_, statistics_, sinks_, last.map);
-  for (Former& scene : former_) {
-    if (&scene == &last) continue;
-    pass_on(last.map.objects_now, scene.map.objects_now);
-    pass_on(last.map.variables_now, scene.map.variables_now);
-  }
-}
-
-// A scene that was in force before keeps its place, so that attaching and detaching again and again
-// does not displace the scene whose ids senders have.
-TickLoop::Former& TickLoop::former_slot(std::uint64_t revision) noexcept {
-  for (std::size_t i = 0; i < std::min(former_count_, kFormerScenes); ++i) {
-    if (former_[i].revision == revision) return former_[i];
-  }
-  return former_[former_count_++ % kFormerScenes];
-}
-
-const TickLoop::Former* TickLoop::former(std::uint64_t revision) const noexcept {
-  for (std::size_t i = 0; i < std::min(former_count_, kFormerScenes); ++i) {
-    if (former_[i].revision == revision) return &former_[i];
-  }
-  return nullptr;
+  successor.succeed(monitor_, statistics_, sinks_, ids_);
 }
 
 // Batches are used whole: a batch that does not fit waits for the next tick.
@@ -179,25 +133,12 @@ void TickLoop::take_in() noexcept {
   }
 }
 
-// Poses for another scene have ids of other objects. Those of former scenes are passed on, and all
-// others are counted and not used.
+// Poses for another scene have ids of other objects, so they are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
-  if (batch.scene_revision == 0 ? former_count_ == 0 : batch.scene_revision == scene_->revision) {
-    if (!batch.empty()) sources_.append(batch, samples_, joints_);
-  } else if (const Former* const scene = former(batch.scene_revision)) {
-    if (!batch.empty()) use_former(*scene, batch);
-  } else {
-    for (const PoseSample& sample : batch.samples)
-      monitor_->refuse(sample.object, Reject::kWrongRevision);
-  }
-}
-
-void TickLoop::use_former(const Former& scene, const PoseBatch& batch) noexcept {
-  const std::size_t poses = samples_.size(), joints = joints_.size();
-  sources_.append(batch, samples_, joints_);
-  keep_mapped(scene.map.objects_now, &PoseSample::object, poses, samples_);
-  keep_mapped(scene.map.variables_now, &JointSample::variable, joints, joints_);
+  if (ids_.append(batch, samples_, joints_)) return;
+  for (const PoseSample& sample : batch.samples)
+    monitor_->refuse(sample.object, Reject::kWrongRevision);
 }
 
 // The report names the last batch of each source; this makes a replay exact.
@@ -228,7 +169,7 @@ void TickLoop::hand_over_statistics() noexcept {
     statistics_.rejected_joints[variable] = monitor_->rejected_joints(variable);
     statistics_.joint_ages[variable] = monitor_->joint_age(variable);
   }
-  for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = sources_.name(i);
+  for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = ids_.sources().name(i);
   statistics_.clock_steps = time_.steps();
   for (ReportSink* sink : sinks_) sink->statistics(statistics_);
   statistics_.tick_second_max_ns = 0;

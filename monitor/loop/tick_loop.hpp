@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/scene_ids.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/pose_question.hpp"
 #include "monitor/loop/steady_time.hpp"
@@ -29,18 +29,14 @@ struct TickLoopOptions {
 // and counted, so that the loop returns to its grid. Cycle numbers count ticks and have no gaps.
 class TickLoop {
  public:
-  static constexpr std::size_t kFormerScenes = 8;
-
   // Allocates all memory of the loop. Everything given must outlive the loop.
   TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks, Clock& clock,
            const TickLoopOptions& options = {});
 
   // Any one thread: offers the monitor of a changed scene. The loop begins with it before its next
-  // tick, and ticks it as soon as it has caught up. From then on, batches for the last
-  // kFormerScenes scenes are still used where the changed scene has the objects. Those that state
-  // no revision are refused: they do not say which scene's ids they have. Returns false while
-  // another one is under way. The successor must live until the next one has succeeded, or the loop
-  // has ended.
+  // tick, and ticks it as soon as it has caught up. From then on, SceneIds decides which batches of
+  // former scenes are still used. Returns false while another one is under way. The successor must
+  // live until the next one has succeeded, or the loop has ended.
   bool offer(Successor& successor) noexcept;
   // True while an offer is under way.
   [[nodiscard]] bool busy() const noexcept {
@@ -64,16 +60,12 @@ class TickLoop {
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
-  struct Former;
   void follow_offer() noexcept;
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
-  void use_former(const Former& scene, const PoseBatch& batch) noexcept;
-  [[nodiscard]] Former& former_slot(std::uint64_t revision) noexcept;
-  [[nodiscard]] const Former* former(std::uint64_t revision) const noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_statistics() noexcept;
@@ -83,15 +75,7 @@ class TickLoop {
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
   std::atomic<PoseQuestion*> asked_{nullptr};
-  // How the ids of former scenes are passed on. When there are more than these, a new one takes the
-  // place of the one that has been there longest.
-  struct Former {
-    std::uint64_t revision = 0;
-    SceneMap map = {};
-  };
-  std::array<Former, kFormerScenes> former_;
-  std::size_t former_count_ = 0;  // of scenes with another revision, those that are lost included
-  SourceNumbers sources_;
+  SceneIds ids_;
   SteadyTime time_;
   PoseSource& source_;
   std::vector<ReportSink*> sinks_;

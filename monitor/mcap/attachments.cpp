@@ -4,10 +4,9 @@
 
 #include <array>
 #include <cstring>
-#include <optional>
+#include <utility>
 
 #include "monitor/mcap/file.hpp"
-#include "monitor/mcap/format.hpp"
 #include "monitor/mcap/reader.hpp"
 
 namespace clearance {
@@ -29,35 +28,70 @@ std::optional<McapAttachment> attachment_of(std::span<const std::byte> body) {
   return attachment;
 }
 
+struct Record {
+  McapKind kind;
+  std::uint64_t offset;         // of its header
+  std::uint64_t begin, length;  // of its body
+};
+
+// Visits the records outside chunks, by their headers, until `visit` returns false or the data end.
+template <class Visit>
+void for_each_record(McapFile& file, const Visit& visit) {
+  std::uint64_t offset = kMcapMagic.size();
+  for (std::array<std::byte, kMcapRecordHeader> header; file.open() && file.read(offset, header);) {
+    Record record{static_cast<McapKind>(header[0]), offset, offset + header.size(), 0};
+    std::memcpy(&record.length, &header[1], sizeof record.length);
+    // Cut off: the reader of messages says so.
+    if (record.length > file.size() - record.begin) return;
+    if (record.kind == McapKind::kDataEnd || !visit(record)) return;
+    offset = record.begin + record.length;
+  }
+}
+
+bool read_body(McapFile& file, const Record& record, std::vector<std::byte>& body) {
+  if (record.length > kLargestMcapRecord) return false;
+  body.resize(static_cast<std::size_t>(record.length));
+  return file.read(record.begin, body);
+}
+
 }  // namespace
 
-McapAttachments read_first_attachments(const std::filesystem::path& path) {
+McapAttachments read_attachments(const std::filesystem::path& path,
+                                 std::optional<std::uint64_t> before) {
   McapAttachments result;
   McapFile file(path);
-  std::uint64_t offset = kMcapMagic.size();
   std::vector<std::byte> body;
-  for (std::array<std::byte, kMcapRecordHeader> header; file.open() && file.read(offset, header);) {
-    const auto kind = static_cast<McapKind>(header[0]);
-    if (kind == McapKind::kChunk || kind == McapKind::kMessage || kind == McapKind::kDataEnd) break;
-    std::uint64_t length = 0;
-    std::memcpy(&length, &header[1], sizeof length);
-    const std::uint64_t begin = offset + header.size();
-    if (length > file.size() - begin) break;  // cut off: the reader of messages says so
-    offset = begin + length;
-    if (kind != McapKind::kAttachment) continue;
+  for_each_record(file, [&](const Record& record) {
+    const bool of_messages = record.kind == McapKind::kChunk || record.kind == McapKind::kMessage;
+    if (before ? record.offset >= *before : of_messages) return false;
+    if (record.kind != McapKind::kAttachment) return true;
     std::optional<McapAttachment> found;
-    if (length <= kLargestMcapRecord) {
-      body.resize(static_cast<std::size_t>(length));
-      if (file.read(begin, body)) found = attachment_of(body);
-    }
+    if (read_body(file, record, body)) found = attachment_of(body);
     if (!found) {
       result.error = fmt::format("{}: the attachment at byte {} is damaged or too large",
-                                 path.string(), begin - header.size());
-      break;
+                                 path.string(), record.offset);
+      return false;
     }
     result.found.push_back(std::move(*found));
-  }
+    return true;
+  });
   return result;
+}
+
+std::vector<McapMetadata> read_metadata(const std::filesystem::path& path) {
+  std::vector<McapMetadata> all;
+  McapFile file(path);
+  std::vector<std::byte> body;
+  for_each_record(file, [&](const Record& record) {
+    if (record.kind != McapKind::kMetadata) return true;
+    if (!read_body(file, record, body)) return false;
+    McapFields fields(body);
+    McapMetadata metadata{.offset = record.offset, .name = fields.get_text(), .values = {}};
+    metadata.values = fields.get_map();
+    if (fields.ok()) all.push_back(std::move(metadata));
+    return fields.ok();
+  });
+  return all;
 }
 
 }  // namespace clearance

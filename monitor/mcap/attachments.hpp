@@ -1,10 +1,14 @@
-// The files that stand in front of the messages of an MCAP file.
+// What an MCAP file has beside its messages: whole files, and named sets of texts.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
+
+#include "monitor/mcap/format.hpp"
 
 namespace clearance {
 
@@ -19,7 +23,20 @@ struct McapAttachments {
   std::string error;  // not empty: one is damaged or too large; those before it are found
 };
 
-// Up to the first chunk, message, or end of the data, as McapWriter puts them there.
-[[nodiscard]] McapAttachments read_first_attachments(const std::filesystem::path& file);
+// In file order, those that stand in front of this byte of the file. Without one: up to the first
+// chunk, message, or end of the data, as McapWriter puts them there.
+[[nodiscard]] McapAttachments read_attachments(const std::filesystem::path& file,
+                                               std::optional<std::uint64_t> before = {});
+
+// Record 0x0c.
+struct McapMetadata {
+  std::uint64_t offset = 0;  // of the record in the file
+  std::string name;
+  McapMap values;
+};
+
+// In file order, up to the end of the data or a damage, which the reader of messages reports. Reads
+// no chunk, so that a large file takes little time.
+[[nodiscard]] std::vector<McapMetadata> read_metadata(const std::filesystem::path& file);
 
 }  // namespace clearance

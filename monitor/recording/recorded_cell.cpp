@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <fstream>
 #include <string>
 #include <system_error>
@@ -12,6 +13,7 @@
 #include "monitor/files/temporary_folder.hpp"
 #include "monitor/mcap/attachments.hpp"
 #include "monitor/mcap/compression.hpp"
+#include "monitor/recording/writer.hpp"
 
 namespace clearance {
 namespace {
@@ -52,15 +54,13 @@ CellResult failed(const std::filesystem::path& recording, const std::string& why
                    recording.string(), why)}};
 }
 
-}  // namespace
-
-std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
-                                        const RecordingOutline& outline, CellOptions options) {
-  const char* const yaml = outline.catalogue ? (*outline.catalogue)->cell_yaml : nullptr;
-  if (yaml == nullptr || *yaml == '\0') return std::nullopt;
-  if (outline.cell_file.empty()) return parse_cell(yaml, recording, options);
-  if (!stays_inside(outline.cell_file)) return failed(recording, leads_out(outline.cell_file));
-  McapAttachments attachments = read_first_attachments(recording);
+// `before`: as of read_attachments().
+CellResult read_recorded(const std::filesystem::path& recording, const std::string& yaml,
+                         const std::string& cell_file, std::optional<std::uint64_t> before,
+                         CellOptions options) {
+  if (cell_file.empty()) return parse_cell(yaml, recording, options);
+  if (!stays_inside(cell_file)) return failed(recording, leads_out(cell_file));
+  McapAttachments attachments = read_attachments(recording, before);
   if (!attachments.error.empty()) return failed(recording, attachments.error);
   const TemporaryFolder folder;
   if (!folder.error().empty()) return failed(recording, folder.error());
@@ -70,9 +70,59 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
     if (!put_under(folder.path(), std::move(attachment)))
       return failed(recording, fmt::format("'{}' cannot be written", name));
   }
-  const std::filesystem::path cell(outline.cell_file);
   options.root = folder.path();
-  return parse_cell(yaml, folder.path() / cell.relative_path(), options);
+  return parse_cell(yaml, folder.path() / std::filesystem::path(cell_file).relative_path(),
+                    options);
+}
+
+// The number of a key; 0: there is none.
+std::uint64_t number_of(const McapMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  std::uint64_t number = 0;
+  if (found != values.end())
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+  return number;
+}
+
+}  // namespace
+
+std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
+                                        const RecordingOutline& outline, CellOptions options) {
+  const char* const yaml = outline.catalogue ? (*outline.catalogue)->cell_yaml : nullptr;
+  if (yaml == nullptr || *yaml == '\0') return std::nullopt;
+  return read_recorded(recording, yaml, outline.cell_file, std::nullopt, std::move(options));
+}
+
+std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::path>& files) {
+  std::vector<DescribedScene> all;
+  for (const std::filesystem::path& file : files) {
+    for (const McapMetadata& found : read_metadata(file)) {
+      if (found.name != kRecordingMetadata) continue;
+      const auto text = [&found](const std::string& key) {
+        const auto value = found.values.find(key);
+        return value == found.values.end() ? std::string() : value->second;
+      };
+      DescribedScene scene{.daemon = number_of(found.values, "daemon"),
+                           .revision = number_of(found.values, "scene_revision"),
+                           .since = {.began_after = number_of(found.values, "began_after"),
+                                     .from = number_of(found.values, "in_force_from")},
+                           .yaml = text("cell"),
+                           .cell_file = text("cell_file"),
+                           .recording = file,
+                           .place = found.offset};
+      std::erase_if(all, [&scene](const DescribedScene& before) {
+        return before.daemon == scene.daemon && before.revision == scene.revision &&
+               before.since == scene.since;
+      });
+      all.push_back(std::move(scene));
+    }
+  }
+  return all;
+}
+
+CellResult cell_of(const DescribedScene& described, CellOptions options) {
+  return read_recorded(described.recording, described.yaml, described.cell_file, described.place,
+                       std::move(options));
 }
 
 }  // namespace clearance

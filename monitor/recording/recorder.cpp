@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "monitor/files/build_info.hpp"
+#include "monitor/inputs/scene_ids.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -23,20 +24,46 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
 
 }  // namespace
 
+Recorder::OfScene::OfScene(const Scene& the_scene)
+    : scene(the_scene),
+      distances(make_distances(scene)),
+      separation(make_separation(scene)),
+      gradients(scene),
+      zones(scene.zones.size()) {}
+
 // The catalogue comes first: it names the ids that every message after it uses.
 Recorder::Recorder(const std::filesystem::path& file, const Cell& cell, std::int64_t now_ns,
                    const RecordingOptions& options)
-    : scene_(cell.scene),
-      options_(options),
+    : options_(options),
       writer_(file, cell.topics, options),
       without_files_(writer_.attach(cell)),
       batch_(make_batch(clearance_msg_kMaxPoses)),
-      distances_(make_distances(cell.scene)),
-      separation_(make_separation(cell.scene)),
-      gradients_(cell.scene),
-      zones_(cell.scene.zones.size()),
+      now_(std::make_unique<OfScene>(cell.scene)),
       last_ns_(now_ns) {
+  note_joint_names(cell.scene);
   writer_.catalogue(*make_catalogue(cell), now_ns, kBuild);
+}
+
+// The state of every zone follows with the next report, since its id may be another one.
+void Recorder::change(const Cell& cell, const SceneInForce& since) {
+  without_files_ = writer_.attach(cell);
+  writer_.catalogue(*make_catalogue(cell, since), last_ns_, kBuild);
+  now_ = std::make_unique<OfScene>(cell.scene);
+  note_joint_names(cell.scene);
+}
+
+void Recorder::note_joint_names(const Scene& scene) {
+  JointNamesOf& now = joint_names_.emplace_back();
+  now.revision = scene.revision;
+  for (const JointVariable& variable : scene.variables) now.names.push_back(variable.name);
+  if (joint_names_.size() > SceneIds::kFormerScenes + 1) joint_names_.pop_front();
+}
+
+// The latest scene of a revision. A batch without one has the ids of the present scene.
+std::span<const std::string> Recorder::joint_names(std::uint64_t revision) const {
+  const auto found = std::ranges::find(joint_names_.rbegin(), joint_names_.rend(), revision,
+                                       &JointNamesOf::revision);
+  return found == joint_names_.rend() ? joint_names_.back().names : found->names;
 }
 
 // Encoded now, written with the report that names it: only then is it known that a tick used it.
@@ -44,7 +71,8 @@ void Recorder::poses(const PoseBatch& batch) {
   const bool of_joints = !batch.joints.empty();
   if (!of_joints) to_wire(batch, *batch_);
   const std::span<const std::byte> cdr =
-      of_joints ? encoder_.encode(*make_joint_states(batch, scene_)) : encoder_.encode(*batch_);
+      of_joints ? encoder_.encode(*make_joint_states(batch, joint_names(batch.scene_revision)))
+                : encoder_.encode(*batch_);
   waiting_.push_back({of_joints ? TopicKind::kJointStates : TopicKind::kPoses, batch.source,
                       batch.sequence_number, stamp_of(batch, last_ns_),
                       std::vector<std::byte>(cdr.begin(), cdr.end())});
@@ -58,16 +86,16 @@ void Recorder::report(const Report& report, std::span<const SourceUse> sources,
   write_used(sources, report.now_ns);
   if (!report.separated_zones.empty()) write_separation(report, publish_ns);
   if (writer_.holds(TopicKind::kDistances)) {
-    to_wire(report, sources, publish_ns, *distances_);
-    if (!keeps_pairs(options_, report.cycle)) distances_->pairs._length = 0;
-    writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *distances_);
+    to_wire(report, sources, publish_ns, *now_->distances);
+    if (!keeps_pairs(options_, report.cycle)) now_->distances->pairs._length = 0;
+    writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *now_->distances);
   }
-  if (scene_.gradients && keeps_pairs(options_, report.cycle)) {
+  if (now_->scene.gradients && keeps_pairs(options_, report.cycle)) {
     writer_.write(TopicKind::kGradients, report.now_ns, report.now_ns,
-                  gradients_.of(report, publish_ns));
+                  now_->gradients.of(report, publish_ns));
   }
   write_zones(report);
-  if (writer_.roll(report.now_ns)) zones_ = WrittenZones(scene_.zones.size());
+  if (writer_.roll(report.now_ns)) now_->zones = WrittenZones(now_->scene.zones.size());
 }
 
 // Batches may already wait that belong to later ticks: all up to the last one that this tick names.
@@ -95,19 +123,19 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
 // thinned out like them.
 void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
   if (!writer_.holds(TopicKind::kSeparation)) return;
-  to_wire(report, publish_ns, *separation_);
-  if (!keeps_pairs(options_, report.cycle)) separation_->pairs._length = 0;
-  writer_.write(TopicKind::kSeparation, report.now_ns, report.now_ns, *separation_);
+  to_wire(report, publish_ns, *now_->separation);
+  if (!keeps_pairs(options_, report.cycle)) now_->separation->pairs._length = 0;
+  writer_.write(TopicKind::kSeparation, report.now_ns, report.now_ns, *now_->separation);
 }
 
 // Writes each zone at the start, then its changes, as the daemon does on DDS.
 void Recorder::write_zones(const Report& report) {
-  for (std::uint32_t zone = 0; zone < scene_.zones.size(); ++zone) {
+  for (std::uint32_t zone = 0; zone < now_->scene.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    if (zones_.is(zone, active)) continue;
-    zones_.set(zone, active);
+    if (now_->zones.is(zone, active)) continue;
+    now_->zones.set(zone, active);
     clearance_msg_ZoneState state{};
-    to_wire(scene_, report, zone, state);
+    to_wire(now_->scene, report, zone, state);
     writer_.write(TopicKind::kZones, report.now_ns, report.now_ns, state);
   }
 }

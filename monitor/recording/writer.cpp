@@ -4,12 +4,14 @@
 
 #include <fmt/format.h>
 
-#include "config/text/file_bytes.hpp"
+#include <algorithm>
+#include <utility>
+
+#include "config/scene/revision.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 
 namespace clearance {
-
 RecordingWriter::RecordingWriter(const std::filesystem::path& file, const Topics& topics,
                                  const RecordingOptions& options)
     : file_(file), topics_(topics), options_(options) {
@@ -37,23 +39,27 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
   return mcap_->add_channel(schema, topic, kCdrEncoding);
 }
 
-// By their absolute paths; compressed where that makes them smaller.
+// By their absolute paths; compressed where that makes them smaller. A file that was kept for the
+// cell before is not compressed again.
 std::string RecordingWriter::attach(const Cell& cell) {
+  const std::vector<Attached> before = std::exchange(attached_, {});
+  cell_file_.clear();
   if (cell.files.empty() || options_.attach_bytes == 0) return {};
   std::vector<Attached> all;
+  std::vector<bool> is_new;
   std::uint64_t total = 0;
   for (const std::filesystem::path& file : cell.files) {
     const auto read = read_bytes(file.string());
     if (const auto* fault = std::get_if<FileFault>(&read)) return fault->reason;
-    const auto bytes = std::as_bytes(std::span(std::get<std::string>(read)));
-    Attached& one = all.emplace_back(file.string(), "application/octet-stream");
-    if (options_.compress) compress_zstd(bytes, one.bytes);
-    if (one.bytes.empty()) {
-      one.bytes.assign(bytes.begin(), bytes.end());
-    } else {
-      one.media_type = kZstdMediaType;
-    }
-    total += one.bytes.size();
+    const std::string& text = std::get<std::string>(read);
+    Revision revision;
+    revision.add(text);
+    const auto same = std::ranges::find_if(before, [&](const Attached& one) {
+      return one.name == file.string() && one.revision == revision.value();
+    });
+    is_new.push_back(same == before.end());
+    all.push_back(is_new.back() ? attached(file.string(), text, revision.value()) : *same);
+    total += all.back().bytes.size();
     if (total > options_.attach_bytes) {
       return fmt::format("they are more than {:.1f} MB",
                          1e-6 * static_cast<double>(options_.attach_bytes));
@@ -61,14 +67,37 @@ std::string RecordingWriter::attach(const Cell& cell) {
   }
   attached_ = std::move(all);
   cell_file_ = cell.file.string();
-  write_attachments();
+  for (std::size_t i = 0; i < attached_.size(); ++i) {
+    if (is_new[i]) write_attachment(attached_[i]);
+  }
   return {};
 }
 
-void RecordingWriter::write_attachments() {
+RecordingWriter::Attached RecordingWriter::attached(const std::string& name,
+                                                    const std::string& text,
+                                                    std::uint64_t revision) const {
+  Attached one{name, "application/octet-stream", {}, revision};
+  const auto bytes = std::as_bytes(std::span(text));
+  if (options_.compress) compress_zstd(bytes, one.bytes);
+  if (one.bytes.empty()) {
+    one.bytes.assign(bytes.begin(), bytes.end());
+  } else {
+    one.media_type = kZstdMediaType;
+  }
+  return one;
+}
+
+void RecordingWriter::write_attachment(const Attached& file) {
+  end_chunk();
   const std::uint64_t before = mcap_->bytes();
-  for (const Attached& file : attached_) mcap_->attachment(file.name, file.media_type, file.bytes);
-  attached_bytes_ = mcap_->bytes() - before;
+  mcap_->attachment(file.name, file.media_type, file.bytes);
+  attached_bytes_ += mcap_->bytes() - before;
+}
+
+// Attachments and metadata go to the file at once, and messages with their chunk. This keeps their
+// order.
+void RecordingWriter::end_chunk() {
+  if (mcap_->messages() > 0) mcap_->flush();
 }
 
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.
@@ -81,6 +110,12 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
   if (!cell_file_.empty()) about_["cell_file"] = cell_file_;
   if (options_.pairs_every > 1) about_["pairs_every"] = std::to_string(options_.pairs_every);
   if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
+  if (catalogue.daemon != 0) about_["daemon"] = std::to_string(catalogue.daemon);
+  if (catalogue.in_force_from != 0) {
+    about_["began_after"] = std::to_string(catalogue.began_after);
+    about_["in_force_from"] = std::to_string(catalogue.in_force_from);
+  }
+  end_chunk();
   mcap_->metadata(kRecordingMetadata, about_);
 }
 
@@ -121,7 +156,8 @@ bool RecordingWriter::roll(std::int64_t log_ns) {
   began_ns_.reset();
   ++part_;
   open();
-  write_attachments();
+  attached_bytes_ = 0;
+  for (const Attached& file : attached_) write_attachment(file);
   if (!about_.empty()) {
     about_["part"] = std::to_string(part_);
     mcap_->metadata(kRecordingMetadata, about_);

@@ -23,7 +23,9 @@ namespace clearance {
 // text). Further keys stand only where they are known or needed. `build` is the build that made the
 // reports (monitor/files/build_info.hpp). `part` counts the files of one recording, from 1.
 // `pairs_every` stands where it is not 1. `cell_file` is the path of the cell, in a recording with
-// the files that it names (recorded_cell.hpp).
+// the files that it names (recorded_cell.hpp). `daemon` is the number of the daemon's run, in a
+// recording from DDS. `began_after` and `in_force_from` stand where the scene followed another one
+// (SceneInForce). The record is repeated for each scene, in front of its first report.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Errors are kept, as in McapWriter. Only one thread may use it at a time.
@@ -33,8 +35,9 @@ class RecordingWriter {
                   const RecordingOptions& options = {});
 
   // Keeps the files that the cell was read from, in this file and every one after it, in front of
-  // its description. If they are not kept, returns the reason: they are too large (attach_bytes),
-  // or one cannot be read. A recording without them is whole, but replays need the files.
+  // its description. Those that this file has already are not repeated. If they are not kept,
+  // returns the reason: they are too large (attach_bytes), or one cannot be read. A recording
+  // without them is whole, but replays need the files.
   [[nodiscard]] std::string attach(const Cell& cell);
 
   // The catalogue maps ids to names and is also kept as metadata. It belongs in front of all
@@ -84,8 +87,17 @@ class RecordingWriter {
   [[nodiscard]] std::uint64_t part() const noexcept { return part_; }
 
  private:
+  struct Attached {
+    std::string name, media_type;
+    std::vector<std::byte> bytes;
+    std::uint64_t revision = 0;  // of what it holds, not compressed
+  };
+
   void open();
-  void write_attachments();
+  [[nodiscard]] Attached attached(const std::string& name, const std::string& text,
+                                  std::uint64_t revision) const;
+  void write_attachment(const Attached& file);
+  void end_chunk();
   [[nodiscard]] bool is_due(std::int64_t log_ns) const noexcept;
 
   std::filesystem::path file_;
@@ -98,12 +110,8 @@ class RecordingWriter {
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file
   std::uint64_t messages_before_ = 0, bytes_before_ = 0;
-  struct Attached {
-    std::string name, media_type;
-    std::vector<std::byte> bytes;
-  };
-  std::vector<Attached> attached_;
-  std::uint64_t attached_bytes_ = 0;                 // of one file
+  std::vector<Attached> attached_;                   // the files of the last cell
+  std::uint64_t attached_bytes_ = 0;                 // in this file
   std::string cell_file_;                            // where the cell stood; empty: not known
   McapMap about_;                                    // the last description
   std::optional<std::vector<std::byte>> catalogue_;  // the last one, as CDR

@@ -38,21 +38,31 @@ std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& repo
 // A zone that does not exist is an error: an expectation about it could never fail.
 Expectations::Expectations(const Scene& scene, std::optional<double> min_distance,
                            const std::vector<std::string>& no_zone)
-    : scene_(scene), min_distance_(min_distance) {
+    : scene_(&scene), min_distance_(min_distance) {
   for (const std::string& name : no_zone) {
-    const auto found = std::ranges::find(scene.zones, name, &Zone::name);
-    if (found == scene.zones.end()) {
-      error_ = fmt::format("the cell has no zone '{}'; {}", name, zone_names(scene));
-      return;
-    }
-    no_zone_.push_back({.zone = static_cast<std::uint32_t>(found - scene.zones.begin())});
+    no_zone_.push_back({.name = name, .zone = zone(name)});
+    if (no_zone_.back().zone) continue;
+    error_ = fmt::format("the cell has no zone '{}'; {}", name, zone_names(scene));
+    return;
   }
+}
+
+std::optional<std::uint32_t> Expectations::zone(const std::string& name) const {
+  const auto found = std::ranges::find(scene_->zones, name, &Zone::name);
+  if (found == scene_->zones.end()) return std::nullopt;
+  return static_cast<std::uint32_t>(found - scene_->zones.begin());
+}
+
+void Expectations::change(const Scene& scene) {
+  scene_ = &scene;
+  all_known_ = false;
+  for (NoZone& expected : no_zone_) expected.zone = zone(expected.name);
 }
 
 // Before every moving object is known, distances are unknown and zones active by definition.
 bool Expectations::all_seen(const Monitor& monitor) {
-  for (std::uint32_t i = 0; i < scene_.objects.size() && !all_known_; ++i) {
-    if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) return false;
+  for (std::uint32_t i = 0; i < scene_->objects.size() && !all_known_; ++i) {
+    if (!scene_->objects[i].fixed && monitor.input_age(i).age_ns < 0) return false;
   }
   return all_known_ = true;
 }
@@ -69,10 +79,11 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
   judged_ = true;
   if (const auto what = check_distance(report, monitor)) broken.push_back(*what);
   for (NoZone& expected : no_zone_) {
-    const ZoneReport& zone = report.zones[expected.zone];
-    if (expected.broken || !zone.active) continue;
+    if (expected.broken || !expected.zone) continue;
+    const ZoneReport& zone = report.zones[*expected.zone];
+    if (!zone.active) continue;
     expected.broken = true;
-    broken.push_back(entered(scene_, expected.zone, zone));
+    broken.push_back(entered(*scene_, *expected.zone, zone));
   }
   return broken;
 }
@@ -80,11 +91,11 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
 // Judges the pairs that are known.
 std::optional<std::string> Expectations::certainly_near(const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
-  for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+  for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
     const PairReport pair = monitor.pair(p);
     if (!(pair.upper < *min_distance_)) continue;
     distance_broken_ = true;
-    return fmt::format("{} is {} apart, at least {} expected", pair_name(scene_, p),
+    return fmt::format("{} is {} apart, at least {} expected", pair_name(*scene_, p),
                        metres(pair.distance), metres(*min_distance_));
   }
   return std::nullopt;
@@ -97,11 +108,11 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
   if (report.lower_all >= *min_distance_) return check_sweep(report, monitor);
   distance_broken_ = true;
   std::uint32_t nearest = 0;
-  for (std::uint32_t p = 1; p < scene_.pairs.size(); ++p) {
+  for (std::uint32_t p = 1; p < scene_->pairs.size(); ++p) {
     if (monitor.pair(p).lower < monitor.pair(nearest).lower) nearest = p;
   }
   const PairReport pair = monitor.pair(nearest);
-  const std::string who = pair_name(scene_, nearest);
+  const std::string who = pair_name(*scene_, nearest);
   const std::string expected = fmt::format("{} expected", metres(*min_distance_));
   if (pair.upper < *min_distance_) {
     return fmt::format("{} is {} apart, at least {}", who, metres(pair.distance), expected);
@@ -113,12 +124,12 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 // No pair is too near now, but one may have been since the last tick.
 std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
-  for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+  for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
     // More expensive than the tick's own bound, hence only where that one does not suffice.
     const SweptBounds found = monitor.sweep(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;
     distance_broken_ = true;
-    const std::string who = pair_name(scene_, p);
+    const std::string who = pair_name(*scene_, p);
     const std::string expected = fmt::format(", at least {} expected", metres(*min_distance_));
     if (found.upper < *min_distance_) {
       return fmt::format("{} was no more than {} apart between this tick and the last{}", who,
@@ -137,9 +148,9 @@ std::optional<std::string> Expectations::never_judged(const Monitor& monitor) co
   if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
   if (all_known_) return "no tick could be judged";
   std::vector<std::string> unknown;
-  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
-    if (!scene_.objects[i].fixed && monitor.input_age(i).age_ns < 0) {
-      unknown.push_back(scene_.objects[i].name);
+  for (std::uint32_t i = 0; i < scene_->objects.size(); ++i) {
+    if (!scene_->objects[i].fixed && monitor.input_age(i).age_ns < 0) {
+      unknown.push_back(scene_->objects[i].name);
     }
   }
   return fmt::format("no tick could be judged: the recording never tells where {} is",

@@ -29,12 +29,17 @@ class Expectations {
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
                                                bool judge);
 
+  // Ticks are of another scene from now on, which outlives this. Expectations begin again once all
+  // of its moving objects are known. A zone that it lacks is not active.
+  void change(const Scene& scene);
+
   // After the last tick: the reason why no tick could be judged, if none was.
   [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
 
  private:
   struct NoZone {
-    std::uint32_t zone;
+    std::string name;
+    std::optional<std::uint32_t> zone;  // none: the scene has no such zone
     bool broken = false;
   };
 
@@ -45,7 +50,9 @@ class Expectations {
   [[nodiscard]] std::optional<std::string> check_sweep(const Report& report,
                                                        const Monitor& monitor);
 
-  const Scene& scene_;
+  [[nodiscard]] std::optional<std::uint32_t> zone(const std::string& name) const;
+
+  const Scene* scene_;
   std::optional<double> min_distance_;
   bool distance_broken_ = false;
   std::vector<NoZone> no_zone_;

@@ -20,51 +20,66 @@ constexpr std::uint32_t kLeftOut = std::numeric_limits<std::uint32_t>::max();
 
 // A recording may be replayed with a changed cell: names connect the two, since ids are places in a
 // file. Everything that does not match is noted.
-ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded)
-    : revision_(recorded == nullptr ? scene.revision : recorded->scene_revision) {
-  if (recorded == nullptr) return;
-  same_scene_ = identity_ = recorded->scene_revision == scene.revision;
-  if (identity_) return;
-  any_ = false;
+ObjectMap::ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded) : scene_(scene) {
+  if (recorded == nullptr || recorded->scene_revision == scene.revision) return;
+  same_scene_ = any_ = false;
+  ids_[recorded->scene_revision] = ids_of(*recorded, notes_);
+}
+
+// Notes are of the first catalogue only.
+void ObjectMap::add(const clearance_msg_Catalogue& recorded) {
+  std::vector<std::string> notes;
+  if (!ids_.contains(recorded.scene_revision))
+    ids_[recorded.scene_revision] = ids_of(recorded, notes);
+}
+
+std::vector<std::uint32_t> ObjectMap::ids_of(const clearance_msg_Catalogue& recorded,
+                                             std::vector<std::string>& notes) {
+  std::vector<std::uint32_t> ids;
   std::vector<std::string> names;
-  for (const Object& object : scene.objects) names.push_back(object.name);
+  for (const Object& object : scene_.objects) names.push_back(object.name);
   std::vector<bool> met(names.size(), false);
-  for (std::uint32_t i = 0; i < recorded->objects._length; ++i) {
-    const clearance_msg_CatalogueObject& object = recorded->objects._buffer[i];
+  for (std::uint32_t i = 0; i < recorded.objects._length; ++i) {
+    const clearance_msg_CatalogueObject& object = recorded.objects._buffer[i];
     const auto found = std::ranges::find(names, object.name);
     const auto id = static_cast<std::uint32_t>(found - names.begin());
     // A recording of any origin may state any id.
     if (object.id >= clearance_msg_kMaxObjects) continue;
-    if (object.id >= id_.size()) id_.resize(object.id + 1, kLeftOut);
+    if (object.id >= ids.size()) ids.resize(object.id + 1, kLeftOut);
     if (found == names.end()) {
-      notes_.push_back(
+      notes.push_back(
           fmt::format("object '{}' of the recording is not in the cell: its poses are left out{}",
                       object.name, did_you_mean(object.name, names)));
       continue;
     }
     met[id] = true;
-    if (!scene.objects[id].fixed) {
-      id_[object.id] = id;
+    if (!scene_.objects[id].fixed) {
+      ids[object.id] = id;
       any_ = true;
     } else if (!object.is_fixed) {
-      notes_.push_back(fmt::format(
+      notes.push_back(fmt::format(
           "object '{}' is fixed in the cell: its recorded poses are left out", names[id]));
     }
   }
   for (std::size_t id = 0; id < names.size(); ++id) {
-    if (!met[id] && !scene.objects[id].fixed) {
-      notes_.push_back(fmt::format(
+    if (!met[id] && !scene_.objects[id].fixed) {
+      notes.push_back(fmt::format(
           "object '{}' of the cell is not in the recording: its pairs stay unknown", names[id]));
     }
   }
+  return ids;
 }
 
-// Poses are left out for objects that the cell lacks or has as fixed ones.
+// A batch without a revision is of the only catalogue.
 bool ObjectMap::translate(PoseBatch& batch) const {
-  if (!made_for(batch, revision_)) return false;
-  if (identity_) return true;
-  std::erase_if(batch.samples, [this](PoseSample& sample) {
-    sample.object = sample.object < id_.size() ? id_[sample.object] : kLeftOut;
+  if (same_scene_) return true;
+  const bool unstated = batch.scene_revision == 0 && ids_.size() == 1;
+  const auto known = unstated ? ids_.begin() : ids_.find(batch.scene_revision);
+  batch.scene_revision = scene_.revision;
+  if (known == ids_.end()) return false;
+  const std::vector<std::uint32_t>& ids = known->second;
+  std::erase_if(batch.samples, [&ids](PoseSample& sample) {
+    sample.object = sample.object < ids.size() ? ids[sample.object] : kLeftOut;
     return sample.object == kLeftOut;
   });
   return true;

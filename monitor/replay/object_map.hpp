@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -17,9 +18,13 @@ class ObjectMap {
   // revision, and none, leave every id as it is.
   ObjectMap(const Scene& scene, const clearance_msg_Catalogue* recorded);
 
-  // Gives the batch the ids of the scene; poses of objects that it lacks, or has as fixed ones, are
-  // left out. False: the batch was made for neither the recorded catalogue nor the scene; it must
-  // not be used.
+  // A further catalogue of the recording, which followed those before it.
+  void add(const clearance_msg_Catalogue& recorded);
+
+  // If the recording was made with another cell: gives the batch the ids and the revision of the
+  // scene; poses of objects that it lacks, or has as fixed ones, are left out. False: the batch was
+  // made for no recorded catalogue; it must not be used. If it was made with this cell, the batch
+  // stays as it is.
   [[nodiscard]] bool translate(PoseBatch& batch) const;
 
   // Sentences about objects that do not match.
@@ -30,11 +35,14 @@ class ObjectMap {
   [[nodiscard]] bool same_scene() const noexcept { return same_scene_; }
 
  private:
-  std::uint64_t revision_;  // of batches that are taken
+  // Returns the scene's ids by recorded id; `notes` get a sentence for each that does not match.
+  std::vector<std::uint32_t> ids_of(const clearance_msg_Catalogue& recorded,
+                                    std::vector<std::string>& notes);
+
+  const Scene& scene_;
   bool same_scene_ = true;
-  bool identity_ = true;
   bool any_ = true;
-  std::vector<std::uint32_t> id_;  // by recorded id
+  std::map<std::uint64_t, std::vector<std::uint32_t>> ids_;  // by recorded revision
   std::vector<std::string> notes_;
 };
 

@@ -7,17 +7,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include "monitor/files/build_info.hpp"
+#include "monitor/pair_name.hpp"
 #include "monitor/replay/expectations.hpp"
-#include "monitor/replay/message_difference.hpp"
+#include "monitor/replay/recorded_loop.hpp"
 #include "monitor/replay/reference_check.hpp"
+#include "monitor/replay/report_difference.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/replay/zone_difference.hpp"
-#include "monitor/wire/convert.hpp"
-#include "monitor/wire/gradient_message.hpp"
 
 namespace clearance {
 namespace {
@@ -26,6 +28,14 @@ namespace {
 std::int64_t whole_ns(double seconds) {
   constexpr double kCentury = 3.2e9;  // s: fits
   return std::llround(std::min(seconds, kCentury) * 1e9);
+}
+
+// Sets what the replay demands of every scene of the recording, beside what its cell says.
+void adapt(const OfflineReplayOptions& options, bool with_gradients, Scene& scene) {
+  scene.gradients |= with_gradients;
+  if (!options.evaluate_all) return;
+  scene.evaluate_all = true;
+  scene.budget = std::numeric_limits<std::uint32_t>::max();
 }
 
 // Nothing unless a reference was given.
@@ -52,21 +62,20 @@ std::string other_build(const std::string& recorded) {
 // One replay from its outline to its result.
 class Replay {
  public:
-  Replay(const Scene& scene, TickFeed feed, const OfflineReplayOptions& options,
+  Replay(SceneHistory& history, TickFeed feed, const OfflineReplayOptions& options,
          const RecordingOutline& outline)
-      : scene_(scene),
+      : scene_(&history.first().scene),
         options_(options),
         has_reports_(outline.has_reports),
         some_without_pairs_(outline.some_without_pairs),
         other_build_(other_build(outline.build)),
         feed_(std::move(feed)),
-        expectations_(scene, options.expect_min_distance, options.expect_no_zone),
-        reference_(reference_of(scene, options)),
-        zones_(scene),
-        replayed_(make_distances(scene)),
-        separation_(make_separation(scene)),
-        gradients_(scene),
-        monitor_(std::make_unique<Monitor>(scene)) {}
+        loop_(history),
+        expectations_(*scene_, options.expect_min_distance, options.expect_no_zone),
+        reference_(reference_of(*scene_, options)),
+        zones_(*scene_) {
+    follow(*scene_);
+  }
 
   OfflineReplay run(const std::function<void(const ReplayedTick&)>& on_tick);
 
@@ -74,11 +83,12 @@ class Replay {
   void run_ticks(const std::function<void(const ReplayedTick&)>& on_tick);
   void judge_the_whole();
   [[nodiscard]] std::string refusal() const;
+  void follow(const Scene& scene);
+  void change_scene(const TickInput& input, const Report& report);
   void begin_tick(const TickInput& input);
   void end_tick(const TickInput& input, const Report& report,
                 const std::function<void(const ReplayedTick&)>& on_tick);
   void compare(const TickInput& input, const Report& report);
-  [[nodiscard]] std::optional<std::string> difference(const TickInput& input, const Report& report);
   void compare_zones();
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
@@ -89,18 +99,16 @@ class Replay {
     return static_cast<double>(now_ns - result_.first_ns) * 1e-9;
   }
 
-  const Scene& scene_;
+  const Scene* scene_;  // of the last tick
   const OfflineReplayOptions& options_;
   bool has_reports_, some_without_pairs_;
   std::string other_build_;  // what to add where something differs
   TickFeed feed_;
+  RecordedLoop loop_;
   Expectations expectations_;
   std::optional<ReferenceCheck> reference_;
   ZoneDifference zones_;
-  Sample<clearance_msg_Distances> replayed_;
-  Sample<clearance_msg_Separation> separation_;
-  GradientMessage gradients_;
-  std::unique_ptr<Monitor> monitor_;
+  std::unique_ptr<ReportDifference> difference_;  // null: nothing is compared
 
   OfflineReplay result_;
   std::uint64_t in_window_ = 0;  // ticks
@@ -145,12 +153,11 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   if (!result_.error.empty()) return std::move(result_);
   result_.notes = feed_.objects().notes();
   run_ticks(on_tick);
-  if (feed_.log() != nullptr) {
-    for (const std::string& note : feed_.log()->notes()) result_.notes.push_back(note);
-  }
+  if (feed_.log() != nullptr)
+    std::ranges::copy(feed_.log()->notes(), std::back_inserter(result_.notes));
   result_.damage = feed_.damage();
   result_.batches = feed_.batches();
-  if (!result_.stopped) judge_the_whole();
+  if (!result_.stopped && result_.error.empty()) judge_the_whole();
   note_counts();
   return std::move(result_);
 }
@@ -162,8 +169,13 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
     result_.stopped = options_.stop && options_.stop();
     if (result_.stopped) return;
     begin_tick(input);
-    const Report& report = monitor_->tick(input.samples, input.joints, input.time);
-    end_tick(input, report, on_tick);
+    const Report* const report = loop_.tick(input);
+    if (report == nullptr) {
+      result_.error = loop_.error();
+      return;
+    }
+    if (&loop_.cell().scene != scene_) change_scene(input, *report);
+    end_tick(input, *report, on_tick);
     show_progress();
   }
   if (options_.progress) options_.progress(1.0);
@@ -180,7 +192,26 @@ void Replay::judge_the_whole() {
     fail(0, result_.last_ns, "no report could be compared");
   }
   finish_reference();
-  if (const auto what = expectations_.never_judged(*monitor_)) fail(0, result_.last_ns, *what);
+  if (const auto what = expectations_.never_judged(loop_.monitor()))
+    fail(0, result_.last_ns, *what);
+}
+
+// What belongs to one scene.
+void Replay::follow(const Scene& scene) {
+  scene_ = &scene;
+  if (!options_.compare) return;
+  difference_ = std::make_unique<ReportDifference>(scene, *options_.compare, some_without_pairs_);
+}
+
+// Everything that is judged by name goes on.
+void Replay::change_scene(const TickInput& input, const Report& report) {
+  follow(loop_.cell().scene);
+  expectations_.change(*scene_);
+  if (reference_) reference_->change(*scene_);
+  zones_.change(*scene_, input.recorded->cycle);
+  const TickNumber tick{report.cycle, input.recorded->cycle};
+  result_.notes.push_back(fmt::format("the cell {:016x} is in force from {} on ({:f} s)",
+                                      scene_->revision, tick.text(), seconds(report.now_ns)));
 }
 
 // A daemon that was started anew begins with a new monitor: its bounds and zones have no history.
@@ -191,7 +222,6 @@ void Replay::begin_tick(const TickInput& input) {
   result_.last_ns = input.time.now_ns;
   if (input.restart) {
     restarted_ = true;
-    monitor_ = std::make_unique<Monitor>(scene_);
     result_.notes.push_back(fmt::format("the daemon was started anew {:f} s after the first tick",
                                         seconds(input.time.now_ns)));
   }
@@ -224,19 +254,20 @@ void Replay::end_tick(const TickInput& input, const Report& report,
   const std::int64_t after_ns = input.time.now_ns - result_.first_ns;
   const bool in_window =
       after_ns >= whole_ns(options_.start_s) && after_ns <= whole_ns(options_.end_s);
-  for (const std::string& what : expectations_.check(report, *monitor_, in_window)) {
+  for (const std::string& what : expectations_.check(report, loop_.monitor(), in_window)) {
     fail(report.cycle, report.now_ns, what);
   }
   if (options_.compare) {
     // Bounds for other poses say nothing about these.
-    const bool comparable = input.complete || *options_.compare == Comparison::kBits;
+    const bool complete = input.complete && loop_.is_complete();
+    const bool comparable = complete || *options_.compare == Comparison::kBits;
     if (in_window && comparable && !differs_) compare(input, report);
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
   ++in_window_;
   if (reference_) {
-    for (const std::string& what : reference_->check(report, *monitor_)) {
+    for (const std::string& what : reference_->check(report, loop_.monitor())) {
       fail(report.cycle, report.now_ns, what);
     }
   }
@@ -244,15 +275,17 @@ void Replay::end_tick(const TickInput& input, const Report& report,
                       (!result_.closest || report.minimum.distance < result_.closest->distance);
   if (closer) {
     result_.closest = report.minimum;
+    result_.closest_pair = pair_name(*scene_, report.minimum);
     result_.closest_tick = {report.cycle, report.cycle + cycle_offset_};
   }
   result_.rejected = report.rejected;
-  if (on_tick) on_tick({report, input.sources, *monitor_});
+  if (on_tick) on_tick({report, input.sources, loop_.monitor(), loop_.cell(), loop_.since()});
 }
 
 // Only the first difference is reported: later ones are its consequences.
 void Replay::compare(const TickInput& input, const Report& report) {
-  const std::optional<std::string> found = difference(input, report);
+  const std::optional<std::string> found =
+      difference_->first(input, report, cycle_offset_, feed_.not_recorded());
   ++result_.compared;
   if (!found) return;
   differs_ = true;
@@ -263,28 +296,6 @@ void Replay::compare(const TickInput& input, const Report& report) {
            : fmt::format(
                  "poses that this tick used are not in the recording: it cannot be compared ({})",
                  what));
-}
-
-// The report comes first, since the other messages follow from it. If only bounds are compared, the
-// other messages are not, because other bounds lead to other separations and gradients.
-std::optional<std::string> Replay::difference(const TickInput& input, const Report& report) {
-  to_wire(report, input.sources, 0, *replayed_);
-  if (some_without_pairs_ && input.recorded->pairs._length == 0) replayed_->pairs._length = 0;
-  if (*options_.compare == Comparison::kBounds)
-    return bounds_difference(scene_, *input.recorded, *replayed_);
-  const DifferenceOptions how{.cycle_offset = cycle_offset_, .not_recorded = &feed_.not_recorded()};
-  if (auto found = message_difference(scene_, *input.recorded, *replayed_, how)) return found;
-  if (input.separation != nullptr) {
-    to_wire(report, 0, *separation_);
-    if (some_without_pairs_ && input.separation->pairs._length == 0) separation_->pairs._length = 0;
-    if (const auto found = message_difference(scene_, *input.separation, *separation_, how))
-      return "separation." + *found;
-  }
-  if (input.gradients != nullptr) {
-    const auto found = message_difference(scene_, *input.gradients, gradients_.of(report, 0), how);
-    if (found) return "gradients." + *found;
-  }
-  return std::nullopt;
 }
 
 // Zone changes come on a topic of their own and are compared when all are known. The recording must
@@ -327,28 +338,11 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
 
 // Notes at the end what was left out, as totals.
 void Replay::note_counts() {
+  std::ranges::copy(feed_.notes(options_.compare.has_value()), std::back_inserter(result_.notes));
   const auto note = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
   };
-  note(feed_.not_in_the_file(), "batches that a tick used are not in the recording");
-  note(feed_.of_other_scenes(), "batches were made for another scene and left out");
-  note(feed_.silences(),
-       "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
-  note(feed_.undecodable(), "messages do not decode as what their channel says and were left out");
-  if (options_.compare) {
-    note(feed_.unwanted_gradients(),
-         "messages of gradients were not compared: the cell asks for none");
-    if (const std::uint64_t count = feed_.unmatched(); count == 1) {
-      result_.notes.push_back("1 message of gradients or separation belongs to no report");
-    } else {
-      note(count, "messages of gradients or separation belong to no report");
-    }
-  }
-  if (options_.compare && !feed_.not_recorded().empty()) {
-    result_.notes.push_back(
-        fmt::format("the recording does not have these fields, which were not compared: {}",
-                    fmt::join(feed_.not_recorded(), ", ")));
-  }
+  note(loop_.of_other_scenes(), "batches were made for another scene and left out");
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
     note(result_.rejected[cause],
          std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
@@ -369,11 +363,20 @@ void Replay::show_progress() {
 OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& recording,
                              const OfflineReplayOptions& options,
                              const std::function<void(const ReplayedTick&)>& on_tick) {
+  const auto with_gradients = [&](const RecordingOutline& outlined) {
+    // Recorded gradients are compared even where the cell does not ask for them: clearanced
+    // --gradients does.
+    const bool recorded = options.compare == Comparison::kBits && outlined.has_gradients;
+    return options.gradients || (recorded && !cell.scene.gradients);
+  };
+  Cell first = cell;
   if (is_input_log(recording)) {
+    adapt(options, options.gradients, first.scene);
+    SceneHistory history(first);
     InputLogOptions log{.joint_topics = options.joint_topics, .joints = options.joints};
-    TickFeed feed(open_input_log(recording, cell, log), cell.scene,
-                  options.tick_hz.value_or(cell.scene.rate_hz));
-    return Replay(cell.scene, std::move(feed), options, {}).run(on_tick);
+    TickFeed feed(open_input_log(recording, first, log), first.scene,
+                  options.tick_hz.value_or(first.scene.rate_hz));
+    return Replay(history, std::move(feed), options, {}).run(on_tick);
   }
   const RecordingOutline outlined = outline(recording);
   if (!outlined.error.empty()) {
@@ -383,16 +386,15 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
   }
   std::vector<std::filesystem::path> files{recording};
   files.insert(files.end(), options.continued_in.begin(), options.continued_in.end());
-  // Recorded gradients are compared even where the cell does not ask for them: clearanced
-  // --gradients does.
-  std::optional<Scene> with_gradients;
-  if (options.compare == Comparison::kBits && outlined.has_gradients && !cell.scene.gradients) {
-    with_gradients = cell.scene;
-    with_gradients->gradients = true;
-  }
-  const Scene& scene = with_gradients ? *with_gradients : cell.scene;
-  TickFeed feed(files, scene, outlined, options.tick_hz.value_or(0.0));
-  return Replay(scene, std::move(feed), options, outlined).run(on_tick);
+  const auto adapt_scene = [&](Scene& scene) { adapt(options, with_gradients(outlined), scene); };
+  adapt_scene(first.scene);
+  // Another cell than that of the recording does not change with it.
+  const bool is_recorded =
+      outlined.catalogue && (*outlined.catalogue)->scene_revision == first.scene.revision;
+  SceneHistory history =
+      is_recorded ? SceneHistory(first, files, adapt_scene) : SceneHistory(first);
+  TickFeed feed(files, history, outlined, options.tick_hz.value_or(0.0));
+  return Replay(history, std::move(feed), options, outlined).run(on_tick);
 }
 
 }  // namespace clearance

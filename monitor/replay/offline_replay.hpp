@@ -25,6 +25,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/reference_totals.hpp"
 #include "monitor/report.hpp"
@@ -60,9 +61,12 @@ struct OfflineReplayOptions {
   // Names of zones that are never active.
   std::vector<std::string> expect_no_zone = {};
 
+  bool evaluate_all = false;  // every pair in every tick, whatever it costs
+  bool gradients = false;     // also where the cell does not ask for them
+
   // Distances that something else computed (monitor/replay/reference_check.hpp): every one of a
   // pair and tick of the replay is met and lies within the bounds. A pair that a tick left out does
-  // not count as met, so let the scene evaluate all pairs, with a budget for that.
+  // not count as met, which evaluate_all prevents.
   std::filesystem::path reference = {};  // empty: none
   // The tolerance of a reference, m: distances and bounds may differ by that much. If not set,
   // distances may differ by 1e-6 m, and the reference must lie within the bounds exactly as it is
@@ -81,6 +85,8 @@ struct ReplayedTick {
   const Report& report;
   std::span<const SourceUse> sources;
   const Monitor& monitor;
+  const Cell& cell;    // in force; valid while the replay runs
+  SceneInForce since;  // in the cycles of the replay
 };
 
 // The numbers of a tick. The replay counts its ticks from 1; the recorded daemon may have been
@@ -112,6 +118,7 @@ struct OfflineReplay {
   std::uint64_t ticks = 0, compared = 0, batches = 0;
   std::int64_t first_ns = 0, last_ns = 0;
   std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
+  std::string closest_pair;           // its name
   TickNumber closest_tick;
   std::array<std::uint64_t, kRejects> rejected{};
   std::optional<ReferenceTotals> reference;
@@ -121,9 +128,11 @@ struct OfflineReplay {
   [[nodiscard]] std::string text() const;
 };
 
-// The same recording and cell give the same ticks, bit for bit. `recording` is one of Clearance's
-// own, a bag of ROS 2, or a CSV file of joint positions. A bag is MCAP, SQLite 3, or the folder of
-// either. The CSV has t_ns and one column per joint.
+// The same recording and cell give the same ticks, bit for bit. If the recording was made with this
+// cell and the daemon changed it while it ran, the replay changes it at the same ticks, to the
+// cells that the recording keeps. `recording` is one of Clearance's own, a bag of ROS 2, or a CSV
+// file of joint positions. A bag is MCAP, SQLite 3, or the folder of either. The CSV has t_ns and
+// one column per joint.
 [[nodiscard]] OfflineReplay replay_offline(
     const Cell& cell, const std::filesystem::path& recording,
     const OfflineReplayOptions& options = {},

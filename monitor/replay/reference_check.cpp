@@ -23,19 +23,6 @@ constexpr std::array<std::string_view, 4> kColumns = {"t_ns", "object_a", "objec
 // Places in kColumns.
 enum Column : std::size_t { kTime, kObjectA, kObjectB, kDistance };
 
-using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t, std::less<>>;
-
-// Either object may come first in the table.
-PairIds pair_ids(const Scene& scene) {
-  PairIds ids;
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    const std::string& a = scene.objects[scene.pairs[p].first].name;
-    const std::string& b = scene.objects[scene.pairs[p].second].name;
-    ids[{a, b}] = ids[{b, a}] = p;
-  }
-  return ids;
-}
-
 // Half a unit of the last digit written: 0.0005 for "0.125" and for "125e-3".
 double rounding_of(std::string_view text) {
   const std::size_t mantissa = std::min(text.find_first_of("eE"), text.size());
@@ -63,10 +50,10 @@ std::string precise(double value) { return metres(value, 12); }
 ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& file,
                                std::optional<double> tolerance,
                                const std::map<std::string, double>& mesh_errors)
-    : scene_(scene),
+    : scene_(&scene),
+      ids_(pair_ids(scene)),
       tolerance_(tolerance.value_or(kReferenceTolerance)),
       bounds_tolerance_(tolerance.value_or(0.0)) {
-  const PairIds ids = pair_ids(scene);
   std::array<std::string_view, 4> columns = kColumns;
   const std::vector<std::string> there = csv_column_names(file);
   const auto has = [&](std::string_view name) {
@@ -82,17 +69,27 @@ ReferenceCheck::ReferenceCheck(const Scene& scene, const std::filesystem::path& 
   Value value;
   while (table.next() && table.time_ns(kTime, value.t_ns) &&
          table.number(kDistance, value.distance)) {
-    const std::pair names(std::string(table.text(kObjectA)), std::string(table.text(kObjectB)));
+    value.objects = {std::string(table.text(kObjectA)), std::string(table.text(kObjectB))};
     value.rounding = rounding_of(table.text(kDistance));
-    value.mesh_error = mesh_error(names.first) + mesh_error(names.second);
-    if (const auto found = ids.find(names); found != ids.end()) {
-      value.pair = found->second;
-      values_.push_back(value);
-    } else if (totals_.other_pairs++ == 0) {
-      other_pair_ = pair_name(names.first, names.second);
-    }
+    value.mesh_error = mesh_error(value.objects.first) + mesh_error(value.objects.second);
+    values_.push_back(value);
   }
   error_ = table.error();
+}
+
+ReferenceCheck::PairIds ReferenceCheck::pair_ids(const Scene& scene) {
+  PairIds ids;
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+    const std::string& a = scene.objects[scene.pairs[p].first].name;
+    const std::string& b = scene.objects[scene.pairs[p].second].name;
+    ids[{a, b}] = ids[{b, a}] = p;
+  }
+  return ids;
+}
+
+void ReferenceCheck::change(const Scene& scene) {
+  scene_ = &scene;
+  ids_ = pair_ids(scene);
 }
 
 // Table and ticks are both in order of time: one pass over both.
@@ -100,10 +97,14 @@ std::vector<std::string> ReferenceCheck::check(const Report& report, const Monit
   std::vector<std::string> broken;
   for (; next_ < values_.size() && values_[next_].t_ns <= report.now_ns; ++next_) {
     const Value& value = values_[next_];
-    if (value.t_ns < report.now_ns) {
+    const auto pair = ids_.find(value.objects);
+    if (pair == ids_.end()) {
+      if (totals_.other_pairs++ == 0)
+        other_pair_ = pair_name(value.objects.first, value.objects.second);
+    } else if (value.t_ns < report.now_ns) {
       ++totals_.other_times;
     } else {
-      compare(value, monitor.pair(value.pair), broken);
+      compare(value, monitor.pair(pair->second), broken);
     }
   }
   return broken;
@@ -126,7 +127,7 @@ double ReferenceCheck::difference_from(const Value& value, double ours) {
 void ReferenceCheck::compare(const Value& value, const PairReport& ours,
                              std::vector<std::string>& broken) {
   ++totals_.compared;
-  const std::string who = pair_name(scene_, ours);
+  const std::string who = pair_name(*scene_, ours);
   const std::string reference = fmt::format(", reference {}", precise(value.distance));
   const bool evaluated = ours.status != PairStatus::kCarried;  // else it is that of another tick
   const double difference = difference_from(value, ours.distance);
@@ -148,7 +149,8 @@ void ReferenceCheck::compare(const Value& value, const PairReport& ours,
 // Values after the last tick met no tick either.
 ReferenceTotals ReferenceCheck::totals() const {
   ReferenceTotals totals = totals_;
-  totals.other_times += values_.size() - next_;
+  for (std::size_t i = next_; i < values_.size(); ++i)
+    ++(ids_.contains(values_[i].objects) ? totals.other_times : totals.other_pairs);
   return totals;
 }
 
@@ -156,10 +158,15 @@ ReferenceTotals ReferenceCheck::totals() const {
 std::vector<std::string> ReferenceCheck::notes() const {
   std::vector<std::string> notes;
   const ReferenceTotals all = totals();
+  std::string other_pair = other_pair_;
+  for (std::size_t i = next_; i < values_.size() && other_pair.empty(); ++i) {
+    const auto& [a, b] = values_[i].objects;
+    if (!ids_.contains(values_[i].objects)) other_pair = pair_name(a, b);
+  }
   if (all.other_pairs > 0) {
     notes.push_back(
         fmt::format("{} reference values are of pairs that the cell does not watch, such as {}",
-                    all.other_pairs, other_pair_));
+                    all.other_pairs, other_pair));
   }
   if (all.other_times > 0) {
     notes.push_back(fmt::format(

@@ -14,6 +14,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/scene/scene.hpp"
@@ -40,6 +41,9 @@ class ReferenceCheck {
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
+  // Ticks are of another scene from now on, which outlives this.
+  void change(const Scene& scene);
+
   // To be called for every tick, in order of time. Returns a sentence with pair and figures for the
   // first value that is off, and one for the first that is outside the bounds.
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor);
@@ -51,7 +55,7 @@ class ReferenceCheck {
  private:
   struct Value {
     std::int64_t t_ns = 0;
-    std::uint32_t pair = 0;
+    std::pair<std::string, std::string> objects;
     double distance = 0.0, rounding = 0.0;  // m
     double mesh_error = 0.0;                // m: the distance of the parts may be smaller by this
   };
@@ -62,7 +66,12 @@ class ReferenceCheck {
   [[nodiscard]] static double difference_from(const Value& value, double ours);
   void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
 
-  const Scene& scene_;
+  // By the names of both objects, in either order.
+  using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t>;
+  [[nodiscard]] static PairIds pair_ids(const Scene& scene);
+
+  const Scene* scene_;
+  PairIds ids_;
   double tolerance_;         // of the distance
   double bounds_tolerance_;  // of the bounds, beside the rounding of the reference
   std::string error_;

@@ -2,6 +2,8 @@
 // them in blocks of 256 KiB.
 #include "monitor/replay/report_csv.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -74,22 +76,30 @@ void put(std::string& row, PairStatus status) { row += name(status); }
 
 // The header is the first row in memory; it goes to the file with the first block.
 ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool all_pairs)
-    : path_(file), scene_(scene), all_pairs_(all_pairs), file_(std::fopen(file.c_str(), "wb")) {
+    : path_(file), all_pairs_(all_pairs), file_(std::fopen(file.c_str(), "wb")) {
   if (!file_) {
     error_ = cannot_create(file);
     return;
   }
-  for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
+  follow(scene);
   rows_ = "tick,now_ns,object_a,object_b";
   for_each_column({}, [this](const std::string& column, const auto&) { rows_ += "," + column; });
-  rows_ += '\n';
+  rows_ += ",scene_revision\n";
+}
+
+void ReportCsv::follow(const Scene& scene) {
+  scene_ = &scene;
+  names_.clear();
+  for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
+  revision_ = fmt::format("{:016x}", scene.revision);
 }
 
 // Rows are collected and written in large blocks.
 void ReportCsv::add(const ReplayedTick& tick) {
   if (!error_.empty()) return;
+  if (&tick.cell.scene != scene_) follow(tick.cell.scene);
   if (all_pairs_) {
-    for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+    for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
       add_row(tick.report, tick.monitor.pair(pair));
     }
   } else {
@@ -100,7 +110,7 @@ void ReportCsv::add(const ReplayedTick& tick) {
 
 // In the order of the header.
 void ReportCsv::add_row(const Report& report, const PairReport& pair) {
-  const ObjectPair& objects = scene_.pairs[pair.pair];
+  const ObjectPair& objects = scene_->pairs[pair.pair];
   put(rows_, report.cycle);
   rows_ += ',';
   put(rows_, report.now_ns);
@@ -109,7 +119,7 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
     rows_ += ',';
     put(rows_, value);
   });
-  rows_ += '\n';
+  rows_.append(",").append(revision_) += '\n';
 }
 
 // After an error the rows are dropped: the file is incomplete anyway.

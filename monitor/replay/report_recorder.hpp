@@ -1,4 +1,4 @@
-// Writes replayed ticks as a recording: catalogue, reports and zone changes. The bytes depend on
+// Writes replayed ticks as a recording: catalogues, reports and zone changes. The bytes depend on
 // nothing but the replayed recording, the cell and the build.
 #pragma once
 
@@ -18,6 +18,8 @@ class ReportRecorder {
   void add(const ReplayedTick& tick) {
     // The catalogue is stamped with the first tick: nothing else here has a time.
     if (!recorder_) recorder_.emplace(file_, cell_, tick.report.now_ns, RecordingOptions{});
+    if (tick.cell.scene.revision != revision_) recorder_->change(tick.cell, tick.since);
+    revision_ = tick.cell.scene.revision;
     recorder_->report(tick.report, tick.sources);
   }
   bool close() {
@@ -33,6 +35,7 @@ class ReportRecorder {
  private:
   std::filesystem::path file_;
   const Cell& cell_;
+  std::uint64_t revision_ = cell_.scene.revision;  // of the last tick
   std::optional<Recorder> recorder_;
 };
 

@@ -2,6 +2,8 @@
 // later ticks. Batches are identified by source and sequence number.
 #include "monitor/replay/tick_feed.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -44,21 +46,21 @@ const Message* TickMessages<Message>::of_tick(std::int64_t now_ns, const ReadAhe
   return found ? &*waiting_.front() : nullptr;
 }
 
-TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
+TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory& history,
                    const RecordingOutline& outline, double tick_hz)
     : reader_(files),
-      objects_(scene, outline.catalogue ? &**outline.catalogue : nullptr),
-      own_(std::make_unique<OwnBatches>(scene)),
-      sources_(scene),
+      history_(&history),
+      objects_(history.first().scene, outline.catalogue ? &**outline.catalogue : nullptr),
+      own_(std::make_unique<OwnBatches>(history.first().scene)),
+      own_revision_(history.first().scene.revision),
       by_report_(outline.has_reports),
       tick_hz_(tick_hz),
-      separations_(separated_count(scene).zones > 0),
-      gradients_(scene.gradients) {}
+      separations_(history.has_changes() || separated_count(history.first().scene).zones > 0),
+      gradients_(history.has_changes() || history.first().scene.gradients) {}
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
       objects_(scene, nullptr),
-      sources_(scene),
       by_report_(false),
       tick_hz_(tick_hz),
       separations_(false),
@@ -66,8 +68,7 @@ TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tic
 
 // Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
-  tick.samples.clear();
-  tick.joints.clear();
+  tick.batches.clear();
   tick.sources.clear();
   tick.recorded = nullptr;
   tick.separation = nullptr;
@@ -100,6 +101,7 @@ void TickFeed::read_message(const RecordedMessage& message) {
   if (message.kind == TopicKind::kPoses || message.kind == TopicKind::kJointStates) {
     read_inputs(message);
   }
+  if (message.kind == TopicKind::kCatalogue) read_catalogue(message);
   if (message.kind == TopicKind::kDistances) {
     WaitingReport waiting{.report = {}, .log_ns = message.log_ns};
     if (decoder_.decode(message.cdr, waiting.report)) {
@@ -116,20 +118,35 @@ void TickFeed::read_message(const RecordedMessage& message) {
   }
 }
 
-// Poses get the ids of the scene; joints are matched by name in any cell.
+// Poses that a daemon used get the ids of the cell of the replay, if that is another one. Joints
+// are matched by name in any cell.
 void TickFeed::read_inputs(const RecordedMessage& message) {
   PoseBatch* const batch = own_->decode(message.kind, message.cdr);
   if (batch == nullptr) {
     ++undecodable_;
     return;
   }
-  // This is a batch of another scene. The daemon counted it as used too, but used none of its
-  // poses.
-  if (!objects_.translate(*batch)) {
+  if (message.kind == TopicKind::kJointStates) {
+    batch->scene_revision = own_revision_;
+  } else if (!objects_.translate(*batch)) {
+    // This is a batch of another scene. The daemon counted it as used too, but used none of its
+    // poses.
     batch->samples.clear();
     ++of_other_scenes_;
   }
   batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
+}
+
+// What follows was used by the scene of this catalogue.
+void TickFeed::read_catalogue(const RecordedMessage& message) {
+  if (objects_.same_scene() && !history_->has_changes()) return;
+  Sample<clearance_msg_Catalogue> catalogue;
+  if (!decoder_.decode(message.cdr, catalogue)) return;
+  if (!objects_.same_scene()) return objects_.add(*catalogue);
+  const Cell* const cell = history_->cell(catalogue->scene_revision);
+  if (cell == nullptr || cell->scene.revision == own_revision_) return;
+  own_ = std::make_unique<OwnBatches>(cell->scene);
+  own_revision_ = cell->scene.revision;
 }
 
 // A report names the last batch of each source that its tick used. In a recording over DDS that
@@ -208,7 +225,7 @@ void TickFeed::take_used(TickInput& tick) {
   }
   // One pass keeps the order of the file among all sources, which the tick depends on.
   std::size_t place = 0;
-  std::erase_if(batches_waiting_, [&](const Waiting& waiting) {
+  std::erase_if(batches_waiting_, [&](Waiting& waiting) {
     const std::size_t here = place++;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       if (here >= until[i] || !(waiting.batch.source == sources[i].source)) continue;
@@ -219,10 +236,9 @@ void TickFeed::take_used(TickInput& tick) {
   });
 }
 
-void TickFeed::add(const PoseBatch& batch, TickInput& tick) {
+void TickFeed::add(PoseBatch& batch, TickInput& tick) {
   ++batches_;
-  if (batch.empty()) return;
-  sources_.append(batch, tick.samples, tick.joints);
+  if (!batch.empty()) tick.batches.push_back(std::move(batch));
 }
 
 // Drops batches that have waited longer than the feed reads ahead. No report has named them, so the
@@ -231,6 +247,32 @@ void TickFeed::forget_unused(std::int64_t log_ns) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
     batches_waiting_.pop_front();
   }
+}
+
+std::vector<std::string> TickFeed::notes(bool compared) const {
+  std::vector<std::string> notes;
+  const auto note = [&notes](std::uint64_t count, const std::string& what) {
+    if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
+  };
+  note(not_in_the_file_, "batches that a tick used are not in the recording");
+  note(of_other_scenes_, "batches were made for a scene that the recording does not name");
+  note(silences_,
+       "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
+  note(undecodable_, "messages do not decode as what their channel says and were left out");
+  if (!compared) return notes;
+  note(gradients_.unwanted(), "messages of gradients were not compared: the cell asks for none");
+  const std::uint64_t unmatched = separations_.unmatched() + gradients_.unmatched();
+  if (unmatched == 1) {
+    notes.push_back("1 message of gradients or separation belongs to no report");
+  } else {
+    note(unmatched, "messages of gradients or separation belong to no report");
+  }
+  if (!not_recorded_.empty()) {
+    notes.push_back(
+        fmt::format("the recording does not have these fields, which were not compared: {}",
+                    fmt::join(not_recorded_, ", ")));
+  }
+  return notes;
 }
 
 // Makes one tick of all batches with the same log time.
@@ -273,13 +315,14 @@ bool TickFeed::next_by_rate(TickInput& tick) {
 void TickFeed::take_until_now(TickInput& tick) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns <= tick.time.now_ns) {
     last_batch_ns_ = batches_waiting_.front().log_ns;
-    const PoseBatch& batch = batches_waiting_.front().batch;
+    PoseBatch& batch = batches_waiting_.front().batch;
+    const SourceUse last{batch.source, batch.sequence_number};
     add(batch, tick);
-    const auto use = std::ranges::find(tick.sources, batch.source, &SourceUse::source);
+    const auto use = std::ranges::find(tick.sources, last.source, &SourceUse::source);
     if (use != tick.sources.end()) {
-      use->sequence_number = batch.sequence_number;
+      *use = last;
     } else if (tick.sources.size() < kMaxSources) {
-      tick.sources.push_back({batch.source, batch.sequence_number});
+      tick.sources.push_back(last);
     }
     batches_waiting_.pop_front();
   }

@@ -19,14 +19,13 @@
 #include <string>
 #include <vector>
 
-#include "config/scene/scene.hpp"
 #include "monitor/bags/input_log.hpp"
 #include "monitor/inputs/pose_batch.hpp"
-#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/object_map.hpp"
+#include "monitor/replay/scene_history.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
@@ -34,8 +33,7 @@ namespace clearance {
 // The input of Monitor::tick, and the report that the daemon made of it.
 struct TickInput {
   TickTime time;
-  std::vector<PoseSample> samples;
-  std::vector<JointSample> joints;
+  std::vector<PoseBatch> batches;  // in the order of use, with the ids of the scene that they state
   std::vector<SourceUse> sources;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
@@ -77,9 +75,11 @@ class TickMessages {
 // Reads ahead by at most two seconds of log time.
 class TickFeed {
  public:
-  // Reads one of Clearance's own recordings, in one file or several. `tick_hz` is used only if the
-  // recording holds no reports. 0: a tick at each log time.
-  TickFeed(const std::vector<std::filesystem::path>& files, const Scene& scene,
+  // Reads one of Clearance's own recordings, in one file or several. If it was made with the first
+  // cell of the history, joints get the ids of the scene that was in force. Otherwise everything
+  // gets the ids of that cell. `tick_hz` is used only if the recording holds no reports. 0: a tick
+  // at each log time. The history must outlive this.
+  TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory& history,
            const RecordingOutline& outline, double tick_hz = 0.0);
   // Reads a log of another program.
   TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
@@ -101,19 +101,12 @@ class TickFeed {
   // Null if this reads one of Clearance's own recordings.
   [[nodiscard]] const InputLog* log() const noexcept { return log_.get(); }
 
-  // Counts of what could not be used.
+  // The number of batches that ticks used.
   [[nodiscard]] std::uint64_t batches() const noexcept { return batches_; }
-  [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
-  [[nodiscard]] std::uint64_t not_in_the_file() const noexcept { return not_in_the_file_; }
-  [[nodiscard]] std::uint64_t undecodable() const noexcept { return undecodable_; }
-  [[nodiscard]] std::uint64_t unwanted_gradients() const noexcept { return gradients_.unwanted(); }
-  [[nodiscard]] std::uint64_t unmatched() const noexcept {
-    return separations_.unmatched() + gradients_.unmatched();
-  }
+  // Sentences about what could not be used so far. `compared`: also about what was not compared.
+  [[nodiscard]] std::vector<std::string> notes(bool compared) const;
   // Fields that the recording's build did not have: RecordingReader::not_recorded().
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
-  // The number of pauses so long that ticks at a fixed rate were left out.
-  [[nodiscard]] std::uint64_t silences() const noexcept { return silences_; }
 
  private:
   struct Waiting {
@@ -128,6 +121,7 @@ class TickFeed {
   [[nodiscard]] bool read_one();
   void read_message(const RecordedMessage& message);
   void read_inputs(const RecordedMessage& message);
+  void read_catalogue(const RecordedMessage& message);
   [[nodiscard]] bool next_by_report(TickInput& tick);
   [[nodiscard]] bool read_ahead();
   [[nodiscard]] bool next_by_time(TickInput& tick);
@@ -137,14 +131,15 @@ class TickFeed {
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
   void take_used(TickInput& tick);
-  void add(const PoseBatch& batch, TickInput& tick);
+  void add(PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
 
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
+  SceneHistory* history_ = nullptr;        // null: a log of another program
   ObjectMap objects_;
   std::unique_ptr<OwnBatches> own_;  // null: a log of another program
-  SourceNumbers sources_;
+  std::uint64_t own_revision_ = 0;   // of the scene whose ids it gives to joints
   bool by_report_;
   double tick_hz_;             // 0: at log times
   std::int64_t began_ns_ = 0;  // the first tick at that rate

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -14,6 +15,8 @@
 namespace clearance {
 
 // Only changes between active and inactive count: a recording repeats states that did not change.
+// Zones are those of one name, also where the scene was changed. A zone that a scene lacks is
+// inactive.
 class ZoneDifference {
  public:
   struct Found {
@@ -22,7 +25,11 @@ class ZoneDifference {
     std::string what;
   };
 
-  explicit ZoneDifference(const Scene& scene) : scene_(scene), changes_(scene.zones.size()) {}
+  // Scenes must outlive this.
+  explicit ZoneDifference(const Scene& scene) { change(scene, 0); }
+
+  // Another scene is in force from this recorded cycle on.
+  void change(const Scene& scene, std::uint64_t from);
 
   // Every tick's report; its recorded cycle number is `cycle_offset` larger.
   void replayed(const Report& report, std::uint64_t cycle_offset);
@@ -33,12 +40,26 @@ class ZoneDifference {
                                            const std::set<std::string>& not_recorded = {}) const;
 
  private:
-  [[nodiscard]] std::optional<Found> first_of(std::uint32_t zone,
-                                              const std::vector<clearance_msg_ZoneState>& theirs,
-                                              const std::set<std::string>& not_recorded) const;
+  using States = std::vector<clearance_msg_ZoneState>;
+  struct InForce {
+    const Scene* scene;
+    std::uint64_t from;  // the first recorded cycle
+  };
 
-  const Scene& scene_;
-  std::vector<std::vector<clearance_msg_ZoneState>> changes_;  // by zone
+  [[nodiscard]] const Scene& scene_at(std::uint64_t cycle) const;
+  [[nodiscard]] bool is_of(const clearance_msg_ZoneState& state, const std::string& zone) const;
+  [[nodiscard]] std::optional<Found> first_of(const std::string& zone, const States& ours,
+                                              const States& theirs,
+                                              const std::set<std::string>& not_recorded) const;
+  [[nodiscard]] States changes_of(const States& recorded, const std::string& zone) const;
+  [[nodiscard]] std::string described(const clearance_msg_ZoneState& state) const;
+
+  std::vector<InForce> scenes_;
+  struct Replayed {
+    States changes = {};
+    bool active = false;  // as every monitor begins
+  };
+  std::map<std::string, Replayed> replayed_;  // by zone
 };
 
 }  // namespace clearance

@@ -19,8 +19,6 @@ SceneChanger::Outcome refused(CommandStatus status, std::string why) {
 }  // namespace
 
 SceneChanger::Outcome SceneChanger::check(const Cell& cell) const {
-  if (auto reason = parts_.keeps_its_cell(); !reason.empty())
-    return refused(CommandStatus::kNeedsRestart, std::move(reason));
   if (auto reason = restart_needed(*cell_, cell))
     return refused(CommandStatus::kNeedsRestart, *std::move(reason));
   if (auto reason = beyond_capacity(cell, capacity_))
@@ -49,7 +47,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
     Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks);
     state = run(successor, loop_ended);
     if (state != Successor::State::kSucceeded) continue;
-    parts_.follow();
+    parts_.follow(successor.in_force());
     std::swap(cell_, cell);
     return {.in_force_from = successor.in_force_from()};
   }

@@ -21,13 +21,11 @@ namespace clearance {
 class CellParts {
  public:
   virtual ~CellParts() = default;
-  // Returns why the program keeps its cell, as the end of a sentence. Empty: it may change.
-  [[nodiscard]] virtual std::string keeps_its_cell() const { return {}; }
   // Makes the sinks of the changed cell. They get no report yet.
   virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
   // cell before may go.
-  virtual void follow() = 0;
+  virtual void follow(const SceneInForce& since) = 0;
   // The changed cell is given up, and so is what prepare() made.
   virtual void abandon() = 0;
 };

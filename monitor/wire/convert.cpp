@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "monitor/wire/to_wire.hpp"
 
@@ -117,13 +119,15 @@ void to_wire(const Report& report, std::int64_t publish_ns,
 }
 
 // Ids are places in the lists, as in the scene.
-Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell) {
+Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInForce& since) {
   const Scene& scene = cell.scene;
   Sample<clearance_msg_Catalogue> sample;
   sample->scene = duplicate(scene.name);
   sample->scene_revision = scene.revision;
   sample->rate_hz = scene.rate_hz;
   sample->cell_yaml = duplicate(cell.yaml);
+  sample->began_after = since.began_after;
+  sample->in_force_from = since.from;
   reserve_sequence(sample->objects, scene.objects.size());
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     fill(scene.objects[i], i, sample->objects._buffer[sample->objects._length++]);
@@ -212,7 +216,8 @@ void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames&
 }
 
 // All samples of a batch have one stamp, and all or none have a velocity.
-Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch, const Scene& scene) {
+Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
+                                                    std::span<const std::string> names) {
   Sample<clearance_msg_JointStates> states;
   copy_text(batch.source.view(), states->source);
   states->sequence_number = batch.sequence_number;
@@ -223,13 +228,18 @@ Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch, cons
   reserve_sequence(states->positions, batch.joints.size());
   if (has_velocities) reserve_sequence(states->velocities, batch.joints.size());
   for (const JointSample& sample : batch.joints) {
-    const bool known = sample.variable < scene.variables.size();
-    states->names._buffer[states->names._length++] =
-        duplicate(known ? scene.variables[sample.variable].name : "");
+    const bool known = sample.variable < names.size();
+    states->names._buffer[states->names._length++] = duplicate(known ? names[sample.variable] : "");
     states->positions._buffer[states->positions._length++] = sample.position;
     if (has_velocities) states->velocities._buffer[states->velocities._length++] = sample.velocity;
   }
   return states;
+}
+
+Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch, const Scene& scene) {
+  std::vector<std::string> names;
+  for (const JointVariable& variable : scene.variables) names.push_back(variable.name);
+  return make_joint_states(batch, names);
 }
 
 // The sequence keeps its buffer from batch to batch.

@@ -4,9 +4,11 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"
@@ -34,8 +36,10 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 [[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
-// Names, pairs, zones, joints and the text of the cell. It allocates.
-[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell);
+// Names, pairs, zones, joints and the text of the cell, and since when it is in force. It
+// allocates.
+[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell,
+                                                             const SceneInForce& since = {});
 
 // Converts a batch for the tick. The poses keep their order and are not checked, because the tick
 // refuses unknown ids, non-finite numbers and the rest. Allocates only while the capacity of `out`
@@ -54,7 +58,10 @@ void from_wire(const clearance_msg_JointStates& states, const JointNames& names,
 void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
                std::int64_t stamp_ns, PoseBatch& out);
 
-// Makes the message of a batch of joints. It allocates.
+// Makes the message of a batch of joints. `names` are those of the scene's variables; an id beyond
+// them has no name. It allocates.
+[[nodiscard]] Sample<clearance_msg_JointStates> make_joint_states(
+    const PoseBatch& batch, std::span<const std::string> names);
 [[nodiscard]] Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
                                                                   const Scene& scene);
 

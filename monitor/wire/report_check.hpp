@@ -18,6 +18,8 @@ struct ReportCheck {
   bool clocks_disagree = false;  // published later than now: its age means nothing
   // Not of the daemon of the report before: it was started again, or two daemons publish.
   bool other_daemon = false;
+  // Of another scene than the report before, with other ids: the daemon has changed its cell.
+  bool other_scene = false;
   std::uint64_t missed = 0;  // reports between the one before and this one
 
   [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
@@ -38,7 +40,10 @@ class ReportChecker {
     if (report.publish_ns != 0) found.age_ns = realtime_ns - report.publish_ns;  // 0: a replay
     found.is_old = found.age_ns > limit_ns_;
     found.clocks_disagree = found.age_ns < -limit_ns_;
-    const bool again = report.cycle <= cycle_ || report.scene_revision != revision_;
+    found.other_scene = cycle_ != 0 && report.scene_revision != revision_;
+    // Replays have no number of a daemon: one that goes on with another scene is the same.
+    const bool other_replay = report.daemon == 0 && found.other_scene && report.cycle != cycle_ + 1;
+    const bool again = report.cycle <= cycle_ || other_replay;
     found.other_daemon = cycle_ != 0 && (report.daemon != daemon_ || again);
     if (cycle_ != 0 && !found.other_daemon) found.missed = report.cycle - cycle_ - 1;
     daemon_ = report.daemon;

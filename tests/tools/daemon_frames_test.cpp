@@ -53,6 +53,46 @@ TEST_F(DaemonFrames, PlaceAnObjectAndTheBaseOfARobot) {
   EXPECT_TRUE(step_until(5, send_joints, told("poses-late", {" box "}))) << daemon->output();
 }
 
+// The changed cell has the objects in another order, and one more that follows a frame. Neither tf
+// nor joint states state a revision, so they go on, and a recording of both replays to the bit.
+TEST_F(DaemonFrames, AndJointsGoOnWhenTheCellChangesAndReplayToTheBit) {
+  const std::string file = (folder / "run.mcap").string();
+  start({"--record", file});
+  RosFrames frames(client);
+  RosJoints joints(client);
+  ASSERT_TRUE(frames.is_heard() && joints.is_heard());
+  const auto send = [&] {
+    joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1});
+    frames.send({{"map", "mir", {1, 0, 0}}, {"mir", "box_link", {0.5, 0, 0}}, {"mir", "lid_link"}});
+  };
+  const auto are_known = [&] {
+    return is("box", PairStatus::kConverged) && is("finger", PairStatus::kConverged);
+  };
+  ASSERT_TRUE(step_until(5, send, are_known)) << daemon->output();
+  std::string text = read_text(cell);
+  const std::string wall =
+      "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n";
+  text.replace(text.find(wall), wall.size(),
+               "  - {name: lid, frame: lid_link, max_speed: 50, sphere: {radius: 0.2}}\n");
+  text.replace(text.find("pairs:"), 0, wall);
+  text.replace(text.find("[{between: [arm, wall]}"), 1, "[{between: [lid, wall]}, ");
+  write_text(cell, text);
+  read = std::get<Cell>(read_cell(cell));
+  daemon->signal(SIGHUP);
+  ASSERT_TRUE(step_until(5, send, [&] { return report->scene_revision == scene.revision; }))
+      << daemon->output();
+  EXPECT_TRUE(is("finger", PairStatus::kConverged)) << "what was known stays known";
+  ASSERT_TRUE(step_until(5, send, [&] { return are_known() && is("lid", PairStatus::kConverged); }))
+      << daemon->output();
+  EXPECT_NEAR(pair("lid").distance, 5 - 1 - 0.2, 1e-12);
+  EXPECT_NEAR(pair("box").distance, 5 - 1.5 - 0.1, 1e-12);
+  EXPECT_NEAR(pair("finger").distance, 5 - 1 - 2.1 - 0.05, 1e-12);
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  ChildProcess replay(kReplay, {"check", file, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+}
+
 TEST_F(DaemonFrames, ThatAreMissingAreNamedWithThoseThatThereAre) {
   start();
   RosFrames frames(client);

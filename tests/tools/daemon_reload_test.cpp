@@ -1,13 +1,18 @@
 // SIGHUP makes a running daemon read its cell again, over real DDS.
+#include <fmt/format.h>
+
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "monitor/client/client.hpp"
+#include "monitor/recording/recorded_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -119,13 +124,139 @@ TEST_F(DaemonReload, ManyChangesInARowLoseNothing) {
   EXPECT_EQ(unknown, 0u);
 }
 
-TEST_F(DaemonReload, ADaemonThatRecordsKeepsItsCell) {
+TEST_F(DaemonReload, ARecordingOfManyChangesReplaysBitForBitWithoutTheFilesOfTheCell) {
   const ScratchFolder folder;
-  start({"--record", (folder / "run.mcap").string()});
-  reload(replaced(text, "enter_below: 0.3", "enter_below: 0.31"));
-  run_until_told("scene-refused");
+  const std::string file = (folder / "run.mcap").string();
+  start({"--record", file});
+  run_until_told("started");
+  const std::string wall =
+      "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: {size: [9, 1, "
+      "9]}}\n  - {name: floor,";
+  // The right box hangs on the left one: it has no motion of its own, and no distance from it.
+  std::string attached = replaced(text, "groups: [arm], box: {size: [0.2, 0.3, 0.2]}",
+                                  "attached: {to: left, pose: {xyz: [1, 0, 0]}}, groups: [arm], "
+                                  "box: {size: [0.2, 0.3, 0.2]}");
+  attached = replaced(attached, "  - {between: [left, right], publish: true}\n", "");
+  attached = replaced(attached, "between: [arm, arm]", "between: [arm, still]");
+  attached = attached.substr(0, attached.find("    - {object: right"));
+  const std::vector<std::string> texts = {replaced(text, "  - {name: floor,", wall), attached,
+                                          text};
+  for (const std::string& each : texts) {
+    reload(each);
+    const std::uint64_t expected = cell.cell().scene.revision;
+    for (int tick = 0; revision != expected; ++tick) {
+      ASSERT_LT(tick, 2000) << daemon->output();
+      run_until_told("started");
+    }
+    for (int i = 0; i < 20; ++i) run_until_told("started");
+  }
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  std::ofstream(cell.path()) << "gone";
+  const std::string table = (folder / "t.csv").string();
+  ChildProcess replay(kReplay, {"check", file, "--compare", "--csv", table});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  const std::string rows = read_text(table);
+  EXPECT_NE(rows.find(",wall,"), std::string::npos);
+  EXPECT_NE(rows.find(fmt::format("{:016x}\n", revision)), std::string::npos);
+}
+
+// A recorder that listens reads the changed cell's file, and the catalogue says when it came.
+TEST_F(DaemonReload, ARecorderThatListensKeepsTheChangedCellWithItsFiles) {
+  const ScratchFolder folder;
+  const std::string file = (folder / "run.mcap").string();
+  ChildProcess recorder(kRecord, with({"-o", file, "--cell", cell.path()}, dds_arguments(dds)));
+  start();
+  run_until_told("started");
+  const std::string rock = (folder / "rock.obj").string();
+  write_text(rock, "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
+  reload(replaced(text, "  - {name: floor,",
+                  "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, mesh: "
+                  "{file: " +
+                      rock + "}}\n  - {name: floor,"));
+  run_until_told("scene-changed");
+  for (int i = 0; i < 200; ++i) run_until_told("scene-changed");
+  recorder.signal(SIGTERM);
+  EXPECT_EQ(recorder.wait(), 0) << recorder.output();
+  std::ofstream(cell.path()) << "gone";
+  std::filesystem::remove(rock);
+  const auto described = described_scenes({file});
+  ASSERT_GE(described.size(), 2u);
+  EXPECT_EQ(described.back().revision, revision);
+  EXPECT_EQ(described.back().since.from, first_of_revision);
+  EXPECT_EQ(described.back().cell_file, cell.path());
+  const std::string table = (folder / "t.csv").string();
+  ChildProcess replay(kReplay, {"check", file, "--compare-bounds", "--csv", table});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  EXPECT_NE(read_text(table).find(",wall,"), std::string::npos);
+}
+
+// A client that comes after a change gets the catalogue of the cell in force, and since when.
+TEST_F(DaemonReload, ALateClientGetsThePresentCellAndSinceWhen) {
+  start();
+  run_until_told("started");
+  reload(replaced(text, "enter_below: 0.3", "enter_below: 0.31"));
+  run_until_told("scene-changed");
+  for (int i = 0; i < 20; ++i) run_until_told("scene-changed");
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  client::Zones zones(connection);
+  ASSERT_TRUE(eventually([&] {
+    catalogue.update();
+    zones.update();
+    return catalogue.message() != nullptr && zones.states().size() == 1;
+  }));
+  EXPECT_EQ(catalogue.revision(), cell.cell().scene.revision);
+  EXPECT_EQ(catalogue.message()->in_force_from, first_of_revision);
+  EXPECT_LT(catalogue.message()->began_after, first_of_revision);
+  EXPECT_GT(catalogue.message()->began_after, 0u);
+}
+
+// A client's loop knows names only, and its pair has another id in the changed cell.
+TEST_F(DaemonReload, AClientThatKnowsNamesFollowsWithoutARestart) {
+  start();
+  run_until_told("started");
+  client::Connection connection(dds);
+  client::Reports reports(connection);
+  client::Catalogue names(connection);
+  client::Pair pair(names, "right", "floor");
+  std::set<std::uint32_t> ids;
+  std::set<std::uint64_t> revisions;
+  std::uint64_t without = 0, wrong = 0;
+  const auto follow = [&] {
+    run_until_told("started");
+    while (reports.next()) {
+      revisions.insert(reports->scene_revision);
+      EXPECT_FALSE(reports.check().other_daemon);
+      EXPECT_EQ(reports.check().missed, 0u);
+      const clearance_msg_PairDistance* const found = pair.in(*reports);
+      without += found == nullptr;
+      if (found == nullptr) continue;
+      ids.insert(found->pair);
+      wrong += names.pair_name(*found, reports->scene_revision) != "right - floor";
+    }
+  };
+  ASSERT_TRUE(eventually([&] {
+    follow();
+    return !ids.empty();
+  }));
+  without = 0;
+  const auto reorder = [&](const std::string& changed) {
+    reload(changed);
+    const std::uint64_t expected = cell.cell().scene.revision;
+    ASSERT_TRUE(eventually([&] { return follow(), revisions.contains(expected); }));
+    for (int i = 0; i < 20; ++i) follow();
+  };
+  const std::string right = "  - {name: right, groups: [arm], box: {size: [0.2, 0.3, 0.2]}}\n";
+  reorder(replaced(replaced(text, right, ""), "objects:\n", "objects:\n" + right));
+  reorder(replaced(text, "  - {name: floor,",
+                   "  - {name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: "
+                   "{size: [1, 1, 1]}}\n  - {name: floor,"));
+  reorder(text);
+  EXPECT_EQ(revisions.size(), 3u);
+  EXPECT_GE(ids.size(), 2u);
+  EXPECT_EQ(wrong, 0u);
+  EXPECT_LE(without, 6u) << "reports that overtook their catalogue";
 }
 
 }  // namespace

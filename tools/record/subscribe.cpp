@@ -18,6 +18,7 @@
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tools/record/arguments.hpp"
+#include "tools/record/changed_cell.hpp"
 #include "tools/record/scene_channels.hpp"
 #include "tools/record/stream_gaps.hpp"
 
@@ -33,8 +34,8 @@ class Subscription {
  public:
   // `scene`: channels for 3D viewers, or null.
   Subscription(Participant& participant, const Topics& topics, RecordingWriter& writer,
-               const RecordingOptions& options, SceneChannels* scene)
-      : writer_(writer), options_(options), scene_(scene) {
+               const RecordingOptions& options, SceneChannels* scene, ChangedCell& changed)
+      : writer_(writer), options_(options), scene_(scene), changed_(changed) {
     for (const Topic& topic : kRecordedTopics) {
       readers_[index(topic.kind)] = participant.reader(topic.kind, topics.*topic.name, kDepth);
     }
@@ -72,6 +73,7 @@ class Subscription {
       for (const CdrSample& taken : taken_) record(topic.kind, now_ns, taken);
       taken_.clear();
     }
+    changed_.look(dds_time());
   }
 
  private:
@@ -108,6 +110,7 @@ class Subscription {
   bool look_into(TopicKind kind, std::span<const std::byte> bytes) {
     if (kind == TopicKind::kCatalogue && decoder_.decode(bytes, catalogue_)) {
       writer_.describe(*catalogue_);
+      changed_.hear(*catalogue_);
     } else if (kind == TopicKind::kPoses && decoder_.decode(bytes, batch_)) {
       gaps_.note("batches", fmt::format("of source '{}'", batch_->source), batch_->sequence_number);
     } else if (kind == TopicKind::kJointStates && decoder_.decode(bytes, joints_)) {
@@ -125,6 +128,7 @@ class Subscription {
   RecordingWriter& writer_;
   RecordingOptions options_;
   SceneChannels* scene_;
+  ChangedCell& changed_;
   std::array<dds_entity_t, kRecordedTopics.size()> readers_{};
   std::array<std::uint64_t, kRecordedTopics.size()> counts_{};
   std::vector<CdrSample> taken_;
@@ -187,7 +191,8 @@ int record_from_dds(const RecordArguments& arguments, const Cell* cell, StopSign
   std::optional<SceneChannels> channels;
   if (arguments.scene && cell != nullptr) channels.emplace(cell->scene, writer, dds_time());
   SceneChannels* const drawn = channels ? &*channels : nullptr;
-  Subscription subscription(participant, topics, writer, options, drawn);
+  ChangedCell changed(arguments.cell, cell, writer, drawn);
+  Subscription subscription(participant, topics, writer, options, drawn, changed);
   const std::int64_t end_ns = arguments.seconds > 0.0
                                   ? dds_time() + static_cast<std::int64_t>(arguments.seconds * 1e9)
                                   : std::numeric_limits<std::int64_t>::max();

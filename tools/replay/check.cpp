@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <map>
 
 #include "monitor/app/output_file.hpp"
@@ -14,7 +13,6 @@
 #include "monitor/bags/input_log.hpp"
 #include "monitor/bags/robot_description.hpp"
 #include "monitor/dds/robot_description.hpp"
-#include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 #include "monitor/replay/offline_replay.hpp"
@@ -75,6 +73,8 @@ OfflineReplayOptions options_of(const CheckArguments& arguments) {
   options.end_s = arguments.span.end_s;
   if (arguments.compare) options.compare = Comparison::kBits;
   if (arguments.compare_bounds) options.compare = Comparison::kBounds;
+  options.evaluate_all = arguments.evaluate_all || !arguments.reference.empty();
+  options.gradients = arguments.gradients;
   options.reference = arguments.reference;
   options.tolerance = arguments.tolerance;
   options.expect_min_distance = arguments.expect_min_distance;
@@ -82,14 +82,13 @@ OfflineReplayOptions options_of(const CheckArguments& arguments) {
   return options;
 }
 
-void print_summary(const Scene& scene, const OfflineReplay& replay, std::optional<double> tolerance,
-                   double elapsed_s) {
+void print_summary(const OfflineReplay& replay, std::optional<double> tolerance, double elapsed_s) {
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
   print(stdout, "{} ticks, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
         replay.ticks, recorded_s, elapsed_s, elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
-    print(stdout, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", pair_name(scene, pair),
+    print(stdout, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", replay.closest_pair,
           pair.distance, pair.lower, pair.upper, replay.closest_tick.text());
   }
   if (replay.compared > 0) {
@@ -168,7 +167,7 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
   return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
 }
 
-int replay_in(Cell& cell, const CheckArguments& arguments,
+int replay_in(const Cell& cell, const CheckArguments& arguments,
               const std::map<std::string, double>& mesh_errors, StopSignal& stop) {
   std::map<std::string, double> joints;
   if (const auto wrong = read_joint_positions(arguments.joints, joints); !wrong.empty()) {
@@ -181,10 +180,6 @@ int replay_in(Cell& cell, const CheckArguments& arguments,
                     "clearance-record --joint puts such a joint into it",
                     arguments.recording()));
     return kUsage;
-  }
-  if (arguments.evaluate_all || !arguments.reference.empty()) {
-    cell.scene.evaluate_all = true;
-    cell.scene.budget = std::numeric_limits<std::uint32_t>::max();
   }
   Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
@@ -203,7 +198,7 @@ int replay_in(Cell& cell, const CheckArguments& arguments,
   bar.finish();
   print(stderr, "{}", replay.text());
   if (!replay.error.empty()) return kFailed;
-  print_summary(cell.scene, replay, arguments.tolerance, elapsed.count());
+  print_summary(replay, arguments.tolerance, elapsed.count());
   return finish(replay, outputs);
 }
 

@@ -79,7 +79,7 @@ std::string summary_table(const Scene& scene, const OfflineReplay& replay, const
     out += row("Least distance",
                fmt::format("{:.3f} mm, certified to be from {:.3f} to {:.3f} mm: {}, {}",
                            1e3 * pair.distance, 1e3 * pair.lower, 1e3 * pair.upper,
-                           pair_name(scene, pair), replay.closest_tick.text()));
+                           replay.closest_pair, replay.closest_tick.text()));
   } else {
     out += row("Least distance", "not known: no pair was ever evaluated");
   }
@@ -122,7 +122,7 @@ std::string moments(const ReportPage& page) {
   return out;
 }
 
-std::string zones(const Scene& scene, const RunSeries& series) {
+std::string zones(const RunSeries& series) {
   constexpr std::size_t kMost = 100;
   const std::vector<ZoneVisit> visits = series.visits();
   if (visits.empty()) return "<p>No zone was ever active.</p>\n";
@@ -133,8 +133,8 @@ std::string zones(const Scene& scene, const RunSeries& series) {
     const ZoneVisit& visit = visits[i];
     out += fmt::format(
         "<tr><td>{}</td><td>{:.4f}</td><td>{:.4f}</td><td>{}</td><td>{:.3f}</td></tr>\n",
-        escaped(scene.zones[visit.zone].name), visit.begin_s, visit.end_s,
-        escaped(pair_name(scene, visit.pair)), 1e3 * visit.clearance);
+        escaped(visit.zone), visit.begin_s, visit.end_s, escaped(visit.pair),
+        1e3 * visit.clearance);
   }
   out += "</table>\n";
   if (visits.size() > kMost) out += fmt::format("<p>... and {} more.</p>\n", visits.size() - kMost);
@@ -166,7 +166,7 @@ std::string report_page(const Scene& scene, const OfflineReplay& replay, const R
                    "active.</p>\n",
                    inline_svg(page.svg));
   out += "<h2>Worst moments</h2>\n" + moments(page);
-  out += "<h2>Zones</h2>\n" + zones(scene, series);
+  out += "<h2>Zones</h2>\n" + zones(series);
   for (const std::string& note : replay.notes) {
     out += fmt::format("<p class=\"quiet\">{}</p>\n", escaped(note));
   }

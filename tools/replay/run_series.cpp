@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+
+#include "monitor/pair_name.hpp"
 
 namespace clearance {
 namespace {
@@ -33,16 +36,37 @@ RunSeries::RunSeries(const Scene& scene)
     : scene_(scene),
       pairs_(published(scene)),
       curves_(pairs_.size(), kMostStretches, kShortestNs),
-      nearest_(pairs_.size()),
-      visit_of_(scene.zones.size(), -1) {}
+      nearest_(pairs_.size()) {
+  follow(scene);
+}
+
+// Visits of zones end with the cell.
+void RunSeries::follow(const Scene& scene) {
+  in_force_ = &scene;
+  visit_of_.assign(scene.zones.size(), -1);
+  const auto names = [](const Scene& of, std::uint32_t pair) {
+    const ObjectPair& objects = of.pairs[pair];
+    return std::minmax(of.objects[objects.first].name, of.objects[objects.second].name);
+  };
+  std::map<std::pair<std::string, std::string>, std::size_t> places;
+  for (std::size_t place = 0; place < pairs_.size(); ++place)
+    places.emplace(names(scene_, pairs_[place]), place);
+  place_of_.clear();
+  for (const std::uint32_t pair : published(scene)) {
+    const auto found = places.find(names(scene, pair));
+    place_of_.push_back(found == places.end() ? kNoPlace : found->second);
+  }
+}
 
 void RunSeries::add(const ReplayedTick& tick) {
   const Report& report = tick.report;
+  if (&tick.cell.scene != in_force_) follow(tick.cell.scene);
   if (ticks_++ == 0) first_ns_ = report.now_ns;
   last_s_ = 1e-9 * static_cast<double>(report.now_ns - first_ns_);
   const std::span<StretchOfPair> stretch = curves_.add({report.now_ns - first_ns_});
-  for (std::size_t place = 0; place < report.pairs.size(); ++place) {
-    add_pair(place, report.pairs[place], stretch[place]);
+  for (std::size_t i = 0; i < report.pairs.size(); ++i) {
+    const std::size_t place = place_of_[i];
+    if (place != kNoPlace) add_pair(place, report.pairs[i], stretch[place]);
   }
   add_zones(report);
 }
@@ -66,13 +90,14 @@ void RunSeries::add_zones(const Report& report) {
     }
     if (visit_of_[zone] < 0) {
       visit_of_[zone] = static_cast<std::int64_t>(visits_.size());
-      visits_.push_back({zone, state.pair, last_s_, last_s_, state.swept_clearance});
+      visits_.push_back({in_force_->zones[zone].name, pair_name(*in_force_, state.pair), last_s_,
+                         last_s_, state.swept_clearance});
     }
     ZoneVisit& visit = visits_[static_cast<std::size_t>(visit_of_[zone])];
     visit.end_s = last_s_;
     if (state.swept_clearance < visit.clearance) {
       visit.clearance = state.swept_clearance;
-      visit.pair = state.pair;
+      visit.pair = pair_name(*in_force_, state.pair);
     }
   }
 }

@@ -34,11 +34,13 @@ struct NearestTick {
 };
 
 struct ZoneVisit {
-  std::uint32_t zone = 0, pair = 0;
+  std::string zone, pair;
   double begin_s = 0.0, end_s = 0.0;
   double clearance = 0.0;  // the least while it was active, m
 };
 
+// The pairs are those that the first cell publishes. Where the cell changes in the run, they are
+// found again by the names of their objects, and have no values while a cell lacks them.
 class RunSeries {
  public:
   explicit RunSeries(const Scene& scene);
@@ -66,10 +68,16 @@ class RunSeries {
       const std::vector<std::pair<std::string, std::string>>& objects, std::size_t most) const;
 
  private:
+  void follow(const Scene& scene);
   void add_pair(std::size_t place, const PairReport& pair, StretchOfPair& stretch);
   void add_zones(const Report& report);
 
-  const Scene& scene_;
+  static constexpr std::size_t kNoPlace = std::numeric_limits<std::size_t>::max();
+
+  const Scene& scene_;               // the first one
+  const Scene* in_force_ = nullptr;  // that of the last tick
+  std::vector<std::size_t>
+      place_of_;  // by published pair of that scene; kNoPlace: the first has none
   std::vector<std::uint32_t> pairs_;
   Stretches<StretchOfRun, StretchOfPair> curves_;
   std::vector<NearestTick> nearest_;

@@ -10,7 +10,12 @@ SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
                                const SimulatedRobotOptions& options, JointMotion joints)
     : scene_(cell.scene), simulation_(cell.simulation), motion_(std::move(joints)) {
   poses_at(simulation_, 0.0, poses_);
-  if (!poses_.empty()) pose_writer_.emplace(connection, options.source);
+  if (!poses_.empty()) {
+    pose_writer_.emplace(connection, options.source);
+    catalogue_.emplace(connection);
+    for (const PoseAt& pose : poses_)
+      moving_.emplace_back(*catalogue_, cell.scene.objects[pose.object].name);
+  }
   if (cell.scene.variables.empty()) return;
   positions_.resize(cell.scene.variables.size());
   velocities_.resize(cell.scene.variables.size());
@@ -49,18 +54,30 @@ void SimulatedRobot::send(double t_s) {
   if (!scene_.variables.empty()) send_joints(t_s, stamp);
 }
 
+// The cell of another daemon, which has another name, is not followed.
+bool SimulatedRobot::follows_another_cell() const {
+  const clearance_msg_Catalogue* const now = catalogue_->message();
+  return now != nullptr && now->scene_revision != scene_.revision && now->scene == scene_.name;
+}
+
 void SimulatedRobot::send_poses(double t_s, std::int64_t stamp_ns) {
   poses_at(simulation_, t_s, poses_);
-  sent_poses_.resize(poses_.size());
+  catalogue_->update();
+  const bool follows = follows_another_cell();
+  const std::uint64_t revision = follows ? catalogue_->revision() : scene_.revision;
+  sent_poses_.clear();
   for (std::size_t i = 0; i < poses_.size(); ++i) {
-    to_wire({.object = poses_[i].object,
+    const std::optional<std::uint32_t> object =
+        follows ? moving_[i].id(revision) : std::optional(poses_[i].object);
+    if (!object) continue;
+    to_wire({.object = *object,
              .stamp_ns = stamp_ns,
              .world_from_object = poses_[i].world_from_object,
              .twist = poses_[i].twist,
              .has_twist = true},
-            sent_poses_[i]);
+            sent_poses_.emplace_back());
   }
-  failed_ += !pose_writer_->write(sent_poses_, scene_.revision);
+  failed_ += !pose_writer_->write(sent_poses_, revision);
 }
 
 void SimulatedRobot::send_joints(double t_s, std::int64_t stamp_ns) {

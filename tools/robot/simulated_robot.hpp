@@ -24,6 +24,8 @@ struct SimulatedRobotOptions {
   std::string ros_topic = {};
 };
 
+// It follows a daemon that changes its cell: objects have the ids that the latest catalogue gives
+// their names, and what that cell lacks is not sent.
 class SimulatedRobot {
  public:
   // The cell and the connection must outlive this. `joints` is not called in a cell without
@@ -45,6 +47,7 @@ class SimulatedRobot {
 
  private:
   void make_ros_message();
+  [[nodiscard]] bool follows_another_cell() const;
   void send_poses(double t_s, std::int64_t stamp_ns);
   void send_joints(double t_s, std::int64_t stamp_ns);
   void send_joints_to_ros(std::int64_t stamp_ns);
@@ -57,6 +60,8 @@ class SimulatedRobot {
   std::vector<clearance_msg_ObjectPose> sent_poses_;
   std::vector<JointSample> joint_samples_;
   std::vector<double> positions_, velocities_;  // of these
+  std::optional<client::Catalogue> catalogue_;  // none: no poses are sent
+  std::vector<client::Object> moving_;          // in the order of the poses
   std::optional<client::PoseWriter> pose_writer_;
   std::optional<client::JointWriter> joint_writer_;
   Sample<sensor_msgs_msg_dds__JointState_> ros_message_;

@@ -46,8 +46,11 @@ void Frame::publish(Server& server) {
   if (report_time_ns_ != 0) {
     publish_if_wanted(server, kTransforms, report_time_ns_,
                       [this] { return transforms_message(scene_, poses_, report_time_ns_); });
-    publish_if_wanted(server, kClosest, report_time_ns_,
-                      [this] { return closest_message(scene_, *report_, report_time_ns_); });
+    // Ids of a report of another scene mean other objects.
+    if (revision_ == scene_.revision) {
+      publish_if_wanted(server, kClosest, report_time_ns_,
+                        [this] { return closest_message(scene_, *report_, report_time_ns_); });
+    }
   }
   for (const auto& [place, message] : new_) server.publish(message);
   new_.clear();

@@ -29,6 +29,9 @@ class Frame {
     poses_.take(std::move(batch), ObjectPoses::Numbers::kUnnumbered);
   }
 
+  // The latest catalogue; its revision is 0 before the first one.
+  [[nodiscard]] const clearance_msg_Catalogue& catalogue() const noexcept { return *catalogue_; }
+
   // Sends the messages that came since the last call.
   void publish(Server& server);
 

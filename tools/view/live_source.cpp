@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
+#include <string>
 #include <utility>
+#include <variant>
 
 #include "monitor/loop/ports.hpp"
 
@@ -30,14 +33,14 @@ std::int32_t depth_of(TopicKind kind) {
 
 }  // namespace
 
-LiveSource::LiveSource(const Cell& cell, const DdsOptions& dds)
-    : scene_(cell.scene),
-      topics_(cell.topics),
+LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
+    : cell_(std::move(cell)),
+      topics_(cell_->topics),
       participant_(dds),
-      frame_(cell.scene),
-      intake_(cell, {},
+      frame_(std::make_unique<Frame>(cell_->scene)),
+      intake_(*cell_, {},
               [this](PoseBatch& batch) {
-                frame_.take_from_ros(std::move(batch));
+                frame_->take_from_ros(std::move(batch));
                 return true;
               }),
       ros_(participant_, intake_) {
@@ -59,9 +62,10 @@ void LiveSource::advance(Server& server) {
   for (const Topic& topic : kRecordedTopics) take(topic.kind);
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
+  follow_the_catalogue(server);
   tell_of_the_daemon(server, now_ns);
   server.set_time(now_ns);
-  frame_.publish(server);
+  frame_->publish(server);
 }
 
 void LiveSource::join(TopicKind kind) {
@@ -89,7 +93,7 @@ void LiveSource::take(TopicKind kind) {
   while (take_cdr(readers_[index(kind)], taken_) == kMostAtOnce) {
   }
   for (const CdrSample& sample : taken_) {
-    frame_.take(kind, sample.source_ns(), sample.bytes());
+    frame_->take(kind, sample.source_ns(), sample.bytes());
   }
   heard_ = heard_ || (kind == TopicKind::kDistances && !taken_.empty());
   taken_.clear();
@@ -107,10 +111,33 @@ void LiveSource::take_from_ros(const Now& now) {
   static_cast<void>(intake_.take_news());
 }
 
+// Reading may take long where meshes are new, so that a thread does it.
+void LiveSource::follow_the_catalogue(Server& server) {
+  const clearance_msg_Catalogue& catalogue = frame_->catalogue();
+  const std::uint64_t now = catalogue.scene_revision;
+  if (now != 0 && now != cell_->scene.revision && now != read_ && !reading_.valid()) {
+    read_ = now;
+    reading_ =
+        std::async(std::launch::async, [yaml = std::string(catalogue.cell_yaml),
+                                        file = cell_->file] { return parse_cell(yaml, file); });
+  }
+  using namespace std::chrono_literals;
+  if (!reading_.valid() || reading_.wait_for(0s) != std::future_status::ready) return;
+  CellResult read = reading_.get();
+  Cell* const cell = std::get_if<Cell>(&read);
+  if (cell == nullptr || cell->scene.revision != now) return;
+  // What the frame and the intake refer to goes last.
+  const std::shared_ptr<const Cell> before = cell_;
+  cell_ = std::make_shared<const Cell>(std::move(*cell));
+  frame_ = std::make_unique<Frame>(cell_->scene);
+  intake_.change(*cell_);
+  server.parameters_changed();
+}
+
 // The same states as those of clearance-watch.
 void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
   const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
-  const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_.report_time_ns());
+  const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_->report_time_ns());
   std::string text;
   if (!heard_) {
     text = fmt::format("waiting for clearanced on {}", participant_.where());
@@ -120,8 +147,9 @@ void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
     text = "clearanced is silent: it died or stands still";
   } else if (writers_alive(reader) > 1) {
     text = fmt::format("{} daemons publish here: figures are mixed", writers_alive(reader));
-  } else if (frame_.revision() != 0 && frame_.revision() != scene_.revision) {
-    text = "clearanced runs another cell than the one shown here";
+  } else if (frame_->revision() != 0 && frame_->revision() != cell_->scene.revision) {
+    text = reading_.valid() ? "the daemon has changed its cell, which is being read"
+                            : "clearanced runs another cell than the one shown here";
   }
   server.set_status("daemon", heard_ ? 2 : 1, text);
 }

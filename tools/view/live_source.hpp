@@ -3,9 +3,11 @@
 
 #include <array>
 #include <cstdint>
+#include <future>
+#include <memory>
 #include <vector>
 
-#include "config/cell/cell.hpp"
+#include "config/cell/cell_file.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
@@ -16,8 +18,11 @@ namespace clearance::view {
 
 class LiveSource final : public Source {
  public:
-  // Throws DdsError. `cell` must outlive it.
-  LiveSource(const Cell& cell, const DdsOptions& dds);
+  // Throws DdsError. When the daemon changes its cell, the catalogue has its text, and the files
+  // that it names are beside the first one.
+  LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds);
+
+  [[nodiscard]] std::shared_ptr<const Cell> cell() const override { return cell_; }
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.
@@ -28,15 +33,18 @@ class LiveSource final : public Source {
   void leave(Server& server);
   void take(TopicKind kind);
   void take_from_ros(const Now& now);
+  void follow_the_catalogue(Server& server);
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
-  const Scene& scene_;
-  const Topics& topics_;
+  std::shared_ptr<const Cell> cell_;
+  const Topics topics_;
   Participant participant_;
   std::array<dds_entity_t, kRecordedTopics.size()> readers_{};  // 0: there is none
   std::vector<CdrSample> taken_;
-  Frame frame_;
-  Intake intake_;  // of ROS 2's topics
+  std::unique_ptr<Frame> frame_;
+  Intake intake_;                    // of ROS 2's topics
+  std::future<CellResult> reading_;  // not valid: no cell is being read
+  std::uint64_t read_ = 0;           // the revision that was read last, or is being read
   RosReaders ros_;
   bool heard_ = false;           // a report has come since there is a viewer
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC

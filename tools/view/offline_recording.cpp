@@ -20,6 +20,11 @@ class Copy {
 
   void add(const ReplayedTick& tick) {
     if (!recorder_) recorder_.emplace(out_, cell_, tick.report.now_ns, RecordingOptions{});
+    if (tick.cell.scene.revision != revision_) {
+      recorder_->change(tick.cell, tick.since);
+      revision_ = tick.cell.scene.revision;
+      stamps_.assign(tick.cell.scene.objects.size(), 0);
+    }
     recorder_->poses(moved_in(tick.monitor));
     const SourceUse used{batch_.source, batch_.sequence_number};
     recorder_->report(tick.report, {&used, 1});
@@ -32,7 +37,7 @@ class Copy {
   const PoseBatch& moved_in(const Monitor& monitor) {
     batch_.source = SourceName(kSource);
     ++batch_.sequence_number;
-    batch_.scene_revision = cell_.scene.revision;
+    batch_.scene_revision = revision_;
     batch_.samples.clear();
     for (std::uint32_t i = 0; i < stamps_.size(); ++i) {
       const std::int64_t stamp_ns = monitor.stamp_ns(i);
@@ -47,6 +52,7 @@ class Copy {
   }
 
   const Cell& cell_;
+  std::uint64_t revision_ = cell_.scene.revision;  // of the last tick
   std::filesystem::path out_;
   std::optional<Recorder> recorder_;
   std::vector<std::int64_t> stamps_;  // the poses written last

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <string>
+#include <vector>
 
 #include "monitor/loop/ports.hpp"
 
@@ -15,12 +18,46 @@ constexpr double kSlowest = 0.01, kFastest = 100.0;
 
 }  // namespace
 
-RecordingSource::RecordingSource(const Scene& scene, std::filesystem::path file, Timeline timeline)
-    : scene_(scene),
+RecordingSource::RecordingSource(std::shared_ptr<const Cell> cell,
+                                 std::unique_ptr<SceneHistory> scenes, std::filesystem::path file,
+                                 Timeline timeline)
+    : first_(std::move(cell)),
+      cell_(first_),
+      scenes_(std::move(scenes)),
       file_(std::move(file)),
       timeline_(std::move(timeline)),
-      frame_(scene),
+      frame_(std::make_unique<Frame>(cell_->scene)),
       time_ns_(timeline_.begin_ns) {}
+
+// Curves are kept by the pairs of the first cell.
+std::string RecordingSource::history(double end_s, std::span<const std::uint32_t> pairs) const {
+  if (cell_ == first_) return timeline_.history.window(at(end_s), pairs);
+  const std::vector<std::uint32_t> of_first = same_pairs(cell_->scene, first_->scene);
+  nlohmann::json all = nlohmann::json::parse(timeline_.history.window(at(end_s), {}));
+  for (const std::uint32_t pair : pairs) {
+    const std::uint32_t same = pair < of_first.size() ? of_first[pair] : kNoPair;
+    if (same == kNoPair) continue;
+    const auto curve = nlohmann::json::parse(timeline_.history.window(at(end_s), {&same, 1}));
+    all["pairs"][std::to_string(pair)] = curve["pairs"][std::to_string(same)];
+  }
+  return all.dump();
+}
+
+// The cell that was in force at this time, if the recording has it.
+void RecordingSource::follow_the_time() {
+  const auto after = std::ranges::upper_bound(timeline_.scenes, time_ns_, {}, &SceneSince::log_ns);
+  const bool is_recorded = timeline_.scenes.front().revision == first_->scene.revision;
+  if (after == timeline_.scenes.begin() || !is_recorded) return;
+  const std::uint64_t revision = std::prev(after)->revision;
+  if (revision == cell_->scene.revision) return;
+  const Cell* const cell = scenes_->cell(revision);
+  if (cell == nullptr) return;
+  // The history owns it, and the first one is ours.
+  cell_ = cell == first_.get() ? first_ : std::shared_ptr<const Cell>(first_, cell);
+  frame_ = std::make_unique<Frame>(cell_->scene);
+  reader_ = nullptr;
+  changed_ = true;
+}
 
 // A rounded time, from a link for instance, still finds its report.
 std::int64_t RecordingSource::at(double seconds) const {
@@ -66,9 +103,10 @@ void RecordingSource::step(std::int64_t reports) {
 
 void RecordingSource::advance(Server& server) {
   go_on(SystemClock().monotonic_ns());
+  follow_the_time();
   read_up_to(time_ns_);
   server.set_time(time_ns_);
-  frame_.publish(server);
+  frame_->publish(server);
   if (std::exchange(changed_, false)) server.parameters_changed();
 }
 
@@ -88,7 +126,7 @@ void RecordingSource::read_up_to(std::int64_t time_ns) {
     begin_reading_at(std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
   }
   while (has_next_ && next_.log_ns <= time_ns) {
-    frame_.take(next_.kind, next_.log_ns, next_.cdr);
+    frame_->take(next_.kind, next_.log_ns, next_.cdr);
     has_next_ = reader_->next(next_);
   }
   read_ns_ = time_ns;
@@ -99,10 +137,10 @@ void RecordingSource::read_up_to(std::int64_t time_ns) {
 void RecordingSource::begin_reading_at(std::int64_t time_ns) {
   reader_ = std::make_unique<RecordingReader>(
       file_, McapWindow{.start_ns = static_cast<std::uint64_t>(time_ns)});
-  frame_.jump();
+  frame_->jump();
   for (const ZoneMessage& message : timeline_.zone_messages) {
     if (message.log_ns >= time_ns) break;
-    frame_.take(TopicKind::kZones, message.log_ns, message.cdr);
+    frame_->take(TopicKind::kZones, message.log_ns, message.cdr);
   }
   has_next_ = reader_->next(next_);
 }

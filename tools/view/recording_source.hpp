@@ -20,30 +20,33 @@ namespace clearance::view {
 
 class RecordingSource final : public Source {
  public:
-  // `timeline` is of this file and without an error; `scene` must outlive it.
-  RecordingSource(const Scene& scene, std::filesystem::path file, Timeline timeline);
+  // `timeline` is of this file and without an error. `scenes` is the history of the file, which
+  // begins with the cell.
+  RecordingSource(std::shared_ptr<const Cell> cell, std::unique_ptr<SceneHistory> scenes,
+                  std::filesystem::path file, Timeline timeline);
 
+  [[nodiscard]] std::shared_ptr<const Cell> cell() const override { return cell_; }
   void advance(Server& server) override;
   [[nodiscard]] nlohmann::json parameters() const override;
   void set(const std::string& name, const nlohmann::json& value) override;
   [[nodiscard]] std::string timeline() const override { return timeline_.json(); }
   [[nodiscard]] std::string history(double end_s,
-                                    std::span<const std::uint32_t> pairs) const override {
-    return timeline_.history.window(at(end_s), pairs);
-  }
+                                    std::span<const std::uint32_t> pairs) const override;
 
  private:
   void go_on(std::int64_t steady_ns);
   void go_to(std::int64_t time_ns);
   void step(std::int64_t reports);
   void read_up_to(std::int64_t time_ns);
+  void follow_the_time();
   void begin_reading_at(std::int64_t time_ns);
   [[nodiscard]] std::int64_t at(double seconds) const;
 
-  const Scene& scene_;
+  std::shared_ptr<const Cell> first_, cell_;  // of the recording; at this time
+  std::unique_ptr<SceneHistory> scenes_;
   std::filesystem::path file_;
   Timeline timeline_;
-  Frame frame_;
+  std::unique_ptr<Frame> frame_;
   std::unique_ptr<RecordingReader> reader_;
   RecordedMessage next_;  // read, but still to come
   bool has_next_ = false;

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 
+#include "config/cell/cell.hpp"
 #include "tools/view/server.hpp"
 
 namespace clearance::view {
@@ -16,6 +18,10 @@ class Source {
   virtual ~Source() = default;
   Source(const Source&) = delete;
   Source& operator=(const Source&) = delete;
+
+  // The cell that is shown. It is another one after the daemon changed its cell, or where the
+  // recording has another one.
+  [[nodiscard]] virtual std::shared_ptr<const Cell> cell() const = 0;
 
   // Publishes new messages; called 60 times a second.
   virtual void advance(Server& server) = 0;

@@ -7,6 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
+#include <utility>
 
 #include "monitor/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
@@ -18,12 +20,12 @@ namespace {
 
 class Scan {
  public:
-  explicit Scan(const Scene& scene) : scene_(scene), found_(scene) {}
+  explicit Scan(SceneHistory& scenes)
+      : scenes_(scenes), scene_(&scenes.first().scene), found_(*scene_) {}
 
   void take(const RecordedMessage& message) {
     if (message.kind == TopicKind::kDistances && decoder_.decode(message.cdr, report_)) {
-      found_.reports.push_back(message.log_ns);
-      found_.history.take(*report_, message.log_ns);
+      take_report(message.log_ns);
     } else if (message.kind == TopicKind::kZones && decoder_.decode(message.cdr, zone_)) {
       found_.zone_messages.push_back(
           {zone_->zone, message.log_ns, {message.cdr.begin(), message.cdr.end()}});
@@ -35,6 +37,8 @@ class Scan {
   [[nodiscard]] Timeline result();
 
  private:
+  void take_report(std::int64_t log_ns);
+  void change_scene(std::int64_t log_ns);
   void take_zone(std::int64_t log_ns);
   void take_health(std::int64_t log_ns);
   void add(std::int64_t time_ns, const char* kind, std::string text) {
@@ -44,7 +48,11 @@ class Scan {
   }
   void add_least();
 
-  const Scene& scene_;
+  SceneHistory& scenes_;
+  const Scene* scene_;                      // of the last report
+  std::vector<std::uint32_t> first_pairs_;  // by its pairs: same_pairs(); empty: the first scene
+  std::string least_pair_;
+  double least_ = std::numeric_limits<double>::infinity();
   CdrDecoder decoder_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
@@ -54,13 +62,49 @@ class Scan {
   std::optional<std::uint64_t> overruns_;
 };
 
+// Pairs of a changed scene have other ids.
+void Scan::take_report(std::int64_t log_ns) {
+  const bool changes =
+      found_.scenes.empty() || found_.scenes.back().revision != report_->scene_revision;
+  if (changes) change_scene(log_ns);
+  found_.reports.push_back(log_ns);
+  const bool known = report_->minimum_known &&
+                     report_->minimum.status < static_cast<std::uint8_t>(PairStatus::kStale);
+  if (known && report_->minimum.distance < least_) {
+    least_ = report_->minimum.distance;
+    least_pair_ = pair_name(*scene_, report_->minimum.pair);
+  }
+  if (!first_pairs_.empty()) {
+    for (auto& pair : std::span(report_->pairs._buffer, report_->pairs._length))
+      pair.pair = pair.pair < first_pairs_.size() ? first_pairs_[pair.pair] : kNoPair;
+  }
+  found_.history.take(*report_, log_ns);
+}
+
+// The state of every zone is recorded again after a change.
+void Scan::change_scene(std::int64_t log_ns) {
+  const bool is_first = found_.scenes.empty();
+  found_.scenes.push_back({log_ns, report_->scene_revision});
+  const Cell* const cell = scenes_.cell(report_->scene_revision);
+  if (cell != nullptr) scene_ = &cell->scene;
+  const bool of_first = scene_ == &scenes_.first().scene;
+  first_pairs_ =
+      of_first ? std::vector<std::uint32_t>() : same_pairs(*scene_, scenes_.first().scene);
+  if (is_first) return;
+  for (const auto& [zone, since] : active_) found_.zones.push_back({zone, since, log_ns});
+  active_.clear();
+  add(log_ns, "cell", fmt::format("the cell changes to {:016x}", report_->scene_revision));
+}
+
 void Scan::take_zone(std::int64_t log_ns) {
   const auto since = active_.find(zone_->zone);
   if (zone_->active && since == active_.end()) {
     active_[zone_->zone] = log_ns;
+    const bool goes_on = found_.scenes.size() > 1 && zone_->since_cycle < zone_->cycle;
+    if (goes_on) return;
     if (!found_.reports.empty() || zone_->cause == static_cast<std::uint8_t>(ZoneCause::kNear)) {
       add(log_ns, "zone",
-          fmt::format("zone {} entered: {}", zone_->name, pair_name(scene_, zone_->pair)));
+          fmt::format("zone {} entered: {}", zone_->name, pair_name(*scene_, zone_->pair)));
     }
   } else if (!zone_->active && since != active_.end()) {
     found_.zones.push_back({zone_->zone, since->second, log_ns});
@@ -81,9 +125,9 @@ void Scan::take_health(std::int64_t log_ns) {
 void Scan::add_least() {
   const RunHistory::Piece least = found_.history.least();
   if (std::isnan(least.distance)) return;
-  found_.moments.push_back({least.time_ns, "closest",
-                            fmt::format("least distance: {:.2f} mm, {}", 1e3 * least.distance,
-                                        pair_name(scene_, least.pair))});
+  found_.moments.push_back(
+      {least.time_ns, "closest",
+       fmt::format("least distance: {:.2f} mm, {}", 1e3 * least.distance, least_pair_)});
 }
 
 Timeline Scan::result() {
@@ -98,11 +142,25 @@ Timeline Scan::result() {
 
 }  // namespace
 
-Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
+std::vector<std::uint32_t> same_pairs(const Scene& from, const Scene& to) {
+  const auto names = [](const Scene& scene, const ObjectPair& pair) {
+    return std::minmax(scene.objects[pair.first].name, scene.objects[pair.second].name);
+  };
+  std::map<std::pair<std::string, std::string>, std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < to.pairs.size(); ++i) ids.emplace(names(to, to.pairs[i]), i);
+  std::vector<std::uint32_t> found;
+  for (const ObjectPair& pair : from.pairs) {
+    const auto same = ids.find(names(from, pair));
+    found.push_back(same == ids.end() ? kNoPair : same->second);
+  }
+  return found;
+}
+
+Timeline read_timeline(SceneHistory& scenes, const std::filesystem::path& file,
                        const std::function<void(double)>& progress) {
   RecordingReader reader(file);
   RecordedMessage message;
-  Scan scan(scene);
+  Scan scan(scenes);
   while (reader.next(message)) {
     scan.take(message);
     if (progress) progress(reader.progress());

@@ -5,17 +5,19 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <string>
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/replay/scene_history.hpp"
 #include "tools/view/run_history.hpp"
 
 namespace clearance::view {
 
 struct Moment {
   std::int64_t time_ns = 0;  // log time
-  std::string kind;          // "closest", "zone", "overrun"
+  std::string kind;          // "closest", "zone", "overrun", "cell"
   std::string text;          // for a person
 };
 
@@ -31,13 +33,25 @@ struct ZoneMessage {
   std::vector<std::byte> cdr = {};
 };
 
+// From this log time on, reports are of this scene.
+struct SceneSince {
+  std::int64_t log_ns = 0;
+  std::uint64_t revision = 0;
+};
+
+// Returns, by pair of the scene `from`, the pair of the same objects in the scene `to`; kNoPair:
+// there is none.
+inline constexpr std::uint32_t kNoPair = std::numeric_limits<std::uint32_t>::max();
+[[nodiscard]] std::vector<std::uint32_t> same_pairs(const Scene& from, const Scene& to);
+
 struct Timeline {
   explicit Timeline(const Scene& scene) : history(scene) {}
 
   std::string error;  // empty, or why the file cannot be shown
   std::int64_t begin_ns = 0, end_ns = 0;
   std::vector<std::int64_t> reports;  // log times
-  RunHistory history;
+  RunHistory history;                 // of pairs that the first scene has
+  std::vector<SceneSince> scenes;     // in order of time, the first one first
   std::vector<ZoneSpan> zones;
   std::vector<ZoneMessage> zone_messages;  // in order of time
   std::vector<Moment> moments;             // in order of time; "closest" is the least of all
@@ -47,8 +61,9 @@ struct Timeline {
 
 inline constexpr std::size_t kMostStretches = 2000, kMostMoments = 200;
 
-// Reads the whole file once; `progress` receives the share that was read, 0 to 1.
-[[nodiscard]] Timeline read_timeline(const Scene& scene, const std::filesystem::path& file,
+// Reads the whole file once; `progress` receives the share that was read, 0 to 1. The history is
+// that of the file.
+[[nodiscard]] Timeline read_timeline(SceneHistory& scenes, const std::filesystem::path& file,
                                      const std::function<void(double)>& progress = {});
 
 }  // namespace clearance::view

@@ -50,7 +50,8 @@ void Feed::note_report(std::int64_t now_ns) {
     return;
   }
   if (smallest_.known && !(minimum.distance < smallest_.pair.distance)) return;
-  smallest_ = {.known = true, .pair = minimum, .cycle = reports_->cycle};
+  smallest_ = {
+      .known = true, .pair = minimum, .name = pair_name(minimum), .cycle = reports_->cycle};
 }
 
 // Called when the daemon was restarted, perhaps with another cell whose ids mean other objects, or
@@ -64,8 +65,7 @@ void Feed::begin_again() {
 }
 
 const clearance_msg_Catalogue* Feed::catalogue() const noexcept {
-  return !any() || catalogue_.revision() == reports_->scene_revision ? catalogue_.message()
-                                                                     : nullptr;
+  return any() ? catalogue_.message(reports_->scene_revision) : catalogue_.message();
 }
 
 const clearance_msg_Health* Feed::health() const noexcept {
@@ -74,11 +74,11 @@ const clearance_msg_Health* Feed::health() const noexcept {
 }
 
 std::string Feed::object_name(std::uint32_t object) const {
-  return catalogue() == nullptr ? fmt::format("object {}", object) : catalogue_.object_name(object);
+  return catalogue_.object_name(object, reports_->scene_revision);
 }
 
 std::string Feed::pair_name(const clearance_msg_PairDistance& pair) const {
-  return catalogue() == nullptr ? fmt::format("pair {}", pair.pair) : catalogue_.pair_name(pair);
+  return catalogue_.pair_name(pair, reports_->scene_revision);
 }
 
 std::string Feed::pair_name(std::uint32_t pair) const {

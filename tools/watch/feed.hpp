@@ -18,6 +18,7 @@ inline constexpr std::chrono::milliseconds kOldReport(500);
 struct Smallest {
   bool known = false;
   clearance_msg_PairDistance pair{};
+  std::string name;  // of the pair: a later cell may give its id to another one
   std::uint64_t cycle = 0;
 };
 

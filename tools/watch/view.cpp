@@ -376,7 +376,7 @@ std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns)
   if (feed.smallest().known) {
     const clearance_msg_PairDistance& pair = feed.smallest().pair;
     text += fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n", pair.distance,
-                        pair.lower, pair.upper, feed.pair_name(pair), feed.smallest().cycle);
+                        pair.lower, pair.upper, feed.smallest().name, feed.smallest().cycle);
   } else {
     text += "minimum  none: no pair was ever evaluated\n";
   }

@@ -12,6 +12,7 @@ int main(int argc, char** argv) {
   Connection connection({.partition = argc > 1 ? argv[1] : ""});  // loopback, domain 0
   Reports reports(connection);
   Catalogue names(connection);
+  Pair hand_and_post(names, "left_hand", "post");  // by name, also after a change of the cell
   JointWriter arm(connection, "left arm",
                   {"left_joint1", "left_joint2", "left_joint3", "left_joint4", "left_joint5",
                    "left_joint6", "left_joint7", "left_finger"});
@@ -20,12 +21,12 @@ int main(int argc, char** argv) {
   for (int heard = 0; now_ns() < end_ns;) {
     arm.write({{-0.6, 0.6 * std::sin(phase), 0.0, -0.2, 0.0, 0.5, 0.0, 0.02}});
     if (!reports.newest(std::chrono::milliseconds(10)) || !reports.check().fresh()) continue;
-    names.update();
-    const auto* hand = find(*reports, names.pair("left_hand", "post"));
+    const auto* hand = hand_and_post.in(*reports);
     if (hand == nullptr) continue;
     phase += 1e-3 * std::clamp(5.0 * hand->lower, 0.0, 1.0);  // -infinity while not known
     if (heard++ % 500 == 0)
-      std::printf("%s: %.4f m\n", names.pair_name(*hand).c_str(), hand->lower);
+      std::printf("%s: %.4f m\n", names.pair_name(*hand, reports->scene_revision).c_str(),
+                  hand->lower);
   }
   return reports->evaluated > 0 ? 0 : 1;
 }

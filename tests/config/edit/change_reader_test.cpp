@@ -61,8 +61,11 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
 - set_pair: {between: [a, b], rule: leave_out, reason: they are welded}
 - set_zone_thresholds: {zone: stop, enter_below: 0.1, leave_above: 0.2}
 - read_cell_again: {}
+- replace_object: {name: box, fixed: true, sphere: {radius: 6}}
+- allow_contact: {contact: grip, between: [part, fingers], depth: 0.002, until: {distance: 0.01, cycle: 900}, by: planner}
+- withdraw_contact: {contact: grip}
 )");
-  ASSERT_EQ(changes.size(), 14u);
+  ASSERT_EQ(changes.size(), 17u);
   EXPECT_EQ(std::get<AddObject>(changes[0]).yaml, "{name: box, fixed: true, sphere: {radius: 5}}");
   const auto& bin = std::get<AddFromTemplate>(changes[1]);
   EXPECT_EQ(bin.template_name, "bin");
@@ -89,6 +92,15 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
   EXPECT_EQ(pair.reason, "they are welded");
   EXPECT_EQ(std::get<SetZoneThresholds>(changes[12]).leave_above, 0.2);
   EXPECT_EQ(std::get<ReadCellAgain>(changes[13]).file, "");
+  EXPECT_EQ(std::get<ReplaceObject>(changes[14]).yaml,
+            "{name: box, fixed: true, sphere: {radius: 6}}");
+  const auto& contact = std::get<AllowContact>(changes[15]);
+  EXPECT_EQ(contact.contact, "grip");
+  EXPECT_EQ(contact.a + contact.b, "partfingers");
+  EXPECT_EQ(contact.depth, 0.002);
+  EXPECT_EQ(contact.end, (ContactEnd{.distance = 0.01, .last_cycle = 900}));
+  EXPECT_EQ(contact.by, "planner");
+  EXPECT_EQ(std::get<WithdrawContact>(changes[16]).contact, "grip");
 }
 
 TEST(ChangeReader, TakesLengthsAndAnglesInTheStatedUnits) {

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <stdexcept>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "monitor/participant/participant.hpp"
 #include "tests/shared/loopback.hpp"
@@ -37,26 +40,31 @@ class Daemon {
     check_dds(dds_write(distances_, &report), "writing");
   }
 
-  // Announces a hand (of two parts) and a table, one pair, and one joint.
-  void announce() {
+  // Announces objects and pairs, and one joint. A hand has two parts.
+  void announce(std::uint64_t revision = 5,
+                const std::vector<const char*>& objects = {"hand", "table"},
+                const std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs = {{0, 1}}) {
     Sample<clearance_msg_Catalogue> catalogue;
     catalogue->scene = dds_string_dup("cell");
     catalogue->cell_yaml = dds_string_dup("");
-    catalogue->scene_revision = 5;
-    reserve_sequence(catalogue->objects, 2);
-    for (const char* name : {"hand", "table"}) {
+    catalogue->scene_revision = revision;
+    reserve_sequence(catalogue->objects, objects.size());
+    for (const char* name : objects) {
       clearance_msg_CatalogueObject& object =
           catalogue->objects._buffer[catalogue->objects._length];
       object.id = catalogue->objects._length++;
       object.name = dds_string_dup(name);
+      if (std::string_view(name) != "hand") continue;
+      reserve_sequence(object.parts, 2);
+      for (const char* part : {"palm", "finger"}) {
+        object.parts._buffer[object.parts._length++] = dds_string_dup(part);
+      }
     }
-    clearance_msg_CatalogueObject& hand = catalogue->objects._buffer[0];
-    reserve_sequence(hand.parts, 2);
-    for (const char* part : {"palm", "finger"}) {
-      hand.parts._buffer[hand.parts._length++] = dds_string_dup(part);
+    reserve_sequence(catalogue->pairs, pairs.size());
+    for (const auto& [a, b] : pairs) {
+      const std::uint32_t id = catalogue->pairs._length++;
+      catalogue->pairs._buffer[id] = {id, a, b, true};
     }
-    reserve_sequence(catalogue->pairs, 1);
-    catalogue->pairs._buffer[catalogue->pairs._length++] = {0, 0, 1, true};
     reserve_sequence(catalogue->joints, 1);
     catalogue->joints._buffer[catalogue->joints._length++] = {0, dds_string_dup("elbow")};
     check_dds(dds_write(catalogue_, &*catalogue), "writing");
@@ -119,6 +127,36 @@ TEST(Client, HearsThatTheDaemonHasEnded) {
   }
   EXPECT_TRUE(eventually([&] { return reports.has_ended() && reports.daemons() == 0; }));
   EXPECT_EQ(reports->cycle, 1u);
+}
+
+// The second catalogue has the table first. Reports of the first one may still come.
+TEST(Client, FindsAPairByNameInReportsOfEachOfTheLastCatalogues) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  client::Connection connection(dds);
+  client::Catalogue catalogue(connection);
+  client::Pair pair(catalogue, "table", "hand");
+  client::Object table(catalogue, "table");
+  clearance_msg_PairDistance published[2]{};
+  published[1].pair = 1;
+  clearance_msg_Distances report{};
+  report.pairs = {2, 2, published, false};
+  report.scene_revision = 5;
+  EXPECT_EQ(pair.in(report), nullptr) << "no catalogue yet";
+  daemon.announce();
+  ASSERT_TRUE(eventually([&] { return pair.in(report) == &published[0]; }));
+  EXPECT_EQ(table.id(5), 1u);
+  daemon.announce(6, {"table", "lamp", "hand"}, {{1, 2}, {2, 0}});
+  report.scene_revision = 6;
+  ASSERT_TRUE(eventually([&] { return pair.in(report) == &published[1]; }));
+  EXPECT_EQ(table.id(6), 0u);
+  EXPECT_EQ(catalogue.pair_name(published[1], 6), "hand.palm - table");
+  EXPECT_EQ(catalogue.pair_name(published[0], 5), "hand.palm - table");
+  report.scene_revision = 5;
+  EXPECT_EQ(pair.in(report), &published[0]);
+  EXPECT_EQ(table.id(5), 1u);
+  report.scene_revision = 7;
+  EXPECT_EQ(pair.in(report), nullptr);
 }
 
 TEST(Client, KnowsNamesFromTheCatalogueHoweverLateItComes) {

@@ -125,7 +125,7 @@ TEST_F(RecordedCell, NeedsNoneOfItsFilesUncompressedEither) {
   const CellResult result = recorded({.compress = false});
   ASSERT_EQ("", errors_in(result));
   EXPECT_EQ(cell.scene.revision, std::get<Cell>(result).scene.revision);
-  EXPECT_EQ(6u, read_first_attachments(run).found.size());
+  EXPECT_EQ(6u, read_attachments(run).found.size());
 }
 
 TEST_F(RecordedCell, SaysThatFilesAreMissingWhereTheyWereTooLarge) {
@@ -137,7 +137,7 @@ TEST_F(RecordedCell, SaysThatFilesAreMissingWhereTheyWereTooLarge) {
 TEST_F(RecordedCell, HasNoneWhereNoneWereAskedFor) {
   EXPECT_NE("", errors_in(recorded({.attach_bytes = 0})));
   EXPECT_EQ("", without_files);
-  EXPECT_TRUE(read_first_attachments(run).found.empty());
+  EXPECT_TRUE(read_attachments(run).found.empty());
 }
 
 TEST_F(RecordedCell, IsInEveryFileOfSeveral) {

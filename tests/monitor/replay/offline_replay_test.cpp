@@ -151,9 +151,10 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
     EXPECT_THAT(
         text,
         HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_lower,ax"));
-    EXPECT_THAT(text, HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles\n"));
+    EXPECT_THAT(text, HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles,scene_revision\n"));
     EXPECT_THAT(text, HasSubstr("\n1,1700000000000000000,hand,tool,converged,"));
-    EXPECT_THAT(text, HasSubstr(",0\n5,")) << "published pairs are refreshed in every tick";
+    EXPECT_THAT(text, HasSubstr(",0,0000000000000029\n5,"))
+        << "published pairs are refreshed in every tick";
   }
 }
 

@@ -145,13 +145,11 @@ class CommandedCell : public testing::Test, private CellParts {
   std::uint64_t request = 0;
   int changes = 0;  // scenes that were about to change
   bool may_change = true;
-  std::string keeps;  // why the program keeps its cell
 
  private:
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>&) override { return {}; }
   void follow() override {}
   void abandon() override {}
-  std::string keeps_its_cell() const override { return keeps; }
 };
 
 }  // namespace clearance::test

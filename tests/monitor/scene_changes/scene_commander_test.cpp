@@ -172,8 +172,6 @@ TEST_F(SceneCommands, ThatTakeARestartAreRefused) {
   text = test::kCommandedCell;
   text.replace(text.find("[planner]"), 9, "[planner, x]");
   expect_refused({ReplaceCell{text}}, CommandStatus::kNeedsRestart);
-  keeps = "it is somebody's";
-  EXPECT_EQ(expect_refused({SetMargin{"table", 0.01}}, CommandStatus::kNeedsRestart).reason, keeps);
 }
 
 TEST_F(SceneCommands, NameFilesOfStatedFoldersOnlyAndSendThem) {

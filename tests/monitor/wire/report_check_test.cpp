@@ -37,5 +37,24 @@ TEST(ReportCheck, CountsWhatIsMissingWithinOneDaemonOnly) {
   EXPECT_TRUE(checker.check(report_of(2, 1), kWhen).other_daemon) << "the same id counts anew";
 }
 
+TEST(ReportCheck, TellsAChangedSceneFromAnotherDaemon) {
+  ReportChecker checker(kLimit);
+  const auto check = [&checker](std::uint64_t daemon, std::uint64_t cycle, std::uint64_t revision) {
+    clearance_msg_Distances report = report_of(daemon, cycle);
+    report.scene_revision = revision;
+    return checker.check(report, kWhen);
+  };
+  EXPECT_FALSE(check(1, 10, 5).other_scene) << "the first report";
+  const ReportCheck changed = check(1, 13, 6);
+  EXPECT_TRUE(changed.other_scene);
+  EXPECT_FALSE(changed.other_daemon);
+  EXPECT_EQ(changed.missed, 2u);
+  EXPECT_FALSE(check(1, 14, 6).other_scene);
+  EXPECT_TRUE(check(2, 15, 6).other_daemon);
+  EXPECT_TRUE(check(0, 20, 6).other_daemon);
+  EXPECT_FALSE(check(0, 21, 7).other_daemon) << "a replay that goes on with another scene";
+  EXPECT_TRUE(check(0, 40, 8).other_daemon) << "another replay";
+}
+
 }  // namespace
 }  // namespace clearance

@@ -45,8 +45,13 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
   closed: () => (state.connected = false),
   time: (ns) => (state.timeNs = ns),
   status: (id, level, text) => (text ? state.statuses.set(id, { level, text }) : state.statuses.delete(id)),
-  parameters: (values) => track?.parameters(values),
+  parameters: (values) => {
+    const revision = values["scene.revision"];
+    if (revision !== undefined && revision !== scene.revision) return changeCell();
+    track?.parameters(values);
+  },
   message: (topic, value, ns) => {
+    if (isOfAnotherCell(value)) return;
     if (topic === "/tf") view.moved(value);
     else if (topic === topics.distances) state.takeReport(value, ns);
     else if (topic === topics.zones) state.zones.set(value.zone, value);
@@ -56,6 +61,12 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
 });
 const track = timeline && new Timeline(timeline, scene.zones, (name, value) => connection.set(name, value));
 drawLegend();
+
+// Ids of a report of another cell mean other objects. A recording may be shown with a cell that was edited since.
+function isOfAnotherCell({ scene_revision, pairs }) {
+  if (!pairs || scene_revision === undefined || Number(scene_revision) === Number(scene.revision)) return false;
+  return !timeline || pairs.some(({ pair }) => !state.pairs[pair]);
+}
 
 // ---- Selection
 
@@ -107,6 +118,13 @@ function address(withCamera) {
     time: secondsIn(), pairs: [...chosen].map(pairName), filter: table.filter, sort: table.sorting, theme,
     camera: withCamera ? view.place : asked.camera, shells: view.shells.visible,
   });
+}
+// The cell is another one: the page is loaded anew and looks from the same place. The server knows the time.
+function changeCell() {
+  const link = new URL(address(true), location.href);
+  link.searchParams.delete("t");
+  history.replaceState(null, "", link);
+  location.reload();
 }
 function changed() {
   history.replaceState(null, "", address(false));

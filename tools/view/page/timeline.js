@@ -3,7 +3,7 @@ import { axisOf, ticksOf } from "./axis.js";
 import { css, mm, put, roundUp, seconds } from "./format.js";
 
 const element = (id) => document.getElementById(id);
-const MARK = { closest: "--alarm", zone: "--near", overrun: "--lost" };
+const MARK = { closest: "--alarm", zone: "--near", overrun: "--lost", cell: "--text" };
 const LEFT = 54, TOP = 6;
 
 // A canvas with its pixels on the screen, and its cleared drawing context.

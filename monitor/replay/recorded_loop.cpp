@@ -1,0 +1,101 @@
+#include "monitor/replay/recorded_loop.hpp"
+
+#include <fmt/format.h>
+
+namespace clearance {
+
+RecordedLoop::RecordedLoop(SceneHistory& history) : history_(history) {
+  start(history.first(), history.begins_changed());
+}
+
+void RecordedLoop::start(const Cell& cell, bool followed) {
+  cell_ = &cell;
+  since_ = {};
+  next_ = nullptr;
+  monitor_ = std::make_unique<Monitor>(cell.scene);
+  ids_ = std::make_unique<SceneIds>(cell.scene, followed);
+}
+
+// A daemon that was started anew has no history, and may have another cell. Where the recording
+// does not describe that one, the cell stays.
+void RecordedLoop::restart(const clearance_msg_Distances& report) {
+  const Cell* const cell = history_.cell(report.scene_revision);
+  start(cell != nullptr ? *cell : *cell_, false);
+  begun_ = false;
+}
+
+const Report* RecordedLoop::tick(const TickInput& input) {
+  if (input.restart) restart(*input.recorded);
+  if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
+  poses_.clear();
+  joints_.clear();
+  for (const PoseBatch& batch : input.batches) take(batch);
+  const Report& report = monitor_->tick(poses_, joints_, input.time);
+  if (next_) {
+    keep_mapped(next_->map.objects_now, &PoseSample::object, 0, poses_);
+    keep_mapped(next_->map.variables_now, &JointSample::variable, 0, joints_);
+    next_->monitor->tick(poses_, joints_, input.time);
+  }
+  return input.recorded == nullptr || change_after(*input.recorded) ? &report : nullptr;
+}
+
+void RecordedLoop::take(const PoseBatch& batch) {
+  if (ids_->append(batch, poses_, joints_)) {
+    if (!unclear_.empty()) unclear_.erase(batch.source.c_str());
+    return;
+  }
+  ++of_other_scenes_;
+  if (history_.begins_changed() && batch.scene_revision != 0) unclear_.insert(batch.source.c_str());
+}
+
+// The changes that are in force with this report. The first one of a recording begins where it can
+// if the recording begins between the two steps.
+bool RecordedLoop::change_before(const clearance_msg_Distances& report) {
+  if (!begun_) from_ = report.cycle;
+  begun_ = true;
+  const DescribedScene* change = history_.next_change(report.daemon, from_);
+  for (; change != nullptr && change->since.from <= report.cycle;
+       change = history_.next_change(report.daemon, from_)) {
+    if (!next_ && !begin(*change)) return false;
+    succeed();
+  }
+  return true;
+}
+
+bool RecordedLoop::change_after(const clearance_msg_Distances& report) {
+  if (next_) return true;
+  const DescribedScene* const change = history_.next_change(report.daemon, from_);
+  const bool due = change != nullptr && change->since.began_after <= report.cycle;
+  return !due || begin(*change);
+}
+
+// As Successor does, with the same calls in the same order.
+bool RecordedLoop::begin(const DescribedScene& change) {
+  const Cell* const cell = history_.cell(change.revision);
+  if (cell == nullptr) {
+    error_ = fmt::format(
+        "the recorded cell {:016x}, in force from cycle {} of the daemon, cannot be used: {}",
+        change.revision, change.since.from, history_.error());
+    return false;
+  }
+  next_ = std::make_unique<Next>();
+  next_->cell = cell;
+  next_->map = scene_map(cell_->scene, cell->scene);
+  next_->monitor = std::make_unique<Monitor>(cell->scene, monitor_.get());
+  next_->from = change.since.from;
+  next_->began_after = monitor_->cycle();
+  if (next_->monitor->take_over(*monitor_, next_->map, ids_->sources())) return true;
+  error_ = "the recorded cells name more sources than a daemon has places for";
+  return false;
+}
+
+void RecordedLoop::succeed() {
+  cell_ = next_->cell;
+  since_ = {.began_after = next_->began_after, .from = monitor_->cycle() + 1};
+  monitor_ = std::move(next_->monitor);
+  ids_->change(cell_->scene.revision, next_->map);
+  from_ = next_->from;
+  next_ = nullptr;
+}
+
+}  // namespace clearance

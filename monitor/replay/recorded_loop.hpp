@@ -1,0 +1,75 @@
+// The daemon's loop again, in one thread: it ticks what the daemon ticked, through every change of
+// its scene.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "monitor/inputs/scene_ids.hpp"
+#include "monitor/monitor.hpp"
+#include "monitor/replay/scene_history.hpp"
+#include "monitor/replay/tick_feed.hpp"
+
+namespace clearance {
+
+// A daemon changes its scene in two steps, and a recording has the cycles of both (SceneInForce).
+// After the first one, the monitor of the changed scene takes over what the running one knows, and
+// both run the same ticks. From the second one on, the changed scene is the one that is reported.
+class RecordedLoop {
+ public:
+  // The history must outlive this.
+  explicit RecordedLoop(SceneHistory& history);
+
+  // Null, and error() says why: the cell of a change cannot be read. The report is valid until the
+  // next call.
+  [[nodiscard]] const Report* tick(const TickInput& input);
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+  // The cell of the last tick, and the monitor that ran it.
+  [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
+  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+  // Since when that cell is in force, in the cycles of this replay.
+  [[nodiscard]] SceneInForce since() const noexcept { return since_; }
+  // False: a batch may be missing that the daemon used, because it was made for a scene before the
+  // recording began.
+  [[nodiscard]] bool is_complete() const noexcept { return unclear_.empty(); }
+  // The number of batches that were made for no scene that is known.
+  [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
+
+ private:
+  // The monitor of the changed scene, while another one is still reported.
+  struct Next {
+    const Cell* cell;
+    SceneMap map;
+    std::unique_ptr<Monitor> monitor;
+    std::uint64_t from;         // the daemon's cycle
+    std::uint64_t began_after;  // the cycle of the replay
+  };
+
+  void start(const Cell& cell, bool followed);
+  void take(const PoseBatch& batch);
+  void restart(const clearance_msg_Distances& report);
+  [[nodiscard]] bool begin(const DescribedScene& change);
+  void succeed();
+  [[nodiscard]] bool change_before(const clearance_msg_Distances& report);
+  [[nodiscard]] bool change_after(const clearance_msg_Distances& report);
+
+  SceneHistory& history_;
+  const Cell* cell_ = nullptr;
+  std::unique_ptr<Monitor> monitor_;
+  std::unique_ptr<SceneIds> ids_;
+  std::unique_ptr<Next> next_;
+  SceneInForce since_;
+  bool begun_ = false;
+  std::uint64_t from_ = 0;  // changes up to this cycle of the daemon are made, or were before
+  std::vector<PoseSample> poses_;
+  std::vector<JointSample> joints_;
+  std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
+  std::uint64_t of_other_scenes_ = 0;
+  std::string error_;
+};
+
+}  // namespace clearance

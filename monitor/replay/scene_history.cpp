@@ -1,0 +1,52 @@
+#include "monitor/replay/scene_history.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+namespace clearance {
+
+SceneHistory::SceneHistory(const Cell& first) : first_(first) {}
+
+SceneHistory::SceneHistory(const Cell& first, const std::vector<std::filesystem::path>& files,
+                           std::function<void(Scene&)> adapt)
+    : first_(first), described_(described_scenes(files)), adapt_(std::move(adapt)) {}
+
+bool SceneHistory::has_changes() const noexcept {
+  return std::ranges::any_of(described_, [this](const DescribedScene& scene) {
+    return scene.revision != first_.scene.revision;
+  });
+}
+
+const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::uint64_t cycle) const {
+  const DescribedScene* next = nullptr;
+  for (const DescribedScene& scene : described_) {
+    if (scene.daemon != daemon || scene.since.from <= cycle) continue;
+    if (next == nullptr || scene.since.from < next->since.from) next = &scene;
+  }
+  return next;
+}
+
+const Cell* SceneHistory::cell(std::uint64_t revision) {
+  if (revision == first_.scene.revision) return &first_;
+  if (const auto known = read_.find(revision); known != read_.end()) return known->second.get();
+  const auto described = std::ranges::find(described_.rbegin(), described_.rend(), revision,
+                                           &DescribedScene::revision);
+  if (described == described_.rend()) return nullptr;
+  CellResult read = cell_of(*described);
+  if (const auto* errors = std::get_if<std::vector<CellError>>(&read)) {
+    error_ = errors->front().text;
+    return nullptr;
+  }
+  auto cell = std::make_unique<Cell>(std::move(std::get<Cell>(read)));
+  if (cell->scene.revision != revision) {
+    error_ = fmt::format("this build reads it as another one, {:016x}", cell->scene.revision);
+    return nullptr;
+  }
+  adapt_(cell->scene);
+  return read_.emplace(revision, std::move(cell)).first->second.get();
+}
+
+}  // namespace clearance

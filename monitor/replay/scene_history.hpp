@@ -1,0 +1,53 @@
+// The scenes that followed the first one of a recording, and when.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/recording/recorded_cell.hpp"
+
+namespace clearance {
+
+class SceneHistory {
+ public:
+  // A history without a change.
+  explicit SceneHistory(const Cell& first);
+  // Reads the descriptions of the recording's scenes. `first` is the cell that the replay begins
+  // with, and outlives this. `adapt` sets what the replay demands of every scene, as it was done
+  // for the first one.
+  SceneHistory(const Cell& first, const std::vector<std::filesystem::path>& files,
+               std::function<void(Scene&)> adapt);
+
+  [[nodiscard]] const Cell& first() const noexcept { return first_; }
+  // Whether the recording describes other scenes than the first one.
+  [[nodiscard]] bool has_changes() const noexcept;
+
+  // Whether the first cell had followed another one before the recording begins. Batches for that
+  // one cannot be told from others.
+  [[nodiscard]] bool begins_changed() const noexcept {
+    return !described_.empty() && described_.front().since.from > 0;
+  }
+
+  // The next change of this run of the daemon whose first cycle is after `cycle`; null: none.
+  [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::uint64_t cycle) const;
+
+  // The cell of a revision, read when it is asked for first. Null: the recording does not describe
+  // it, or it cannot be read, or is read as another one; then error() says why.
+  [[nodiscard]] const Cell* cell(std::uint64_t revision);
+  [[nodiscard]] const std::string& error() const noexcept { return error_; }
+
+ private:
+  const Cell& first_;
+  std::vector<DescribedScene> described_;
+  std::function<void(Scene&)> adapt_;
+  std::map<std::uint64_t, std::unique_ptr<const Cell>> read_;  // by revision
+  std::string error_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,180 @@
+// A recorded run whose cell changes three times: an arm takes a part, the whole cell is replaced,
+// and the part stands where it was put down. Poses and joints come in, also for scenes before.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <filesystem>
+#include <list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "monitor/loop/successor.hpp"
+#include "monitor/loop/tick_loop.hpp"
+#include "monitor/recording/recorder.hpp"
+#include "tests/monitor/loop/listed_ports.hpp"
+#include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance::test {
+
+class ChangingRun : public testing::Test {
+ protected:
+  static constexpr int kTicks = 235;
+
+  // The cells in their order. Objects have other ids in each.
+  ChangingRun() {
+    write_text(folder / "scara.urdf", kScaraUrdf);
+    const std::string head =
+        "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n";
+    const std::string wall =
+        "  - {name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -2.2}}\n";
+    const std::string cart = "  - {name: cart, may_jump: true, sphere: {radius: 0.1}}\n";
+    const std::string pairs =
+        "pairs:\n  - {between: [arm, wall], publish: true}\n"
+        "  - {between: [cart, arm], publish: true}\n  - {between: [cart, part], publish: true}\n";
+    const std::string zones =
+        "zones:\n  - {name: near, between: [upper, wall], enter_below: 1.31, leave_above: 1.32}\n";
+    const auto add = [&](const std::string& text) {
+      // The file is the same one each time, as after SIGHUP.
+      cells.push_back(read_good(text, folder / "cell.yaml"));
+    };
+    add(head + "objects:\n" + wall + cart +
+        "  - {name: part, may_jump: true, sphere: {radius: 0.05}}\n" + pairs + zones);
+    add(head + "objects:\n" + wall + cart +
+        "  - {name: part, attached: {to: finger}, sphere: {radius: 0.05}}\n" + pairs + zones);
+    add(head +
+        "objects:\n  - {name: bin, fixed: true, box: {size: [1, 1, 1]}, pose: {xyz: [0, -3, "
+        "0]}}\n" +
+        cart + wall + "  - {name: part, attached: {to: finger}, sphere: {radius: 0.05}}\n" + pairs +
+        "  - {between: [part, bin], publish: true}\nzones:\n"
+        "  - {name: over, between: [part, bin], enter_below: 3, leave_above: 3.2}\n"
+        "  - {name: near, between: [upper, wall], enter_below: 1.31, leave_above: 1.32}\n");
+    add(head + "objects:\n" + cart +
+        "  - {name: part, fixed: true, sphere: {radius: 0.05}, pose: {xyz: [0, -2, 0]}}\n" + wall +
+        pairs + "  - {between: [part, arm], publish: true}\n");
+  }
+
+  // Runs the loop with its changes and records it. Changes are offered before ticks 50, 100 and
+  // 150, and each catches up `lag` ticks later.
+  void record(const RecordingOptions& options = {.overwrite = false}, int lag = 7) {
+    recorder = std::make_unique<Recorder>(run, cells.front(), kStart, options);
+    std::list<Sink> sinks;
+    sinks.emplace_back(*this, cells.front());
+    TickLoop loop(cells.front().scene, poses, {&sinks.front()}, clock, {.max_ticks = kTicks});
+    std::list<Successor> successors;
+    clock.while_asleep = [&](int tick) {
+      poses.now = tick;
+      const std::size_t made = successors.size();
+      if (made + 1 < cells.size() && tick == 50 * static_cast<int>(made + 1)) {
+        sinks.emplace_back(*this, cells[made + 1]);
+        sinks.back().successor =
+            &successors.emplace_back(cells[made].scene, loop.monitor(), cells[made + 1].scene,
+                                     std::vector<ReportSink*>{&sinks.back()});
+        ASSERT_TRUE(loop.offer(successors.back()));
+      }
+      if (made > 0 && tick >= 50 * static_cast<int>(made) + lag) successors.back().catch_up();
+    };
+    std::atomic<bool> stop{false};
+    loop.run(stop);
+    EXPECT_TRUE(recorder->close()) << recorder->error();
+    for (const Successor& each : successors) changes.push_back(each.in_force());
+    ASSERT_EQ(changes.size(), 3u);
+    for (const SceneInForce& change : changes) EXPECT_GE(change.from, change.began_after + 7);
+  }
+
+  // The recorder's thread in the daemon: the description stands in front of the first report.
+  class Sink final : public ReportSink {
+   public:
+    Sink(ChangingRun& test, const Cell& cell) : test_(test), cell_(cell) {}
+    void input(const PoseBatch& batch) noexcept override {
+      begin();
+      test_.recorder->poses(batch);
+    }
+    void report(const Report& report, std::span<const SourceUse> sources) noexcept override {
+      begin();
+      test_.recorder->report(report, sources, report.now_ns);
+      test_.unknown.push_back(report.unknown);
+    }
+    void statistics(const LoopStatistics&) noexcept override {}
+
+    Successor* successor = nullptr;
+
+   private:
+    void begin() {
+      if (successor != nullptr) test_.recorder->change(cell_, successor->in_force());
+      successor = nullptr;
+    }
+    ChangingRun& test_;
+    const Cell& cell_;
+  };
+
+  // A batch of joints and one of poses each tick. The sender of poses knows the scene of 20 ticks
+  // ago, one batch in ten is for a scene that never was, and some are of a scene without a
+  // revision.
+  class Poses final : public PoseSource {
+   public:
+    explicit Poses(ChangingRun& test) : test_(test) {}
+    const PoseBatch* next() noexcept override {
+      if (given_ == 2 * now) return nullptr;
+      const int of = given_ / 2 + 1;
+      return given_++ % 2 == 0 ? joints(of) : poses(of);
+    }
+    int now = 0;  // the tick that is due
+
+   private:
+    const Cell& known(int tick) const {
+      return test_.cells[std::min<std::size_t>(std::max(0, tick - 20) / 50, 3)];
+    }
+    static std::int64_t stamp(int tick) { return kStart + tick * kTick; }
+    const PoseBatch* joints(int tick) {
+      const Scene& scene = known(tick).scene;
+      batch_ = {};
+      batch_.source = SourceName("driver");
+      batch_.sequence_number = static_cast<std::uint64_t>(tick);
+      batch_.scene_revision = scene.revision;
+      const double swing = std::sin(0.0012 * tick);
+      const double positions[] = {1.2 * swing, 0.5 * swing, 0.1 + 0.05 * swing};
+      for (std::uint32_t i = 0; i < 3; ++i)
+        batch_.joints.push_back(joint(i, positions[i], stamp(tick)));
+      return &batch_;
+    }
+    const PoseBatch* poses(int tick) {
+      const Scene& scene = known(tick).scene;
+      batch_ = {};
+      batch_.source = SourceName("camera");
+      batch_.sequence_number = static_cast<std::uint64_t>(tick);
+      batch_.scene_revision = tick % 10 == 0 ? 77 : tick % 10 == 5 ? 0 : scene.revision;
+      for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+        const Object& object = scene.objects[i];
+        if (object.name != "cart" && (object.name != "part" || object.fixed)) continue;
+        if (!test_.is_moving(scene, i)) continue;
+        const double along = object.name == "cart" ? 0.3 * std::sin(0.05 * tick) : 1.5;
+        batch_.samples.push_back(sample(i, at(along, 1.5, 0.2), stamp(tick)));
+      }
+      return &batch_;
+    }
+    ChangingRun& test_;
+    PoseBatch batch_;
+    int given_ = 0;
+  };
+
+  // Objects with poses of their own: the part is attached in all cells but the first and last.
+  static bool is_moving(const Scene& scene, std::uint32_t object) {
+    return scene.objects[object].name == "cart" || scene.objects[object].may_jump;
+  }
+
+  ScratchFolder folder;
+  std::filesystem::path run = folder / "run.mcap";
+  std::vector<Cell> cells;
+  TurnedClock clock;
+  Poses poses{*this};
+  std::unique_ptr<Recorder> recorder;
+  std::vector<SceneInForce> changes;
+  std::vector<std::uint32_t> unknown;  // by tick
+};
+
+}  // namespace clearance::test

@@ -1,0 +1,31 @@
+// Opens clearance-view's page and says which cell it shows, a line of JSON a step:
+//   node changed_cell.mjs URL OBJECT [TIME...]
+// Live (no TIME): says "ready" with the first report, then waits until the page shows an object of this name with reports.
+// A recording: the same facts at each time, s after the first report.
+import { openBrowser, say } from "./browser.mjs";
+
+const [url, object, ...times] = process.argv.slice(2);
+const { browser, page, errors } = await openBrowser();
+const facts = () => page.evaluate(() => {
+  const { scene, report, pairs } = window.clearance.state;
+  return {
+    revision: scene.revision, of_this_cell: Number(report?.scene_revision) === Number(scene.revision), objects: scene.objects.map(({ name }) => name),
+    unnamed: report?.pairs.filter(({ pair }) => !pairs[pair]).length,
+  };
+});
+const hasReport = () => page.waitForFunction(() => window.clearance?.state.report !== undefined);
+
+await page.goto(url);
+await hasReport();
+if (times.length === 0) {
+  say({ ready: true, ...(await facts()) });
+  await page.waitForFunction((name) => window.clearance?.state.report && window.clearance.state.scene.objects.some((each) => each.name === name), object, { timeout: 60_000 });
+  say({ errors, ...(await facts()) });
+}
+for (const time of times.map(Number)) {
+  await page.evaluate((to) => window.clearance.connection.set("playback.time", to), time);
+  await page.waitForTimeout(2500); // the page may be loaded anew
+  await hasReport();
+  say({ time, errors, moments: await page.evaluate(async () => (await (await fetch("/timeline.json")).json()).moments), ...(await facts()) });
+}
+await browser.close();
