@@ -1,5 +1,4 @@
-// One overload for each type of change. Each finds the entry by its name, and writes lengths in the
-// units of the cell.
+// One overload for each type of change. Each finds the entry by its name.
 #include "config/edit/change_document.hpp"
 
 #include <fmt/format.h>

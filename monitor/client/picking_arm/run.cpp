@@ -36,36 +36,41 @@ struct Phase {
   std::vector<CellChange> changes = {};
 };
 
-// A contact that ends once the two were 10 mm from each other.
+// A contact that is withdrawn later.
 AllowContact contact(const char* name, const char* with, const char* reason) {
   return {.contact = name,
           .a = "part",
           .b = with,
           .depth = 0.001,
-          .end = {.distance = 0.01},
           .by = "picking arm",
           .reason = reason};
 }
 
+// A contact of what will leave each other: it ends once they were 10 mm from each other.
+AllowContact last_contact(AllowContact contact) {
+  contact.end.distance = 0.01;
+  return contact;
+}
+
 std::vector<Phase> phases() {
-  const std::vector<CellChange> grips{contact("left grip", "left_finger", "the fingers hold it"),
-                                      contact("right grip", "right_finger", "the fingers hold it")};
+  const AllowContact left = contact("left grip", "left_finger", "the fingers hold it"),
+                     right = contact("right grip", "right_finger", "the fingers hold it");
   const WithdrawContact no_left{"left grip"}, no_right{"right grip"};
   return {
       {{-kBin, 0.6, kCarry, kOpen}, 2.0},
-      {{-kBin, 0.6, kGrasp, kOpen}, 1.2, grips},
+      {{-kBin, 0.6, kGrasp, kOpen}, 1.2, {left, right}},
       {{-kBin, 0.6, kGrasp, kClosed},
        0.3,
        {no_left, no_right,
         Attach{.object = "part", .to = "hand", .touch = {"left_finger", "right_finger"}},
-        contact("stand", "left_bin", "the part stands in the bin")}},
+        last_contact(contact("stand", "left_bin", "the part stands in the bin"))}},
       {{-kBin, 0.6, kCarry, kClosed}, 1.5},
       {{kBin, 0.6, kCarry, kClosed},
        2.5,
        {WithdrawContact{"stand"}, contact("put", "right_bin", "the part is put into the bin")}},
       {{kBin, 0.6, kGrasp, kClosed},
        1.5,
-       {WithdrawContact{"put"}, Detach{.object = "part"}, grips[0], grips[1]}},
+       {WithdrawContact{"put"}, Detach{.object = "part"}, last_contact(left), last_contact(right)}},
       {{kBin, 0.6, kGrasp, kOpen}, 0.3},
       {{kBin, 0.6, kCarry, kOpen}, 1.2, {no_left, no_right}},
   };

@@ -22,7 +22,7 @@ using Quat = Eigen::Quaterniond;
 using test::turned;
 
 constexpr std::uint64_t kSeeds = 40;
-constexpr int kSteps = 120;
+constexpr int kBoxSteps = 120;
 constexpr double kStep = 0.01, kTurn = 0.013;  // m, rad
 
 enum class Motion { kSliding, kAlongFlushEdges, kSpinning };
@@ -49,8 +49,8 @@ LevelBoxes level_boxes(Motion motion, std::uint64_t seed) {
   const Vec3 way = motion == Motion::kAlongFlushEdges ? Vec3(0, 1, 0)
                                                       : Vec3(std::cos(angle), std::sin(angle), 0);
   const double up = made.half_a.z() + made.half_b.z() + made.gap;
-  for (int k = 0; k < kSteps; ++k) {
-    Vec3 centre = kStep * (k - kSteps / 2) * way;
+  for (int k = 0; k < kBoxSteps; ++k) {
+    Vec3 centre = kStep * (k - kBoxSteps / 2) * way;
     Quat turn = Quat::Identity();
     if (motion == Motion::kSpinning) {
       centre = 0.05 * way;  // the middle of either face lies within the other one

@@ -22,16 +22,16 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 // Answers commands in a thread of its own, from its construction on.
-class Daemon {
+class AnsweringDaemon {
  public:
   using Answer = std::function<std::vector<CommandResult>(const Command&)>;
-  Daemon(const DdsOptions& dds, Answer answer)
+  AnsweringDaemon(const DdsOptions& dds, Answer answer)
       : participant_(dds),
         commands_(participant_.reader(TopicKind::kCommands, Topics{}.commands)),
         results_(participant_.writer(TopicKind::kCommandResults, Topics{}.command_results)),
         answer_(std::move(answer)),
         thread_([this] { run(); }) {}
-  ~Daemon() {
+  ~AnsweringDaemon() {
     ends_ = true;
     thread_.join();
   }
@@ -73,7 +73,7 @@ const std::vector<CellChange> kAttach{Attach{.object = "part", .to = "hand"}};
 
 TEST(ClientCommands, GetTheResultOfTheirRequestAndNoOther) {
   const DdsOptions dds = test::own_dds();
-  Daemon daemon(dds, [](const Command& command) {
+  AnsweringDaemon daemon(dds, [](const Command& command) {
     EXPECT_EQ(command.client, "planner");
     EXPECT_EQ(command.scene_revision, 5u);
     EXPECT_TRUE(command.dry_run);
@@ -100,7 +100,7 @@ TEST(ClientCommands, GetTheResultOfTheirRequestAndNoOther) {
 TEST(ClientCommands, SendTheSameRequestAgainUntilAResultComes) {
   const DdsOptions dds = test::own_dds();
   std::vector<std::uint64_t> requests;
-  Daemon daemon(dds, [&](const Command& command) {
+  AnsweringDaemon daemon(dds, [&](const Command& command) {
     requests.push_back(command.request);
     if (requests.size() == 1) return std::vector<CommandResult>{};  // lost
     CommandResult result = done(command);
@@ -119,7 +119,7 @@ TEST(ClientCommands, SendTheSameRequestAgainUntilAResultComes) {
 
 TEST(ClientCommands, CountUpAcrossPrograms) {
   const DdsOptions dds = test::own_dds();
-  Daemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
+  AnsweringDaemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
   std::uint64_t before = 0;
   for (int program = 0; program < 3; ++program) {
     client::Connection connection(dds);
@@ -135,7 +135,7 @@ TEST(ClientCommands, CountUpAcrossPrograms) {
 
 TEST(ClientCommands, PostedOnesGetTheirResultsLater) {
   const DdsOptions dds = test::own_dds();
-  Daemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
+  AnsweringDaemon daemon(dds, [](const Command& command) { return std::vector{done(command)}; });
   client::Connection connection(dds);
   client::Commands commands(connection, "planner");
   ASSERT_TRUE(test::eventually([&] { return commands.is_heard(); }));

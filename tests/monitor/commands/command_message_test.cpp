@@ -49,7 +49,10 @@ std::vector<CellChange> every_change() {
           ReadCellAgain{""},
           ReadCellAgain{"cells/b.yaml"},
           ReplaceObject{"{name: ü, sphere: {radius: 2}}"},
-          SetPair{"a", "b", SetPair::Rule::kNoException}};
+          SetPair{"a", "b", SetPair::Rule::kNoException},
+          AllowContact{"grip", "part", "finger", 0.001, {0.01, 5, 6, 7}, "planner", "held"},
+          AllowContact{"grip", "part", "finger", 0.001, {}, "planner", "held"},
+          WithdrawContact{"grip"}};
 }
 
 Command every_command() {
@@ -106,6 +109,9 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).carrier_from_object);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).overlap);
   EXPECT_EQ(std::get<SetPair>(read.changes[20]).rule, SetPair::Rule::kLeaveOut);
+  const std::size_t contact = read.changes.size() - 3;
+  EXPECT_EQ(std::get<AllowContact>(read.changes[contact]).end, (ContactEnd{0.01, 5, 6, 7}));
+  EXPECT_EQ(std::get<AllowContact>(read.changes[contact + 1]).end, ContactEnd{});
   EXPECT_EQ(bytes_of(read), bytes_of(command));
 }
 
@@ -118,6 +124,8 @@ TEST(CommandMessage, DiffersInItsBytesForEachField) {
       {Detach{"a", turned()}, Detach{"a"}},
       {AddFromTemplate{"t", "a", {"g"}}, AddFromTemplate{"t", "a", {"h"}}},
       {Place{"a", turned()}, Place{"a"}},
+      {AllowContact{"c", "a", "b", 0.1, {}, "x", "y"},
+       AllowContact{"c", "a", "b", 0.2, {}, "x", "y"}},
       {ReadCellAgain{"a"}, ReadCellAgain{"b"}}};
   for (const auto& [a, b] : pairs) {
     const Command first{.client = "c", .request = 1, .changes = {a}};

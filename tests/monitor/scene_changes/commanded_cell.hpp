@@ -148,7 +148,7 @@ class CommandedCell : public testing::Test, private CellParts {
 
  private:
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>&) override { return {}; }
-  void follow() override {}
+  void follow(const SceneInForce&) override {}
   void abandon() override {}
 };
 
