@@ -10,8 +10,8 @@ namespace {
 
 class ContactLogTest : public testing::Test {
  protected:
-  ContactLogTest() {
-    scene = cell_of({moving("part", {ball(0.1)}), fixed("table", {ball(0.1)}, at(1, 0, 0))});
+  static Scene scene_with_a_contact() {
+    Scene scene = cell_of({moving("part", {ball(0.1)}), fixed("table", {ball(0.1)}, at(1, 0, 0))});
     AllowedContact contact;
     contact.name = "lift";
     contact.depth = 0.002;
@@ -19,6 +19,7 @@ class ContactLogTest : public testing::Test {
     contact.by = "planner";
     contact.pairs = {0};
     scene.contacts.push_back(contact);
+    return scene;
   }
   static ContactReport report(ContactStatus status) {
     ContactReport contact;
@@ -36,7 +37,7 @@ class ContactLogTest : public testing::Test {
     contacts.note(std::span(&contact, 1));
   }
 
-  Scene scene;
+  Scene scene = scene_with_a_contact();
   std::shared_ptr<Logged> logged = std::make_shared<Logged>();
   LoggedTo log{logged};
   ContactLog contacts{scene};
