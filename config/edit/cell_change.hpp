@@ -133,9 +133,9 @@ struct ReadCellAgain {
   std::string file;  // absolute, or relative to the cell's folder; empty: the cell's own file
 };
 
-using CellChange = std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent,
-                                Attach, Detach, Place, SetMaxSpeed, SetMargin, SetAgeLimit,
-                                SetSource, SetPair, SetZoneThresholds, AllowContact, WithdrawContact,
-                                ReplaceCell, ReadCellAgain>;
+using CellChange =
+    std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
+                 Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair, SetZoneThresholds,
+                 AllowContact, WithdrawContact, ReplaceCell, ReadCellAgain>;
 
 }  // namespace clearance
