@@ -159,18 +159,21 @@ std::optional<MalformedField> take_change(const clearance_msg_Change& message, s
                                           CellChange& change) {
   std::optional<MalformedField> fault;
   bool is_known = false;
+  // A message may carry a number that the enumeration does not have, so it is compared as a number.
+  std::uint32_t kind = 0;
+  static_assert(sizeof kind == sizeof message._d);
+  std::memcpy(&kind, &message._d, sizeof kind);
   for_each_change_kind([&](const auto& row) {
-    if (message._d != row.kind) return;
+    if (kind != static_cast<std::uint32_t>(row.kind)) return;
     using Change = typename std::remove_cvref_t<decltype(row)>::Type;
     is_known = true;
     visit_fields<Change>(FromWire(fmt::format("changes[{}].{}", place, row.name), fault),
                          message._u.*row.member, change.emplace<Change>());
   });
   if (!is_known) {
-    fault = MalformedField{
-        0, fmt::format("changes[{}]", place),
-        fmt::format("found the kind {}; expected 0 to {}", static_cast<std::uint32_t>(message._d),
-                    std::variant_size_v<CellChange> - 1)};
+    fault = MalformedField{0, fmt::format("changes[{}]", place),
+                           fmt::format("found the kind {}; expected 0 to {}", kind,
+                                       std::variant_size_v<CellChange> - 1)};
   }
   if (fault) fault->change = static_cast<std::uint32_t>(place);
   return fault;
