@@ -58,7 +58,7 @@ struct CommandResult {
   std::uint64_t request = 0;
   CommandStatus status = CommandStatus::kDone;
   std::uint32_t change = 0;  // of a refusal: index of the change that is at fault
-  // Of a refusal: the offending field, "objects[part].attached.to", or, of a malformed message,
+  // The offending field of a refusal: "objects[part].attached.to", or, in a malformed message,
   // "changes[0].attach.to". Empty: the list as a whole.
   std::string path = {};
   std::string reason = {};           // of a refusal: a sentence

@@ -32,7 +32,7 @@ struct InputAge {
   bool velocities_contradict = false;  // of a joint: its sent velocities contradict its positions
 };
 
-// Where a body is at the last tick.
+// The pose of a body at the last tick.
 struct PresentPose {
   enum class State : std::uint8_t { kUsable, kUnknown, kLate, kContradicted, kAbsent };
   State state = State::kUnknown;
@@ -110,7 +110,8 @@ class Monitor {
   // World from object: the pose in use. It is meaningless if no pose is in use (input_age() is -1).
   [[nodiscard]] const Pose& pose(std::uint32_t object) const noexcept;
 
-  // Where an object, or a link of a robot, is at the last tick, and whether that can be relied on.
+  // The pose of an object, or of a link of a robot, at the last tick, and how far it can be
+  // trusted.
   [[nodiscard]] PresentPose present_pose(std::uint32_t object) const noexcept;
   [[nodiscard]] PresentPose present_link(std::uint32_t robot, std::uint32_t link) const noexcept;
 

@@ -153,7 +153,8 @@ struct ZoneSeparation {
 
 // Whether the contact that is allowed for a pair is as allowed.
 enum class ContactStatus : std::uint8_t {
-  // In force or not, but a pose is not known, late, contradicted or after a discontinuity. Zones
+  // The contact is in force or not, but a pose is not known, late, contradicted or after a
+  // discontinuity. Zones
   // treat the pair like any other.
   kUnknown = 0,
   kAllowed = 1,  // in force; certified to be no deeper than allowed since the last tick

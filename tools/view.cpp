@@ -186,7 +186,7 @@ view::Resource history(const Source& source, const std::string& query) {
   return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
 }
 
-// What the page draws of the cell that is shown.
+// The bodies that the page draws of the present cell.
 class Drawn {
  public:
   explicit Drawn(const Source& source) : source_(source) {}

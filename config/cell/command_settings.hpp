@@ -1,5 +1,5 @@
-// Who may change the scene of a running daemon, with which files, and by how much it may grow:
-// `commands:` and `capacity:` of a cell.
+// The keys `commands:` and `capacity:` of a cell: the clients that may change the scene of a
+// running daemon, the folders of their files, and the greatest growth of the scene.
 #pragma once
 
 #include <cstddef>

@@ -24,7 +24,7 @@ struct FileMistake {
   std::string reason;
 };
 
-// What is generated is at the place of the file's name in the cell.
+// Gives generated nodes the place of the file's name in the cell.
 void place_at(const YamlNode& place, YamlNode& node) {
   node.line = place.line;
   node.column = place.column;

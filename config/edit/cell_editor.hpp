@@ -45,8 +45,8 @@ class CellEditor {
   // The same, but nothing stays changed: the next edit begins where this one did.
   [[nodiscard]] std::variant<Cell, EditRefusal> dry_run(std::span<const CellChange> changes);
 
-  // In two steps: propose() makes the changes like edit(), and one of the other two must follow a
-  // cell that it returned. After a refusal nothing is changed and none must follow.
+  // The same in two steps: propose() makes the changes like edit(), and one of the other two must
+  // follow a cell that it returned. After a refusal nothing is changed and none must follow.
   [[nodiscard]] std::variant<Cell, EditRefusal> propose(std::span<const CellChange> changes);
   void keep();
   void take_back();

@@ -11,7 +11,7 @@
 
 namespace clearance::moveit {
 
-// What a mesh becomes in the text of a cell.
+// The form of a mesh in the text of a cell.
 enum class MeshForm {
   kFile,  // a file "sent:NAME", whose bytes are returned
   kHull,  // its convex hull, as a polyhedron
@@ -44,7 +44,7 @@ struct Body {
 [[nodiscard]] YamlNode fixed_entry(const std::string& name, const std::string& group,
                                    const Pose& world_from_object, YamlNode parts, LengthUnit unit);
 
-// Where an attached object is.
+// The carrier of an attached object, and the object's pose relative to it.
 struct Attachment {
   std::string to;
   Pose carrier_from_object;

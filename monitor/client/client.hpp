@@ -172,7 +172,7 @@ class Pair {
   Pair(Catalogue& catalogue, std::string a, std::string b)
       : catalogue_(catalogue), a_(std::move(a)), b_(std::move(b)) {}
 
-  // As Object::id().
+  // The index of the pair in the scene of this revision, as Object::id() has that of the object.
   [[nodiscard]] std::optional<std::uint32_t> id(std::uint64_t revision);
   // The pair in this report; null when the report's scene has no such pair or does not publish it,
   // or when the catalogue of that scene has not come.

@@ -43,8 +43,8 @@ class Commands {
   // Sends changes without waiting, and returns the number of the request. Nothing repeats it.
   // Returns 0 when DDS did not take the message.
   std::uint64_t post(const std::vector<CellChange>& changes, const CommandOptions& options = {});
-  // Waits up to `timeout` for the result of a request. Of results that nobody asked for, the last
-  // 64 are kept.
+  // Waits up to `timeout` for the result of a request. Among results without a waiting caller, the
+  // last 64 are kept.
   [[nodiscard]] std::optional<CommandResult> result(std::uint64_t request,
                                                     std::chrono::nanoseconds timeout = {});
 

@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// What a text of a change is, which says how long it may be.
+// The kind of a text in a change, which decides its greatest length.
 enum class ChangeText { kName, kMayBeEmpty, kYaml };
 
 // Calls visit(name, field of the message, field of the change) for every field, and for texts with
@@ -99,7 +99,7 @@ constexpr ChangeKind<Change, Member> change_kind(clearance_msg_ChangeKind kind,
   return {kind, name, member};
 }
 
-// In the order of CellChange.
+// The kinds stand in the order of CellChange.
 inline constexpr std::tuple kChangeKinds{
     change_kind<AddObject>(clearance_msg_CHANGE_ADD_OBJECT, "add_object", &ChangeUnion::add_object),
     change_kind<ReplaceObject>(clearance_msg_CHANGE_REPLACE_OBJECT, "replace_object",

@@ -43,7 +43,7 @@ class Contacts {
     return entries_.empty() ? nullptr : find_entry(pair);
   }
 
-  // In ascending order of pairs.
+  // The reports stand in ascending order of pairs.
   [[nodiscard]] std::span<const ContactReport> reports() const noexcept { return reports_; }
 
  private:

@@ -132,7 +132,7 @@ int check_only(const CellArguments& cell) {
   return kOk;
 }
 
-// What the command line adds to the cell, and to every changed one.
+// Adds to a cell, and to every changed one, what the command line asks for.
 void finish(const Arguments& arguments, Cell& cell) {
   cell.scene.gradients = cell.scene.gradients || arguments.gradients;
   add_ros_outputs(arguments.ros, cell.ros.outputs);

@@ -40,7 +40,7 @@ class Recording {
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
-  // Of the first cell.
+  // Takes the reports of the first cell.
   [[nodiscard]] ReportSink& sink() noexcept { return parts_.front()->queue; }
   // The cell may change: returns the sink of the changed one. Null if the disk is so slow that the
   // reports of kMostWaiting cells wait for it: the recording then ends with those. The preparing

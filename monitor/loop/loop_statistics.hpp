@@ -48,7 +48,7 @@ struct LoopStatistics : RunStatistics {
         rejected_joints(scene.variables.size()),
         joint_ages(scene.variables.size()) {}
 
-  // For a changed scene.
+  // Continues the counts of the scene before a change.
   void continue_from(const RunStatistics& before) noexcept { RunStatistics::operator=(before); }
 
   MinimumSeen minimum;

@@ -1,4 +1,4 @@
-// Where bodies are now: asked by another thread, and answered by the tick thread between two ticks.
+// Another thread asks for present poses of bodies; the tick thread answers between two ticks.
 #pragma once
 
 #include <atomic>

@@ -1,4 +1,4 @@
-// What an MCAP file has beside its messages: whole files, and named sets of texts.
+// An MCAP file has more than messages: whole files, and named sets of texts.
 #pragma once
 
 #include <cstddef>
@@ -23,8 +23,8 @@ struct McapAttachments {
   std::string error;  // not empty: one is damaged or too large; those before it are found
 };
 
-// In file order, those that stand in front of this byte of the file. Without one: up to the first
-// chunk, message, or end of the data, as McapWriter puts them there.
+// Returns, in file order, the attachments that stand in front of this byte of the file. Without
+// one: up to the first chunk, message, or end of the data, as McapWriter puts them there.
 [[nodiscard]] McapAttachments read_attachments(const std::filesystem::path& file,
                                                std::optional<std::uint64_t> before = {});
 
@@ -35,8 +35,8 @@ struct McapMetadata {
   McapMap values;
 };
 
-// In file order, up to the end of the data or a damage, which the reader of messages reports. Reads
-// no chunk, so that a large file takes little time.
+// Returns, in file order, all attachments up to the end of the data or a damage, which the reader
+// of messages reports. Reads no chunk, so that a large file takes little time.
 [[nodiscard]] std::vector<McapMetadata> read_metadata(const std::filesystem::path& file);
 
 }  // namespace clearance

@@ -36,7 +36,7 @@ std::optional<Pose> pose_at_rest(const Robot& robot, std::uint32_t link) {
   return compose(robot.base.base_from_root, root_from_link);
 }
 
-// What the text of the cell says of an object. The reader has accepted this text.
+// Takes an object's entry from the text of the cell, which the reader has accepted.
 void add_entry(const YamlNode& entry, const YamlNode& cell, KnownScene& scene) {
   const auto found = scene.objects.find(text_of(find(entry, "name")));
   if (found == scene.objects.end()) return;

@@ -1,4 +1,4 @@
-// What all messages have in common: frames, names, and the edits of the known scene.
+// All messages share this: frames, names, and the edits of the known scene.
 #include "monitor/moveit/message_translator.hpp"
 
 #include <fmt/format.h>

@@ -22,7 +22,7 @@ struct RawScene {
   CdrBytes bytes = CdrBytes::kUnchecked;
 };
 
-// To be used by one thread.
+// One thread may use it.
 class SceneKeeper {
  public:
   struct Work {
@@ -33,7 +33,7 @@ class SceneKeeper {
   // The changes assume `cell`, whose text has to be Cell::yaml, and the poses of now.
   [[nodiscard]] Work take(const RawScene& message, const Cell& cell, const PresentPoses& poses);
 
-  // To be made after the changes of a message are in force, and after those of others.
+  // Returns changes that follow when those of a message, or of other clients, are in force.
   [[nodiscard]] std::vector<CellChange> exceptions(const Cell& cell) const {
     return translator_.exceptions(known_scene(cell));
   }

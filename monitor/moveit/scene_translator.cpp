@@ -34,7 +34,7 @@ void MessageTranslator::drop_gone() {
   for (const std::string& id : ids) drop(id);
 }
 
-// In MoveIt's order: frames, the robot's state, pairs, the world.
+// Keeps MoveIt's order: frames, the robot's state, pairs, the world.
 void MessageTranslator::translate(const PlanningScene& message) {
   set_frames(message);
   for (auto& [id, object] : scene_.objects) {

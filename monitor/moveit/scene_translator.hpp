@@ -23,7 +23,8 @@ struct Translation {
   std::vector<MeshFile> files = {};  // that the changes name
   // Each leaves out the object, or the list, that it names; the rest of the message counts.
   std::vector<FieldFault> refused = {};
-  // What is in no change, in words: "link_scale of 'hand'". The caller says each once.
+  // Parts of the message that are in no change, in words: "link_scale of 'hand'". The caller
+  // reports each of them once.
   std::vector<std::string> not_understood = {};
 };
 

@@ -61,7 +61,7 @@ class Recorder {
   [[nodiscard]] std::uint64_t files() const noexcept { return writer_.part(); }
 
  private:
-  // What follows from the scene.
+  // State that follows from the scene.
   struct OfScene {
     explicit OfScene(const Scene& the_scene);
     const Scene& scene;

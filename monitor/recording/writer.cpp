@@ -39,8 +39,8 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
   return mcap_->add_channel(schema, topic, kCdrEncoding);
 }
 
-// By their absolute paths; compressed where that makes them smaller. A file that was kept for the
-// cell before is not compressed again.
+// Files go by their absolute paths, and are compressed where that makes them smaller. A file that
+// was kept for the cell before is not compressed again.
 std::string RecordingWriter::attach(const Cell& cell) {
   const std::vector<Attached> before = std::exchange(attached_, {});
   cell_file_.clear();

@@ -196,7 +196,7 @@ void Replay::judge_the_whole() {
     fail(0, result_.last_ns, *what);
 }
 
-// What belongs to one scene.
+// Replaces everything that belongs to one scene.
 void Replay::follow(const Scene& scene) {
   scene_ = &scene;
   if (!options_.compare) return;

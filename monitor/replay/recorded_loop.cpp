@@ -69,7 +69,7 @@ bool RecordedLoop::change_after(const clearance_msg_Distances& report) {
   return !due || begin(*change);
 }
 
-// As Successor does, with the same calls in the same order.
+// Makes the same calls as Successor, in the same order.
 bool RecordedLoop::begin(const DescribedScene& change) {
   const Cell* const cell = history_.cell(change.revision);
   if (cell == nullptr) {

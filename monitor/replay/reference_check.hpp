@@ -66,7 +66,7 @@ class ReferenceCheck {
   [[nodiscard]] static double difference_from(const Value& value, double ours);
   void compare(const Value& value, const PairReport& ours, std::vector<std::string>& broken);
 
-  // By the names of both objects, in either order.
+  // The keys are the names of both objects, in either order.
   using PairIds = std::map<std::pair<std::string, std::string>, std::uint32_t>;
   [[nodiscard]] static PairIds pair_ids(const Scene& scene);
 

@@ -17,8 +17,8 @@ namespace clearance {
 
 class ReportDifference {
  public:
-  // Of reports of this scene, which must outlive this. `some_without_pairs`: reports may have been
-  // recorded without their pairs (RecordingOptions::pairs_every).
+  // Compares reports of `scene`, which must outlive this. `some_without_pairs`: reports may have
+  // been recorded without their pairs (RecordingOptions::pairs_every).
   ReportDifference(const Scene& scene, Comparison how, bool some_without_pairs);
 
   // The first field that differs, as message_difference() names it. The input has a recorded

@@ -137,7 +137,7 @@ void TickFeed::read_inputs(const RecordedMessage& message) {
   batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
 }
 
-// What follows was used by the scene of this catalogue.
+// The messages after a catalogue were used by its scene.
 void TickFeed::read_catalogue(const RecordedMessage& message) {
   if (objects_.same_scene() && !history_->has_changes()) return;
   Sample<clearance_msg_Catalogue> catalogue;

@@ -37,8 +37,8 @@ bool ZoneDifference::is_of(const clearance_msg_ZoneState& state, const std::stri
   return state.zone < scene.zones.size() && scene.zones[state.zone].name == zone;
 }
 
-// In the daemon's cycle numbers, so that both sides can be compared. A zone of a changed scene may
-// have changed in a tick before its first report, so states are compared, as the recorder does.
+// Cycles are the daemon's numbers, so that both sides can be compared. A zone of a changed scene
+// may have changed in a tick before its first report, so states are compared, as the recorder does.
 void ZoneDifference::replayed(const Report& report, std::uint64_t cycle_offset) {
   const Scene& scene = *scenes_.back().scene;
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {

@@ -45,7 +45,8 @@ class CommandLedger {
   // Returns the refusal. To be called for every message, also for one that is malformed.
   [[nodiscard]] std::optional<CommandResult> refuse_sender(const Request& request,
                                                            std::uint64_t writer);
-  // For a request that refuse_sender() lets pass. kDo must be followed by answer() or withdraw().
+  // Judges a request that refuse_sender() lets pass. kDo must be followed by answer() or
+  // withdraw().
   [[nodiscard]] Verdict admit(const Request& request);
   // The result of a pending request, which is known from now on.
   void answer(const CommandResult& result);

@@ -42,7 +42,7 @@ class CommandQueue {
   [[nodiscard]] bool put(QueuedCommand command);
   // Waits for a command. Returns nothing after close().
   [[nodiscard]] std::optional<QueuedCommand> next();
-  // What waits is dropped.
+  // Drops the commands that wait.
   void close();
 
  private:

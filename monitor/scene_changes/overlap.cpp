@@ -15,7 +15,7 @@ const Object* object_of(const Scene& scene, const std::string& name) {
   return found == scene.objects.end() ? nullptr : &*found;
 }
 
-// By the links that are objects; an object that is no link is its own root.
+// Follows the links that are objects; any other object is its own root.
 RigidRoot root_of(const Scene& scene, std::uint32_t object) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
     const auto& links = scene.robots[robot].links;

@@ -1,4 +1,4 @@
-// How deep an object that is attached overlaps what it may touch from then on.
+// Measures the overlap of an attached object with the bodies that it may touch from then on.
 #pragma once
 
 #include <optional>

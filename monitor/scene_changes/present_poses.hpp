@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-// By name. A name that the scene does not have is not in it.
+// Present poses by the name of the object or link. Names that the scene lacks are left out.
 using PresentPoses = std::map<std::string, PresentPose>;
 
 // Asks the loop, which ticks this scene, where objects and links are: all at one tick. Returns

@@ -1,4 +1,4 @@
-// What may not change while the daemon runs, and by how much a scene may grow.
+// Finds changes of a scene that need a restart of the daemon, or exceed its capacity.
 #pragma once
 
 #include <optional>

@@ -46,7 +46,7 @@ class SceneChanger {
   [[nodiscard]] Outcome check(const Cell& cell) const;
   // Returns when the loop ticks this cell, or when it is refused; then the cell before stays in
   // force. `loop_ended` is set once the thread of the loop has ended, and ends the wait for it.
-  // What prepare() throws comes through, with the cell before in force.
+  // Passes on the exceptions of prepare(); the cell before then stays in force.
   [[nodiscard]] Outcome change(std::shared_ptr<const Cell> cell,
                                const std::atomic<bool>& loop_ended);
 

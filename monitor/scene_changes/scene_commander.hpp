@@ -23,8 +23,8 @@
 namespace clearance {
 
 struct CommanderOptions {
-  // How the cell was read, and is read after each change. What it refers to must outlive the
-  // commander.
+  // The options with which the cell was read, and is read after each change. The objects that they
+  // refer to must outlive the commander.
   CellOptions reading = {};
   // Adds to a cell what the command line of the program asks for. May be empty.
   std::function<void(Cell&)> finish = {};
@@ -36,10 +36,10 @@ struct CommanderOptions {
   std::uint64_t began_with = 0;  // revision of the cell file at the start, for keep_scene
 };
 
-// To be used by one thread, the preparing one.
+// Only the preparing thread may use it.
 class SceneCommander {
  public:
-  // What is given must outlive this. `loop_ended` as for SceneChanger::change().
+  // The arguments must outlive this. `loop_ended`: see SceneChanger::change().
   SceneCommander(SceneChanger& changer, TickLoop& loop, const std::atomic<bool>& loop_ended,
                  CommanderOptions options);
 

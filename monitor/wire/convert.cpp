@@ -40,7 +40,7 @@ void fill(const Object& object, std::uint32_t id, clearance_msg_CatalogueObject&
     out.parts._buffer[out.parts._length++] = duplicate(part.name);
 }
 
-// What has no end is infinite or 0.
+// An end that is not stated is infinite or 0.
 void fill(const AllowedContact& contact, std::uint32_t id, clearance_msg_CatalogueContact& out) {
   out.id = id;
   out.name = duplicate(contact.name);

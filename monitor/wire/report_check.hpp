@@ -18,7 +18,7 @@ struct ReportCheck {
   bool clocks_disagree = false;  // published later than now: its age means nothing
   // Not of the daemon of the report before: it was started again, or two daemons publish.
   bool other_daemon = false;
-  // Of another scene than the report before, with other ids: the daemon has changed its cell.
+  // The report is of another scene than the one before it, with other ids.
   bool other_scene = false;
   std::uint64_t missed = 0;  // reports between the one before and this one
 

@@ -91,7 +91,7 @@ TEST_F(ImportedJoints, GiveTheBoundsOfTheUrdfAlone) {
     EXPECT_EQ(0, run(kReplay, {"check", path("joints.csv"), option, path(file), "--evaluate-all",
                                "--csv", path(csv)}))
         << output;
-    // Without the last column, the revision of the cell's text.
+    // Leaves out the last column, the revision of the cell's text.
     return std::regex_replace(read_text(folder / csv), std::regex(",[^,\n]*\n"), "\n");
   };
   const std::string of_urdf = table("--urdf", "arm/arm.urdf", "urdf.csv");

@@ -126,7 +126,7 @@ void LiveSource::follow_the_catalogue(Server& server) {
   CellResult read = reading_.get();
   Cell* const cell = std::get_if<Cell>(&read);
   if (cell == nullptr || cell->scene.revision != now) return;
-  // What the frame and the intake refer to goes last.
+  // The cell before must outlive the frame and the intake that refer to it.
   const std::shared_ptr<const Cell> before = cell_;
   cell_ = std::make_shared<const Cell>(std::move(*cell));
   frame_ = std::make_unique<Frame>(cell_->scene);

@@ -33,7 +33,7 @@ struct ZoneMessage {
   std::vector<std::byte> cdr = {};
 };
 
-// From this log time on, reports are of this scene.
+// Reports are of this scene from this log time on.
 struct SceneSince {
   std::int64_t log_ns = 0;
   std::uint64_t revision = 0;

@@ -9,7 +9,7 @@
 namespace clearance::pick {
 namespace {
 
-// From config/cells/seven_joint_arm/arm.urdf, m.
+// Lengths of config/cells/seven_joint_arm/arm.urdf, m.
 constexpr double kShoulderHeight = 0.34;
 constexpr double kLink = 0.40;        // shoulder to elbow, and elbow to wrist
 constexpr double kWristToTip = 0.19;  // wrist to the fingertips

@@ -76,7 +76,7 @@ std::vector<Phase> phases() {
   };
 }
 
-// What the reports of a run say.
+// Collects the figures of a run from its reports.
 class Watcher {
  public:
   Watcher(client::Connection& connection, RunResult& result)

@@ -133,7 +133,7 @@ TEST_F(Attachments, CountWhereARuleOrAZoneNamesTheirCarrier) {
 TEST_F(Attachments, ExceptionsThatNameTheCarrierAreTheCarriersAlone) {
   const Scene read = scene(kPart + kPost, kRules +
                                               "allowed_collisions: [{between: [palm, post], "
-                                              "reason: the post leans on the palm}]\n");
+                                              "reason: the post touches the palm}]\n");
   EXPECT_THAT(watched_with(read, "post"), testing::Contains("part"));
   EXPECT_THAT(watched_with(read, "post"), testing::Not(testing::Contains("palm")));
 }

@@ -1,4 +1,4 @@
-// Who may command, with which files, and what may be added: `commands:` and `capacity:` of a cell.
+// The keys `commands:` and `capacity:` of a cell.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

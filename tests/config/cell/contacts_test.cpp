@@ -74,7 +74,7 @@ TEST(ContactKeys, EachMistakeIsRefusedAtItsPlace) {
   EXPECT_TRUE(refuses(one("between: [part, table], depth: 0.002, until: {apart: 1}")));
   EXPECT_TRUE(
       refuses(cell_with("contacts: [{name: a, between: [part, table], depth: 1, reason: test}]\n")))
-      << "nobody allows it";
+      << "no contact is allowed there";
   const std::string two =
       "contacts: [{name: a, between: [part, table], depth: 0.1, by: x, reason: y}, "
       "{name: b, between: [things, table], depth: 0.1, by: x, reason: y}]\n";

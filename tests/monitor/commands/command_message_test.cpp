@@ -200,7 +200,7 @@ TEST(CommandMessage, IsRefusedByTheFieldThatHasNoValue) {
   }
 }
 
-// What is not stated is not looked at.
+// Values that are not stated are not read.
 TEST(CommandMessage, MayHaveAnythingInFieldsThatAreNotStated) {
   auto message = to_wire({.client = "c", .request = 1, .changes = {Attach{"a", "b"}}});
   message->changes._buffer[0]._u.attach.carrier_from_object.value.position.x = NAN;

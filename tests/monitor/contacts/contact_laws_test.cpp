@@ -1,4 +1,4 @@
-// What an allowed contact changes in the tick, and what it does not.
+// An allowed contact changes the status of its pairs, and no figure of the tick.
 //
 // Oracles: the closed form for balls, now and at instants between ticks; the same motion without
 // the allowance.

@@ -31,7 +31,7 @@ inline const std::string kMoveItArm = R"(<robot name="arm">
 </robot>
 )";
 
-// In millimetres, unlike the messages.
+// The cell is in millimetres, unlike the messages.
 inline const std::string kMoveItCell = R"(name: test
 units: {length: mm, angle: deg}
 ros2: {planning_scene: true, collision_object: true, attached_collision_object: true, world_frame: map}

@@ -1,4 +1,4 @@
-// What is wrong in MoveIt's messages is named by its field, and the rest counts.
+// A fault in MoveIt's messages is named by its field, and the rest of the message counts.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -53,7 +53,7 @@ std::vector<std::byte> object_bytes() {
   return cdr.bytes();
 }
 
-// What the bytes of write_object() mean.
+// The object that write_object() encodes.
 CollisionObject expected_object(const std::string& id) {
   CollisionObject object;
   object.frame_id = "map";

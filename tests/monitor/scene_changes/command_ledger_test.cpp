@@ -1,4 +1,4 @@
-// Who may command, in which order, and what is answered again.
+// The ledger decides which clients may command, in which order, and which results are repeated.
 #include <gtest/gtest.h>
 
 #include <vector>

@@ -1,4 +1,4 @@
-// What stays on the disk: the last accepted scene, and files that commands send.
+// Two things stay on the disk: the last accepted scene, and files that commands send.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

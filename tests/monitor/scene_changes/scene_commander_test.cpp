@@ -1,4 +1,4 @@
-// What a command does to the scene of a running loop, and why it is refused.
+// A command changes the scene of a running loop, or is refused with a reason.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
