@@ -1,4 +1,4 @@
-// One function for each kind of change. Kinds have the names of idl/commands.idl.
+// Kinds of changes have the names of idl/commands.idl.
 #include "config/edit/change_reader.hpp"
 
 #include <fmt/format.h>
@@ -24,6 +24,158 @@ namespace {
 
 constexpr Range kTime{.least = 0.001, .most = 86'400'000.0};  // ms
 
+// Reads the keys of one change. The overloads of read() list the keys of each kind.
+class ChangeKeys {
+ public:
+  ChangeKeys(MapReader& map, const Quantities& quantities, const std::filesystem::path& directory)
+      : map_(map),
+        quantities_(quantities),
+        diagnostics_(quantities.diagnostics()),
+        directory_(directory) {}
+
+  void read(AddFromTemplate& change) {
+    name("template", change.template_name);
+    name("object", change.object);
+    names("groups", change.groups);
+    if (auto stated = pose()) change.world_from_object = *stated;
+  }
+  void read(RemoveObject& change) { name("object", change.object); }
+  void read(SetAbsent& change) {
+    name("object", change.object);
+    if (const YamlNode* absent = map_.optional("absent"))
+      change.absent = read_flag(*absent, diagnostics_).value_or(true);
+  }
+  void read(Attach& change) {
+    name("object", change.object);
+    name("to", change.to);
+    change.carrier_from_object = pose();
+    names("touch", change.touch);
+    if (const YamlNode* overlap = map_.optional("overlap"))
+      change.overlap = quantities_.length(*overlap, "the greatest overlap", kNotNegative);
+  }
+  void read(Detach& change) {
+    name("object", change.object);
+    change.world_from_object = pose();
+  }
+  void read(Place& change) {
+    name("object", change.object);
+    if (const YamlNode* value = map_.required("pose"))
+      change.world_from_object = quantities_.pose(*value).value_or(Pose{});
+  }
+  void read(SetMaxSpeed& change) {
+    name("object", change.object);
+    if (const YamlNode* speed = map_.optional("max_speed"))
+      change.m_per_s = quantities_.speed(*speed, "the greatest speed");
+  }
+  void read(SetMargin& change) {
+    name("object", change.object);
+    if (const YamlNode* margin = map_.optional("margin"))
+      change.m = quantities_.length(*margin, "the margin", kNotNegative);
+  }
+  void read(SetAgeLimit& change) {
+    name("object", change.object);
+    if (const YamlNode* limit = map_.optional("age_limit_ms"))
+      change.ns = quantities_.milliseconds(*limit, "the age limit", kTime);
+  }
+  void read(SetSource& change) {
+    name("object", change.object);
+    if (const YamlNode* source = map_.optional("source"))
+      change.source = read_text(*source, "the name of a source", diagnostics_);
+  }
+  void read(SetPair& change) {
+    sides(change.a, change.b);
+    if (const YamlNode* rule = map_.required("rule")) read_rule(*rule, change.rule);
+    text("reason", change.reason);
+  }
+  void read(SetZoneThresholds& change) {
+    name("zone", change.zone);
+    if (const YamlNode* enter = map_.required("enter_below"))
+      change.enter_below = quantities_.length(*enter, "the threshold").value_or(0.0);
+    if (const YamlNode* leave = map_.required("leave_above"))
+      change.leave_above = quantities_.length(*leave, "the threshold").value_or(0.0);
+  }
+  void read(AllowContact& change) {
+    name("contact", change.contact);
+    sides(change.a, change.b);
+    if (const YamlNode* depth = map_.required("depth"))
+      change.depth = quantities_.length(*depth, "the greatest depth", kPositive).value_or(0.0);
+    if (const YamlNode* until = map_.optional("until"))
+      change.end = read_contact_end(*until, quantities_);
+    text("by", change.by);
+    text("reason", change.reason);
+  }
+  void read(WithdrawContact& change) { name("contact", change.contact); }
+  void read(ReplaceCell& change) {
+    const YamlNode* file = map_.required("file");
+    if (file == nullptr) return;
+    const auto path = read_text(*file, "the path of a cell file", diagnostics_);
+    if (!path) return;
+    auto bytes = read_bytes((directory_ / *path).string());
+    if (const auto* fault = std::get_if<FileFault>(&bytes)) {
+      diagnostics_.add(*file, fmt::format("found {}; expected a cell file", fault->reason));
+    } else {
+      change.yaml = std::get<std::string>(std::move(bytes));
+    }
+  }
+  void read(ReadCellAgain& change) { text("file", change.file); }
+
+ private:
+  void name(std::string_view key, std::string& out) {
+    const YamlNode* node = map_.required(key);
+    if (node == nullptr) return;
+    if (auto read = read_name(*node, "a name of the cell", diagnostics_)) out = *std::move(read);
+  }
+  void names(std::string_view key, std::vector<std::string>& out) {
+    const YamlNode* node = map_.optional(key);
+    if (node == nullptr) return;
+    for (const YamlNode& item : read_list(*node, "names of the cell", diagnostics_)) {
+      if (auto read = read_name(item, "a name of the cell", diagnostics_))
+        out.push_back(*std::move(read));
+    }
+  }
+  void sides(std::string& a, std::string& b) {
+    const YamlNode* between = map_.required("between");
+    if (between == nullptr) return;
+    std::vector<std::string> both;
+    names("between", both);
+    if (both.size() != 2) {
+      diagnostics_.add(*between, "found no two names; expected two objects or groups");
+      return;
+    }
+    a = std::move(both[0]);
+    b = std::move(both[1]);
+  }
+  void text(std::string_view key, std::string& out) {
+    const YamlNode* node = map_.optional(key);
+    if (node == nullptr) return;
+    if (auto read = read_text(*node, "a text", diagnostics_)) out = *std::move(read);
+  }
+  std::optional<Pose> pose() {
+    const YamlNode* node = map_.optional("pose");
+    return node == nullptr ? std::nullopt : quantities_.pose(*node);
+  }
+  void read_rule(const YamlNode& node, SetPair::Rule& out) {
+    // The names stand in the order of SetPair::Rule.
+    static constexpr std::array<std::string_view, 5> kRules = {"publish", "watch", "leave_out",
+                                                               "unstated", "no_exception"};
+    const auto text = read_text(node, "a rule", diagnostics_);
+    if (!text) return;
+    const auto* const found = std::ranges::find(kRules, *text);
+    if (found != kRules.end()) {
+      out = static_cast<SetPair::Rule>(found - kRules.begin());
+    } else {
+      diagnostics_.add(node, fmt::format("found '{}'; expected publish, watch, leave_out, "
+                                         "unstated or no_exception",
+                                         *text));
+    }
+  }
+
+  MapReader& map_;
+  const Quantities& quantities_;
+  Diagnostics& diagnostics_;
+  const std::filesystem::path& directory_;
+};
+
 class ChangeReader {
  public:
   ChangeReader(const Quantities& quantities, std::filesystem::path directory)
@@ -36,151 +188,24 @@ class ChangeReader {
  private:
   struct Kind {
     std::string_view name;
-    std::optional<CellChange> (ChangeReader::*read)(const YamlNode&);
+    std::optional<CellChange> (ChangeReader::*read)(std::string_view name, const YamlNode&);
   };
 
-  std::optional<CellChange> add_object(const YamlNode& node) {
-    if (node.kind == YamlNode::Kind::kMap) return AddObject{line_of(node)};
-    diagnostics_.add(node,
-                     fmt::format("found {}; expected one entry of 'objects'", describe(node)));
-    return std::nullopt;
-  }
-  std::optional<CellChange> replace_object(const YamlNode& node) {
-    if (node.kind == YamlNode::Kind::kMap) return ReplaceObject{line_of(node)};
-    diagnostics_.add(node,
-                     fmt::format("found {}; expected one entry of 'objects'", describe(node)));
-    return std::nullopt;
-  }
-  std::optional<CellChange> add_from_template(const YamlNode& node) {
-    MapReader map(node, "a change 'add_from_template'", diagnostics_);
-    AddFromTemplate change;
-    name(map, "template", change.template_name);
-    name(map, "object", change.object);
-    names(map, "groups", change.groups);
-    change.world_from_object = pose(map).value_or(Pose{});
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> remove_object(const YamlNode& node) {
-    MapReader map(node, "a change 'remove_object'", diagnostics_);
-    RemoveObject change;
-    name(map, "object", change.object);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_absent(const YamlNode& node) {
-    MapReader map(node, "a change 'set_absent'", diagnostics_);
-    SetAbsent change;
-    name(map, "object", change.object);
-    if (const YamlNode* absent = map.optional("absent"))
-      change.absent = read_flag(*absent, diagnostics_).value_or(true);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> attach(const YamlNode& node) {
-    MapReader map(node, "a change 'attach'", diagnostics_);
-    Attach change;
-    name(map, "object", change.object);
-    name(map, "to", change.to);
-    change.carrier_from_object = pose(map);
-    names(map, "touch", change.touch);
-    if (const YamlNode* overlap = map.optional("overlap"))
-      change.overlap = quantities_.length(*overlap, "the greatest overlap", kNotNegative);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> detach(const YamlNode& node) {
-    MapReader map(node, "a change 'detach'", diagnostics_);
-    Detach change;
-    name(map, "object", change.object);
-    change.world_from_object = pose(map);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> place(const YamlNode& node) {
-    MapReader map(node, "a change 'place'", diagnostics_);
-    Place change;
-    name(map, "object", change.object);
-    if (const YamlNode* value = map.required("pose"))
-      change.world_from_object = quantities_.pose(*value).value_or(Pose{});
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_max_speed(const YamlNode& node) {
-    MapReader map(node, "a change 'set_max_speed'", diagnostics_);
-    SetMaxSpeed change;
-    name(map, "object", change.object);
-    if (const YamlNode* speed = map.optional("max_speed"))
-      change.m_per_s = quantities_.speed(*speed, "the greatest speed");
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_margin(const YamlNode& node) {
-    MapReader map(node, "a change 'set_margin'", diagnostics_);
-    SetMargin change;
-    name(map, "object", change.object);
-    if (const YamlNode* margin = map.optional("margin"))
-      change.m = quantities_.length(*margin, "the margin", kNotNegative);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_age_limit(const YamlNode& node) {
-    MapReader map(node, "a change 'set_age_limit'", diagnostics_);
-    SetAgeLimit change;
-    name(map, "object", change.object);
-    if (const YamlNode* limit = map.optional("age_limit_ms"))
-      change.ns = quantities_.milliseconds(*limit, "the age limit", kTime);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_source(const YamlNode& node) {
-    MapReader map(node, "a change 'set_source'", diagnostics_);
-    SetSource change;
-    name(map, "object", change.object);
-    if (const YamlNode* source = map.optional("source"))
-      change.source = read_text(*source, "the name of a source", diagnostics_);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> set_pair(const YamlNode& node);
-  std::optional<CellChange> set_zone_thresholds(const YamlNode& node) {
-    MapReader map(node, "a change 'set_zone_thresholds'", diagnostics_);
-    SetZoneThresholds change;
-    name(map, "zone", change.zone);
-    if (const YamlNode* enter = map.required("enter_below"))
-      change.enter_below = quantities_.length(*enter, "the threshold").value_or(0.0);
-    if (const YamlNode* leave = map.required("leave_above"))
-      change.leave_above = quantities_.length(*leave, "the threshold").value_or(0.0);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> allow_contact(const YamlNode& node);
-  std::optional<CellChange> withdraw_contact(const YamlNode& node) {
-    MapReader map(node, "a change 'withdraw_contact'", diagnostics_);
-    WithdrawContact change;
-    name(map, "contact", change.contact);
-    return finished(map, std::move(change));
-  }
-  std::optional<CellChange> replace_cell(const YamlNode& node);
-  std::optional<CellChange> read_cell_again(const YamlNode& node) {
-    MapReader map(node, "a change 'read_cell_again'", diagnostics_);
-    ReadCellAgain change;
-    if (const YamlNode* file = map.optional("file")) {
-      if (auto text = read_text(*file, "the path of a cell file", diagnostics_))
-        change.file = *std::move(text);
-    }
-    return finished(map, std::move(change));
-  }
-
-  void name(MapReader& map, std::string_view key, std::string& out) {
-    const YamlNode* node = map.required(key);
-    if (node == nullptr) return;
-    if (auto text = read_name(*node, "a name of the cell", diagnostics_)) out = *std::move(text);
-  }
-  void names(MapReader& map, std::string_view key, std::vector<std::string>& out) {
-    const YamlNode* node = map.optional(key);
-    if (node == nullptr) return;
-    for (const YamlNode& item : read_list(*node, "names of the cell", diagnostics_)) {
-      if (auto text = read_name(item, "a name of the cell", diagnostics_))
-        out.push_back(*std::move(text));
-    }
-  }
-  std::optional<Pose> pose(MapReader& map) {
-    const YamlNode* node = map.optional("pose");
-    return node == nullptr ? std::nullopt : quantities_.pose(*node);
-  }
-  static CellChange finished(MapReader& map, CellChange change) {
+  template <class Change>
+  std::optional<CellChange> change(std::string_view name, const YamlNode& node) {
+    Change change;
+    MapReader map(node, fmt::format("a change '{}'", name), diagnostics_);
+    ChangeKeys(map, quantities_, directory_).read(change);
     map.refuse_unknown_keys();
     return change;
+  }
+  // AddObject and ReplaceObject: the value is the entry itself.
+  template <class Change>
+  std::optional<CellChange> entry(std::string_view, const YamlNode& node) {
+    if (node.kind == YamlNode::Kind::kMap) return Change{line_of(node)};
+    diagnostics_.add(node,
+                     fmt::format("found {}; expected one entry of 'objects'", describe(node)));
+    return std::nullopt;
   }
 
   const Quantities& quantities_;
@@ -188,107 +213,26 @@ class ChangeReader {
   std::filesystem::path directory_;
 };
 
-std::optional<CellChange> ChangeReader::set_pair(const YamlNode& node) {
-  constexpr std::array<std::pair<std::string_view, SetPair::Rule>, 5> kRules = {{
-      {"publish", SetPair::Rule::kPublish},
-      {"watch", SetPair::Rule::kWatch},
-      {"leave_out", SetPair::Rule::kLeaveOut},
-      {"unstated", SetPair::Rule::kUnstated},
-      {"no_exception", SetPair::Rule::kNoException},
-  }};
-  MapReader map(node, "a change 'set_pair'", diagnostics_);
-  SetPair change;
-  std::vector<std::string> sides;
-  if (const YamlNode* between = map.required("between")) {
-    names(map, "between", sides);
-    if (sides.size() == 2) {
-      change.a = sides[0];
-      change.b = sides[1];
-    } else {
-      diagnostics_.add(*between, "found no two names; expected two objects or groups");
-    }
-  }
-  if (const YamlNode* rule = map.required("rule")) {
-    const auto text = read_text(*rule, "a rule", diagnostics_);
-    const auto* found = std::ranges::find(kRules, std::string_view(text ? *text : ""),
-                                          &std::pair<std::string_view, SetPair::Rule>::first);
-    if (found != kRules.end()) {
-      change.rule = found->second;
-    } else if (text) {
-      diagnostics_.add(*rule, fmt::format("found '{}'; expected publish, watch, leave_out, "
-                                          "unstated or no_exception",
-                                          *text));
-    }
-  }
-  if (const YamlNode* reason = map.optional("reason")) {
-    if (auto text = read_text(*reason, "a reason", diagnostics_)) change.reason = *std::move(text);
-  }
-  return finished(map, std::move(change));
-}
-
-std::optional<CellChange> ChangeReader::allow_contact(const YamlNode& node) {
-  MapReader map(node, "a change 'allow_contact'", diagnostics_);
-  AllowContact change;
-  name(map, "contact", change.contact);
-  if (const YamlNode* between = map.required("between")) {
-    std::vector<std::string> sides;
-    names(map, "between", sides);
-    if (sides.size() != 2) {
-      diagnostics_.add(*between, "found no two names; expected two objects or groups");
-    } else {
-      change.a = sides[0];
-      change.b = sides[1];
-    }
-  }
-  if (const YamlNode* depth = map.required("depth"))
-    change.depth = quantities_.length(*depth, "the greatest depth", kPositive).value_or(0.0);
-  if (const YamlNode* until = map.optional("until"))
-    change.end = read_contact_end(*until, quantities_);
-  for (const auto& [key, text] : {std::pair{"by", &change.by}, {"reason", &change.reason}}) {
-    const YamlNode* value = map.optional(key);
-    if (value == nullptr) continue;
-    if (auto read = read_text(*value, "a text", diagnostics_)) *text = *std::move(read);
-  }
-  return finished(map, std::move(change));
-}
-
-std::optional<CellChange> ChangeReader::replace_cell(const YamlNode& node) {
-  MapReader map(node, "a change 'replace_cell'", diagnostics_);
-  ReplaceCell change;
-  if (const YamlNode* file = map.required("file")) {
-    const auto name = read_text(*file, "the path of a cell file", diagnostics_);
-    if (name) {
-      auto bytes = read_bytes((directory_ / *name).string());
-      if (const auto* fault = std::get_if<FileFault>(&bytes)) {
-        diagnostics_.add(*file, fmt::format("found {}; expected a cell file", fault->reason));
-      } else {
-        change.yaml = std::get<std::string>(std::move(bytes));
-      }
-    }
-  }
-  return finished(map, std::move(change));
-}
-
 std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
   static constexpr std::array<Kind, 18> kKinds = {{
-      {"add_object", &ChangeReader::add_object},
-      {"replace_object", &ChangeReader::replace_object},
-      {"add_from_template", &ChangeReader::add_from_template},
-      {"remove_object", &ChangeReader::remove_object},
-      {"set_absent", &ChangeReader::set_absent},
-      {"attach", &ChangeReader::attach},
-      {"detach", &ChangeReader::detach},
-      {"place", &ChangeReader::place},
-      {"set_max_speed", &ChangeReader::set_max_speed},
-      {"set_margin", &ChangeReader::set_margin},
-      {"set_age_limit", &ChangeReader::set_age_limit},
-      {"set_source", &ChangeReader::set_source},
-      {"set_pair", &ChangeReader::set_pair},
-      {"set_zone_thresholds", &ChangeReader::set_zone_thresholds},
-      {"allow_contact", &ChangeReader::allow_contact},
-      {"withdraw_contact", &ChangeReader::withdraw_contact},
-      {"replace_cell", &ChangeReader::replace_cell},
-      {"read_cell_again", &ChangeReader::read_cell_again},
+      {"add_object", &ChangeReader::entry<AddObject>},
+      {"replace_object", &ChangeReader::entry<ReplaceObject>},
+      {"add_from_template", &ChangeReader::change<AddFromTemplate>},
+      {"remove_object", &ChangeReader::change<RemoveObject>},
+      {"set_absent", &ChangeReader::change<SetAbsent>},
+      {"attach", &ChangeReader::change<Attach>},
+      {"detach", &ChangeReader::change<Detach>},
+      {"place", &ChangeReader::change<Place>},
+      {"set_max_speed", &ChangeReader::change<SetMaxSpeed>},
+      {"set_margin", &ChangeReader::change<SetMargin>},
+      {"set_age_limit", &ChangeReader::change<SetAgeLimit>},
+      {"set_source", &ChangeReader::change<SetSource>},
+      {"set_pair", &ChangeReader::change<SetPair>},
+      {"set_zone_thresholds", &ChangeReader::change<SetZoneThresholds>},
+      {"allow_contact", &ChangeReader::change<AllowContact>},
+      {"withdraw_contact", &ChangeReader::change<WithdrawContact>},
+      {"replace_cell", &ChangeReader::change<ReplaceCell>},
+      {"read_cell_again", &ChangeReader::change<ReadCellAgain>},
   }};
   static_assert(kKinds.size() == std::variant_size_v<CellChange>);
   if (node.kind != YamlNode::Kind::kMap || node.entries.size() != 1) {
@@ -299,7 +243,7 @@ std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
   const auto& [key, value] = node.entries.front();
   std::vector<std::string> known;
   for (const Kind& kind : kKinds) {
-    if (kind.name == key.text) return (this->*kind.read)(value);
+    if (kind.name == key.text) return (this->*kind.read)(kind.name, value);
     known.emplace_back(kind.name);
   }
   diagnostics_.add(key, fmt::format("found '{}'; expected {}{}", key.text, one_of(known),
