@@ -28,6 +28,13 @@ class SpscRing {
 
   [[nodiscard]] std::size_t capacity() const noexcept { return slots_.size(); }
 
+  // Empties the queue, while neither thread uses it. The slots keep their memory.
+  void clear() noexcept {
+    head_.store(0, std::memory_order_relaxed);
+    tail_.store(0, std::memory_order_relaxed);
+    head_seen_ = tail_seen_ = 0;
+  }
+
   // For the filler: the slot to fill, or null when the queue is full. push() hands it over.
   [[nodiscard]] T* back() noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);

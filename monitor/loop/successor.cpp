@@ -5,17 +5,14 @@
 namespace clearance {
 
 Successor::Successor(const Scene& before, const Monitor& running, const Scene& scene,
-                     std::vector<ReportSink*> sinks, const Room& room)
+                     std::vector<ReportSink*> sinks, TickRecords& records)
     : scene_(scene),
       map_(scene_map(before, scene)),
       monitor_(std::make_unique<Monitor>(scene, &running)),
       statistics_(scene),
       sinks_(std::move(sinks)),
-      ticks_(room.ticks),
-      poses_(room.poses),
-      joints_(room.joints) {
-  taken_poses_.reserve(poses_.capacity());
-  taken_joints_.reserve(joints_.capacity());
+      records_(records) {
+  records_.clear();
 }
 
 void Successor::begin(const Monitor& running, SourceNumbers& numbers) noexcept {
@@ -39,13 +36,13 @@ void Successor::record(std::span<const PoseSample> samples, std::span<const Join
     }
     return true;
   };
-  Tick* tick = ticks_.back();
-  if (tick == nullptr || !fill(samples, poses_) || !fill(joints, joints_)) {
+  TickRecords::Tick* tick = records_.ticks.back();
+  if (tick == nullptr || !fill(samples, records_.poses) || !fill(joints, records_.joints)) {
     state_.store(State::kTooSlow, std::memory_order_release);
     return;
   }
   *tick = {time, samples.size(), joints.size(), certified};
-  ticks_.push();
+  records_.ticks.push();
 }
 
 template <class Sample>
@@ -58,13 +55,14 @@ void Successor::take(SpscRing<Sample>& ring, std::size_t count, std::span<const 
 
 std::size_t Successor::catch_up() noexcept {
   std::size_t count = 0;
-  for (Tick* tick = ticks_.front(); tick != nullptr && state() == State::kCatchingUp;
-       tick = ticks_.front(), ++count) {
-    take(poses_, tick->poses, map_.objects_now, &PoseSample::object, taken_poses_);
-    take(joints_, tick->joints, map_.variables_now, &JointSample::variable, taken_joints_);
+  TickRecords& r = records_;
+  for (TickRecords::Tick* tick = r.ticks.front(); tick != nullptr && state() == State::kCatchingUp;
+       tick = r.ticks.front(), ++count) {
+    take(r.poses, tick->poses, map_.objects_now, &PoseSample::object, r.taken_poses);
+    take(r.joints, tick->joints, map_.variables_now, &JointSample::variable, r.taken_joints);
     const bool certified = tick->certified;
-    const Report& report = monitor_->tick(taken_poses_, taken_joints_, tick->time);
-    ticks_.pop();
+    const Report& report = monitor_->tick(r.taken_poses, r.taken_joints, tick->time);
+    r.ticks.pop();
     const bool is_worse = certified && !report.minimum_certified && report.unknown == 0;
     if (!is_worse) caught_up_at_.store(report.cycle, std::memory_order_release);
   }

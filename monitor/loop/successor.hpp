@@ -24,7 +24,7 @@
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/loop/spsc_ring.hpp"
+#include "monitor/loop/tick_records.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {
@@ -38,19 +38,12 @@ class Successor {
     kTooManyNames,  // both scenes name more than kMaxSources sources
     kTooSlow,       // the loop ran more ticks than there is room for
   };
-  // The ticks, and samples of poses and joints in them, that catching up may lag behind the loop.
-  struct Room {
-    std::size_t ticks = 1024, poses = 1 << 14, joints = 1 << 14;
-  };
 
-  // Allocates all memory. `running` is the loop's monitor of the scene `before`, and may tick
-  // meanwhile. Both scenes outlive the use of this object. `sinks` get the reports of the changed
-  // scene, from the first one on.
+  // Allocates all memory but the records'. `running` is the loop's monitor of the scene `before`,
+  // and may tick meanwhile. Both scenes and the records, which are cleared, outlive the use of this
+  // object. `sinks` get the reports of the changed scene, from the first one on.
   Successor(const Scene& before, const Monitor& running, const Scene& scene,
-            std::vector<ReportSink*> sinks, const Room& room);
-  Successor(const Scene& before, const Monitor& running, const Scene& scene,
-            std::vector<ReportSink*> sinks)
-      : Successor(before, running, scene, std::move(sinks), Room()) {}
+            std::vector<ReportSink*> sinks, TickRecords& records);
 
   // Any thread.
   [[nodiscard]] State state() const noexcept { return state_.load(std::memory_order_acquire); }
@@ -85,11 +78,6 @@ class Successor {
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
 
  private:
-  struct Tick {
-    TickTime time;
-    std::size_t poses = 0, joints = 0;
-    bool certified = false;
-  };
   template <class Sample>
   static void take(SpscRing<Sample>& ring, std::size_t count, std::span<const std::uint32_t> now,
                    std::uint32_t Sample::*input, std::vector<Sample>& taken) noexcept;
@@ -99,11 +87,7 @@ class Successor {
   std::unique_ptr<Monitor> monitor_;
   LoopStatistics statistics_;
   std::vector<ReportSink*> sinks_;
-  SpscRing<Tick> ticks_;
-  SpscRing<PoseSample> poses_;
-  SpscRing<JointSample> joints_;
-  std::vector<PoseSample> taken_poses_;  // of one tick, with the indices of the changed scene
-  std::vector<JointSample> taken_joints_;
+  TickRecords& records_;
   std::atomic<State> state_{State::kOffered};
   std::atomic<std::uint64_t> began_after_{0}, in_force_from_{0}, caught_up_at_{0};
 };

@@ -44,7 +44,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
   Successor::State state = Successor::State::kTooSlow;
   for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
     // It holds what the loop no longer ticks, and is deleted here.
-    Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks);
+    Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks, records_);
     state = run(successor, loop_ended);
     if (state != Successor::State::kSucceeded) continue;
     parts_.follow(successor.in_force());

@@ -33,9 +33,15 @@ class CellParts {
 // To be used by one thread at a time, the preparing one.
 class SceneChanger {
  public:
-  // The loop ticks `cell`. Loop and parts must outlive this.
-  SceneChanger(TickLoop& loop, std::shared_ptr<const Cell> cell, CellParts& parts)
-      : loop_(loop), cell_(std::move(cell)), capacity_(capacity_for(*cell_)), parts_(parts) {}
+  // The loop ticks `cell`. Loop and parts must outlive this. `room`: the number of ticks by which a
+  // changed cell may lag behind; one that needs more is refused as too slow.
+  SceneChanger(TickLoop& loop, std::shared_ptr<const Cell> cell, CellParts& parts,
+               const TickRecords::Room& room = TickRecords::Room())
+      : loop_(loop),
+        cell_(std::move(cell)),
+        capacity_(capacity_for(*cell_)),
+        records_(room),
+        parts_(parts) {}
 
   struct Outcome {
     CommandStatus status = CommandStatus::kDone;
@@ -61,6 +67,7 @@ class SceneChanger {
   TickLoop& loop_;
   std::shared_ptr<const Cell> cell_;
   SceneCapacity capacity_;
+  TickRecords records_;
   CellParts& parts_;
 };
 

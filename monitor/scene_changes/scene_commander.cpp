@@ -65,6 +65,12 @@ SceneCommander::SceneCommander(SceneChanger& changer, TickLoop& loop,
   options_.reading.mesh_errors = &mesh_errors_;
 }
 
+// A text that cannot be read is refused with the first command.
+void SceneCommander::read_ahead() {
+  if (cell().commands.from.empty() && !cell().ros.moveit.any()) return;
+  (void)open({});
+}
+
 CommandResult SceneCommander::execute(const Command& command, bool is_own,
                                       const std::function<bool()>& may_change) {
   CommandResult result{.client = command.client, .request = command.request};
@@ -101,7 +107,7 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
   }
   if (Refusal refusal = take_files(work)) return refusal;
   if (Refusal refusal = take_texts(work)) return refusal;
-  if (Refusal refusal = open(work)) return refusal;
+  if (Refusal refusal = open(work.changes)) return refusal;
   if (Refusal refusal = take_poses(work)) return refusal;
   auto proposed = editor_->propose(work.changes);
   if (auto* refused = std::get_if<EditRefusal>(&proposed)) {
@@ -130,12 +136,11 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
 
 // If the text in force cannot be read any more, because a file of it has gone, a whole cell can
 // still replace it.
-SceneCommander::Refusal SceneCommander::open(const Work& work) {
+SceneCommander::Refusal SceneCommander::open(std::span<const CellChange> changes) {
   if (editor_) return std::nullopt;
   const Cell& cell = changer_.cell();
   auto opened = CellEditor::open(cell.yaml, cell.file, options_.reading);
-  const auto* whole =
-      work.changes.empty() ? nullptr : std::get_if<ReplaceCell>(&work.changes.front());
+  const auto* whole = changes.empty() ? nullptr : std::get_if<ReplaceCell>(&changes.front());
   if (std::holds_alternative<std::vector<CellError>>(opened) && whole != nullptr)
     opened = CellEditor::open(whole->yaml, cell.file, options_.reading);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&opened)) {
@@ -186,7 +191,7 @@ SceneCommander::Refusal SceneCommander::take_texts(Work& work) {
     }
     work.changes[i] = ReplaceCell{std::move(text)};
     if (!is_own || options_.keep_scene.empty()) continue;
-    if (Refusal refusal = open(work)) return refusal;
+    if (Refusal refusal = open(work.changes)) return refusal;
     const auto read = editor_->dry_run(std::span(work.changes).subspan(i, 1));
     if (const auto* cell = std::get_if<Cell>(&read)) work.began_with = cell->scene.revision;
   }
@@ -310,7 +315,10 @@ SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const C
     const auto* attach = std::get_if<Attach>(&work.changes[i]);
     if (attach == nullptr) continue;
     const std::vector<std::string> others = left_out_with(*attach, cell.scene);
-    const auto poses = present_poses(others, changer_.cell().scene, loop_, loop_ended_);
+    // The change states the pose relative to the carrier, so that a lone carrier may be anywhere.
+    const bool is_alone = others == std::vector<std::string>{attach->to};
+    const auto poses = is_alone ? PresentPoses{}
+                                : present_poses(others, changer_.cell().scene, loop_, loop_ended_);
     if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
     const double most = attach->overlap.value_or(kDefaultOverlap);
     const auto deepest = deepest_overlap(*attach, cell.scene, others, *poses, mesh_errors_);

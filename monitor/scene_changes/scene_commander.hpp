@@ -49,6 +49,10 @@ class SceneCommander {
   [[nodiscard]] CommandResult execute(const Command& command, bool is_own,
                                       const std::function<bool()>& may_change);
 
+  // Reads the text in force if clients may send commands: the first of them is then as fast as
+  // others.
+  void read_ahead();
+
   // The cell in force.
   [[nodiscard]] const Cell& cell() const noexcept { return changer_.cell(); }
   // Returns where an object or a link is now, in the world; nothing if its pose is not usable.
@@ -66,7 +70,7 @@ class SceneCommander {
     std::uint64_t began_with;  // of the scene that is kept
   };
   Refusal do_all(Work& work, const std::function<bool()>& may_change, CommandResult& result);
-  Refusal open(const Work& work);
+  Refusal open(std::span<const CellChange> changes);
   Refusal take_files(Work& work);
   Refusal take_texts(Work& work);
   Refusal take_poses(Work& work);
@@ -85,7 +89,7 @@ class SceneCommander {
   std::size_t most_bytes_;
   SentFiles sent_;
   std::map<std::string, double> mesh_errors_;
-  std::optional<CellEditor> editor_;  // opened by the first command
+  std::optional<CellEditor> editor_;  // opened by read_ahead() or the first command
   std::uint64_t in_force_from_ = 0;
 };
 

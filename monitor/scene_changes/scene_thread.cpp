@@ -15,35 +15,31 @@ void SceneThread::start() {
 
 void SceneThread::run() {
   name_thread("scene");
+  if (!enter(Phase::kReading)) return;
+  commander_.read_ahead();
+  if (!enter(Phase::kChanging)) return;
   while (auto next = queue_.next()) {
-    {
-      const std::lock_guard lock(mutex_);
-      if (phase_ == Phase::kEnded) return;
-      phase_ = Phase::kReading;
-    }
+    if (!enter(Phase::kReading)) return;
     if (next->make) {
       next->command = next->make(commander_.cell(), [this](const std::string& name) {
         return commander_.present_pose(name);
       });
     }
     const bool is_empty = next->make && next->command.changes.empty();
-    const CommandResult result = is_empty ? CommandResult{}
-                                          : commander_.execute(next->command, next->is_own,
-                                                               [this] { return begin_change(); });
-    {
-      const std::lock_guard lock(mutex_);
-      if (phase_ == Phase::kEnded) return;
-      phase_ = Phase::kChanging;
-    }
+    const CommandResult result =
+        is_empty ? CommandResult{} : commander_.execute(next->command, next->is_own, [this] {
+          return enter(Phase::kChanging);
+        });
+    if (!enter(Phase::kChanging)) return;
     if (is_empty) continue;
     if (next->answer) next->answer(result);
   }
 }
 
-bool SceneThread::begin_change() {
+bool SceneThread::enter(Phase phase) {
   const std::lock_guard lock(mutex_);
   if (phase_ == Phase::kEnded) return false;
-  phase_ = Phase::kChanging;
+  phase_ = phase;
   return true;
 }
 

@@ -32,7 +32,8 @@ class SceneThread {
  private:
   enum class Phase { kReading, kChanging, kEnded };
   void run();
-  bool begin_change();
+  // Returns false after end().
+  bool enter(Phase phase);
 
   CommandQueue queue_;
   SceneCommander commander_;

@@ -6,10 +6,12 @@
 #include <array>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <iostream>
 #include <iterator>
 #include <optional>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -25,6 +27,10 @@
 
 namespace clearance {
 namespace {
+
+// Commands that are repeated wait so long at most, by parts that cover the interval evenly.
+constexpr std::chrono::duration<double, std::milli> kLongestWait{4.0};
+constexpr double kGoldenRatio = 0.6180339887498949;
 
 constexpr const char* kSendFooter =
     R"(Changes are a YAML list; idl/COMMANDS.md has them all. Lengths are in m and angles in rad, unless the file is a map:
@@ -246,6 +252,9 @@ int send_changes(const SendArguments& arguments) {
   if (const int failed = add_changes(*text, arguments.back, back); failed != kOk) return failed;
   Latencies latencies(connection, commands, timeout);
   for (std::uint64_t i = 0; i < 2 * arguments.repeats; ++i) {
+    // A command that follows a report at once would always meet the ticks at the same time.
+    std::this_thread::sleep_for(kLongestWait *
+                                std::fmod(static_cast<double>(i) * kGoldenRatio, 1.0));
     const auto result = latencies.send(i % 2 == 0 ? changes : back, options, i % 2);
     if (!result) return no_result(arguments, connection, commands);
     if (!result->done()) return print_result(*result, false);

@@ -73,9 +73,9 @@ class Succession : public testing::Test {
     std::atomic<bool> stop{false};
     loop->run(stop);
   }
-  Successor& succeed(const Scene& scene, const Successor::Room& room = {}) {
+  Successor& succeed(const Scene& scene, const TickRecords::Room& room = {}) {
     return successors.emplace_back(first, loop->monitor(), scene, std::vector<ReportSink*>{&after},
-                                   room);
+                                   records.emplace_back(room));
   }
 
   // Offers the scene before tick 5 and lets it catch up before each tick from then on.
@@ -112,6 +112,7 @@ class Succession : public testing::Test {
   std::uint64_t number = 0;
   std::uint64_t allocated = 0, allocated_later = 0;  // before tick 5 and tick 19
   std::unique_ptr<TickLoop> loop;
+  std::list<TickRecords> records;
   std::list<Successor> successors;
 };
 
@@ -144,7 +145,8 @@ TEST_F(Succession, BatchesForFormerScenesArePassedOnAndThoseOfOthersRefused) {
     }
     if (tick == 15) {
       EXPECT_TRUE(loop->offer(successors.emplace_back(second, loop->monitor(), third,
-                                                      std::vector<ReportSink*>{&after})));
+                                                      std::vector<ReportSink*>{&after},
+                                                      records.emplace_back())));
     }
     if (tick >= 5) successors.back().catch_up();
   };
@@ -219,12 +221,13 @@ TEST(SuccessionOfThreads, EveryCycleIsReportedOnceWhileScenesChange) {
   TickLoop loop(scenes[0], poses, {&sinks[0]}, clock);
   std::atomic<bool> stop{false};
   std::thread ticking([&] { loop.run(stop); });
+  TickRecords records;
   std::unique_ptr<Successor> last;
   constexpr int kChanges = 40;
   for (int change = 1; change <= kChanges; ++change) {
     const Scene &now = scenes[change % 2], &was = scenes[(change + 1) % 2];
     auto next = std::make_unique<Successor>(was, loop.monitor(), now,
-                                            std::vector<ReportSink*>{&sinks[change % 2]});
+                                            std::vector<ReportSink*>{&sinks[change % 2]}, records);
     ASSERT_TRUE(loop.offer(*next));
     while (next->state() != State::kSucceeded) {
       next->catch_up();

@@ -65,6 +65,7 @@ class ChangingRun : public testing::Test {
     std::list<Sink> sinks;
     sinks.emplace_back(*this, cells.front());
     TickLoop loop(cells.front().scene, poses, {&sinks.front()}, clock, {.max_ticks = kTicks});
+    TickRecords records;
     std::list<Successor> successors;
     clock.while_asleep = [&](int tick) {
       poses.now = tick;
@@ -73,7 +74,7 @@ class ChangingRun : public testing::Test {
         sinks.emplace_back(*this, cells[made + 1]);
         sinks.back().successor =
             &successors.emplace_back(cells[made].scene, loop.monitor(), cells[made + 1].scene,
-                                     std::vector<ReportSink*>{&sinks.back()});
+                                     std::vector<ReportSink*>{&sinks.back()}, records);
         ASSERT_TRUE(loop.offer(successors.back()));
       }
       if (made > 0 && tick >= 50 * static_cast<int>(made) + lag) successors.back().catch_up();

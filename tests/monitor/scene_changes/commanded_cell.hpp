@@ -44,7 +44,11 @@ class HandPoses final : public PoseSource {
   explicit HandPoses(std::uint64_t revision) {
     batch_.source = SourceName("robot");
     batch_.scene_revision = revision;
-    batch_.samples.resize(1);
+  }
+  // Each batch repeats its sample so often.
+  void repeat(std::size_t times) {
+    const std::lock_guard lock(mutex_);
+    times_ = times;
   }
   // The tick thread takes it from its next tick on.
   void put(const Pose& pose) {
@@ -64,14 +68,18 @@ class HandPoses final : public PoseSource {
     const std::lock_guard lock(mutex_);
     if (!is_sent_) return nullptr;
     ++batch_.sequence_number;
-    batch_.samples[0].stamp_ns = SystemClock().realtime_ns();
-    batch_.samples[0].world_from_object = pose_;
+    batch_.samples.resize(times_);
+    for (PoseSample& sample : batch_.samples) {
+      sample.stamp_ns = SystemClock().realtime_ns();
+      sample.world_from_object = pose_;
+    }
     return &batch_;
   }
 
  private:
   std::mutex mutex_;
   Pose pose_;
+  std::size_t times_ = 1;
   bool is_sent_ = false, is_turn_ = false;
   std::atomic<std::uint64_t> taken_{0};
   PoseBatch batch_;
@@ -81,14 +89,15 @@ class CommandedCell : public testing::Test, private CellParts {
  protected:
   ~CommandedCell() override { end(); }
 
-  void start(const std::string& text = kCommandedCell, CommanderOptions options = {}) {
+  void start(const std::string& text = kCommandedCell, CommanderOptions options = {},
+             const TickRecords::Room& room = {}) {
     write_text(folder / "cell.yaml", text);
     cell = std::make_shared<const Cell>(std::get<Cell>(read_cell(folder / "cell.yaml")));
     options.began_with = cell->scene.revision;
     poses = std::make_unique<HandPoses>(cell->scene.revision);
     loop = std::make_unique<TickLoop>(cell->scene, *poses, std::vector<ReportSink*>{}, clock,
                                       TickLoopOptions{});
-    changer = std::make_unique<SceneChanger>(*loop, cell, static_cast<CellParts&>(*this));
+    changer = std::make_unique<SceneChanger>(*loop, cell, static_cast<CellParts&>(*this), room);
     commander = std::make_unique<SceneCommander>(*changer, *loop, loop_ended, std::move(options));
     ticking = std::thread([this] { loop->run(stop); });
   }

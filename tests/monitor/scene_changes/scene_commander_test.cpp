@@ -260,6 +260,17 @@ TEST_F(SceneCommands, AreRefusedWhenTheLoopHasEnded) {
 }
 
 // The sender of poses has the ids of the first scene, and 41 changes later it still has them.
+TEST_F(SceneCommands, ThatCannotFollowTheLoopAreRefusedAsTooSlow) {
+  start(test::kCommandedCell, {}, {.ticks = 4, .poses = 4, .joints = 4});
+  poses->put(test::at(0, 0, 0));
+  poses->repeat(5);
+  poses->settle();
+  expect_refused({SetAbsent{"part"}}, CommandStatus::kTooSlow);
+  poses->repeat(4);
+  poses->settle();
+  EXPECT_TRUE(execute({SetAbsent{"part"}}).done());
+}
+
 TEST_F(SceneCommands, ThatAttachAndDetachAgainAndAgainKeepTheSendersOfPosesInUse) {
   start();
   poses->put(at(0.5, 0, 0));
