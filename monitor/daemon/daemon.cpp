@@ -21,6 +21,8 @@ constexpr std::size_t kQueuedReports = 64;
 constexpr std::size_t kBatchesATick = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
+// The number of such intervals between two looks at the files of the cell.
+constexpr int kPollsALook = 10;
 // The interval at which a change of the cell checks that the last reports of the former cell are
 // written.
 constexpr std::chrono::milliseconds kReportsPoll{1};
@@ -69,6 +71,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       reports_(cell, participant_, *now_.queue, poses_, recording_health_),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
+  watch_files(cell);
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
                                                              PoseReader::joints_a_batch(cell))};
@@ -119,8 +122,10 @@ void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   scene_thread_->start();
   if (commands_) commands_->start();
-  while (!done && !gave_way() && !signal.wait(kSignalPollMs)) {
-    if (signal.hung_up()) read_again();
+  for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
+    ++polls;
+    const bool looks = options_.reload && polls % kPollsALook == 0;
+    if (signal.hung_up() || (looks && files_.changed())) read_again();
     if (recording_) recording_->watch();
   }
   stop_ = true;
@@ -167,6 +172,13 @@ bool Daemon::note_change(const CommandResult& result) {
   if (before == result.scene_revision) return false;
   log_line(lines::kSceneChanged, result.scene_revision, result.in_force_from, before);
   return true;
+}
+
+// The cell's own file counts even where another text is in force.
+void Daemon::watch_files(const Cell& cell) {
+  std::vector<std::filesystem::path> files = cell.files;
+  files.emplace_back(cell_file_);
+  files_.watch(files);
 }
 
 void Daemon::read_again() {

@@ -11,6 +11,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
+#include "monitor/daemon/file_watch.hpp"
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/command_port.hpp"
@@ -33,6 +34,7 @@ struct DaemonOptions {
   RecordingOptions recording = {.overwrite = false};
   std::optional<int> cpu;      // processor that the tick thread is pinned to
   CommanderOptions commander;  // how commands and SIGHUP change the cell
+  bool reload = false;         // read the cell again when its files have changed
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
   std::function<void()> list_mistakes;
 };
@@ -79,6 +81,7 @@ class Daemon : private CellParts {
   void tick_thread(std::atomic<bool>& done);
   void end_commands();
   void read_again();
+  void watch_files(const Cell& cell);
   bool note_change(const CommandResult& result);
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
   void follow(const SceneInForce& since) override;
@@ -86,6 +89,7 @@ class Daemon : private CellParts {
 
   DaemonOptions options_;
   std::string cell_file_;
+  FileWatch files_;
   Participant participant_;
   MoveItPort moveit_;
   PoseReader poses_;

@@ -103,6 +103,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(is_client);
   app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
                  "Keep the changed scene in this file, and begin with it after a crash");
+  app.add_flag(
+      "--reload", arguments.daemon.reload,
+      "Read the cell again, as after SIGHUP, when its file or one that it names has changed");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
   app.add_option("--priority", arguments.daemon.fifo_priority,

@@ -94,6 +94,18 @@ TEST_F(DaemonReload, AChangedCellIsInForceWithoutAMissingCycleAndKnowsWhatItKnew
   EXPECT_TRUE(catalogue.pair("wall", "left"));
 }
 
+TEST_F(DaemonReload, WithReloadAChangedFileIsReadWithoutASignal) {
+  start({"--reload"});
+  run_until_told("started");
+  std::ofstream(cell.path()) << replaced(text, "box: {size: [0.2, 0.3, 0.2]}",
+                                         "margin: 0.01, box: {size: [0.2, 0.3, 0.2]}");
+  run_until_told("scene-changed");
+  run_until_told("scene-changed");
+  EXPECT_EQ(revision, cell.cell().scene.revision);
+  std::ofstream(cell.path()) << replaced(text, "rate_hz: 200", "rate_hz: fast");
+  run_until_told("scene-refused");
+}
+
 TEST_F(DaemonReload, ACellWithAMistakeOrWithAnotherRateIsRefusedAndTheTicksGoOn) {
   start();
   run_until_told("started");
