@@ -85,7 +85,7 @@ class ChangeKeys {
   void read(SetPair& change) {
     sides(change.a, change.b);
     if (const YamlNode* rule = map_.required("rule")) read_rule(*rule, change.rule);
-    text("reason", change.reason);
+    text(map_.optional("reason"), change.reason);
   }
   void read(SetZoneThresholds& change) {
     name("zone", change.zone);
@@ -101,8 +101,8 @@ class ChangeKeys {
       change.depth = quantities_.length(*depth, "the greatest depth", kPositive).value_or(0.0);
     if (const YamlNode* until = map_.optional("until"))
       change.end = read_contact_end(*until, quantities_);
-    text("by", change.by);
-    text("reason", change.reason);
+    text(map_.required("by"), change.by);
+    text(map_.required("reason"), change.reason);
   }
   void read(WithdrawContact& change) { name("contact", change.contact); }
   void read(ReplaceCell& change) {
@@ -117,7 +117,7 @@ class ChangeKeys {
       change.yaml = std::get<std::string>(std::move(bytes));
     }
   }
-  void read(ReadCellAgain& change) { text("file", change.file); }
+  void read(ReadCellAgain& change) { text(map_.optional("file"), change.file); }
 
  private:
   void name(std::string_view key, std::string& out) {
@@ -145,8 +145,8 @@ class ChangeKeys {
     a = std::move(both[0]);
     b = std::move(both[1]);
   }
-  void text(std::string_view key, std::string& out) {
-    const YamlNode* node = map_.optional(key);
+  // Null: the key is not there.
+  void text(const YamlNode* node, std::string& out) {
     if (node == nullptr) return;
     if (auto read = read_text(*node, "a text", diagnostics_)) out = *std::move(read);
   }

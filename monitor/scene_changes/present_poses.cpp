@@ -65,7 +65,7 @@ std::string why_unusable(const PresentPose& pose) {
     case PresentPose::State::kUsable:
       break;
     case PresentPose::State::kUnknown:
-      return "no pose of it has come";
+      return "no pose of it, or of what carries it, has come";
     case PresentPose::State::kLate:
       return "its last pose is older than its age limit";
     case PresentPose::State::kContradicted:

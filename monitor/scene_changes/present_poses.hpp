@@ -24,7 +24,7 @@ using PresentPoses = std::map<std::string, PresentPose>;
 // Pose of B in the frame of A.
 [[nodiscard]] Pose a_from_b(const Pose& world_from_a, const Pose& world_from_b);
 
-// Why a pose cannot be used, as the end of a sentence: "no pose of it has come". Empty: it can.
+// Why a pose cannot be used, as the end of a sentence: "it is absent". Empty: it can.
 [[nodiscard]] std::string why_unusable(const PresentPose& pose);
 
 }  // namespace clearance

@@ -3,11 +3,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fstream>
+#include <iterator>
 #include <numbers>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
 
+#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -62,7 +66,7 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
 - set_zone_thresholds: {zone: stop, enter_below: 0.1, leave_above: 0.2}
 - read_cell_again: {}
 - replace_object: {name: box, fixed: true, sphere: {radius: 6}}
-- allow_contact: {contact: grip, between: [part, fingers], depth: 0.002, until: {distance: 0.01, cycle: 900}, by: planner}
+- allow_contact: {contact: grip, between: [part, fingers], depth: 0.002, until: {distance: 0.01, cycle: 900}, by: planner, reason: it is gripped}
 - withdraw_contact: {contact: grip}
 )");
   ASSERT_EQ(changes.size(), 17u);
@@ -101,6 +105,20 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
   EXPECT_EQ(contact.end, (ContactEnd{.distance = 0.01, .last_cycle = 900}));
   EXPECT_EQ(contact.by, "planner");
   EXPECT_EQ(std::get<WithdrawContact>(changes[16]).contact, "grip");
+}
+
+// The block of YAML in idl/COMMANDS.md, which names the file of another cell.
+TEST(ChangeReader, ReadsThePageAboutCommandsWhichHasEveryKind) {
+  std::ifstream page(test::places::sources() + "/idl/COMMANDS.md");
+  std::string text{std::istreambuf_iterator<char>(page), {}};
+  text.erase(0, text.find("```yaml\n") + 8);
+  text.erase(text.find("```"));
+  const test::ScratchFolder folder;
+  test::write_text(folder / "other.yaml", "name: other\n");
+  std::set<std::size_t> kinds;
+  for (const CellChange& change : changes_of(text, folder / "changes.yaml"))
+    kinds.insert(change.index());
+  EXPECT_EQ(kinds.size(), std::variant_size_v<CellChange>);
 }
 
 TEST(ChangeReader, TakesLengthsAndAnglesInTheStatedUnits) {
