@@ -68,7 +68,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
-      reports_(cell, participant_, *now_.queue, poses_, recording_health_),
+      reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
   watch_files(cell);

@@ -32,9 +32,10 @@ struct DaemonOptions {
   int fifo_priority = 0;        // of the tick thread; the other threads get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
-  std::optional<int> cpu;      // processor that the tick thread is pinned to
-  CommanderOptions commander;  // how commands and SIGHUP change the cell
-  bool reload = false;         // read the cell again when its files have changed
+  std::optional<int> cpu;            // processor that the tick thread is pinned to
+  CommanderOptions commander;        // how commands and SIGHUP change the cell
+  bool reload = false;               // read the cell again when its files have changed
+  ReportWriter::OnHealth on_health;  // once a second; may be empty
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
   std::function<void()> list_mistakes;
 };

@@ -20,6 +20,8 @@
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/dds/robot_description.hpp"
+#include "monitor/metrics/metrics_server.hpp"
+#include "monitor/metrics/metrics_text.hpp"
 #include "monitor/scene_changes/kept_scene.hpp"
 
 namespace clearance {
@@ -50,6 +52,7 @@ struct Arguments {
   bool gradients = false;
   std::vector<std::string> ros;       // ROS 2 outputs in addition to the cell's
   std::vector<std::string> commands;  // clients in addition to the cell's
+  std::filesystem::path metrics;      // a socket; empty: none
   DaemonOptions daemon;
 };
 
@@ -106,6 +109,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag(
       "--reload", arguments.daemon.reload,
       "Read the cell again, as after SIGHUP, when its file or one that it names has changed");
+  app.add_option("--metrics", arguments.metrics,
+                 "Answer GET /metrics on this Unix socket, in the text format of Prometheus");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
   app.add_option("--priority", arguments.daemon.fifo_priority,
@@ -190,6 +195,13 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   if (arguments.cell.cell.empty())
     commander.own_text = [of = arguments.cell] { return of.robot_text(); };
   arguments.daemon.list_mistakes = [of = arguments.cell] { (void)cell_or_errors(of.read()); };
+  std::optional<MetricsServer> metrics;
+  if (!arguments.metrics.empty()) {
+    metrics.emplace(arguments.metrics);
+    arguments.daemon.on_health = [&metrics](const MetricsSource& source) {
+      metrics->publish(metrics_text(source));
+    };
+  }
   route_dds_log();
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);

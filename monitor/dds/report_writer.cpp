@@ -62,11 +62,13 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
 
 // The catalogue is latched, so later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
-                           const PoseReader& poses, const RecordingHealth& recording)
+                           const PoseReader& poses, const RecordingHealth& recording,
+                           OnHealth on_health)
     : participant_(participant),
       topics_(cell.topics),
       poses_(poses),
       recording_(recording),
+      on_health_(std::move(on_health)),
       identity_(make_identity()),
       distances_(make_writer(
           participant, topics_, TopicKind::kDistances,
@@ -252,6 +254,14 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   write(health_, &*sample, "health");
+  if (on_health_) {
+    on_health_(
+        {.scene = now_->cell.scene,
+         .health = *sample,
+         .report = now_->distances->cycle == 0 ? nullptr : &*now_->distances,
+         .is_active = [this](std::uint32_t zone) { return now_->written_zones.is(zone, true); },
+         .statistics = &statistics});
+  }
   zone_log_.end_second();
   now_->contact_log.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <thread>
@@ -18,6 +19,7 @@
 #include "monitor/dds/zone_log.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/report_queue.hpp"
+#include "monitor/metrics/metrics_text.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/gradient_message.hpp"
@@ -33,9 +35,12 @@ namespace clearance {
 // tick thread never waits for DDS.
 class ReportWriter {
  public:
+  // Is called once a second, in the thread that writes. May be empty.
+  using OnHealth = std::function<void(const MetricsSource&)>;
+
   // Publishes the catalogue at once. Everything given must outlive this.
   ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
-               const PoseReader& poses, const RecordingHealth& recording);
+               const PoseReader& poses, const RecordingHealth& recording, OnHealth on_health = {});
   ~ReportWriter();  // finishes
 
   // The cell has changed: closes the present queue. Once that is empty, the catalogue of this cell
@@ -87,6 +92,7 @@ class ReportWriter {
   const Topics topics_;
   const PoseReader& poses_;
   const RecordingHealth& recording_;
+  const OnHealth on_health_;
   DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0;  // 0: no zone has had one yet

@@ -34,6 +34,19 @@ void Histogram::add(std::int64_t ns) noexcept {
   max_ns_ = std::max(max_ns_, value);
 }
 
+std::uint64_t Histogram::count_up_to(std::int64_t ns) const noexcept {
+  std::uint64_t count = 0;
+  for (std::size_t bin = 0; bin < kBins && upper_edge_ns(bin) <= ns; ++bin) count += bins_[bin];
+  return count;
+}
+
+std::int64_t Histogram::sum_ns() const noexcept {
+  std::int64_t sum = 0;
+  for (std::size_t bin = 0; bin < kBins; ++bin)
+    sum += static_cast<std::int64_t>(bins_[bin]) * std::min(upper_edge_ns(bin), max_ns_);
+  return sum;
+}
+
 // The nearest-rank definition: the smallest edge below which at least this share lies.
 std::int64_t Histogram::percentile_ns(double share) const noexcept {
   if (count_ == 0) return 0;

@@ -16,6 +16,9 @@ class Histogram {
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] std::int64_t max_ns() const noexcept { return max_ns_; }
+  // These two count each value as the upper edge of its bin, at most 1/64 above it.
+  [[nodiscard]] std::uint64_t count_up_to(std::int64_t ns) const noexcept;
+  [[nodiscard]] std::int64_t sum_ns() const noexcept;
   // The upper edge of the bin that ends the given share of all values (0.999: p99.9), never above
   // the maximum; 0 when empty.
   [[nodiscard]] std::int64_t percentile_ns(double share) const noexcept;
