@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/curved/depth_cap.hpp"
 #include "core/curved/thorough.hpp"
 
 namespace clearance {
@@ -15,6 +16,7 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
+constexpr double kLargestCap = 1.5, kRingAngle = 1.4;  // rad
 
 // A vertex of a triangle: a direction, the support value of A - B along it, and the support point.
 // The rolling balls are subtracted from both, since bodies that are less round need fewer
@@ -105,8 +107,8 @@ class DepthSearch {
   [[nodiscard]] double depth() const noexcept { return -pair_.bounds.lower; }
 
   void descend(const Vec3& n) noexcept {
-    ActiveParts none;
-    found_.supports += search_direction(pair_, n, none);
+    active_ = {};
+    found_.supports += search_direction(pair_, n, active_);
   }
 
   // The balls that roll inside both bodies make a ball inside A - B that touches its deepest point.
@@ -143,28 +145,64 @@ class DepthSearch {
 
   enum class PassEnd { kCovered, kLimit, kDeeper };
 
-  // Subdivides an octahedron that has the best direction as a vertex.
+  // Covers all directions outside the cap around the best one: a ring of four directions on the
+  // cap, four at right angles to the best direction, and its opposite.
   PassEnd cover(double tolerance, int limit) noexcept {
     const Vec3 n = pair_.bounds.normal;
     const double best = depth();
     taken_off_ = std::min(ball_, 0.5 * std::max(best, 0.0));
-    const Vec3 x = n.unitOrthogonal(), y = n.cross(x).normalized();
-    std::array<Corner, 6> corners{corner(n),        corner(x),        corner(y),
-                                  corner(Vec3(-n)), corner(Vec3(-x)), corner(Vec3(-y))};
-    count_ = 0;
-    for (std::size_t octant = 0; octant < 8; ++octant) {
-      stack_[count_++] = {
-          {corners[octant & 1 ? 3 : 0], corners[octant & 2 ? 4 : 1], corners[octant & 4 ? 5 : 2]}};
+    const DepthCap cap = depth_cap(pair_, n, best, tolerance, active_);
+    found_.supports += cap.supports;
+    if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
+    target_ = best - tolerance - taken_off_;
+    known_count_ = 0;
+    if (cap.ring[0] != cap.ring[1]) {
+      for (const Vec3& p : cap.ring) known_[known_count_++] = p - taken_off_ * n;
     }
+    axis_ = n;
+    least_cosine_ = cap.angle > 0.0 ? std::cos(std::min(cap.angle, kLargestCap)) : 2.0;
+    cover_sphere(n, std::min(0.999 * cap.angle, kRingAngle));
     while (count_ > 0) {
       if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
       const Triangle t = stack_[--count_];
-      const double least = TriangleBound(t).value();
-      if (least > 0.0 && least + taken_off_ >= best - tolerance) continue;
+      if (is_covered(t)) continue;
       if (found_.supports >= limit || count_ + 2 > stack_.size()) return PassEnd::kLimit;
       halve(t);
     }
     return PassEnd::kCovered;
+  }
+
+  void cover_sphere(const Vec3& n, double angle) noexcept {
+    const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+    const std::array<Vec3, 4> around{x, y, -x, -y};
+    std::array<Corner, 4> equator, ring;
+    const Corner top = corner(n), bottom = corner(-n);
+    const double c = std::cos(angle), s = std::sin(angle);
+    for (std::size_t i = 0; i < 4; ++i) {
+      equator[i] = corner(around[i]);
+      ring[i] = angle > 0.0 ? corner((c * n + s * around[i]).normalized()) : top;
+    }
+    count_ = 0;
+    known_[known_count_++] = bottom.point;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      stack_[count_++] = {{ring[i], equator[i], equator[k]}};
+      if (angle > 0.0) stack_[count_++] = {{ring[i], equator[k], ring[k]}};
+      stack_[count_++] = {{bottom, equator[i], equator[k]}};
+    }
+  }
+
+  [[nodiscard]] bool is_covered(const Triangle& t) const noexcept {
+    const auto [a, b, c] = t.corners;
+    const auto least = [&](const Vec3& v) {
+      return std::min({a.normal.dot(v), b.normal.dot(v), c.normal.dot(v)});
+    };
+    if (least(axis_) >= least_cosine_) return true;
+    if (!(target_ > 0.0)) return false;
+    for (std::size_t i = 0; i < known_count_; ++i) {
+      if (least(known_[i]) >= target_) return true;
+    }
+    return TriangleBound(t).value() >= target_;
   }
 
   // Halves the longest side. The half whose vertex has the lesser value comes first.
@@ -187,7 +225,14 @@ class DepthSearch {
   }
 
   CurvedPair& pair_;
+  ActiveParts active_;
   double ball_, taken_off_ = 0.0;
+  // Of one cover: the value that all directions have to have, the cap, and points of A - B without
+  // the ball.
+  double target_ = 0.0, least_cosine_ = 2.0;
+  Vec3 axis_ = Vec3::Zero();
+  std::array<Vec3, kRing + 1> known_;
+  std::size_t known_count_ = 0;
   DepthBounds found_;
   std::array<Triangle, kDeepest> stack_;
   std::size_t count_ = 0;
