@@ -83,6 +83,8 @@ DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
 }
 
 // ---- the search and the depth ----
+constexpr double kClearOverlap = 0x1p-30;  // of the pair's size
+
 // `depth`: a lower bound of the depth of the bodies without radii, m; -infinity: none is known.
 CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   const CurvedBounds& bounds = pair.bounds;
@@ -110,16 +112,19 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
   if (!state.normal.isZero()) {
     supports += search_direction(pair, state.normal.normalized(), state.active);
   }
-  if (!pair.is_converged()) {
+  double deep = -kInfinity;
+  const auto search_depth = [&](const ActiveParts& active) {
+    const DepthBounds found = bound_depth(pair, active);
+    deep = found.lower;
+    supports += found.supports;
+  };
+  // Bodies that clearly overlap along the last direction probably overlap: then their depth decides.
+  if (depth && pair.bounds.upper < kInfinity && pair.bounds.lower < -kClearOverlap * pair.size) search_depth(state.active);
+  if (!pair.is_converged() && !(deep > 0.0)) {
     CurvedStart start = start_direction(pair);
     state.active = start.active;
     if (!start.meet) supports += search_direction(pair, start.normal, state.active);
-  }
-  double deep = -kInfinity;
-  if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) {
-    const DepthBounds found = bound_depth(pair);
-    deep = found.lower;
-    supports += found.supports;
+    if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) search_depth({});
   }
   state.normal = pair.bounds.normal;
   state.point_on_b_in_b = (deep > 0.0 ? pair.bounds.deepest : pair.bounds.points).b_in_b;

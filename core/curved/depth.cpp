@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/curved/depth_cap.hpp"
 #include "core/curved/thorough.hpp"
@@ -16,7 +17,9 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr std::size_t kDeepest = 400;
-constexpr double kLargestCap = 1.5, kRingAngle = 1.4;  // rad
+// The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
+constexpr double kRingAngle = 1.4, kLargeCap = 2.0;
+constexpr double kLarger = 1.0 + 0x1p-20;  // the cap than the ring on it
 
 // A vertex of a triangle: a direction, the support value of A - B along it, and the support point.
 // The rolling balls are subtracted from both, since bodies that are less round need fewer
@@ -90,12 +93,15 @@ double rolling_ball(const BodyView& view) noexcept {
 
 class DepthSearch {
  public:
-  explicit DepthSearch(CurvedPair& pair) noexcept
-      : pair_(pair), ball_(rolling_ball(pair.a) + rolling_ball(pair.b)) {}
+  DepthSearch(CurvedPair& pair, const ActiveParts& active) noexcept
+      : pair_(pair), active_(active), ball_(rolling_ball(pair.a) + rolling_ball(pair.b)) {
+    const Ball a = inscribed_ball(pair.a), b = inscribed_ball(pair.b);
+    inscribed_ = {a.centre - pair.point_to_a(b.centre), a.radius + b.radius};
+  }
 
   DepthBounds run() noexcept {
-    descend(pair_.bounds.normal);
-    found_.lower = std::max(least_symmetric_depth(pair_), by_rolling_ball());
+    if (active_.count == 0) descend(pair_.bounds.normal);
+    found_.lower = least_symmetric_depth(pair_);
     if (pass(kTolerance * pair_.size)) return found_;
     for (const double tolerance : kCoarser) {
       if (tolerance * pair_.size < depth() - found_.lower && !pass(tolerance * pair_.size)) break;
@@ -111,15 +117,6 @@ class DepthSearch {
     found_.supports += search_direction(pair_, n, active_);
   }
 
-  // The balls that roll inside both bodies make a ball inside A - B that touches its deepest point.
-  // The largest ball around the origin inside that ball bounds the depth from below.
-  double by_rolling_ball() noexcept {
-    const Vec3 n = pair_.bounds.normal;
-    const Vec3 middle = -pair_.support(n).points.gap() - ball_ * n;
-    ++found_.supports;
-    return ball_ - middle.norm();
-  }
-
   Corner corner(const Vec3& n) noexcept {
     const SupportPair at = pair_.support(n);
     ++found_.supports;
@@ -130,6 +127,7 @@ class DepthSearch {
   bool pass(double tolerance) noexcept {
     for (int start = 0; start < 32; ++start) {
       const double before = depth();
+      if (!(before > 0.0)) return false;
       if (before - found_.lower <= tolerance) return true;
       const int limit = std::min(kSupports, found_.supports + kSupportsOfPass);
       const PassEnd end = cover(tolerance, limit);
@@ -145,23 +143,19 @@ class DepthSearch {
 
   enum class PassEnd { kCovered, kLimit, kDeeper };
 
-  // Covers all directions outside the cap around the best one: a ring of four directions on the
-  // cap, four at right angles to the best direction, and its opposite.
   PassEnd cover(double tolerance, int limit) noexcept {
-    const Vec3 n = pair_.bounds.normal;
+    axis_ = pair_.bounds.normal;
     const double best = depth();
-    taken_off_ = std::min(ball_, 0.5 * std::max(best, 0.0));
-    const DepthCap cap = depth_cap(pair_, n, best, tolerance, active_);
+    taken_off_ = std::min(ball_, 0.5 * best);
+    target_ = best - tolerance;
+    const DepthCap cap = depth_cap(pair_, axis_, best, tolerance, ball_, active_);
     found_.supports += cap.supports;
-    if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
-    target_ = best - tolerance - taken_off_;
+    found_.lower = std::max(found_.lower, cap.lower);
+    if (cap.lower >= target_) return PassEnd::kCovered;
     known_count_ = 0;
-    if (cap.ring[0] != cap.ring[1]) {
-      for (const Vec3& p : cap.ring) known_[known_count_++] = p - taken_off_ * n;
-    }
-    axis_ = n;
-    least_cosine_ = cap.angle > 0.0 ? std::cos(std::min(cap.angle, kLargestCap)) : 2.0;
-    cover_sphere(n, std::min(0.999 * cap.angle, kRingAngle));
+    for (const Vec3& p : cap.ring) known_[known_count_++] = p - taken_off_ * axis_;
+    count_ = 0;
+    begin(cap.angle);
     while (count_ > 0) {
       if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
       const Triangle t = stack_[--count_];
@@ -172,37 +166,68 @@ class DepthSearch {
     return PassEnd::kCovered;
   }
 
-  void cover_sphere(const Vec3& n, double angle) noexcept {
+  // Four directions around n at an angle.
+  static void ring_around(const Vec3& n, double angle, Vec3* into) noexcept {
     const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
-    const std::array<Vec3, 4> around{x, y, -x, -y};
-    std::array<Corner, 4> equator, ring;
-    const Corner top = corner(n), bottom = corner(-n);
     const double c = std::cos(angle), s = std::sin(angle);
-    for (std::size_t i = 0; i < 4; ++i) {
-      equator[i] = corner(around[i]);
-      ring[i] = angle > 0.0 ? corner((c * n + s * around[i]).normalized()) : top;
-    }
-    count_ = 0;
-    known_[known_count_++] = bottom.point;
+    into[0] = c * n + s * x;
+    into[1] = c * n + s * y;
+    into[2] = c * n - s * x;
+    into[3] = c * n - s * y;
+  }
+
+  // Covers all directions outside the cap. A large cap leaves four triangles around the opposite of
+  // the best direction. Otherwise there is a ring of four directions on the cap, and another one.
+  void begin(double cap) noexcept {
+    std::array<Vec3, 9> n;
+    n[8] = -axis_;
+    const bool large = cap > kLargeCap;
+    // The sides of the four triangles are nearest to -n in their middles.
+    const double rest = std::numbers::pi - cap / kLarger;
+    ring_around(n[8], large ? std::atan(std::sqrt(2.0) * std::tan(rest)) : 0.5 * std::numbers::pi, n.data());
+    const double angle = std::min(cap / kLarger, kRingAngle);
+    ring_around(-axis_, std::numbers::pi - angle, n.data() + 4);
+    least_cosine_ = large || !(angle > 0.0) ? 2.0 : std::cos(kLarger * angle);
+    std::array<Corner, 9> corners;
+    std::array<bool, 9> evaluated{};
+    const auto push = [&](const std::array<std::size_t, 3>& at) {
+      if (is_covered({n[at[0]], n[at[1]], n[at[2]]})) return;
+      for (const std::size_t i : at) {
+        if (!evaluated[i]) corners[i] = corner(n[i]);
+        evaluated[i] = true;
+      }
+      stack_[count_++] = {{corners[at[0]], corners[at[1]], corners[at[2]]}};
+    };
+    corners[8] = corner(n[8]);
+    evaluated[8] = true;
+    known_[known_count_++] = corners[8].point;
     for (std::size_t i = 0; i < 4; ++i) {
       const std::size_t k = (i + 1) % 4;
-      stack_[count_++] = {{ring[i], equator[i], equator[k]}};
-      if (angle > 0.0) stack_[count_++] = {{ring[i], equator[k], ring[k]}};
-      stack_[count_++] = {{bottom, equator[i], equator[k]}};
+      push({i, k, 8});
+      if (large) continue;
+      push({i, k, i + 4});
+      push({k, i + 4, k + 4});
     }
   }
 
   [[nodiscard]] bool is_covered(const Triangle& t) const noexcept {
-    const auto [a, b, c] = t.corners;
+    const auto& [a, b, c] = t.corners;
+    return is_covered({a.normal, b.normal, c.normal}) ||
+           (target_ > taken_off_ && TriangleBound(t).value() >= target_ - taken_off_);
+  }
+  // Without the support points of the triangle.
+  [[nodiscard]] bool is_covered(const std::array<Vec3, 3>& n) const noexcept {
     const auto least = [&](const Vec3& v) {
-      return std::min({a.normal.dot(v), b.normal.dot(v), c.normal.dot(v)});
+      return std::min({n[0].dot(v), n[1].dot(v), n[2].dot(v)});
     };
     if (least(axis_) >= least_cosine_) return true;
-    if (!(target_ > 0.0)) return false;
     for (std::size_t i = 0; i < known_count_; ++i) {
-      if (least(known_[i]) >= target_) return true;
+      if (least(known_[i]) >= target_ - taken_off_) return true;
     }
-    return TriangleBound(t).value() >= target_;
+    // A ball inside the inscribed one, of at most the depth, moved towards the triangle's middle.
+    const double radius = std::min(inscribed_.radius, target_);
+    const Vec3 middle = Vec3(n[0] + n[1] + n[2]).normalized();
+    return least(inscribed_.centre + (inscribed_.radius - radius) * middle) >= target_ - radius;
   }
 
   // Halves the longest side. The half whose vertex has the lesser value comes first.
@@ -229,6 +254,7 @@ class DepthSearch {
   double ball_, taken_off_ = 0.0;
   // Of one cover: the value that all directions have to have, the cap, and points of A - B without
   // the ball.
+  Ball inscribed_;  // in A - B
   double target_ = 0.0, least_cosine_ = 2.0;
   Vec3 axis_ = Vec3::Zero();
   std::array<Vec3, kRing + 1> known_;
@@ -240,6 +266,8 @@ class DepthSearch {
 
 }  // namespace
 
-DepthBounds bound_depth(CurvedPair& pair) noexcept { return DepthSearch(pair).run(); }
+DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept {
+  return DepthSearch(pair, active).run();
+}
 
 }  // namespace clearance

@@ -17,13 +17,14 @@ namespace {
 //   tau^2 K(t, t) / 2 / (1 + tau s) above the tangent, with s = max |D t| / |D n|.
 // A mean of pairs of parts by their weights has the mean of these bounds.
 constexpr double kStrictly = 1.0 + 0x1p-10;  // curvature above d, so that rounding does not matter
-constexpr double kSteepest = 2.0;            // the largest tau that is tried
+constexpr double kSteepest = 4.0;            // the largest tau that is tried
 constexpr int kHalvings = 16;
 
 struct LocalPair {
   Vec2 across;  // of the support point of A - B, along the tangents, m
   PlaneMatrix hessian_a, hessian_b;
   double slope_a = 0.0, slope_b = 0.0;
+  double value = 0.0;  // along n, m
   double weight = 0.0;
 };
 
@@ -38,10 +39,15 @@ class Cap {
     in_b_ = {pair.direction_to_b(tangents_.x), pair.direction_to_b(tangents_.y)};
   }
 
-  DepthCap run(const ActiveParts& active) noexcept {
+  DepthCap run(double ball, const ActiveParts& active) noexcept {
     for (std::size_t i = 0; i < active.count; ++i) add(active.pairs[i]);
     found_.supports += static_cast<int>(active.count);
-    if (set_weights()) found_.angle = by_curvature();
+    if (set_weights()) {
+      // The rolling ball touches the mean point. The largest ball around the origin inside it.
+      found_.lower = ball - std::hypot(ball - value_, rest_.norm());
+      if (depth_ - found_.lower <= tolerance_) return found_;
+      found_.angle = by_curvature();
+    }
     if (count_ < 2 && found_.angle > 0.5) {
       found_.ring.fill(n_ * depth_);
       return found_;
@@ -56,6 +62,7 @@ class Cap {
     if (!(-at.value >= depth_ - 0.25 * tolerance_)) return;
     const Vec3 p = -at.points.gap(), m = -pair_.direction_to_b(n_);
     LocalPair& f = local_[count_++];
+    f.value = -at.value;
     f.across = {p.dot(tangents_.x), p.dot(tangents_.y)};
     f.hessian_a = support_hessian(pair_.a, parts.a, n_, tangents_);
     f.hessian_b = support_hessian(pair_.b, parts.b, m, in_b_);
@@ -84,6 +91,7 @@ class Cap {
     for (std::size_t i = 0; i < count_; ++i) {
       if (!(local_[i].weight >= 0.0)) return false;
       rest_ += local_[i].weight * local_[i].across;
+      value_ += local_[i].weight * local_[i].value;
     }
     return true;
   }
@@ -101,15 +109,19 @@ class Cap {
   // Two points across n on both sides of it bound h in all directions but those within `s` (a
   // sine) of the normal of their line. There the curvature has to. One pair has only curvature.
   [[nodiscard]] double least_curvature(const PlaneMatrix& k, double tau) const noexcept {
-    const double mean = 0.5 * (k.xx + k.yy);
-    const double least = mean - std::hypot(0.5 * (k.xx - k.yy), k.xy);
+    const double mean = 0.5 * (k.xx + k.yy), half = 0.5 * (k.xx - k.yy);
+    const double least = mean - std::hypot(half, k.xy);
     if (count_ != 2) return least;
     const Vec2 &p = local_[0].across, &q = local_[1].across;
-    const double s = depth_ * tau / std::min(p.norm(), q.norm());
-    if (!(s < 1.0 && rest_.norm() <= 0.25 * depth_ * tau)) return least;
+    const double s = 0.5 * kStrictly * depth_ * tau / std::min(p.norm(), q.norm());
+    if (!(s < 0.7 && rest_.norm() <= 0x1p-12 * depth_ * tau)) return least;
     const Vec2 u = (p - q).normalized(), v(-u.y(), u.x());
-    const Vec2 kv = k * v;
-    return std::max(least, (1.0 - s * s) * v.dot(kv) - 2.0 * s * std::abs(u.dot(kv)));
+    const double c = std::sqrt(1.0 - s * s);
+    const auto along = [&](const Vec2& t) { return t.dot(k * t); };
+    const double at_ends = std::min(along(c * v + s * u), along(c * v - s * u));
+    // The form has its minimum within the arc if it descends into it at both ends.
+    const double turn = 2.0 * s * c * (along(u) - along(v)), slope = (c - s) * (c + s) * 2.0 * u.dot(k * v);
+    return turn <= std::abs(slope) ? at_ends : least;
   }
 
   [[nodiscard]] double by_curvature() const noexcept {
@@ -126,20 +138,37 @@ class Cap {
   // than r from its sides, then one of them gives tau r for any tangent.
   double by_ring() noexcept {
     std::array<Vec2, kRing> across;
+    // Along no edge of a box whose edges are along the tangents.
+    const Vec3 x = 0.8 * tangents_.x + 0.6 * tangents_.y, y = n_.cross(x);
     for (std::size_t i = 0; i < kRing; ++i) {
-      const Vec3 t = i % 2 == 0 ? tangents_.x : tangents_.y;
+      const Vec3& t = i % 2 == 0 ? x : y;
       const SupportPair at = pair_.support(n_ + (i < 2 ? kTilt : -kTilt) * t);
       found_.ring[i] = -at.points.gap();
       across[i] = {found_.ring[i].dot(tangents_.x), found_.ring[i].dot(tangents_.y)};
       if (!(n_.dot(found_.ring[i]) >= depth_ - 0.5 * tolerance_)) across[i].setZero();
     }
     found_.supports += static_cast<int>(kRing);
-    double least = kInfinity;
-    for (std::size_t i = 0; i < kRing; ++i) {
-      const Vec2 &p = across[i], &q = across[(i + 1) % kRing];
-      if (p != q) least = std::min(least, cross(p, q) / (q - p).norm());
+    return 2.0 * std::atan(inradius(across) / depth_);
+  }
+
+  // The distance of the origin from the sides of the polygon around it; 0: it is outside. Tilted
+  // rims have several points next to each other, whose line has no direction. One of them is enough.
+  [[nodiscard]] static double inradius(const std::array<Vec2, kRing>& points) noexcept {
+    double longest = 0.0, least = kInfinity;
+    for (const Vec2& p : points) longest = std::max(longest, p.norm());
+    const auto differ = [&](const Vec2& p, const Vec2& q) {
+      return (p - q).norm() > 0x1p-16 * longest;
+    };
+    std::array<Vec2, kRing> corners;
+    std::size_t count = 0;
+    for (const Vec2& p : points) {
+      if (count == 0 || (differ(p, corners[count - 1]) && differ(p, corners[0]))) corners[count++] = p;
     }
-    return least > 0.0 && least < kInfinity ? 2.0 * std::atan(least / depth_) : 0.0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vec2 &p = corners[i], &q = corners[(i + 1) % count];
+      least = std::min(least, cross(p, q) / (q - p).norm());
+    }
+    return count > 2 && least > 0.0 ? least : 0.0;
   }
 
   CurvedPair& pair_;
@@ -148,15 +177,17 @@ class Cap {
   Tangents tangents_{}, in_b_{};
   std::array<LocalPair, 3> local_{};
   std::size_t count_ = 0;
+  // The mean point, across n and along it.
   Vec2 rest_ = Vec2::Zero();
+  double value_ = 0.0;
   DepthCap found_;
 };
 
 }  // namespace
 
 DepthCap depth_cap(CurvedPair& pair, const Vec3& n, double depth, double tolerance,
-                   const ActiveParts& active) noexcept {
-  return Cap(pair, n, depth, tolerance).run(active);
+                   double ball, const ActiveParts& active) noexcept {
+  return Cap(pair, n, depth, tolerance).run(ball, active);
 }
 
 }  // namespace clearance

@@ -12,10 +12,6 @@ constexpr double kSectionTolerance = 0x1p-49;  // of the pair's size
 constexpr int kMostArcs = 1000;
 
 // ---- balls ----
-Ball inscribed_ball(const BodyView& view) noexcept {
-  return visit(view, [](const auto& body) { return body.inscribed_ball(); });
-}
-
 double by_balls(const CurvedPair& pair) noexcept {
   const Ball a = inscribed_ball(pair.a), b = inscribed_ball(pair.b);
   return a.radius + b.radius - (pair.point_to_a(b.centre) - a.centre).norm();
@@ -150,6 +146,10 @@ double by_sections(const CurvedPair& pair) noexcept {
 }
 
 }  // namespace
+
+Ball inscribed_ball(const BodyView& view) noexcept {
+  return visit(view, [](const auto& body) { return body.inscribed_ball(); });
+}
 
 double least_symmetric_depth(const CurvedPair& pair) noexcept {
   if (!pair.a.body->bounded() || !pair.b.body->bounded()) return -kInfinity;

@@ -23,7 +23,7 @@ TEST(DepthSearch, CertifiesTheDepthThatItFoundLessTheToleranceOfItsCover) {
     CurvedPair pair(a, b, pose);
     const Vec3 first = random.in_box(1.0).normalized();
     (void)pair.support(first);
-    const DepthBounds found = bound_depth(pair);
+    const DepthBounds found = bound_depth(pair, {});
     const double depth = -pair.bounds.lower;
     EXPECT_GT(found.lower, 0.0) << k;
     EXPECT_LE(found.lower, depth - 0.99 * 0x1p-49 * pair.size) << k;
