@@ -126,6 +126,7 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
     if (!start.meet) supports += search_direction(pair, start.normal, state.active);
     if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) search_depth({});
   }
+  state.overlapping = deep > 0.0;
   state.normal = pair.bounds.normal;
   state.point_on_b_in_b = (deep > 0.0 ? pair.bounds.deepest : pair.bounds.points).b_in_b;
   DistanceResult r = conclude(conclusion_of(pair, deep));

@@ -16,6 +16,7 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 // long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
+constexpr double kNearlySymmetric = 0x1p-20;  // of the pair's size
 constexpr std::size_t kDeepest = 400;
 // The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
 constexpr double kRingAngle = 1.4, kLargeCap = 2.0;
@@ -101,8 +102,9 @@ class DepthSearch {
 
   DepthBounds run() noexcept {
     if (active_.count == 0) descend(pair_.bounds.normal);
-    found_.lower = least_symmetric_depth(pair_);
+    found_.lower = least_symmetric_depth(pair_, kNearlySymmetric * pair_.size);
     if (pass(kTolerance * pair_.size)) return found_;
+    found_.lower = std::max(found_.lower, least_symmetric_depth(pair_, kInfinity));
     for (const double tolerance : kCoarser) {
       if (tolerance * pair_.size < depth() - found_.lower && !pass(tolerance * pair_.size)) break;
     }

@@ -175,6 +175,7 @@ class DirectionSearch {
       const Vec3 w = points.gap();
       const PlaneFunction rest{
           0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) - at_.value * found.step};
+      if (rest.slope.norm() <= 0x1p-53 * pair_.size) return points;
       turn = max_min({rest}, 1, regularised(hessian_a_, hessian_b_)).step;
     }
   }

@@ -30,6 +30,8 @@ inline constexpr double kLongStep = 0x1p-10;
 // If bodies nearly touch, the next step after one this short is rounding. The limit is for the
 // square of the step.
 inline constexpr double kFinalStep = 0x1p-52;
+// Bodies that overlap along the best direction by this many tolerances overlap.
+inline constexpr double kOverlap = 0x1p20;
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 
 // Bounds and their witness points. They do not yet account for rounding errors or for the radii of
@@ -39,6 +41,7 @@ struct NewtonEnd {
   Vec4 normal;                 // frame A, unit
   Vec4 on_a, on_b_in_b, on_b;  // closest points; on_b_in_b: frame B
   int supports = 0;
+  bool overlap = false;  // the bodies overlap along `normal`, and no small rotation changes that
 };
 
 // Two planar faces are tried one after the other if the cosine of the angle between them exceeds
@@ -159,9 +162,13 @@ class Newton {
         return Next::kCertified;
       }
     }
+    if (dot(n, gap) - end.lower > tolerance_) {
+      add({a.part, b.part});
+      return Next::kIterate;
+    }
+    end.overlap = end.lower < -kOverlap * tolerance_;
     // Otherwise rounding alone keeps the bounds apart.
-    if (dot(n, gap) - end.lower > tolerance_) add({a.part, b.part});
-    return Next::kIterate;
+    return end.overlap ? Next::kGiveUp : Next::kIterate;
   }
 
   // ---- planar faces ----

@@ -49,8 +49,9 @@ struct DepthBounds {
 // - inscribed balls: their radii less the distance of their centres;
 // - ellipsoids around nearly one centre along nearly the same axes: the least sum of two semi-axes;
 // - solids of revolution around nearly one axis: the least over directions in one half-plane.
-// A nearly symmetric pair is moved until it is symmetric, and the bound is reduced by the move.
+// A nearly symmetric pair is moved until it is symmetric, and the bound is reduced by the move. Solids
+// of revolution whose move is longer than `move` (m) are left out.
 [[nodiscard]] Ball inscribed_ball(const BodyView& view) noexcept;
-[[nodiscard]] double least_symmetric_depth(const CurvedPair& pair) noexcept;
+[[nodiscard]] double least_symmetric_depth(const CurvedPair& pair, double move) noexcept;
 
 }  // namespace clearance
