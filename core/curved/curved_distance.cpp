@@ -118,8 +118,10 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
     deep = found.lower;
     supports += found.supports;
   };
-  // Bodies that clearly overlap along the last direction probably overlap: then their depth decides.
-  if (depth && pair.bounds.upper < kInfinity && pair.bounds.lower < -kClearOverlap * pair.size) search_depth(state.active);
+  // Bodies that clearly overlap along the last direction probably overlap: then their depth
+  // decides.
+  if (depth && pair.bounds.upper < kInfinity && pair.bounds.lower < -kClearOverlap * pair.size)
+    search_depth(state.active);
   if (!pair.is_converged() && !(deep > 0.0)) {
     CurvedStart start = start_direction(pair);
     state.active = start.active;

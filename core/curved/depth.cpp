@@ -186,7 +186,8 @@ class DepthSearch {
     const bool large = cap > kLargeCap;
     // The sides of the four triangles are nearest to -n in their middles.
     const double rest = std::numbers::pi - cap / kLarger;
-    ring_around(n[8], large ? std::atan(std::sqrt(2.0) * std::tan(rest)) : 0.5 * std::numbers::pi, n.data());
+    ring_around(n[8], large ? std::atan(std::sqrt(2.0) * std::tan(rest)) : 0.5 * std::numbers::pi,
+                n.data());
     const double angle = std::min(cap / kLarger, kRingAngle);
     ring_around(-axis_, std::numbers::pi - angle, n.data() + 4);
     least_cosine_ = large || !(angle > 0.0) ? 2.0 : std::cos(kLarger * angle);

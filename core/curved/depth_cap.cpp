@@ -32,7 +32,7 @@ double cross(const Vec2& u, const Vec2& v) noexcept { return u.x() * v.y() - u.y
 
 class Cap {
  public:
-  Cap(CurvedPair& pair, const Vec3& n, double depth, double tolerance) noexcept
+  Cap(const CurvedPair& pair, const Vec3& n, double depth, double tolerance) noexcept
       : pair_(pair), n_(n), depth_(depth), tolerance_(tolerance) {
     tangents_.x = n.unitOrthogonal();
     tangents_.y = n.cross(tangents_.x);
@@ -120,7 +120,8 @@ class Cap {
     const auto along = [&](const Vec2& t) { return t.dot(k * t); };
     const double at_ends = std::min(along(c * v + s * u), along(c * v - s * u));
     // The form has its minimum within the arc if it descends into it at both ends.
-    const double turn = 2.0 * s * c * (along(u) - along(v)), slope = (c - s) * (c + s) * 2.0 * u.dot(k * v);
+    const double turn = 2.0 * s * c * (along(u) - along(v)),
+                 slope = (c - s) * (c + s) * 2.0 * u.dot(k * v);
     return turn <= std::abs(slope) ? at_ends : least;
   }
 
@@ -142,7 +143,7 @@ class Cap {
     const Vec3 x = 0.8 * tangents_.x + 0.6 * tangents_.y, y = n_.cross(x);
     for (std::size_t i = 0; i < kRing; ++i) {
       const Vec3& t = i % 2 == 0 ? x : y;
-      const SupportPair at = pair_.support(n_ + (i < 2 ? kTilt : -kTilt) * t);
+      const SupportPair at = pair_.support_along(n_ + (i < 2 ? kTilt : -kTilt) * t);
       found_.ring[i] = -at.points.gap();
       across[i] = {found_.ring[i].dot(tangents_.x), found_.ring[i].dot(tangents_.y)};
       if (!(n_.dot(found_.ring[i]) >= depth_ - 0.5 * tolerance_)) across[i].setZero();
@@ -152,7 +153,8 @@ class Cap {
   }
 
   // The distance of the origin from the sides of the polygon around it; 0: it is outside. Tilted
-  // rims have several points next to each other, whose line has no direction. One of them is enough.
+  // rims have several points next to each other, whose line has no direction. One of them is
+  // enough.
   [[nodiscard]] static double inradius(const std::array<Vec2, kRing>& points) noexcept {
     double longest = 0.0, least = kInfinity;
     for (const Vec2& p : points) longest = std::max(longest, p.norm());
@@ -162,7 +164,8 @@ class Cap {
     std::array<Vec2, kRing> corners;
     std::size_t count = 0;
     for (const Vec2& p : points) {
-      if (count == 0 || (differ(p, corners[count - 1]) && differ(p, corners[0]))) corners[count++] = p;
+      if (count == 0 || (differ(p, corners[count - 1]) && differ(p, corners[0])))
+        corners[count++] = p;
     }
     for (std::size_t i = 0; i < count; ++i) {
       const Vec2 &p = corners[i], &q = corners[(i + 1) % count];
@@ -171,7 +174,7 @@ class Cap {
     return count > 2 && least > 0.0 ? least : 0.0;
   }
 
-  CurvedPair& pair_;
+  const CurvedPair& pair_;
   Vec3 n_;
   double depth_, tolerance_;
   Tangents tangents_{}, in_b_{};
@@ -185,7 +188,7 @@ class Cap {
 
 }  // namespace
 
-DepthCap depth_cap(CurvedPair& pair, const Vec3& n, double depth, double tolerance,
+DepthCap depth_cap(const CurvedPair& pair, const Vec3& n, double depth, double tolerance,
                    double ball, const ActiveParts& active) noexcept {
   return Cap(pair, n, depth, tolerance).run(ball, active);
 }

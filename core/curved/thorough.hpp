@@ -38,8 +38,8 @@ struct DepthBounds {
   double lower = -kInfinity;  // m; the greatest that is known
   int supports = 0;
 };
-// Improves pair.bounds.lower, minus the depth, to the best that it finds. `active`: the active parts
-// with which a search has ended in pair.bounds; without any, one more search finds them. Ends
+// Improves pair.bounds.lower, minus the depth, to the best that it finds. `active`: the active
+// parts with which a search has ended in pair.bounds; without any, one more search finds them. Ends
 // without a bound if the bodies turn out to be disjoint.
 [[nodiscard]] DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept;
 
@@ -49,8 +49,8 @@ struct DepthBounds {
 // - inscribed balls: their radii less the distance of their centres;
 // - ellipsoids around nearly one centre along nearly the same axes: the least sum of two semi-axes;
 // - solids of revolution around nearly one axis: the least over directions in one half-plane.
-// A nearly symmetric pair is moved until it is symmetric, and the bound is reduced by the move. Solids
-// of revolution whose move is longer than `move` (m) are left out.
+// A nearly symmetric pair is moved until it is symmetric, and the bound is reduced by the move.
+// Solids of revolution whose move is longer than `move` (m) are left out.
 [[nodiscard]] Ball inscribed_ball(const BodyView& view) noexcept;
 [[nodiscard]] double least_symmetric_depth(const CurvedPair& pair, double move) noexcept;
 
