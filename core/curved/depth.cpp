@@ -47,13 +47,18 @@ class TriangleBound {
       for (std::size_t k = 0; k < 3; ++k) m_[i][k] = t.corners[i].normal.dot(t.corners[k].point);
     }
   }
-  [[nodiscard]] double value() noexcept {
+  // Is the bound at least this? `target` > 0, m.
+  [[nodiscard]] bool reaches(double target) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
-      play(Vec3::Unit(static_cast<int>(k)));
-      two(k, (k + 1) % 3);
+      if (std::min({m_[0][k], m_[1][k], m_[2][k]}) >= target) return true;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      // No mean is greater than the greatest one at a vertex.
+      if (std::max({m_[i][0], m_[i][1], m_[i][2]}) < target) return false;
     }
     three();
-    return best_;
+    for (std::size_t k = 0; k < 3 && best_ < target; ++k) two(k, (k + 1) % 3);
+    return best_ >= target;
   }
 
  private:
@@ -196,8 +201,10 @@ class DepthSearch {
     const auto push = [&](const std::array<std::size_t, 3>& at) {
       if (is_covered({n[at[0]], n[at[1]], n[at[2]]})) return;
       for (const std::size_t i : at) {
-        if (!evaluated[i]) corners[i] = corner(n[i]);
+        if (evaluated[i]) continue;
         evaluated[i] = true;
+        corners[i] = corner(n[i]);
+        known_[known_count_++] = corners[i].point;
       }
       stack_[count_++] = {{corners[at[0]], corners[at[1]], corners[at[2]]}};
     };
@@ -216,7 +223,7 @@ class DepthSearch {
   [[nodiscard]] bool is_covered(const Triangle& t) const noexcept {
     const auto& [a, b, c] = t.corners;
     return is_covered({a.normal, b.normal, c.normal}) ||
-           (target_ > taken_off_ && TriangleBound(t).value() >= target_ - taken_off_);
+           (target_ > taken_off_ && TriangleBound(t).reaches(target_ - taken_off_));
   }
   // Without the support points of the triangle.
   [[nodiscard]] bool is_covered(const std::array<Vec3, 3>& n) const noexcept {
@@ -260,7 +267,7 @@ class DepthSearch {
   Ball inscribed_;  // in A - B
   double target_ = 0.0, least_cosine_ = 2.0;
   Vec3 axis_ = Vec3::Zero();
-  std::array<Vec3, kRing + 1> known_;
+  std::array<Vec3, kRing + 9> known_;
   std::size_t known_count_ = 0;
   DepthBounds found_;
   std::array<Triangle, kDeepest> stack_;
