@@ -203,6 +203,7 @@ class DirectionSearch {
         return;
       }
       if (has(there.parts)) {
+        if (overlap_ && found.value <= noise()) break;
         shorten(found, there.value);
         continue;
       }
@@ -226,16 +227,18 @@ class DirectionSearch {
   // best, d is at least half the distance of the points.
   void set_regularisation() noexcept {
     const double farthest = std::min(pair_.bounds.upper, at_.points.gap().norm());
-    const bool overlap = at_.value < -0x1p-40 * pair_.size;
-    regularisation_ = overlap ? at_.value : std::max(at_.value, 0.5 * farthest);
+    overlap_ = at_.value < -0x1p-40 * pair_.size;
+    regularisation_ = overlap_ ? at_.value : std::max(at_.value, 0.5 * farthest);
     if (regularisation_ == 0.0) regularisation_ = 0x1p-50 * pair_.size;
   }
 
-  // A step whose gain is below rounding may still bring the points closer.
+  [[nodiscard]] double noise() const noexcept { return 0x1p-50 * pair_.size; }
+
+  // A step whose gain is below rounding may still bring the points closer. The bounds of a depth do
+  // not need these points.
   bool is_blind(const PlaneStep& found, const SupportPair& there) noexcept {
-    const double noise = 0x1p-50 * pair_.size;
-    if (found.value > noise || there.value < at_.value - noise) return false;
-    return blind_++ < kBlindSteps;
+    if (found.value > noise() || there.value < at_.value - noise()) return false;
+    return blind_++ < (overlap_ ? 1 : kBlindSteps);
   }
 
   // Shortens the step to the maximum of the parabola through the value and the slope at n and the
@@ -303,7 +306,7 @@ class DirectionSearch {
   std::size_t count_ = 0;
   PlaneMatrix hessian_a_, hessian_b_;
   double regularisation_ = 0.0;
-  bool done_ = false;
+  bool done_ = false, overlap_ = false;
   int blind_ = 0;
   std::array<bool, 4> tried_{};
   int supports_ = 0;
