@@ -102,38 +102,86 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   return found;
 }
 
+// A search and its end.
+class Search {
+ public:
+  Search(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+         CurvedTrackingState& state) noexcept
+      : pair_(a, b, a_from_b), state_(state) {
+    // The search does not handle planar faces.
+    const PartPair& first = state.active.pairs[0];
+    if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
+    if (!state.normal.isZero()) {
+      supports_ += search_direction(pair_, state.normal.normalized(), state.active);
+    }
+  }
+
+  [[nodiscard]] bool ended() const noexcept { return pair_.is_converged() || deep_ > 0.0; }
+  [[nodiscard]] bool overlaps_clearly() const noexcept {
+    return pair_.bounds.lower < -kClearOverlap * pair_.size;
+  }
+
+  [[nodiscard]] bool overlaps() const noexcept { return pair_.bounds.lower < 0.0; }
+
+  void from_start_direction() noexcept {
+    CurvedStart start = start_direction(pair_);
+    state_.active = start.active;
+    if (!start.meet) supports_ += search_direction(pair_, start.normal, state_.active);
+  }
+  void measure_depth(const ActiveParts& active) noexcept {
+    const DepthBounds found = bound_depth(pair_, active);
+    deep_ = found.lower;
+    supports_ += found.supports;
+  }
+
+  [[nodiscard]] DistanceResult result() noexcept {
+    state_.normal = pair_.bounds.normal;
+    state_.overlap = deep_ > 0.0 ? state_.normal : Vec3::Zero().eval();
+    state_.point_on_b_in_b = (deep_ > 0.0 ? pair_.bounds.deepest : pair_.bounds.points).b_in_b;
+    DistanceResult r = conclude(conclusion_of(pair_, deep_));
+    r.iterations = static_cast<std::uint16_t>(supports_);
+    return r;
+  }
+
+ private:
+  CurvedPair pair_;
+  CurvedTrackingState& state_;
+  double deep_ = -kInfinity;  // m: a lower bound of the depth
+  int supports_ = 0;
+};
+
+// Bodies that clearly overlap along the last direction probably overlap. False: they do not, or
+// the direction is useless.
+bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                 CurvedTrackingState& state, DistanceResult& r) noexcept {
+  Search search(a, b, a_from_b, state);
+  if (!search.ended() && search.overlaps_clearly()) search.measure_depth(state.active);
+  if (search.ended()) r = search.result();
+  return search.ended();
+}
+
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
-  CurvedPair pair(a, b, a_from_b);
-  // The search does not handle planar faces.
-  const PartPair& first = state.active.pairs[0];
-  if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
-  int supports = 0;
-  if (!state.normal.isZero()) {
-    supports += search_direction(pair, state.normal.normalized(), state.active);
+  if (!state.overlap.isZero()) {
+    DistanceResult r;
+    CurvedTrackingState hint = state;
+    hint.normal = state.overlap;
+    if (depth && overlapping(a, b, a_from_b, hint, r)) {
+      state = hint;
+      return r;
+    }
+    // Newton's method has not been tried if the hint is from the last query.
+    const bool is_old = state.normal == state.overlap;
+    state.overlap.setZero();
+    if (is_old && newton_distance(a, b, a_from_b, state, r)) return r;
+    state.overlap.setZero();
   }
-  double deep = -kInfinity;
-  const auto search_depth = [&](const ActiveParts& active) {
-    const DepthBounds found = bound_depth(pair, active);
-    deep = found.lower;
-    supports += found.supports;
-  };
-  // Bodies that clearly overlap along the last direction probably overlap: then their depth
-  // decides.
-  if (depth && pair.bounds.upper < kInfinity && pair.bounds.lower < -kClearOverlap * pair.size)
-    search_depth(state.active);
-  if (!pair.is_converged() && !(deep > 0.0)) {
-    CurvedStart start = start_direction(pair);
-    state.active = start.active;
-    if (!start.meet) supports += search_direction(pair, start.normal, state.active);
-    if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) search_depth({});
+  Search search(a, b, a_from_b, state);
+  if (!search.ended()) {
+    search.from_start_direction();
+    if (depth && !search.ended() && search.overlaps()) search.measure_depth({});
   }
-  state.overlapping = deep > 0.0;
-  state.normal = pair.bounds.normal;
-  state.point_on_b_in_b = (deep > 0.0 ? pair.bounds.deepest : pair.bounds.points).b_in_b;
-  DistanceResult r = conclude(conclusion_of(pair, deep));
-  r.iterations = static_cast<std::uint16_t>(supports);
-  return r;
+  return search.result();
 }
 
 }  // namespace

@@ -16,6 +16,7 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 // long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
+constexpr double kNearAxisSquare = 0x1p-32;   // of the sine
 constexpr double kNearlySymmetric = 0x1p-20;  // of the pair's size
 constexpr std::size_t kDeepest = 400;
 // The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
@@ -106,7 +107,11 @@ class DepthSearch {
   }
 
   DepthBounds run() noexcept {
-    if (active_.count == 0) descend(pair_.bounds.normal);
+    if (active_.count == 0) {
+      descend(pair_.bounds.normal);
+    } else {
+      to_axes();
+    }
     found_.lower = least_symmetric_depth(pair_, kNearlySymmetric * pair_.size);
     if (pass(kTolerance * pair_.size)) return found_;
     found_.lower = std::max(found_.lower, least_symmetric_depth(pair_, kInfinity));
@@ -122,6 +127,21 @@ class DepthSearch {
   void descend(const Vec3& n) noexcept {
     active_ = {};
     found_.supports += search_direction(pair_, n, active_);
+    to_axes();
+  }
+
+  // Where a whole cap touches, the search ends within rounding of its axis. Along the axis itself,
+  // all of the cap is the support set.
+  void to_axes() noexcept {
+    const auto snap = [&](const BodyView& view, const Vec3& m, auto&& to_a) {
+      if (!has_caps(*view.body) || !(m.head<2>().squaredNorm() < kNearAxisSquare)) return;
+      pair_.prefer(to_a(Vec3(0.0, 0.0, std::copysign(1.0, m.z()))));
+      ++found_.supports;
+    };
+    const Vec3 n = pair_.bounds.normal;
+    snap(pair_.a, n, [](const Vec3& v) { return v; });
+    snap(pair_.b, pair_.direction_to_b(n),
+         [&](const Vec3& v) { return pair_.direction_to_a(v).normalized(); });
   }
 
   Corner corner(const Vec3& n) noexcept {
@@ -215,8 +235,9 @@ class DepthSearch {
       const std::size_t k = (i + 1) % 4;
       push({i, k, 8});
       if (large) continue;
-      push({i, k, i + 4});
-      push({k, i + 4, k + 4});
+      // Without a cap, the ring is the best direction itself.
+      push({i, k, angle > 0.0 ? i + 4 : 4});
+      if (angle > 0.0) push({k, i + 4, k + 4});
     }
   }
 

@@ -16,7 +16,7 @@ namespace {
 //   denominator is at most 2 (|D n| + tau max |D t|). So h grows at least by
 //   tau^2 K(t, t) / 2 / (1 + tau s) above the tangent, with s = max |D t| / |D n|.
 // A mean of pairs of parts by their weights has the mean of these bounds.
-constexpr double kStrictly = 1.0 + 0x1p-10;  // curvature above d, so that rounding does not matter
+constexpr double kStrictly = 1.0 + 0x1p-20;  // curvature above d, so that rounding does not matter
 constexpr double kSteepest = 4.0;            // the largest tau that is tried
 constexpr int kHalvings = 16;
 
@@ -114,7 +114,7 @@ class Cap {
     if (count_ != 2) return least;
     const Vec2 &p = local_[0].across, &q = local_[1].across;
     const double s = 0.5 * kStrictly * depth_ * tau / std::min(p.norm(), q.norm());
-    if (!(s < 0.7 && rest_.norm() <= 0x1p-12 * depth_ * tau)) return least;
+    if (!(s < 0.7 && rest_.norm() <= 0x1p-22 * depth_ * tau)) return least;
     const Vec2 u = (p - q).normalized(), v(-u.y(), u.x());
     const double c = std::sqrt(1.0 - s * s);
     const auto along = [&](const Vec2& t) { return t.dot(k * t); };

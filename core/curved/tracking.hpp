@@ -14,7 +14,7 @@ struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A, of about unit length; 0: none
   ActiveParts active;          // pairs of parts; or one pair with a planar face in place of a part
   Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
-  bool overlapping = false;             // in the last query
+  Vec3 overlap = Vec3::Zero();  // the bodies seem to overlap, and this direction is deepest; 0: no
 };
 
 // Drops features that the bodies do not have, more than one planar face, and a face among several
@@ -61,7 +61,6 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
   CurvedTrackingState found;
   if (state.a.kind != FeatureKind::kDirection) return found;
   found.normal = state.a.point;
-  found.overlapping = state.a.penetrating;
   const auto bits = [](std::int32_t half) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(half));
   };
@@ -72,6 +71,7 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
     found.active.pairs[found.active.count++] = unpacked(all % kPartNumbers, b_is_curved);
   }
   forget_nonsense(found, a, b);
+  if (state.a.penetrating) found.overlap = found.normal;
   return found;
 }
 
@@ -89,7 +89,7 @@ inline void write(const CurvedTrackingState& from, const ConvexBody& a, const Co
   const auto half = [](std::uint64_t bits) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
   };
-  state.a = {FeatureKind::kDirection, from.overlapping, half(all), from.normal};
+  state.a = {FeatureKind::kDirection, !from.overlap.isZero(), half(all), from.normal};
   state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
 }
 
