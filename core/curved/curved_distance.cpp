@@ -157,7 +157,7 @@ bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a
   Search search(a, b, a_from_b, state);
   if (!search.ended() && search.overlaps_clearly()) search.measure_depth(state.active);
   if (search.ended()) r = search.result();
-  return search.ended();
+  return search.ended() && r.status != DistanceStatus::kIterationLimit;
 }
 
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,

@@ -17,7 +17,9 @@ namespace {
 //   tau^2 K(t, t) / 2 / (1 + tau s) above the tangent, with s = max |D t| / |D n|.
 // A mean of pairs of parts by their weights has the mean of these bounds.
 constexpr double kStrictly = 1.0 + 0x1p-20;  // curvature above d, so that rounding does not matter
-constexpr double kSteepest = 4.0;            // the largest tau that is tried
+constexpr double kSteeper =
+    1.0 + 0x1p-7;                  // slope, so that a mean point that is off does not matter
+constexpr double kSteepest = 4.0;  // the largest tau that is tried
 constexpr int kHalvings = 16;
 
 struct LocalPair {
@@ -113,8 +115,8 @@ class Cap {
     const double least = mean - std::hypot(half, k.xy);
     if (count_ != 2) return least;
     const Vec2 &p = local_[0].across, &q = local_[1].across;
-    const double s = 0.5 * kStrictly * depth_ * tau / std::min(p.norm(), q.norm());
-    if (!(s < 0.7 && rest_.norm() <= 0x1p-22 * depth_ * tau)) return least;
+    const double s = 0.5 * kSteeper * depth_ * tau / std::min(p.norm(), q.norm());
+    if (!(s < 0.7 && rest_.norm() <= 0x1p-9 * depth_ * tau)) return least;
     const Vec2 u = (p - q).normalized(), v(-u.y(), u.x());
     const double c = std::sqrt(1.0 - s * s);
     const auto along = [&](const Vec2& t) { return t.dot(k * t); };

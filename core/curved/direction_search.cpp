@@ -15,7 +15,8 @@ constexpr int kIterations = 60;
 constexpr int kTrials = 16;
 constexpr int kPointRounds = 12;
 constexpr int kBlindSteps = 8;
-constexpr std::size_t kModels = 5;  // of one programme
+constexpr double kNoGain = 0x1p-53;  // of a depth, as a part of the pair's size
+constexpr std::size_t kModels = 5;   // of one programme
 
 // The quadratic model of one pair of parts around n.
 struct PartModel {
@@ -203,7 +204,7 @@ class DirectionSearch {
         return;
       }
       if (has(there.parts)) {
-        if (overlap_ && found.value <= noise()) break;
+        if (overlap_ && found.value <= kNoGain * pair_.size) break;
         shorten(found, there.value);
         continue;
       }
