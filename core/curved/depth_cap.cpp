@@ -21,6 +21,8 @@ constexpr double kSteeper =
     1.0 + 0x1p-7;                  // slope, so that a mean point that is off does not matter
 constexpr double kSteepest = 4.0;  // the largest tau that is tried
 constexpr int kHalvings = 16;
+constexpr int kSides = 12;      // are replaced at most
+constexpr double kWide = 1.55;  // inradius over depth of a cap of 2 rad
 
 struct LocalPair {
   Vec2 across;  // of the support point of A - B, along the tangents, m
@@ -137,43 +139,67 @@ class Cap {
     return 0.0;
   }
 
-  // The ring's points have d - tolerance along n. If the origin is inside their polygon, farther
-  // than r from its sides, then one of them gives tau r for any tangent.
+  // Points with d - tolerance along n. If the origin is inside their polygon, farther than r from
+  // its sides, then one of them gives tau r for any tangent. The ring's points come first. Then the
+  // side that is nearest to the origin is replaced by two, as long as there is a point beyond it.
   double by_ring() noexcept {
-    std::array<Vec2, kRing> across;
     // Along no edge of a box whose edges are along the tangents.
-    const Vec3 x = 0.8 * tangents_.x + 0.6 * tangents_.y, y = n_.cross(x);
+    const Vec2 x(0.8, 0.6), y(-0.6, 0.8);
+    const std::array<Vec2, kRing> around{x, y, -x, -y};
     for (std::size_t i = 0; i < kRing; ++i) {
-      const Vec3& t = i % 2 == 0 ? x : y;
-      const SupportPair at = pair_.support_along(n_ + (i < 2 ? kTilt : -kTilt) * t);
-      found_.ring[i] = -at.points.gap();
-      across[i] = {found_.ring[i].dot(tangents_.x), found_.ring[i].dot(tangents_.y)};
-      if (!(n_.dot(found_.ring[i]) >= depth_ - 0.5 * tolerance_)) across[i].setZero();
+      const Vec2 q = evaluate(around[i], found_.ring[i]);
+      if (is_new(q)) insert(corner_count_, q);
     }
-    found_.supports += static_cast<int>(kRing);
-    return 2.0 * std::atan(inradius(across) / depth_);
+    for (int round = 0; round < kSides && corner_count_ > 0; ++round) {
+      const NearestSide side = nearest_side();
+      if (side.distance > kWide * depth_ || corner_count_ == corners_.size()) break;
+      Vec3 point;
+      const Vec2 q = evaluate(side.outwards, point);
+      if (!is_new(q) || !(q.dot(side.outwards) > side.distance)) break;
+      insert(side.index + 1, q);
+    }
+    const double inradius = corner_count_ > 2 ? nearest_side().distance : 0.0;
+    return inradius > 0.0 ? 2.0 * std::atan(inradius / depth_) : 0.0;
   }
 
-  // The distance of the origin from the sides of the polygon around it; 0: it is outside. Tilted
-  // rims have several points next to each other, whose line has no direction. One of them is
+  // The support point for n tilted towards t, across n. Not finite: it is too low.
+  Vec2 evaluate(const Vec2& t, Vec3& point) noexcept {
+    const Vec3 towards = t.x() * tangents_.x + t.y() * tangents_.y;
+    point = -pair_.support_along(n_ + kTilt * towards).points.gap();
+    ++found_.supports;
+    if (!(n_.dot(point) >= depth_ - 0.5 * tolerance_)) return Vec2::Constant(kInfinity);
+    return {point.dot(tangents_.x), point.dot(tangents_.y)};
+  }
+  // Tilted rims have several points next to each other, whose line has no direction. One of them is
   // enough.
-  [[nodiscard]] static double inradius(const std::array<Vec2, kRing>& points) noexcept {
-    double longest = 0.0, least = kInfinity;
-    for (const Vec2& p : points) longest = std::max(longest, p.norm());
-    const auto differ = [&](const Vec2& p, const Vec2& q) {
-      return (p - q).norm() > 0x1p-16 * longest;
-    };
-    std::array<Vec2, kRing> corners;
-    std::size_t count = 0;
-    for (const Vec2& p : points) {
-      if (count == 0 || (differ(p, corners[count - 1]) && differ(p, corners[0])))
-        corners[count++] = p;
+  [[nodiscard]] bool is_new(const Vec2& q) const noexcept {
+    if (!q.allFinite()) return false;
+    for (std::size_t i = 0; i < corner_count_; ++i) {
+      if (!((q - corners_[i]).norm() > 0x1p-16 * (q.norm() + corners_[i].norm()))) return false;
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      const Vec2 &p = corners[i], &q = corners[(i + 1) % count];
-      least = std::min(least, cross(p, q) / (q - p).norm());
+    return true;
+  }
+  void insert(std::size_t at, const Vec2& q) noexcept {
+    for (std::size_t i = corner_count_++; i > at; --i) corners_[i] = corners_[i - 1];
+    corners_[at] = q;
+  }
+
+  struct NearestSide {
+    std::size_t index = 0;
+    double distance = kInfinity;  // m; negative: the origin is beyond it
+    Vec2 outwards = Vec2::Zero();
+  };
+  // If every side has the origin on its left, the polygon goes around it, whatever its order is.
+  [[nodiscard]] NearestSide nearest_side() const noexcept {
+    NearestSide nearest;
+    if (corner_count_ == 1) return {0, -kInfinity, -corners_[0].normalized()};
+    for (std::size_t i = 0; i < corner_count_; ++i) {
+      const Vec2 &p = corners_[i], &q = corners_[(i + 1) % corner_count_];
+      const Vec2 side = (q - p).normalized();
+      const double distance = cross(p, side);
+      if (distance < nearest.distance) nearest = {i, distance, Vec2(side.y(), -side.x())};
     }
-    return count > 2 && least > 0.0 ? least : 0.0;
+    return nearest;
   }
 
   const CurvedPair& pair_;
@@ -185,6 +211,9 @@ class Cap {
   // The mean point, across n and along it.
   Vec2 rest_ = Vec2::Zero();
   double value_ = 0.0;
+  // The polygon of the contact, counterclockwise.
+  std::array<Vec2, kRing + kSides> corners_;
+  std::size_t corner_count_ = 0;
   DepthCap found_;
 };
 
