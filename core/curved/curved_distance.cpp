@@ -170,11 +170,10 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
       state = hint;
       return r;
     }
-    // Newton's method has not been tried if the hint is from the last query.
-    const bool is_old = state.normal == state.overlap;
+    // Newton's method has not been tried yet, or ended at the overlap.
     state.overlap.setZero();
-    if (is_old && newton_distance(a, b, a_from_b, state, r)) return r;
-    state.overlap.setZero();
+    state.overlap_tried = true;
+    if (newton_distance(a, b, a_from_b, state, r)) return r;
   }
   Search search(a, b, a_from_b, state);
   if (!search.ended()) {

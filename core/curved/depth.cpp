@@ -107,11 +107,7 @@ class DepthSearch {
   }
 
   DepthBounds run() noexcept {
-    if (active_.count == 0) {
-      descend(pair_.bounds.normal);
-    } else {
-      to_axes();
-    }
+    if (active_.count == 0) descend(pair_.bounds.normal);
     found_.lower = least_symmetric_depth(pair_, kNearlySymmetric * pair_.size);
     if (pass(kTolerance * pair_.size)) return found_;
     found_.lower = std::max(found_.lower, least_symmetric_depth(pair_, kInfinity));
@@ -127,21 +123,6 @@ class DepthSearch {
   void descend(const Vec3& n) noexcept {
     active_ = {};
     found_.supports += search_direction(pair_, n, active_);
-    to_axes();
-  }
-
-  // Where a whole cap touches, the search ends within rounding of its axis. Along the axis itself,
-  // all of the cap is the support set.
-  void to_axes() noexcept {
-    const auto snap = [&](const BodyView& view, const Vec3& m, auto&& to_a) {
-      if (!has_caps(*view.body) || !(m.head<2>().squaredNorm() < kNearAxisSquare)) return;
-      pair_.prefer(to_a(Vec3(0.0, 0.0, std::copysign(1.0, m.z()))));
-      ++found_.supports;
-    };
-    const Vec3 n = pair_.bounds.normal;
-    snap(pair_.a, n, [](const Vec3& v) { return v; });
-    snap(pair_.b, pair_.direction_to_b(n),
-         [&](const Vec3& v) { return pair_.direction_to_a(v).normalized(); });
   }
 
   Corner corner(const Vec3& n) noexcept {
@@ -153,13 +134,12 @@ class DepthSearch {
   // True: the depth is certified to be at least the best known, less the tolerance.
   bool pass(double tolerance) noexcept {
     for (int start = 0; start < 32; ++start) {
-      const double before = depth();
-      if (!(before > 0.0)) return false;
-      if (before - found_.lower <= tolerance) return true;
+      if (!(depth() > 0.0)) return false;
+      if (depth() - found_.lower <= tolerance) return true;
       const int limit = std::min(kSupports, found_.supports + kSupportsOfPass);
       const PassEnd end = cover(tolerance, limit);
       if (end == PassEnd::kCovered) {
-        found_.lower = std::max(found_.lower, before - tolerance);
+        found_.lower = std::max(found_.lower, target_);
         return true;
       }
       if (end == PassEnd::kLimit) return false;
@@ -171,12 +151,11 @@ class DepthSearch {
   enum class PassEnd { kCovered, kLimit, kDeeper };
 
   PassEnd cover(double tolerance, int limit) noexcept {
+    const DepthCap cap = best_cap(tolerance);
     axis_ = pair_.bounds.normal;
     const double best = depth();
     taken_off_ = std::min(ball_, 0.5 * best);
     target_ = best - tolerance;
-    const DepthCap cap = depth_cap(pair_, axis_, best, tolerance, ball_, active_);
-    found_.supports += cap.supports;
     found_.lower = std::max(found_.lower, cap.lower);
     if (cap.lower >= target_) return PassEnd::kCovered;
     known_count_ = 0;
@@ -201,6 +180,37 @@ class DepthSearch {
     into[1] = c * n + s * y;
     into[2] = c * n - s * x;
     into[3] = c * n - s * y;
+  }
+
+  DepthCap cap_here(double tolerance) noexcept {
+    const DepthCap cap = depth_cap(pair_, pair_.bounds.normal, depth(), tolerance, ball_, active_);
+    found_.supports += cap.supports;
+    return cap;
+  }
+
+  // Where a whole cap of a truncated cone touches, the search ends within rounding of its axis.
+  // Along the axis itself, all of the cap is the support set.
+  DepthCap best_cap(double tolerance) noexcept {
+    const DepthCap cap = cap_here(tolerance);
+    if (cap.angle > 0.0 || depth() - cap.lower <= tolerance) return cap;
+    const CurvedBounds before = pair_.bounds;
+    to_axes();
+    if (pair_.bounds.normal == before.normal) return cap;
+    const DepthCap there = cap_here(tolerance);
+    if (there.angle > 0.0) return there;
+    pair_.bounds = before;
+    return cap;
+  }
+  void to_axes() noexcept {
+    const auto snap = [&](const BodyView& view, const Vec3& m, auto&& to_a) {
+      if (!has_caps(*view.body) || !(m.head<2>().squaredNorm() < kNearAxisSquare)) return;
+      pair_.prefer(to_a(Vec3(0.0, 0.0, std::copysign(1.0, m.z()))));
+      ++found_.supports;
+    };
+    const Vec3 n = pair_.bounds.normal;
+    snap(pair_.a, n, [](const Vec3& v) { return v; });
+    snap(pair_.b, -pair_.direction_to_b(n),
+         [&](const Vec3& v) { return Vec3(-pair_.direction_to_a(v).normalized()); });
   }
 
   // Covers all directions outside the cap. A large cap leaves four triangles around the opposite of

@@ -150,16 +150,18 @@ class Cap {
       const Vec2 q = evaluate(around[i], found_.ring[i]);
       if (is_new(q)) insert(corner_count_, q);
     }
-    for (int round = 0; round < kSides && corner_count_ > 0; ++round) {
-      const NearestSide side = nearest_side();
+    if (corner_count_ == 0) return 0.0;
+    NearestSide side = nearest_side();
+    for (int round = 0; round < kSides; ++round) {
       if (side.distance > kWide * depth_ || corner_count_ == corners_.size()) break;
       Vec3 point;
       const Vec2 q = evaluate(side.outwards, point);
       if (!is_new(q) || !(q.dot(side.outwards) > side.distance)) break;
       insert(side.index + 1, q);
+      side = nearest_side();
     }
-    const double inradius = corner_count_ > 2 ? nearest_side().distance : 0.0;
-    return inradius > 0.0 ? 2.0 * std::atan(inradius / depth_) : 0.0;
+    // A single point and two points have the origin beyond a side.
+    return side.distance > 0.0 ? 2.0 * std::atan(side.distance / depth_) : 0.0;
   }
 
   // The support point for n tilted towards t, across n. Not finite: it is too low.
@@ -175,7 +177,8 @@ class Cap {
   [[nodiscard]] bool is_new(const Vec2& q) const noexcept {
     if (!q.allFinite()) return false;
     for (std::size_t i = 0; i < corner_count_; ++i) {
-      if (!((q - corners_[i]).norm() > 0x1p-16 * (q.norm() + corners_[i].norm()))) return false;
+      const Vec2& p = corners_[i];
+      if (!((q - p).squaredNorm() > 0x1p-32 * (q.squaredNorm() + p.squaredNorm()))) return false;
     }
     return true;
   }

@@ -55,12 +55,13 @@ class Newton {
  public:
   HWY_INLINE Newton(const Side& a, const Side& b, const RelativePose4& a_from_b,
                     const SquaresA& squares_a, const SquaresB& squares_b, double tolerance, Vec4 x,
-                    ActiveParts& active)
+                    bool ends_at_overlap, ActiveParts& active)
       : a_(a),
         b_(b),
         a_from_b_(a_from_b),
         tolerance_(tolerance),
         x_(x),
+        ends_at_overlap_(ends_at_overlap),
         active_(active),
         parts_(a, b, a_from_b, active),
         step_(squares_a, squares_b) {}
@@ -166,7 +167,7 @@ class Newton {
       add({a.part, b.part});
       return Next::kIterate;
     }
-    end.overlap = end.lower < -kOverlap * tolerance_;
+    end.overlap = ends_at_overlap_ && end.lower < -kOverlap * tolerance_;
     // Otherwise rounding alone keeps the bounds apart.
     return end.overlap ? Next::kGiveUp : Next::kIterate;
   }
@@ -339,6 +340,7 @@ class Newton {
   const RelativePose4& a_from_b_;
   const double tolerance_;
   Vec4 x_;
+  const bool ends_at_overlap_;
   ActiveParts& active_;
   PlacedParts parts_;
   NewtonStep<SquaresA, SquaresB> step_;

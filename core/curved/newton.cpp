@@ -72,7 +72,8 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
-        newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x, state.active);
+        newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x,
+               !state.overlap_tried, state.active);
     if (!newton.run()) {
       if (newton.end.overlap) state.overlap = vec3(newton.end.normal);
       return false;

@@ -15,6 +15,7 @@ struct CurvedTrackingState {
   ActiveParts active;          // pairs of parts; or one pair with a planar face in place of a part
   Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
   Vec3 overlap = Vec3::Zero();  // the bodies seem to overlap, and this direction is deepest; 0: no
+  bool overlap_tried = false;   // in this query: no depth was found from `overlap`
 };
 
 // Drops features that the bodies do not have, more than one planar face, and a face among several
