@@ -136,7 +136,7 @@ class Search {
 
   [[nodiscard]] DistanceResult result() noexcept {
     state_.normal = pair_.bounds.normal;
-    state_.overlap = deep_ > 0.0 ? state_.normal : Vec3::Zero().eval();
+    state_.overlap = deep_ > 0.0 ? Overlap::kLastQuery : Overlap::kNo;
     state_.point_on_b_in_b = (deep_ > 0.0 ? pair_.bounds.deepest : pair_.bounds.points).b_in_b;
     DistanceResult r = conclude(conclusion_of(pair_, deep_));
     r.iterations = static_cast<std::uint16_t>(supports_);
@@ -162,17 +162,15 @@ bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a
 
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
-  if (!state.overlap.isZero()) {
+  if (state.overlap != Overlap::kNo) {
     DistanceResult r;
     CurvedTrackingState hint = state;
-    hint.normal = state.overlap;
     if (depth && overlapping(a, b, a_from_b, hint, r)) {
       state = hint;
       return r;
     }
-    // Newton's method has not been tried yet, or ended at the overlap.
-    state.overlap.setZero();
-    state.overlap_tried = true;
+    if (state.overlap == Overlap::kStationary) state.normal.setZero();
+    state.overlap = Overlap::kTried;
     if (newton_distance(a, b, a_from_b, state, r)) return r;
   }
   Search search(a, b, a_from_b, state);

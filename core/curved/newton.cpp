@@ -57,7 +57,7 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
 HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
                        CurvedTrackingState& state, DistanceResult& r) {
   // The search of the depth goes first.
-  if (HWY_UNLIKELY(!state.overlap.isZero(0.0))) return false;
+  if (HWY_UNLIKELY(state.overlap == Overlap::kLastQuery)) return false;
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {
@@ -73,9 +73,12 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
         newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x,
-               !state.overlap_tried, state.active);
+               state.overlap != Overlap::kTried, state.active);
     if (!newton.run()) {
-      if (newton.end.overlap) state.overlap = vec3(newton.end.normal);
+      if (newton.end.overlap) {
+        state.normal = vec3(newton.end.normal);
+        state.overlap = Overlap::kStationary;
+      }
       return false;
     }
     state.normal = vec3(newton.next_start());
