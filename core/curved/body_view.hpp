@@ -85,6 +85,10 @@ decltype(auto) visit(const BodyView& view, F&& f) {
                                                  const Vec3& m, const Tangents& tangents) noexcept {
   return visit(view, [&](const auto& body) { return body.support_hessian(part, m, tangents); });
 }
+// For a body with h(m) = c.m + |D m|, the greatest |D t| over unit tangents t, divided by |D m|.
+[[nodiscard]] inline double relative_slope(const BodyView& view, const Vec3& m) noexcept {
+  return visit(view, [&](const auto& body) { return body.relative_slope(m); });
+}
 // For a point near the surface of the body: a point near it that lies in the body up to rounding.
 [[nodiscard]] inline Vec3 pulled_inside(const BodyView& view, const Vec3& point) noexcept {
   return visit(view, [&](const auto& body) { return Vec3(body.pulled_inside(point)); });

@@ -83,6 +83,8 @@ DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
 }
 
 // ---- the search and the depth ----
+constexpr double kClearOverlap = 0x1p-30;  // of the pair's size
+
 // `depth`: a lower bound of the depth of the bodies without radii, m; -infinity: none is known.
 CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   const CurvedBounds& bounds = pair.bounds;
@@ -100,32 +102,83 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   return found;
 }
 
+// A search and its end.
+class Search {
+ public:
+  Search(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+         CurvedTrackingState& state) noexcept
+      : pair_(a, b, a_from_b), state_(state) {
+    // The search does not handle planar faces.
+    const PartPair& first = state.active.pairs[0];
+    if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
+    if (!state.normal.isZero()) {
+      supports_ += search_direction(pair_, state.normal.normalized(), state.active);
+    }
+  }
+
+  [[nodiscard]] bool ended() const noexcept { return pair_.is_converged() || deep_ > 0.0; }
+  [[nodiscard]] bool overlaps_clearly() const noexcept {
+    return pair_.bounds.lower < -kClearOverlap * pair_.size;
+  }
+
+  [[nodiscard]] bool overlaps() const noexcept { return pair_.bounds.lower < 0.0; }
+
+  void from_start_direction() noexcept {
+    CurvedStart start = start_direction(pair_);
+    state_.active = start.active;
+    if (!start.meet) supports_ += search_direction(pair_, start.normal, state_.active);
+  }
+  void measure_depth(const ActiveParts& active) noexcept {
+    const DepthBounds found = bound_depth(pair_, active);
+    deep_ = found.lower;
+    supports_ += found.supports;
+  }
+
+  [[nodiscard]] DistanceResult result() noexcept {
+    state_.normal = pair_.bounds.normal;
+    state_.overlap = deep_ > 0.0 ? Overlap::kLastQuery : Overlap::kNo;
+    state_.point_on_b_in_b = (deep_ > 0.0 ? pair_.bounds.deepest : pair_.bounds.points).b_in_b;
+    DistanceResult r = conclude(conclusion_of(pair_, deep_));
+    r.iterations = static_cast<std::uint16_t>(supports_);
+    return r;
+  }
+
+ private:
+  CurvedPair pair_;
+  CurvedTrackingState& state_;
+  double deep_ = -kInfinity;  // m: a lower bound of the depth
+  int supports_ = 0;
+};
+
+// Bodies that clearly overlap along the last direction probably overlap. False: they do not, or
+// the direction is useless.
+bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
+                 CurvedTrackingState& state, DistanceResult& r) noexcept {
+  Search search(a, b, a_from_b, state);
+  if (!search.ended() && search.overlaps_clearly()) search.measure_depth(state.active);
+  if (search.ended()) r = search.result();
+  return search.ended() && r.status != DistanceStatus::kIterationLimit;
+}
+
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, bool depth) noexcept {
-  CurvedPair pair(a, b, a_from_b);
-  // The search does not handle planar faces.
-  const PartPair& first = state.active.pairs[0];
-  if (first.a >= parts_of(a) || first.b >= parts_of(b)) state.active.count = 0;
-  int supports = 0;
-  if (!state.normal.isZero()) {
-    supports += search_direction(pair, state.normal.normalized(), state.active);
+  if (state.overlap != Overlap::kNo) {
+    DistanceResult r;
+    CurvedTrackingState hint = state;
+    if (depth && overlapping(a, b, a_from_b, hint, r)) {
+      state = hint;
+      return r;
+    }
+    if (state.overlap == Overlap::kStationary) state.normal.setZero();
+    state.overlap = Overlap::kTried;
+    if (newton_distance(a, b, a_from_b, state, r)) return r;
   }
-  if (!pair.is_converged()) {
-    CurvedStart start = start_direction(pair);
-    state.active = start.active;
-    if (!start.meet) supports += search_direction(pair, start.normal, state.active);
+  Search search(a, b, a_from_b, state);
+  if (!search.ended()) {
+    search.from_start_direction();
+    if (depth && !search.ended() && search.overlaps()) search.measure_depth({});
   }
-  double deep = -kInfinity;
-  if (depth && !pair.is_converged() && pair.bounds.lower < 0.0) {
-    const DepthBounds found = bound_depth(pair);
-    deep = found.lower;
-    supports += found.supports;
-  }
-  state.normal = pair.bounds.normal;
-  state.point_on_b_in_b = (deep > 0.0 ? pair.bounds.deepest : pair.bounds.points).b_in_b;
-  DistanceResult r = conclude(conclusion_of(pair, deep));
-  r.iterations = static_cast<std::uint16_t>(supports);
-  return r;
+  return search.result();
 }
 
 }  // namespace

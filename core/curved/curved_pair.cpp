@@ -29,9 +29,12 @@ SupportPair CurvedPair::support_of(const PartPair& parts, const Vec3& n) const n
   return found;
 }
 
+SupportPair CurvedPair::support_along(const Vec3& n) const noexcept {
+  return support_of({support_part(a, n), support_part(b, -direction_to_b(n))}, n);
+}
+
 SupportPair CurvedPair::support(const Vec3& n) noexcept {
-  const PartPair parts{support_part(a, n), support_part(b, -direction_to_b(n))};
-  const SupportPair found = support_of(parts, n);
+  const SupportPair found = support_along(n);
   if (found.value > bounds.lower) {
     bounds.lower = found.value;
     bounds.normal = n;

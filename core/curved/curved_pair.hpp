@@ -54,6 +54,7 @@ class CurvedPair {
   // The parts that are nearest to each other along n (unit, frame A). They bound the distance from
   // below, and `bounds` keeps the best.
   SupportPair support(const Vec3& n) noexcept;
+  [[nodiscard]] SupportPair support_along(const Vec3& n) const noexcept;  // leaves `bounds` alone
   [[nodiscard]] SupportPair support_of(const PartPair& parts, const Vec3& n) const noexcept;
 
   // Makes n the direction of the lower bound, unless that would cost more than rounding.

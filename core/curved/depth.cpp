@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
+#include "core/curved/depth_cap.hpp"
 #include "core/curved/thorough.hpp"
 
 namespace clearance {
@@ -14,7 +16,12 @@ constexpr int kSupportsOfPass = 2500, kSupports = 6000;
 // long.
 constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
+constexpr double kNearAxisSquare = 0x1p-32;   // of the sine
+constexpr double kNearlySymmetric = 0x1p-20;  // of the pair's size
 constexpr std::size_t kDeepest = 400;
+// The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
+constexpr double kRingAngle = 1.4, kLargeCap = 2.0;
+constexpr double kLarger = 1.0 + 0x1p-20;  // the cap than the ring on it
 
 // A vertex of a triangle: a direction, the support value of A - B along it, and the support point.
 // The rolling balls are subtracted from both, since bodies that are less round need fewer
@@ -41,13 +48,18 @@ class TriangleBound {
       for (std::size_t k = 0; k < 3; ++k) m_[i][k] = t.corners[i].normal.dot(t.corners[k].point);
     }
   }
-  [[nodiscard]] double value() noexcept {
+  // Is the bound at least this? `target` > 0, m.
+  [[nodiscard]] bool reaches(double target) noexcept {
     for (std::size_t k = 0; k < 3; ++k) {
-      play(Vec3::Unit(static_cast<int>(k)));
-      two(k, (k + 1) % 3);
+      if (std::min({m_[0][k], m_[1][k], m_[2][k]}) >= target) return true;
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+      // No mean is greater than the greatest one at a vertex.
+      if (std::max({m_[i][0], m_[i][1], m_[i][2]}) < target) return false;
     }
     three();
-    return best_;
+    for (std::size_t k = 0; k < 3 && best_ < target; ++k) two(k, (k + 1) % 3);
+    return best_ >= target;
   }
 
  private:
@@ -88,13 +100,17 @@ double rolling_ball(const BodyView& view) noexcept {
 
 class DepthSearch {
  public:
-  explicit DepthSearch(CurvedPair& pair) noexcept
-      : pair_(pair), ball_(rolling_ball(pair.a) + rolling_ball(pair.b)) {}
+  DepthSearch(CurvedPair& pair, const ActiveParts& active) noexcept
+      : pair_(pair), active_(active), ball_(rolling_ball(pair.a) + rolling_ball(pair.b)) {
+    const Ball a = inscribed_ball(pair.a), b = inscribed_ball(pair.b);
+    inscribed_ = {a.centre - pair.point_to_a(b.centre), a.radius + b.radius};
+  }
 
   DepthBounds run() noexcept {
-    descend(pair_.bounds.normal);
-    found_.lower = std::max(least_symmetric_depth(pair_), by_rolling_ball());
+    if (active_.count == 0) descend(pair_.bounds.normal);
+    found_.lower = least_symmetric_depth(pair_, kNearlySymmetric * pair_.size);
     if (pass(kTolerance * pair_.size)) return found_;
+    found_.lower = std::max(found_.lower, least_symmetric_depth(pair_, kInfinity));
     for (const double tolerance : kCoarser) {
       if (tolerance * pair_.size < depth() - found_.lower && !pass(tolerance * pair_.size)) break;
     }
@@ -105,17 +121,8 @@ class DepthSearch {
   [[nodiscard]] double depth() const noexcept { return -pair_.bounds.lower; }
 
   void descend(const Vec3& n) noexcept {
-    ActiveParts none;
-    found_.supports += search_direction(pair_, n, none);
-  }
-
-  // The balls that roll inside both bodies make a ball inside A - B that touches its deepest point.
-  // The largest ball around the origin inside that ball bounds the depth from below.
-  double by_rolling_ball() noexcept {
-    const Vec3 n = pair_.bounds.normal;
-    const Vec3 middle = -pair_.support(n).points.gap() - ball_ * n;
-    ++found_.supports;
-    return ball_ - middle.norm();
+    active_ = {};
+    found_.supports += search_direction(pair_, n, active_);
   }
 
   Corner corner(const Vec3& n) noexcept {
@@ -127,12 +134,12 @@ class DepthSearch {
   // True: the depth is certified to be at least the best known, less the tolerance.
   bool pass(double tolerance) noexcept {
     for (int start = 0; start < 32; ++start) {
-      const double before = depth();
-      if (before - found_.lower <= tolerance) return true;
+      if (!(depth() > 0.0)) return false;
+      if (depth() - found_.lower <= tolerance) return true;
       const int limit = std::min(kSupports, found_.supports + kSupportsOfPass);
       const PassEnd end = cover(tolerance, limit);
       if (end == PassEnd::kCovered) {
-        found_.lower = std::max(found_.lower, before - tolerance);
+        found_.lower = std::max(found_.lower, target_);
         return true;
       }
       if (end == PassEnd::kLimit) return false;
@@ -143,28 +150,125 @@ class DepthSearch {
 
   enum class PassEnd { kCovered, kLimit, kDeeper };
 
-  // Subdivides an octahedron that has the best direction as a vertex.
   PassEnd cover(double tolerance, int limit) noexcept {
-    const Vec3 n = pair_.bounds.normal;
+    const DepthCap cap = best_cap(tolerance);
+    axis_ = pair_.bounds.normal;
     const double best = depth();
-    taken_off_ = std::min(ball_, 0.5 * std::max(best, 0.0));
-    const Vec3 x = n.unitOrthogonal(), y = n.cross(x).normalized();
-    std::array<Corner, 6> corners{corner(n),        corner(x),        corner(y),
-                                  corner(Vec3(-n)), corner(Vec3(-x)), corner(Vec3(-y))};
+    taken_off_ = std::min(ball_, 0.5 * best);
+    target_ = best - tolerance;
+    found_.lower = std::max(found_.lower, cap.lower);
+    if (cap.lower >= target_) return PassEnd::kCovered;
+    known_count_ = 0;
+    for (const Vec3& p : cap.ring) known_[known_count_++] = p - taken_off_ * axis_;
     count_ = 0;
-    for (std::size_t octant = 0; octant < 8; ++octant) {
-      stack_[count_++] = {
-          {corners[octant & 1 ? 3 : 0], corners[octant & 2 ? 4 : 1], corners[octant & 4 ? 5 : 2]}};
-    }
+    begin(cap.angle);
     while (count_ > 0) {
       if (depth() < best - 0.5 * tolerance) return PassEnd::kDeeper;
       const Triangle t = stack_[--count_];
-      const double least = TriangleBound(t).value();
-      if (least > 0.0 && least + taken_off_ >= best - tolerance) continue;
+      if (is_covered(t)) continue;
       if (found_.supports >= limit || count_ + 2 > stack_.size()) return PassEnd::kLimit;
       halve(t);
     }
     return PassEnd::kCovered;
+  }
+
+  // Four directions around n at an angle.
+  static void ring_around(const Vec3& n, double angle, Vec3* into) noexcept {
+    const Vec3 x = n.unitOrthogonal(), y = n.cross(x);
+    const double c = std::cos(angle), s = std::sin(angle);
+    into[0] = c * n + s * x;
+    into[1] = c * n + s * y;
+    into[2] = c * n - s * x;
+    into[3] = c * n - s * y;
+  }
+
+  DepthCap cap_here(double tolerance) noexcept {
+    const DepthCap cap = depth_cap(pair_, pair_.bounds.normal, depth(), tolerance, ball_, active_);
+    found_.supports += cap.supports;
+    return cap;
+  }
+
+  // Where a whole cap of a truncated cone touches, the search ends within rounding of its axis.
+  // Along the axis itself, all of the cap is the support set.
+  DepthCap best_cap(double tolerance) noexcept {
+    const DepthCap cap = cap_here(tolerance);
+    if (cap.angle > 0.0 || depth() - cap.lower <= tolerance) return cap;
+    const CurvedBounds before = pair_.bounds;
+    to_axes();
+    if (pair_.bounds.normal == before.normal) return cap;
+    const DepthCap there = cap_here(tolerance);
+    if (there.angle > 0.0) return there;
+    pair_.bounds = before;
+    return cap;
+  }
+  void to_axes() noexcept {
+    const auto snap = [&](const BodyView& view, const Vec3& m, auto&& to_a) {
+      if (!has_caps(*view.body) || !(m.head<2>().squaredNorm() < kNearAxisSquare)) return;
+      pair_.prefer(to_a(Vec3(0.0, 0.0, std::copysign(1.0, m.z()))));
+      ++found_.supports;
+    };
+    const Vec3 n = pair_.bounds.normal;
+    snap(pair_.a, n, [](const Vec3& v) { return v; });
+    snap(pair_.b, -pair_.direction_to_b(n),
+         [&](const Vec3& v) { return Vec3(-pair_.direction_to_a(v).normalized()); });
+  }
+
+  // Covers all directions outside the cap. A large cap leaves four triangles around the opposite of
+  // the best direction. Otherwise there is a ring of four directions on the cap, and another one.
+  void begin(double cap) noexcept {
+    std::array<Vec3, 9> n;
+    n[8] = -axis_;
+    const bool large = cap > kLargeCap;
+    // The sides of the four triangles are nearest to -n in their middles.
+    const double rest = std::numbers::pi - cap / kLarger;
+    ring_around(n[8], large ? std::atan(std::sqrt(2.0) * std::tan(rest)) : 0.5 * std::numbers::pi,
+                n.data());
+    const double angle = std::min(cap / kLarger, kRingAngle);
+    ring_around(-axis_, std::numbers::pi - angle, n.data() + 4);
+    least_cosine_ = large || !(angle > 0.0) ? 2.0 : std::cos(kLarger * angle);
+    std::array<Corner, 9> corners;
+    std::array<bool, 9> evaluated{};
+    const auto push = [&](const std::array<std::size_t, 3>& at) {
+      if (is_covered({n[at[0]], n[at[1]], n[at[2]]})) return;
+      for (const std::size_t i : at) {
+        if (evaluated[i]) continue;
+        evaluated[i] = true;
+        corners[i] = corner(n[i]);
+        known_[known_count_++] = corners[i].point;
+      }
+      stack_[count_++] = {{corners[at[0]], corners[at[1]], corners[at[2]]}};
+    };
+    corners[8] = corner(n[8]);
+    evaluated[8] = true;
+    known_[known_count_++] = corners[8].point;
+    for (std::size_t i = 0; i < 4; ++i) {
+      const std::size_t k = (i + 1) % 4;
+      push({i, k, 8});
+      if (large) continue;
+      // Without a cap, the ring is the best direction itself.
+      push({i, k, angle > 0.0 ? i + 4 : 4});
+      if (angle > 0.0) push({k, i + 4, k + 4});
+    }
+  }
+
+  [[nodiscard]] bool is_covered(const Triangle& t) const noexcept {
+    const auto& [a, b, c] = t.corners;
+    return is_covered({a.normal, b.normal, c.normal}) ||
+           (target_ > taken_off_ && TriangleBound(t).reaches(target_ - taken_off_));
+  }
+  // Without the support points of the triangle.
+  [[nodiscard]] bool is_covered(const std::array<Vec3, 3>& n) const noexcept {
+    const auto least = [&](const Vec3& v) {
+      return std::min({n[0].dot(v), n[1].dot(v), n[2].dot(v)});
+    };
+    if (least(axis_) >= least_cosine_) return true;
+    for (std::size_t i = 0; i < known_count_; ++i) {
+      if (least(known_[i]) >= target_ - taken_off_) return true;
+    }
+    // A ball inside the inscribed one, of at most the depth, moved towards the triangle's middle.
+    const double radius = std::min(inscribed_.radius, target_);
+    const Vec3 middle = Vec3(n[0] + n[1] + n[2]).normalized();
+    return least(inscribed_.centre + (inscribed_.radius - radius) * middle) >= target_ - radius;
   }
 
   // Halves the longest side. The half whose vertex has the lesser value comes first.
@@ -187,7 +291,15 @@ class DepthSearch {
   }
 
   CurvedPair& pair_;
+  ActiveParts active_;
   double ball_, taken_off_ = 0.0;
+  // Of one cover: the value that all directions have to have, the cap, and points of A - B without
+  // the ball.
+  Ball inscribed_;  // in A - B
+  double target_ = 0.0, least_cosine_ = 2.0;
+  Vec3 axis_ = Vec3::Zero();
+  std::array<Vec3, kRing + 9> known_;
+  std::size_t known_count_ = 0;
   DepthBounds found_;
   std::array<Triangle, kDeepest> stack_;
   std::size_t count_ = 0;
@@ -195,6 +307,8 @@ class DepthSearch {
 
 }  // namespace
 
-DepthBounds bound_depth(CurvedPair& pair) noexcept { return DepthSearch(pair).run(); }
+DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept {
+  return DepthSearch(pair, active).run();
+}
 
 }  // namespace clearance

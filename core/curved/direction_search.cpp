@@ -15,7 +15,8 @@ constexpr int kIterations = 60;
 constexpr int kTrials = 16;
 constexpr int kPointRounds = 12;
 constexpr int kBlindSteps = 8;
-constexpr std::size_t kModels = 5;  // of one programme
+constexpr double kNoGain = 0x1p-53;  // of a depth, as a part of the pair's size
+constexpr std::size_t kModels = 5;   // of one programme
 
 // The quadratic model of one pair of parts around n.
 struct PartModel {
@@ -175,6 +176,7 @@ class DirectionSearch {
       const Vec3 w = points.gap();
       const PlaneFunction rest{
           0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) - at_.value * found.step};
+      if (rest.slope.norm() <= 0x1p-53 * pair_.size) return points;
       turn = max_min({rest}, 1, regularised(hessian_a_, hessian_b_)).step;
     }
   }
@@ -202,6 +204,7 @@ class DirectionSearch {
         return;
       }
       if (has(there.parts)) {
+        if (overlap_ && found.value <= kNoGain * pair_.size) break;
         shorten(found, there.value);
         continue;
       }
@@ -225,16 +228,18 @@ class DirectionSearch {
   // best, d is at least half the distance of the points.
   void set_regularisation() noexcept {
     const double farthest = std::min(pair_.bounds.upper, at_.points.gap().norm());
-    const bool overlap = at_.value < -0x1p-40 * pair_.size;
-    regularisation_ = overlap ? at_.value : std::max(at_.value, 0.5 * farthest);
+    overlap_ = at_.value < -0x1p-40 * pair_.size;
+    regularisation_ = overlap_ ? at_.value : std::max(at_.value, 0.5 * farthest);
     if (regularisation_ == 0.0) regularisation_ = 0x1p-50 * pair_.size;
   }
 
-  // A step whose gain is below rounding may still bring the points closer.
+  [[nodiscard]] double noise() const noexcept { return 0x1p-50 * pair_.size; }
+
+  // A step whose gain is below rounding may still bring the points closer. The bounds of a depth do
+  // not need these points.
   bool is_blind(const PlaneStep& found, const SupportPair& there) noexcept {
-    const double noise = 0x1p-50 * pair_.size;
-    if (found.value > noise || there.value < at_.value - noise) return false;
-    return blind_++ < kBlindSteps;
+    if (found.value > noise() || there.value < at_.value - noise()) return false;
+    return blind_++ < (overlap_ ? 1 : kBlindSteps);
   }
 
   // Shortens the step to the maximum of the parabola through the value and the slope at n and the
@@ -302,7 +307,7 @@ class DirectionSearch {
   std::size_t count_ = 0;
   PlaneMatrix hessian_a_, hessian_b_;
   double regularisation_ = 0.0;
-  bool done_ = false;
+  bool done_ = false, overlap_ = false;
   int blind_ = 0;
   std::array<bool, 4> tried_{};
   int supports_ = 0;

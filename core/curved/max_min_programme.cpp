@@ -64,6 +64,10 @@ class Dual {
       : f_(functions), count_(count) {}
 
   [[nodiscard]] PlaneStep solve() noexcept {
+    if (count_ == 1) {
+      one(0);
+      return best_;
+    }
     for (std::size_t i = 0; i < count_; ++i) {
       one(i);
       for (std::size_t j = 0; j < i; ++j) {

@@ -30,6 +30,8 @@ inline constexpr double kLongStep = 0x1p-10;
 // If bodies nearly touch, the next step after one this short is rounding. The limit is for the
 // square of the step.
 inline constexpr double kFinalStep = 0x1p-52;
+// Bodies that overlap along the best direction by this many tolerances overlap.
+inline constexpr double kOverlap = 0x1p20;
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 
 // Bounds and their witness points. They do not yet account for rounding errors or for the radii of
@@ -39,6 +41,7 @@ struct NewtonEnd {
   Vec4 normal;                 // frame A, unit
   Vec4 on_a, on_b_in_b, on_b;  // closest points; on_b_in_b: frame B
   int supports = 0;
+  bool overlap = false;  // the bodies overlap along `normal`, and no small rotation changes that
 };
 
 // Two planar faces are tried one after the other if the cosine of the angle between them exceeds
@@ -52,12 +55,13 @@ class Newton {
  public:
   HWY_INLINE Newton(const Side& a, const Side& b, const RelativePose4& a_from_b,
                     const SquaresA& squares_a, const SquaresB& squares_b, double tolerance, Vec4 x,
-                    ActiveParts& active)
+                    bool ends_at_overlap, ActiveParts& active)
       : a_(a),
         b_(b),
         a_from_b_(a_from_b),
         tolerance_(tolerance),
         x_(x),
+        ends_at_overlap_(ends_at_overlap),
         active_(active),
         parts_(a, b, a_from_b, active),
         step_(squares_a, squares_b) {}
@@ -159,9 +163,13 @@ class Newton {
         return Next::kCertified;
       }
     }
+    if (dot(n, gap) - end.lower > tolerance_) {
+      add({a.part, b.part});
+      return Next::kIterate;
+    }
+    end.overlap = ends_at_overlap_ && end.lower < -kOverlap * tolerance_;
     // Otherwise rounding alone keeps the bounds apart.
-    if (dot(n, gap) - end.lower > tolerance_) add({a.part, b.part});
-    return Next::kIterate;
+    return end.overlap ? Next::kGiveUp : Next::kIterate;
   }
 
   // ---- planar faces ----
@@ -332,6 +340,7 @@ class Newton {
   const RelativePose4& a_from_b_;
   const double tolerance_;
   Vec4 x_;
+  const bool ends_at_overlap_;
   ActiveParts& active_;
   PlacedParts parts_;
   NewtonStep<SquaresA, SquaresB> step_;

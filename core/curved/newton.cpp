@@ -56,6 +56,8 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
 
 HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
                        CurvedTrackingState& state, DistanceResult& r) {
+  // The search of the depth goes first.
+  if (HWY_UNLIKELY(state.overlap == Overlap::kLastQuery)) return false;
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {
@@ -70,8 +72,15 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
-        newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x, state.active);
-    if (!newton.run()) return false;
+        newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x,
+               state.overlap != Overlap::kTried, state.active);
+    if (!newton.run()) {
+      if (newton.end.overlap) {
+        state.normal = vec3(newton.end.normal);
+        state.overlap = Overlap::kStationary;
+      }
+      return false;
+    }
     state.normal = vec3(newton.next_start());
     conclude(a, b, a_from_b, newton.end, size, state, r);
     return true;

@@ -12,10 +12,6 @@ constexpr double kSectionTolerance = 0x1p-49;  // of the pair's size
 constexpr int kMostArcs = 1000;
 
 // ---- balls ----
-Ball inscribed_ball(const BodyView& view) noexcept {
-  return visit(view, [](const auto& body) { return body.inscribed_ball(); });
-}
-
 double by_balls(const CurvedPair& pair) noexcept {
   const Ball a = inscribed_ball(pair.a), b = inscribed_ball(pair.b);
   return a.radius + b.radius - (pair.point_to_a(b.centre) - a.centre).norm();
@@ -120,7 +116,7 @@ class SectionSearch {
   std::array<Arc, 64> stack_{};
 };
 
-double by_sections(const CurvedPair& pair) noexcept {
+double by_sections(const CurvedPair& pair, double move) noexcept {
   const Section section_a{pair.a}, section_b{pair.b};
   const int of_a = section_a.axis(), of_b = section_b.axis();
   if (of_a == kNoAxis || of_b == kNoAxis) return -kInfinity;
@@ -143,17 +139,22 @@ double by_sections(const CurvedPair& pair) noexcept {
   }
   const double along = axis.dot(pair.translation());
   const double aside = (pair.translation() - along * axis).norm();
-  if (!(tilt < 0.5)) return -kInfinity;
-  SectionSearch search(section_a, section_b, along, cosine < 0.0);
   // An angle is no more than 1.05 times its sine, up to 30 degrees.
-  return search.run(kSectionTolerance * pair.size) - aside - 1.05 * tilt * pair.b.bounding_radius;
+  const double moved = aside + 1.05 * tilt * pair.b.bounding_radius;
+  if (!(tilt < 0.5 && moved <= move)) return -kInfinity;
+  SectionSearch search(section_a, section_b, along, cosine < 0.0);
+  return search.run(kSectionTolerance * pair.size) - moved;
 }
 
 }  // namespace
 
-double least_symmetric_depth(const CurvedPair& pair) noexcept {
+Ball inscribed_ball(const BodyView& view) noexcept {
+  return visit(view, [](const auto& body) { return body.inscribed_ball(); });
+}
+
+double least_symmetric_depth(const CurvedPair& pair, double move) noexcept {
   if (!pair.a.body->bounded() || !pair.b.body->bounded()) return -kInfinity;
-  return std::max({by_balls(pair), by_semi_axes(pair), by_sections(pair)});
+  return std::max({by_balls(pair), by_semi_axes(pair), by_sections(pair, move)});
 }
 
 }  // namespace clearance

@@ -38,8 +38,10 @@ struct DepthBounds {
   double lower = -kInfinity;  // m; the greatest that is known
   int supports = 0;
 };
-// Improves pair.bounds.lower, minus the depth, to the best that it finds.
-[[nodiscard]] DepthBounds bound_depth(CurvedPair& pair) noexcept;
+// Improves pair.bounds.lower, minus the depth, to the best that it finds. `active`: the active
+// parts with which a search has ended in pair.bounds; without any, one more search finds them. Ends
+// without a bound if the bodies turn out to be disjoint.
+[[nodiscard]] DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept;
 
 // symmetric_depth.cpp: a lower bound of the depth, in m as computed, if symmetry gives one; else
 // -infinity. The minima of symmetric pairs fill a circle or a sphere, for which bound_depth() would
@@ -48,6 +50,8 @@ struct DepthBounds {
 // - ellipsoids around nearly one centre along nearly the same axes: the least sum of two semi-axes;
 // - solids of revolution around nearly one axis: the least over directions in one half-plane.
 // A nearly symmetric pair is moved until it is symmetric, and the bound is reduced by the move.
-[[nodiscard]] double least_symmetric_depth(const CurvedPair& pair) noexcept;
+// Solids of revolution whose move is longer than `move` (m) are left out.
+[[nodiscard]] Ball inscribed_ball(const BodyView& view) noexcept;
+[[nodiscard]] double least_symmetric_depth(const CurvedPair& pair, double move) noexcept;
 
 }  // namespace clearance

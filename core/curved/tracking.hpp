@@ -9,11 +9,20 @@
 
 namespace clearance {
 
+// Do the bodies seem to overlap? Then `normal` is the direction from which the depth is searched.
+enum class Overlap : std::uint8_t {
+  kNo,
+  kLastQuery,
+  kStationary,  // Newton's method has ended at an overlap
+  kTried,       // no depth was found from there
+};
+
 // A hint and never a fact.
 struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A, of about unit length; 0: none
   ActiveParts active;          // pairs of parts; or one pair with a planar face in place of a part
   Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
+  Overlap overlap = Overlap::kNo;
 };
 
 // Drops features that the bodies do not have, more than one planar face, and a face among several
@@ -70,6 +79,7 @@ inline constexpr std::uint64_t kPartNumbers = std::uint64_t{1} << kPartBits;
     found.active.pairs[found.active.count++] = unpacked(all % kPartNumbers, b_is_curved);
   }
   forget_nonsense(found, a, b);
+  if (state.a.penetrating && !found.normal.isZero()) found.overlap = Overlap::kLastQuery;
   return found;
 }
 
@@ -87,7 +97,7 @@ inline void write(const CurvedTrackingState& from, const ConvexBody& a, const Co
   const auto half = [](std::uint64_t bits) {
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
   };
-  state.a = {FeatureKind::kDirection, false, half(all), from.normal};
+  state.a = {FeatureKind::kDirection, from.overlap == Overlap::kLastQuery, half(all), from.normal};
   state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
 }
 

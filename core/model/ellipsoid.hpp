@@ -28,6 +28,9 @@ class Ellipsoid : public BodyDefaults {
                                             const Tangents& tangents) const noexcept {
     return clearance::support_hessian(SemiAxes(d_.data()), kWhole, scaled(m), tangents);
   }
+  [[nodiscard]] double relative_slope(const Vec3& m) const noexcept {
+    return d_.maxCoeff() / d_.cwiseProduct(m).norm();
+  }
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3&, double) const noexcept {
     return {support_point(0, m), 0};
   }

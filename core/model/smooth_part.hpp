@@ -102,6 +102,8 @@ struct BodyDefaults {
 
   // The radius of a ball that rolls inside the body and touches every point of its surface, m.
   [[nodiscard]] double rolling_ball() const noexcept { return 0.0; }
+  // See relative_slope() of core/curved/body_view.hpp. A vertex has D = 0.
+  [[nodiscard]] double relative_slope(const Vec3&) const noexcept { return 0.0; }
   // The axis of a solid of revolution, 0 to 2; kAnyAxis: a ball.
   [[nodiscard]] int axis_of_revolution() const noexcept { return kNoAxis; }
   // Along the half-plane that this axis bounds: the first coordinate is along the axis, the second

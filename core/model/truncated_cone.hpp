@@ -47,6 +47,9 @@ class TruncatedCone : public BodyDefaults {
                                             const Tangents& tangents) const noexcept {
     return clearance::support_hessian(SemiAxes(kUnitDisc), disc(part), scaled(m), tangents);
   }
+  [[nodiscard]] double relative_slope(const Vec3& m) const noexcept {
+    return 1.0 / scaled(m).length;
+  }
   // The support set along m is a disc if m is the axis. It is a generator if both rims have the
   // same support value, and one point of a rim otherwise.
   [[nodiscard]] PointOfPart support_set_point(const Vec3& m, const Vec3& towards,

@@ -167,5 +167,24 @@ TEST(SupportLaws, ThePointOfTheSupportSetIsASupportPointAndNoneIsFartherThatWay)
   }
 }
 
+// h(m) = c.m + |D m|.
+TEST(SupportLaws, TheRelativeSlopeBoundsTheGrowthOfTheRoundTerm) {
+  Random random(83);
+  for (const ConvexBody& body : every_body()) {
+    if (!body.is_curved()) continue;
+    const BodyView view{&body, body.bounding_radius};
+    const bool is_ellipsoid = !has_caps(body);
+    const Vec3 d = is_ellipsoid ? body.curved.semi_axes : Vec3(1.0, 1.0, 0.0);
+    double greatest = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      const Vec3 m = random.direction(), t = m.cross(random.direction()).normalized();
+      const double slope = d.cwiseProduct(t).norm() / d.cwiseProduct(m).norm();
+      EXPECT_LE(slope, relative_slope(view, m) * (1.0 + 1e-14));
+      greatest = std::max(greatest, slope / relative_slope(view, m));
+    }
+    EXPECT_GT(greatest, 0.95);
+  }
+}
+
 }  // namespace
 }  // namespace clearance
