@@ -21,8 +21,10 @@ inline constexpr std::size_t kChangeKinds = std::variant_size_v<CellChange>;
 
 // The names that changes are drawn from. Some of them may be missing in the cell.
 struct DrawnNames {
-  std::vector<std::string> objects, added;  // those of the first cell; those that changes add
-  std::vector<std::string> carriers;        // what only carries: links
+  // Those of the cell, and some that it lacks; those that changes add.
+  std::vector<std::string> objects, added;
+  std::vector<std::string> attached = {};  // objects that are attached, as far as that is known
+  std::vector<std::string> carriers;       // what only carries: links
   std::vector<std::string> groups, templates, zones, contacts, sources;
   std::vector<std::string> cells, files;  // texts for ReplaceCell, files for ReadCellAgain
   std::vector<std::string> shapes;        // of objects that are added: "sphere: {radius: 50}"
@@ -62,11 +64,13 @@ class DrawnChange {
   const std::string& one_of(const std::vector<std::string>& list) {
     return list[below(list.size())];
   }
-  const std::string& object() { return one_of(one_in(2) ? names_.added : names_.objects); }
+  const std::string& object() { return one_of(one_in(12) ? names_.added : names_.objects); }
   const std::string& carrier() { return one_in(2) ? one_of(names_.carriers) : object(); }
   const std::string& object_or_group() { return one_in(3) ? one_of(names_.groups) : object(); }
+  // Now and then near the origin, where what is attached overlaps its carrier.
   Pose pose() {
-    return {random_.in_box(1.5), one_in(2) ? Eigen::Quaterniond::Identity() : random_.rotation()};
+    return {random_.in_box(one_in(4) ? 0.2 : 1.5),
+            one_in(2) ? Eigen::Quaterniond::Identity() : random_.rotation()};
   }
   std::optional<Pose> maybe_pose() {
     return one_in(2) ? std::nullopt : std::optional<Pose>(pose());
@@ -119,7 +123,10 @@ class DrawnChange {
                   one_in(2) ? std::vector{object_or_group()} : std::vector<std::string>{},
                   one_in(4) ? std::optional(random_.uniform(-0.01, 0.3)) : std::nullopt};
   }
-  CellChange make(std::type_identity<Detach>) { return Detach{object(), maybe_pose()}; }
+  CellChange make(std::type_identity<Detach>) {
+    return Detach{names_.attached.empty() || one_in(4) ? object() : one_of(names_.attached),
+                  maybe_pose()};
+  }
   CellChange make(std::type_identity<Place>) { return Place{object(), pose()}; }
   CellChange make(std::type_identity<SetMaxSpeed>) {
     return SetMaxSpeed{object(), maybe(random_.uniform(names_.least_speed, names_.most_speed))};

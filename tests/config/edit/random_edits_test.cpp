@@ -24,7 +24,7 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
   wider.replace(wider.find("leave_above: 50"), 15, "leave_above: 60");
   invalid.replace(invalid.find("max_speed: 1000"), 15, "max_speed: -1");
   const test::DrawnNames names{
-      .objects = {"table", "cart", "box", "spare", "hand", "base", "none"},
+      .objects = {"table", "cart", "box", "spare", "hand", "base", "none", "p0", "p1", "p2", "p3"},
       .added = {"p0", "p1", "p2", "p3"},
       .carriers = {"tip", "hand", "base"},
       .groups = {"things", "things", "arm", "none"},
