@@ -118,7 +118,8 @@ bool same_chain(const Robot& old, const Scene& before, const Robot& robot, const
     case RobotBase::Kind::kWorld:
       return true;
     case RobotBase::Kind::kObject:
-      return before.objects[a.object].name == now.objects[b.object].name;
+      return before.objects[a.object].name == now.objects[b.object].name &&
+             same_input(before.objects[a.object], now.objects[b.object]);
     case RobotBase::Kind::kLink:
       return same_before[b.robot] && map.robots[b.robot] == a.robot && a.link == b.link;
   }

@@ -3,6 +3,16 @@
 #include <utility>
 
 namespace clearance {
+namespace {
+
+// Nothing else than evaluations is missing for a certified minimum: what is late, unknown or absent
+// would wait for inputs.
+bool awaits_evaluations(const Report& report) noexcept {
+  return !report.minimum_certified && report.unknown + report.stale == 0 &&
+         absent_pairs(report) < report.pairs_total;
+}
+
+}  // namespace
 
 Successor::Successor(const Scene& before, const Monitor& running, const Scene& scene,
                      std::vector<ReportSink*> sinks, TickRecords& records)
@@ -63,8 +73,9 @@ std::size_t Successor::catch_up() noexcept {
     const bool certified = tick->certified;
     const Report& report = monitor_->tick(r.taken_poses, r.taken_joints, tick->time);
     r.ticks.pop();
-    const bool is_worse = certified && !report.minimum_certified && report.unknown == 0;
-    if (!is_worse) caught_up_at_.store(report.cycle, std::memory_order_release);
+    uncertified_ = certified && awaits_evaluations(report) ? uncertified_ + 1 : 0;
+    if (uncertified_ == 0 || uncertified_ > kMostUncertified)
+      caught_up_at_.store(report.cycle, std::memory_order_release);
   }
   return count;
 }

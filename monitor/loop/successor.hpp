@@ -38,6 +38,9 @@ class Successor {
     kTooManyNames,  // both scenes name more than kMaxSources sources
     kTooSlow,       // the loop ran more ticks than there is room for
   };
+  // The ticks for which a successor waits to be certified: a cell whose budget is too small for its
+  // pairs may never be.
+  static constexpr std::size_t kMostUncertified = 256;
 
   // Allocates all memory but the records'. `running` is the loop's monitor of the scene `before`,
   // and may tick meanwhile. Both scenes and the records, which are cleared, outlive the use of this
@@ -66,8 +69,9 @@ class Successor {
   // After begin(): a tick that the running monitor gets, with whether its report was certified.
   void record(std::span<const PoseSample> samples, std::span<const JointSample> joints,
               const TickTime& time, bool certified) noexcept;
-  // The successor has run all ticks up to this one, and its last report is certified if that of the
-  // running monitor was.
+  // The successor has run all ticks up to this one. If the last report of the running monitor was
+  // certified, then so is that of the successor, unless inputs that it watches are late, unknown or
+  // absent, or kMostUncertified ticks in a row were not enough.
   [[nodiscard]] bool has_caught_up(std::uint64_t cycle) const noexcept {
     return caught_up_at_.load(std::memory_order_acquire) == cycle;
   }
@@ -88,6 +92,7 @@ class Successor {
   LoopStatistics statistics_;
   std::vector<ReportSink*> sinks_;
   TickRecords& records_;
+  std::size_t uncertified_ = 0;  // ticks in a row
   std::atomic<State> state_{State::kOffered};
   std::atomic<std::uint64_t> began_after_{0}, in_force_from_{0}, caught_up_at_{0};
 };

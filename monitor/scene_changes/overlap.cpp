@@ -10,11 +10,6 @@
 namespace clearance {
 namespace {
 
-const Object* object_of(const Scene& scene, const std::string& name) {
-  const auto found = std::ranges::find(scene.objects, name, &Object::name);
-  return found == scene.objects.end() ? nullptr : &*found;
-}
-
 // Follows the links that are objects; any other object is its own root.
 RigidRoot root_of(const Scene& scene, std::uint32_t object) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
@@ -45,7 +40,7 @@ double depth_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
 
 std::vector<std::string> left_out_with(const Attach& change, const Scene& scene) {
   std::vector<std::string> names{change.to};
-  const Object* attached = object_of(scene, change.object);
+  const Object* attached = find_object(scene, change.object);
   const auto in_touch = [&](const std::string& name) {
     return std::ranges::find(change.touch, name) != change.touch.end();
   };
@@ -70,12 +65,9 @@ std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
                                        const std::vector<std::string>& others,
                                        const PresentPoses& poses,
                                        const std::map<std::string, double>& mesh_errors) {
-  const Object* attached = object_of(scene, change.object);
+  const Object* attached = find_object(scene, change.object);
   if (attached == nullptr || !change.carrier_from_object) return std::nullopt;
-  // Fixed objects may stand elsewhere in the changed scene.
   const auto usable = [&](const std::string& name) -> const Pose* {
-    if (const Object* object = object_of(scene, name); object != nullptr && object->fixed)
-      return &object->world_from_object;
     const auto pose = poses.find(name);
     const bool is = pose != poses.end() && pose->second.state == PresentPose::State::kUsable;
     return is ? &pose->second.world_from_body : nullptr;
@@ -87,7 +79,7 @@ std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
   const Pose* const world_from_carrier = usable(change.to);
   std::optional<Overlap> deepest;
   for (const std::string& name : others) {
-    const Object* other = object_of(scene, name);
+    const Object* other = find_object(scene, name);
     if (other == nullptr) continue;
     Pose other_from_object = *change.carrier_from_object;
     if (name != change.to) {

@@ -24,10 +24,10 @@ struct Overlap {
   double depth = 0.0;  // m
 };
 
-// Returns the deepest overlap of an object with one of these. `poses` has the world's poses of the
-// others and of the carrier at one instant; those that are not usable are left out, except the
-// carrier's own parts, which need none. `mesh_errors` has, by object, how far parts exceed meshes,
-// m, and lowers the depth.
+// Returns the deepest overlap of an object with one of these. `poses` has the poses of the
+// others and of the carrier in this scene, at one instant; those that are not usable are left out,
+// except the carrier's own parts, which need none. `mesh_errors` has, by object, how far parts
+// exceed meshes, m, and lowers the depth.
 [[nodiscard]] std::optional<Overlap> deepest_overlap(
     const Attach& change, const Scene& scene, const std::vector<std::string>& others,
     const PresentPoses& poses, const std::map<std::string, double>& mesh_errors);

@@ -26,7 +26,58 @@ std::optional<AskedBody> body_of(const std::string& name, const Scene& scene) {
   return std::nullopt;
 }
 
+// What an object is attached to, and its pose there. Nothing: it is not attached.
+struct Carrier {
+  std::string name;
+  Pose carrier_from_object;
+};
+std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene) {
+  for (const Robot& robot : scene.robots) {
+    if (!robot.is_attached || robot.links.front().name != name) continue;
+    const RobotBase& base = robot.base;
+    return Carrier{base.kind == RobotBase::Kind::kObject
+                       ? scene.objects[base.object].name
+                       : scene.robots[base.robot].links[base.link].name,
+                   base.base_from_root};
+  }
+  return std::nullopt;
+}
+
 }  // namespace
+
+const Object* find_object(const Scene& scene, const std::string& name) noexcept {
+  const auto found = std::ranges::find(scene.objects, name, &Object::name);
+  return found == scene.objects.end() ? nullptr : &*found;
+}
+
+std::vector<std::string> with_carriers(const std::vector<std::string>& names, const Scene& scene) {
+  std::vector<std::string> all = names;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const auto carrier = carrier_of(all[i], scene);
+    if (carrier && std::ranges::find(all, carrier->name) == all.end()) all.push_back(carrier->name);
+  }
+  return all;
+}
+
+PresentPose pose_in_changed(const std::string& name, const Scene& changed, const Scene& running,
+                            const PresentPoses& present) {
+  using State = PresentPose::State;
+  const Object* const object = find_object(changed, name);
+  if (object != nullptr && object->absent) return {.state = State::kAbsent};
+  if (object != nullptr && object->fixed)
+    return {.state = State::kUsable, .world_from_body = object->world_from_object};
+  if (const auto carrier = carrier_of(name, changed)) {
+    PresentPose pose = pose_in_changed(carrier->name, changed, running, present);
+    pose.world_from_body = compose(pose.world_from_body, carrier->carrier_from_object);
+    return pose;
+  }
+  const auto found = present.find(name);
+  if (found == present.end()) return {};
+  // A pose from before is none of an object that moves by itself only now.
+  const Object* const before = find_object(running, name);
+  if (before != nullptr && (before->fixed || carrier_of(name, running))) return {};
+  return found->second;
+}
 
 std::optional<PresentPoses> present_poses(const std::vector<std::string>& names, const Scene& scene,
                                           TickLoop& loop, const std::atomic<bool>& loop_ended) {

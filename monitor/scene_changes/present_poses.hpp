@@ -21,6 +21,19 @@ using PresentPoses = std::map<std::string, PresentPose>;
                                                         const Scene& scene, TickLoop& loop,
                                                         const std::atomic<bool>& loop_ended);
 
+// Null: the scene has no such object.
+[[nodiscard]] const Object* find_object(const Scene& scene, const std::string& name) noexcept;
+
+// The names, and those of the objects and links that carry them in this scene.
+[[nodiscard]] std::vector<std::string> with_carriers(const std::vector<std::string>& names,
+                                                     const Scene& scene);
+
+// Returns where an object or a link of a changed scene is, before the loop ticks that: what is
+// attached is where its carrier takes it, and what is fixed is where the scene says. Anything else
+// is where the loop has it in `running`, by `present`, if its poses go on.
+[[nodiscard]] PresentPose pose_in_changed(const std::string& name, const Scene& changed,
+                                          const Scene& running, const PresentPoses& present);
+
 // Pose of B in the frame of A.
 [[nodiscard]] Pose a_from_b(const Pose& world_from_a, const Pose& world_from_b);
 

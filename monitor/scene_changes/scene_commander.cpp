@@ -36,14 +36,24 @@ bool is_below(const std::filesystem::path& file, const std::filesystem::path& fo
   return end == real_folder.end() && real_file != real_folder;
 }
 
-// The name of the object that a change adds or places, or nothing.
-struct PlacedObject {
-  std::string operator()(const AddFromTemplate& change) const { return change.object; }
-  std::string operator()(const Place& change) const { return change.object; }
-  std::string operator()(const Detach& change) const { return change.object; }
+// Tells whether a change may put one of these bodies elsewhere, or make it absent.
+struct MayMove {
+  const std::vector<std::string>& bodies;
+  bool operator()(const AddObject&) const { return true; }
+  bool operator()(const ReplaceObject&) const { return true; }
+  bool operator()(const ReplaceCell&) const { return true; }
+  bool operator()(const AddFromTemplate& change) const { return has(change.object); }
+  bool operator()(const RemoveObject& change) const { return has(change.object); }
+  bool operator()(const SetAbsent& change) const { return has(change.object); }
+  bool operator()(const Attach& change) const { return has(change.object); }
+  bool operator()(const Detach& change) const { return has(change.object); }
+  bool operator()(const Place& change) const { return has(change.object); }
   template <class Change>
-  std::string operator()(const Change&) const {
-    return {};
+  bool operator()(const Change&) const {
+    return false;
+  }
+  [[nodiscard]] bool has(const std::string& name) const {
+    return std::ranges::find(bodies, name) != bodies.end();
   }
 };
 
@@ -198,37 +208,38 @@ SceneCommander::Refusal SceneCommander::take_texts(Work& work) {
   return std::nullopt;
 }
 
-// An earlier change of the list may say where a body is: then the cell that it leads to has it as a
-// fixed object.
+// Where a body is after the changes before this one, as if they had been made one after another.
 std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& name,
                                                            const Work& work, std::size_t change,
                                                            const PresentPoses& poses) {
+  const Scene& running = changer_.cell().scene;
   const auto before = std::span(work.changes).first(change);
-  const auto places = [&](const CellChange& each) {
-    return std::visit(PlacedObject{}, each) == name || std::holds_alternative<AddObject>(each) ||
-           std::holds_alternative<ReplaceCell>(each);
-  };
-  if (std::ranges::any_of(before, places)) {
+  const std::vector<std::string> bodies = with_carriers({name}, running);
+  PresentPose pose;
+  const auto present = poses.find(name);
+  bool is_known = present != poses.end();
+  if (is_known) pose = present->second;
+  if (std::ranges::any_of(
+          before, [&](const CellChange& each) { return std::visit(MayMove{bodies}, each); })) {
     const auto read = editor_->dry_run(before);
     if (const auto* refused = std::get_if<EditRefusal>(&read)) {
       return CommandRefusal{CommandStatus::kRefused, refused->change, refused->path,
                             refused->reason};
     }
-    const Scene& scene = std::get<Cell>(read).scene;
-    const auto object = std::ranges::find(scene.objects, name, &Object::name);
-    if (object != scene.objects.end() && object->fixed) return object->world_from_object;
+    const Scene& changed = std::get<Cell>(read).scene;
+    is_known = is_known || find_object(changed, name) != nullptr;
+    pose = pose_in_changed(name, changed, running, poses);
   }
-  const auto pose = poses.find(name);
-  if (pose == poses.end()) {
+  if (!is_known) {
     return no_pose(
         change, name,
         fmt::format("found no object or link '{}' in the scene; expected one, or a pose", name));
   }
-  if (pose->second.state == PresentPose::State::kUsable) return pose->second.world_from_body;
+  if (pose.state == PresentPose::State::kUsable) return pose.world_from_body;
   return no_pose(change, name,
                  fmt::format("found that '{}' is not known to be anywhere, since {}; expected a "
                              "pose that is known now, or one in the change",
-                             name, why_unusable(pose->second)));
+                             name, why_unusable(pose)));
 }
 
 // All poses are of one tick, so that a carrier that moves takes the object with it exactly.
@@ -243,18 +254,20 @@ std::optional<Pose> SceneCommander::present_pose(const std::string& name) {
 
 SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
   std::vector<std::string> names;
+  bool are_stated = true;
   for (const CellChange& change : work.changes) {
-    if (const auto* attach = std::get_if<Attach>(&change);
-        attach != nullptr && !attach->carrier_from_object) {
+    if (const auto* attach = std::get_if<Attach>(&change)) {
       names.insert(names.end(), {attach->object, attach->to});
+      are_stated = are_stated && attach->carrier_from_object;
     }
-    if (const auto* detach = std::get_if<Detach>(&change);
-        detach != nullptr && !detach->world_from_object) {
+    if (const auto* detach = std::get_if<Detach>(&change)) {
       names.push_back(detach->object);
+      are_stated = are_stated && detach->world_from_object;
     }
   }
-  if (names.empty()) return std::nullopt;
-  const auto poses = present_poses(names, changer_.cell().scene, loop_, loop_ended_);
+  if (are_stated) return std::nullopt;
+  const Scene& running = changer_.cell().scene;
+  const auto poses = present_poses(with_carriers(names, running), running, loop_, loop_ended_);
   if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
   for (std::size_t i = 0; i < work.changes.size(); ++i) {
     if (auto* attach = std::get_if<Attach>(&work.changes[i]);
@@ -315,13 +328,18 @@ SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const C
     const auto* attach = std::get_if<Attach>(&work.changes[i]);
     if (attach == nullptr) continue;
     const std::vector<std::string> others = left_out_with(*attach, cell.scene);
+    const Scene& running = changer_.cell().scene;
     // The change states the pose relative to the carrier, so that a lone carrier may be anywhere.
     const bool is_alone = others == std::vector<std::string>{attach->to};
     const auto poses = is_alone ? PresentPoses{}
-                                : present_poses(others, changer_.cell().scene, loop_, loop_ended_);
+                                : present_poses(with_carriers(others, cell.scene), running, loop_,
+                                                loop_ended_);
     if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
+    PresentPoses changed;
+    for (const std::string& name : others)
+      changed[name] = pose_in_changed(name, cell.scene, running, *poses);
     const double most = attach->overlap.value_or(kDefaultOverlap);
-    const auto deepest = deepest_overlap(*attach, cell.scene, others, *poses, mesh_errors_);
+    const auto deepest = deepest_overlap(*attach, cell.scene, others, changed, mesh_errors_);
     if (!deepest || deepest->depth <= most) continue;
     return CommandRefusal{CommandStatus::kOverlap, i,
                           fmt::format("objects[{}].attached.pose", attach->object),

@@ -254,6 +254,33 @@ TEST(TakeOverOfRobots, LinksAreWhereTheJointsSayWithoutANewSample) {
               1e-9);
 }
 
+// What is known of the cart is not known any more once another source has to send it.
+TEST(TakeOverOfAttachedObjects, ForgetsThemWithTheirCarrier) {
+  const auto scene_with = [](const std::string& keys) {
+    return scene_of(
+        "name: test\nunits: {length: m, angle: deg}\nobjects:\n"
+        "  - {name: cart, groups: [moving], max_speed: 1, sphere: {radius: 0.1}" +
+        keys +
+        "}\n"
+        "  - {name: post, fixed: true, sphere: {radius: 0.1}}\n"
+        "  - {name: tray, attached: {to: cart}, max_speed: 1, sphere: {radius: 0.2}}\n"
+        "  - {name: load, attached: {to: tray}, max_speed: 1, sphere: {radius: 0.3}}\n"
+        "pairs: [{between: [moving, post]}]\n");
+  };
+  const Scene first = scene_with("");
+  for (const std::string keys : {"", ", margin: 0.1", ", source: camera"}) {
+    SourceNumbers numbers(first);
+    Monitor before(first);
+    before.tick(std::array{test::sample(0, test::at(3, 0, 0), kStart)}, kStart);
+    const Scene second = scene_with(keys);
+    const auto after = test::taken_over(before, first, second, numbers);
+    const bool is_other = keys == ", source: camera";
+    EXPECT_EQ(after->tick({}, kStart + 30 * kTick).unknown, is_other ? 3u : 0u) << keys;
+    for (const std::uint32_t object : {0u, 2u, 3u})
+      EXPECT_EQ(after->input_age(object).age_ns, is_other ? -1 : 30 * kTick) << keys;
+  }
+}
+
 TEST(SourceNumbers, ThoseThatAChangedSceneNamesKeepTheirNumbers) {
   Scene scene = balls({"a"});
   scene.objects[0].source = "one";

@@ -252,5 +252,49 @@ TEST(SuccessionOfThreads, EveryCycleIsReportedOnceWhileScenesChange) {
   }
 }
 
+// The running report is certified, and that of the changed scene cannot be: c has been silent for
+// too long, or b is not there.
+TEST_F(Succession, WaitsForNoInputThatIsMissing) {
+  Scene three = balls({"a", "b", "c"}, 7);
+  for (Object& object : three.objects) object.max_speed = 1.0;
+  first = three;
+  first.pairs = {three.pairs[0]};
+  Scene late = three, absent = balls({"a", "b"}, 8);
+  late.revision = 8;
+  absent.objects[1].absent = true;
+  poses_for(1, 7, {0.0, 1.0, 2.0});
+  poses_for(60, 7, {0.0, 1.0});
+  for (const Scene& second : {late, absent}) {
+    successors.clear();
+    clock.while_asleep = [this, &second, start = clock.sleeps()](int tick) {
+      if (tick == start + 30) {
+        EXPECT_TRUE(loop->offer(succeed(second)));
+      }
+      if (tick >= start + 30) successors.front().catch_up();
+    };
+    run(40);
+    ASSERT_EQ(successors.front().state(), State::kSucceeded);
+    EXPECT_EQ(successors.front().in_force_from(), successors.front().began_after() + 2);
+    loop.reset();
+  }
+}
+
+// With one query a tick, three pairs that move together are never certified.
+TEST_F(Succession, WaitsNoLongerThanStatedForABudgetThatIsTooSmall) {
+  Scene second = balls({"a", "b", "c"}, 8);
+  second.budget = 1;
+  first = balls({"a", "b", "c"}, 7);
+  poses_for(400, 7, {0.0, 0.3, 0.6});
+  for (std::size_t i = 0; i < batches.size(); ++i) {
+    for (PoseSample& sample : batches[i].samples)
+      sample.world_from_object.position.y() = 0.1 * static_cast<double>(i);
+  }
+  change_to(second);
+  run(400);
+  ASSERT_EQ(successors.front().state(), State::kSucceeded);
+  EXPECT_GT(successors.front().in_force_from(), Successor::kMostUncertified);
+  EXPECT_LE(successors.front().in_force_from(), 6 + 1 + Successor::kMostUncertified);
+}
+
 }  // namespace
 }  // namespace clearance
