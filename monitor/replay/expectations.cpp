@@ -20,6 +20,12 @@ std::string zone_names(const Scene& scene) {
   return names.empty() ? "it has none" : fmt::format("its zones are {}", one_of(names));
 }
 
+bool may_touch(const Report& report, std::uint32_t pair) {
+  const auto found = std::ranges::lower_bound(report.contacts, pair, {}, &ContactReport::pair);
+  return found != report.contacts.end() && found->pair == pair &&
+         found->status == ContactStatus::kAllowed;
+}
+
 // Why a zone is active: by the distance now, or by what may have happened between two ticks.
 std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& report) {
   const Zone& zone = scene.zones[id];
@@ -73,7 +79,7 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
   std::vector<std::string> broken;
   if (!judge) return broken;
   if (!all_seen(monitor)) {
-    if (const auto what = certainly_near(monitor)) broken.push_back(*what);
+    if (const auto what = certainly_near(report, monitor)) broken.push_back(*what);
     return broken;
   }
   judged_ = true;
@@ -89,11 +95,12 @@ std::vector<std::string> Expectations::check(const Report& report, const Monitor
 }
 
 // Judges the pairs that are known.
-std::optional<std::string> Expectations::certainly_near(const Monitor& monitor) {
+std::optional<std::string> Expectations::certainly_near(const Report& report,
+                                                        const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
     const PairReport pair = monitor.pair(p);
-    if (!(pair.upper < *min_distance_)) continue;
+    if (!(pair.upper < *min_distance_) || may_touch(report, p)) continue;
     distance_broken_ = true;
     return fmt::format("{} is {} apart, at least {} expected", pair_name(*scene_, p),
                        metres(pair.distance), metres(*min_distance_));
@@ -106,13 +113,16 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
                                                         const Monitor& monitor) {
   if (!min_distance_ || distance_broken_) return std::nullopt;
   if (report.lower_all >= *min_distance_) return check_sweep(report, monitor);
-  distance_broken_ = true;
-  std::uint32_t nearest = 0;
-  for (std::uint32_t p = 1; p < scene_->pairs.size(); ++p) {
-    if (monitor.pair(p).lower < monitor.pair(nearest).lower) nearest = p;
+  std::optional<std::uint32_t> nearest;
+  for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
+    if (may_touch(report, p)) continue;
+    if (!nearest || monitor.pair(p).lower < monitor.pair(*nearest).lower) nearest = p;
   }
-  const PairReport pair = monitor.pair(nearest);
-  const std::string who = pair_name(*scene_, nearest);
+  if (!nearest || monitor.pair(*nearest).lower >= *min_distance_)
+    return check_sweep(report, monitor);
+  distance_broken_ = true;
+  const PairReport pair = monitor.pair(*nearest);
+  const std::string who = pair_name(*scene_, *nearest);
   const std::string expected = fmt::format("{} expected", metres(*min_distance_));
   if (pair.upper < *min_distance_) {
     return fmt::format("{} is {} apart, at least {}", who, metres(pair.distance), expected);
@@ -125,6 +135,7 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
+    if (may_touch(report, p)) continue;
     // More expensive than the tick's own bound, hence only where that one does not suffice.
     const SweptBounds found = monitor.sweep(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;

@@ -24,7 +24,8 @@ class Expectations {
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
   // To be called for every tick; judges only if told. Until all moving objects have been known
-  // once, only a pair that is certainly too near counts. Returns one sentence for each expectation
+  // once, only a pair that is certainly too near counts. A pair whose contact is as allowed may be
+  // nearer. Returns one sentence for each expectation
   // that is broken for the first time.
   [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
                                                bool judge);
@@ -46,7 +47,8 @@ class Expectations {
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
                                                           const Monitor& monitor);
-  [[nodiscard]] std::optional<std::string> certainly_near(const Monitor& monitor);
+  [[nodiscard]] std::optional<std::string> certainly_near(const Report& report,
+                                                          const Monitor& monitor);
   [[nodiscard]] std::optional<std::string> check_sweep(const Report& report,
                                                        const Monitor& monitor);
 

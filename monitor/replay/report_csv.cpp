@@ -84,13 +84,15 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   follow(scene);
   rows_ = "tick,now_ns,object_a,object_b";
   for_each_column({}, [this](const std::string& column, const auto&) { rows_ += "," + column; });
-  rows_ += ",scene_revision\n";
+  rows_ += ",scene_revision,contact,contact_status,contact_depth\n";
 }
 
 void ReportCsv::follow(const Scene& scene) {
   scene_ = &scene;
   names_.clear();
   for (const Object& object : scene.objects) names_.push_back(quoted(object.name));
+  contacts_.clear();
+  for (const AllowedContact& contact : scene.contacts) contacts_.push_back(quoted(contact.name));
   revision_ = fmt::format("{:016x}", scene.revision);
 }
 
@@ -119,7 +121,21 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
     rows_ += ',';
     put(rows_, value);
   });
-  rows_.append(",").append(revision_) += '\n';
+  rows_.append(",").append(revision_);
+  add_contact(report, pair.pair);
+  rows_ += '\n';
+}
+
+// The columns are empty where no contact is allowed.
+void ReportCsv::add_contact(const Report& report, std::uint32_t pair) {
+  const auto found = std::ranges::lower_bound(report.contacts, pair, {}, &ContactReport::pair);
+  if (found == report.contacts.end() || found->pair != pair) {
+    rows_ += ",,,";
+    return;
+  }
+  rows_.append(",").append(contacts_[found->contact]).append(",").append(name(found->status));
+  rows_ += ',';
+  put(rows_, found->depth);
 }
 
 // After an error the rows are dropped: the file is incomplete anyway.

@@ -14,9 +14,10 @@ namespace clearance {
 // Columns: tick,now_ns,object_a,object_b, then the fields of PairReport in their order, without
 // pair, parts and evaluated_cycle: status,distance,lower,upper,swept_lower,ax,ay,az,bx,by,bz,nx,ny,
 // nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles. They are in SI units and
-// in the world frame, and numbers read back exactly. The last column, scene_revision, is that of
-// the cell which was in force, in hexadecimal digits; its names are in the row. Errors are kept:
-// error() says what happened.
+// in the world frame, and numbers read back exactly. The column scene_revision is that of
+// the cell which was in force, in hexadecimal digits; its names are in the row. After it come the
+// contact that is allowed for the pair, its status and depth; they are empty where there is none.
+// Errors are kept: error() says what happened.
 class ReportCsv {
  public:
   // `all_pairs`: every pair of the scene; otherwise those that it publishes.
@@ -32,13 +33,15 @@ class ReportCsv {
   };
   void follow(const Scene& scene);
   void add_row(const Report& report, const PairReport& pair);
+  void add_contact(const Report& report, std::uint32_t pair);
   void write();
 
   std::filesystem::path path_;
   const Scene* scene_ = nullptr;  // of the last tick
   bool all_pairs_;
   std::unique_ptr<std::FILE, Close> file_;
-  std::vector<std::string> names_;  // of the objects, quoted where needed
+  std::vector<std::string> names_;     // of the objects, quoted where needed
+  std::vector<std::string> contacts_;  // their names, in the same way
   std::string revision_;
   std::string rows_;  // not written yet
   std::string error_;

@@ -25,6 +25,19 @@ TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBrok
   EXPECT_NEAR(0.08, result.closest->distance, 1e-9);
 }
 
+TEST_F(ReplayExpectations, APairWhoseContactIsAsAllowedMayBeNearerAndNoOther) {
+  scene.contacts.push_back({"lift", "", "", 0.02, {}, "", "", {1}});
+  record_run(cell, run, {.nearest = -0.01});
+  EXPECT_TRUE(replay({.expect_min_distance = 0.1}).ok());
+  EXPECT_THAT(replay({.expect_min_distance = 2.0}).text(), HasSubstr("tool"));
+  scene.contacts[0].depth = 0.005;
+  record_run(cell, folder / "deeper.mcap", {.nearest = -0.01});
+  run = folder / "deeper.mcap";
+  const OfflineReplay deeper = replay({.expect_min_distance = 0.1});
+  ASSERT_EQ(1u, deeper.failures.size()) << deeper.text();
+  EXPECT_THAT(deeper.text(), HasSubstr("hand - box is -0.00"));
+}
+
 // The hand moves back and forth past the box at 1.2 m per tick. `y` is its distance from the centre
 // of the box.
 void record_darts(const Cell& cell, const std::filesystem::path& file, double y) {

@@ -151,11 +151,34 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
     EXPECT_THAT(
         text,
         HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_lower,ax"));
-    EXPECT_THAT(text, HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles,scene_revision\n"));
+    EXPECT_THAT(
+        text,
+        HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles,scene_revision,contact,contact_status,"
+                  "contact_depth\n"));
     EXPECT_THAT(text, HasSubstr("\n1,1700000000000000000,hand,tool,converged,"));
-    EXPECT_THAT(text, HasSubstr(",0,0000000000000029\n5,"))
+    EXPECT_THAT(text, HasSubstr(",0,0000000000000029,,,\n5,"))
         << "published pairs are refreshed in every tick";
   }
+}
+
+TEST_F(OfflineReplayTest, TableHasTheContactsOfTheirPairs) {
+  scene.contacts.push_back({"lift, \"1\"", "", "", 0.02, {}, "", "", {1}});
+  record_run(cell, run, {.ticks = 40, .nearest = -0.01});
+  ReportCsv csv(folder / "t.csv", scene, true);
+  ASSERT_TRUE(
+      replay_offline(cell, run, {}, [&csv](const ReplayedTick& tick) { csv.add(tick); }).ok());
+  ASSERT_TRUE(csv.close());
+  const std::string text = read_text(folder / "t.csv");
+  std::size_t touching = 0, rows = 0;
+  for (std::size_t at = 0; (at = text.find(",\"lift, \"\"1\"\"\",allowed,", at)) != text.npos;
+       ++at) {
+    ++rows;
+    const double depth = std::stod(text.substr(text.rfind(',', text.find('\n', at)) + 1));
+    EXPECT_LE(depth, 0.02);
+    touching += depth > 0.0;
+  }
+  EXPECT_EQ(40u, rows);
+  EXPECT_GT(touching, 0u);
 }
 
 TEST_F(OfflineReplayTest, UnreadableRecordingIsAnError) {
