@@ -15,6 +15,7 @@
 #include "monitor/moveit/known_scene.hpp"
 #include "monitor/moveit/scene_translator.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/monitor/moveit/moveit_messages.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -127,24 +128,5 @@ class MoveItCell : public testing::Test {
     cell_ = std::get<Cell>(std::move(result));
   }
 };
-
-// An object with a box, as most programs send it.
-inline CollisionObject box_object(const std::string& id, const Pose& pose) {
-  CollisionObject object;
-  object.frame_id = "map";
-  object.id = id;
-  object.pose = pose;
-  object.primitives = {{SolidPrimitive::kBox, {0.1, 0.2, 0.3}}};
-  object.primitive_poses = {Pose{}};
-  return object;
-}
-
-inline CollisionObject operation(Operation operation, const std::string& id) {
-  CollisionObject object;
-  object.frame_id = "map";
-  object.id = id;
-  object.operation = static_cast<std::uint8_t>(operation);
-  return object;
-}
 
 }  // namespace clearance::moveit
