@@ -46,13 +46,14 @@ bool CollisionMatrix::allows(const std::string& a, const std::string& b) const {
   return (of_a == defaults_.end() || of_a->second) && (of_b == defaults_.end() || of_b->second);
 }
 
-std::vector<CellChange> CollisionMatrix::exceptions(const KnownScene& scene) const {
+std::vector<CellChange> CollisionMatrix::exceptions(const std::set<NamePair>& watched,
+                                                    const std::set<NamePair>& present) const {
   std::vector<CellChange> changes;
   if (!is_set_) return changes;
-  for (const auto& [a, b] : scene.exceptions) {
+  for (const auto& [a, b] : present) {
     if (!allows(a, b)) changes.emplace_back(SetPair{a, b, SetPair::Rule::kNoException});
   }
-  for (const auto& [a, b] : scene.watched) {
+  for (const auto& [a, b] : watched) {
     if (allows(a, b))
       changes.emplace_back(SetPair{a, b, SetPair::Rule::kLeaveOut, std::string(kMatrixReason)});
   }

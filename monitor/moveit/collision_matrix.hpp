@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -25,9 +26,11 @@ class CollisionMatrix {
   // both have one, both have to allow it.
   [[nodiscard]] bool allows(const std::string& a, const std::string& b) const;
 
-  // Returns the changes after which the exceptions that follow the matrix are those that it states
-  // for the present pairs. There are none before the first set().
-  [[nodiscard]] std::vector<CellChange> exceptions(const KnownScene& scene) const;
+  // Returns the changes after which the exceptions that follow the matrix are those that it states.
+  // `present` are such exceptions, and `watched` the pairs besides. There are none before the first
+  // set().
+  [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
+                                                   const std::set<NamePair>& present) const;
 
  private:
   bool is_set_ = false;

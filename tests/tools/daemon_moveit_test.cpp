@@ -47,7 +47,8 @@ const std::string kCell =
     "pairs:\n"
     "  - {between: [arm, arm], publish: false}\n  - {between: [arm, wall]}\n  - {between: [cart, "
     "wall]}\n  - {between: [box, wall]}\n"
-    "  - {between: [moveit, still]}\n  - {between: [arm, moveit]}\n";
+    "  - {between: [moveit, still]}\n  - {between: [arm, moveit]}\n"
+    "zones:\n  - {name: near, between: [finger, moveit], enter_below: 0.5, leave_above: 0.55}\n";
 
 CollisionObject with(CollisionObject object, Operation operation) {
   object.operation = static_cast<std::uint8_t>(operation);
@@ -187,6 +188,7 @@ TEST_F(DaemonMoveIt, PlanningSceneIsInForceAndComesBackAsTheMonitoredOne) {
   ASSERT_TRUE(comes("ball", "finger", 4 - 0.1 - 2.15)) << daemon->output();
   EXPECT_TRUE(comes("part", "wall", 5 - 2.3 - 0.1));
   EXPECT_TRUE(goes("ball", "upper")) << "the matrix allows it";
+  EXPECT_EQ(changes(), 1u) << "the matrix is in force with the objects";
   EXPECT_NE(pair_of("ball", "lower"), nullptr);
 
   const dds_entity_t reader =
@@ -361,11 +363,38 @@ TEST_F(DaemonMoveIt, BeyondTheCapacityIsRefusedAndTheNextOneCounts) {
   PlanningScene message = diff();
   for (const char* name : {"a", "b", "c", "d"})
     message.collision_objects.push_back(sphere_object(name, "map", {4, 0, 0}));
+  message.allowed_collision_matrix = {{"a", "finger"}, {{true, true}, {true, true}}, {}, {}};
   send(message);
   EXPECT_TRUE(step_until(5, inputs(), told("moveit-refused", {"capacity"}))) << daemon->output();
   EXPECT_EQ(report->scene_revision, scene.revision) << "none of them is there";
   send(sphere_object("a", "map", {4, 0, 0}));
-  EXPECT_TRUE(comes("a", "finger", 4 - 0.1 - 2.15)) << daemon->output();
+  EXPECT_TRUE(comes("a", "finger", 4 - 0.1 - 2.15)) << "the matrix was refused, too";
+}
+
+// The ball is 0.6 m away, and the zone begins at 0.5 m.
+TEST_F(DaemonMoveIt, PaddingOfALinkEntersTheZoneThatIsNearer) {
+  start();
+  PlanningScene message = diff();
+  message.collision_objects = {sphere_object("ball", "map", {2.85, 0, 0})};
+  send(message);
+  ASSERT_TRUE(comes("ball", "finger", 0.6)) << daemon->output();
+  client::Zones zones(connection);
+  const auto is_active = [&](bool active) {
+    return step_until(5, inputs(), [&] {
+      zones.update();
+      const auto zone = zones.states().find(0);
+      return zone != zones.states().end() && zone->second.active == active;
+    });
+  };
+  ASSERT_TRUE(is_active(false));
+  message.collision_objects.clear();
+  message.link_padding = {{"finger", 0.11}};
+  send(message);
+  EXPECT_TRUE(is_active(true)) << "0.49 m are left: " << daemon->output();
+  EXPECT_TRUE(comes("ball", "finger", 0.6)) << "a distance is that of the bodies";
+  message.link_padding = {{"finger", 0.04}};
+  send(message);
+  EXPECT_TRUE(is_active(false)) << "0.56 m are left: " << daemon->output();
 }
 
 }  // namespace

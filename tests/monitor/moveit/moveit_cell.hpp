@@ -77,9 +77,9 @@ class MoveItCell : public testing::Test {
         });
     for (const MeshFile& file : done.files)
       test::write_text(folder_ / ("sent:" + file.name), file.bytes);
-    make(done.changes);
-    make(translator_.exceptions(known_scene(cell_)));
-    EXPECT_TRUE(translator_.exceptions(known_scene(cell_)).empty());
+    make(done);
+    const KnownScene known = known_scene(cell_);
+    EXPECT_TRUE(translator_.exceptions(known.watched, known.exceptions).empty());
     return done;
   }
   // Sends what must be refused, and must change nothing. Returns the field.
@@ -119,7 +119,13 @@ class MoveItCell : public testing::Test {
   std::map<std::string, Pose> poses_;  // of links now
 
  private:
-  void make(const std::vector<CellChange>& changes) {
+  void make(const Translation& done) {
+    std::vector<CellChange> changes = done.changes;
+    if (const auto changed = editor_->dry_run(changes); std::holds_alternative<Cell>(changed)) {
+      const auto more =
+          translator_.exceptions(watched_pairs(std::get<Cell>(changed).scene), done.exceptions);
+      changes.insert(changes.end(), more.begin(), more.end());
+    }
     auto result = editor_->edit(changes);
     if (const auto* refusal = std::get_if<EditRefusal>(&result)) {
       ADD_FAILURE() << refusal->change << " " << refusal->path << ": " << refusal->reason;

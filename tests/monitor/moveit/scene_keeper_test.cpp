@@ -80,15 +80,17 @@ TEST_F(KeptScene, ASceneOnTheWireIsTheSceneThatWasSent) {
   const Translation expected = translator_.translate(
       some_scene(), known_scene(cell_),
       [this](const std::string& body) { return std::optional(poses_.at(body)); });
-  ASSERT_EQ(work.changes.size(), 2u);
-  ASSERT_EQ(expected.changes.size(), 2u);
-  for (std::size_t i = 0; i < 2; ++i)
+  ASSERT_EQ(work.changes.size(), 3u);
+  ASSERT_EQ(expected.changes.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i)
     EXPECT_EQ(yaml_of(work.changes[i]), yaml_of(expected.changes[i]));
-  EXPECT_THAT(work.news, testing::ElementsAre("/topic: link_padding of 'hand' is not used",
-                                              "/topic: link_scale of 'hand' is not used",
+  ASSERT_NE(std::get_if<SetMargin>(&work.changes[1]), nullptr);
+  EXPECT_EQ(std::get<SetMargin>(work.changes[1]).object, "hand");
+  EXPECT_EQ(std::get<SetMargin>(work.changes[1]).m, 0.01);
+  EXPECT_THAT(work.news, testing::ElementsAre("/topic: link_scale of 'hand' is not used",
                                               "/topic: world.octomap is not used"));
   // The matrix allows hand against table.
-  const std::vector<CellChange> exceptions = keeper_.exceptions(cell_);
+  const std::vector<CellChange> exceptions = keeper_.complete(cell_.scene);
   ASSERT_EQ(exceptions.size(), 1u);
   EXPECT_EQ(std::get<SetPair>(exceptions[0]).a, "hand");
   EXPECT_EQ(std::get<SetPair>(exceptions[0]).b, "table");
