@@ -6,7 +6,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +19,6 @@ struct SentFile {
   std::string name;
   std::string bytes;
 };
-
-struct Scene;
-
-// Returns changes that have to follow others in the same command, in the scene to which those lead.
-using CompleteChanges = std::function<std::vector<CellChange>(const Scene& changed)>;
 
 // The changes are made wholly or not at all.
 struct Command {

@@ -27,6 +27,8 @@ struct RawScene {
 // take_back() if they are not done.
 class SceneKeeper {
  public:
+  explicit SceneKeeper(MeshForm meshes = MeshForm::kFile) : translator_(meshes) {}
+
   struct Work {
     std::vector<CellChange> changes = {};  // empty: nothing is to be done
     std::vector<MeshFile> files = {};      // that the changes name

@@ -34,6 +34,8 @@ struct Translation {
 // the collision matrix, and the margins before a padding. To be used by one thread.
 class SceneTranslator {
  public:
+  explicit SceneTranslator(MeshForm meshes = MeshForm::kFile) : meshes_(meshes) {}
+
   // The changes assume `scene`, and the poses of now.
   [[nodiscard]] Translation translate(const CollisionObject& message, const KnownScene& scene,
                                       const PresentPoses& poses);
@@ -56,6 +58,7 @@ class SceneTranslator {
     std::string object;
     Pose object_from_subframe;
   };
+  MeshForm meshes_;
   std::map<std::string, Pose> world_from_frame_;  // fixed_frame_transforms
   std::map<std::string, Subframe> subframes_;     // by "object/subframe"
   std::map<std::string, double> padded_;          // links, with their margins before, m

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "config/cell/cell.hpp"
+#include "config/edit/cell_editor.hpp"
 #include "core/pose.hpp"
 #include "monitor/command.hpp"
 

@@ -120,7 +120,7 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
   if (Refusal refusal = take_texts(work)) return refusal;
   if (Refusal refusal = open(work.changes)) return refusal;
   if (Refusal refusal = take_poses(work)) return refusal;
-  auto proposed = propose(work);
+  auto proposed = editor_->propose(work.changes, work.complete);
   if (auto* refused = std::get_if<EditRefusal>(&proposed)) {
     return CommandRefusal{CommandStatus::kRefused, refused->change, std::move(refused->path),
                           std::move(refused->reason)};
@@ -143,17 +143,6 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
     editor_->keep();
   }
   return refusal;
-}
-
-std::variant<Cell, EditRefusal> SceneCommander::propose(Work& work) {
-  auto proposed = editor_->propose(work.changes);
-  const auto* cell = std::get_if<Cell>(&proposed);
-  if (cell == nullptr || !work.complete) return proposed;
-  const std::vector<CellChange> more = work.complete(cell->scene);
-  if (more.empty()) return proposed;
-  editor_->take_back();
-  work.changes.insert(work.changes.end(), more.begin(), more.end());
-  return editor_->propose(work.changes);
 }
 
 // If the text in force cannot be read any more, because a file of it has gone, a whole cell can

@@ -74,7 +74,6 @@ class SceneCommander {
   };
   Refusal do_all(Work& work, const std::function<bool()>& may_change, CommandResult& result);
   Refusal open(std::span<const CellChange> changes);
-  std::variant<Cell, EditRefusal> propose(Work& work);
   Refusal take_files(Work& work);
   Refusal take_texts(Work& work);
   Refusal take_poses(Work& work);

@@ -121,16 +121,14 @@ class MoveItCell : public testing::Test {
  private:
   void make(const Translation& done) {
     std::vector<CellChange> changes = done.changes;
-    if (const auto changed = editor_->dry_run(changes); std::holds_alternative<Cell>(changed)) {
-      const auto more =
-          translator_.exceptions(watched_pairs(std::get<Cell>(changed).scene), done.exceptions);
-      changes.insert(changes.end(), more.begin(), more.end());
-    }
-    auto result = editor_->edit(changes);
+    auto result = editor_->propose(changes, [&](const Scene& changed) {
+      return translator_.exceptions(watched_pairs(changed), done.exceptions);
+    });
     if (const auto* refusal = std::get_if<EditRefusal>(&result)) {
       ADD_FAILURE() << refusal->change << " " << refusal->path << ": " << refusal->reason;
       return;
     }
+    editor_->keep();
     cell_ = std::get<Cell>(std::move(result));
   }
 };
