@@ -215,6 +215,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   }
   if (margins_node != nullptr) read_link_margins(*margins_node, robots, quantities, list);
   attach_objects(quantities, robots, list);
+  allow_by_matrices(list, robots.may_touch);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);

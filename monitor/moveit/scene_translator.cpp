@@ -131,4 +131,18 @@ Translation SceneTranslator::translate(const PlanningScene& message, const Known
   return translator.result();
 }
 
+std::vector<CellChange> SceneTranslator::exceptions(const std::set<NamePair>& watched,
+                                                    const std::set<NamePair>& present) const {
+  std::vector<CellChange> changes;
+  if (!matrix_.is_set()) return changes;
+  for (const auto& [a, b] : present) {
+    if (!matrix_.allows(a, b)) changes.emplace_back(SetPair{a, b, SetPair::Rule::kNoException});
+  }
+  for (const auto& [a, b] : watched) {
+    if (matrix_.allows(a, b))
+      changes.emplace_back(SetPair{a, b, SetPair::Rule::kLeaveOut, std::string(kMatrixReason)});
+  }
+  return changes;
+}
+
 }  // namespace clearance::moveit

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "config/edit/cell_change.hpp"
+#include "config/moveit/collision_matrix.hpp"
 #include "config/moveit/message.hpp"
 #include "config/moveit/object_entry.hpp"
-#include "monitor/moveit/collision_matrix.hpp"
 #include "monitor/moveit/known_scene.hpp"
 
 namespace clearance::moveit {
@@ -48,9 +48,7 @@ class SceneTranslator {
   // collision matrix is about the pairs that the changed scene watches. `present`:
   // Translation::exceptions. Empty: nothing is left to do.
   [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
-                                                   const std::set<NamePair>& present) const {
-    return matrix_.exceptions(watched, present);
-  }
+                                                   const std::set<NamePair>& present) const;
 
  private:
   friend class MessageTranslator;

@@ -1,4 +1,4 @@
-// MoveIt's allowed collision matrix, as exceptions from the pairs of a cell.
+// MoveIt's allowed collision matrix, by names.
 #pragma once
 
 #include <cstddef>
@@ -8,9 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "config/edit/cell_change.hpp"
 #include "config/moveit/message.hpp"
-#include "monitor/moveit/known_scene.hpp"
 
 namespace clearance::moveit {
 
@@ -26,11 +24,10 @@ class CollisionMatrix {
   // both have one, both have to allow it.
   [[nodiscard]] bool allows(const std::string& a, const std::string& b) const;
 
-  // Returns the changes after which the exceptions that follow the matrix are those that it states.
-  // `present` are such exceptions, and `watched` the pairs besides. There are none before the first
-  // set().
-  [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
-                                                   const std::set<NamePair>& present) const;
+  // False before the first set().
+  [[nodiscard]] bool is_set() const noexcept { return is_set_; }
+  // The names that have entries of any kind.
+  [[nodiscard]] std::set<std::string> names() const;
 
  private:
   bool is_set_ = false;
