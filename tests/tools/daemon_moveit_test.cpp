@@ -29,11 +29,11 @@ using moveit::PlanningScene;
 using moveit::sphere_object;
 using testing::ElementsAre;
 
-constexpr double kNear = 1e-9;
+constexpr double kNearDistance = 1e-9;
 
 // An arm that stretches along x with a finger at 2.1 m, a wall at 5 m, a cart that follows tf, and
 // a box whose poses arrive.
-const std::string kCell =
+const std::string kKeptCell =
     "name: moveit\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
     "defaults: {age_limit_ms: 1000}\ncommands: {from: [planner]}\n"
     "capacity: {objects: 3, parts: 20, pairs: 100, bytes: 100000}\n"
@@ -50,12 +50,12 @@ const std::string kCell =
     "  - {between: [moveit, still]}\n  - {between: [arm, moveit]}\n"
     "zones:\n  - {name: near, between: [finger, moveit], enter_below: 0.5, leave_above: 0.55}\n";
 
-CollisionObject with(CollisionObject object, Operation operation) {
+CollisionObject as(CollisionObject object, Operation operation) {
   object.operation = static_cast<std::uint8_t>(operation);
   return object;
 }
 
-PlanningScene diff() {
+PlanningScene scene_diff() {
   PlanningScene scene;
   scene.is_diff = scene.robot_state_is_diff = true;
   return scene;
@@ -68,7 +68,7 @@ AttachedCollisionObject attached_to(const std::string& link, CollisionObject obj
 class DaemonMoveIt : public WatchedDaemon {
  protected:
   using Writer = std::unique_ptr<ByteWriter>;
-  void start(const std::string& text = kCell, const std::vector<std::string>& more = {}) {
+  void start(const std::string& text = kKeptCell, const std::vector<std::string>& more = {}) {
     watch(text, more);
     ASSERT_TRUE(joints.is_heard());
     ASSERT_TRUE(step_until(5, inputs(), [&] { return is("finger", PairStatus::kConverged); }))
@@ -109,7 +109,7 @@ class DaemonMoveIt : public WatchedDaemon {
     return step_until(5, inputs(), [&] {
       const auto* pair = pair_of(a, b);
       return pair != nullptr && pair->status == static_cast<std::uint8_t>(PairStatus::kConverged) &&
-             std::abs(pair->distance - distance) < kNear;
+             std::abs(pair->distance - distance) < kNearDistance;
     });
   }
   bool goes(const std::string& a, const std::string& b) {
@@ -152,9 +152,9 @@ TEST_F(DaemonMoveIt, CollisionObjectAddsMovesAndRemoves) {
   ASSERT_TRUE(comes("ball", "finger", 4 - 0.1 - 2.15)) << daemon->output();
   ball.primitives.clear();
   ball.pose.position.x() = 4.5;
-  send(with(ball, Operation::kMove));
+  send(as(ball, Operation::kMove));
   EXPECT_TRUE(comes("ball", "finger", 4.5 - 0.1 - 2.15)) << daemon->output();
-  send(with(ball, Operation::kRemove));
+  send(as(ball, Operation::kRemove));
   EXPECT_TRUE(goes("ball", "finger")) << daemon->output();
   EXPECT_EQ(report->scene_revision, scene.revision) << "the scene is the first one again";
 }
@@ -179,7 +179,7 @@ TEST_F(DaemonMoveIt, AttachedCollisionObjectIsCarriedAndStaysWhereItIsPutDown) {
 // The scene that comes back is read by another program, which gets it late.
 TEST_F(DaemonMoveIt, PlanningSceneIsInForceAndComesBackAsTheMonitoredOne) {
   start();
-  PlanningScene message = diff();
+  PlanningScene message = scene_diff();
   message.fixed_frame_transforms = {{"bench", "map", test::at(3, 0, 0)}};
   message.collision_objects = {sphere_object("ball", "bench", {1, 0, 0})};
   message.attached = {attached_to("finger", sphere_object("part", "map", {2.3, 0, 0}))};
@@ -209,11 +209,11 @@ TEST_F(DaemonMoveIt, PlanningSceneIsInForceAndComesBackAsTheMonitoredOne) {
   EXPECT_THAT((std::vector{monitored.collision_objects[0].id, monitored.collision_objects[1].id}),
               ElementsAre("wall", "ball"));
   EXPECT_EQ(monitored.collision_objects[1].frame_id, "map");
-  EXPECT_LT((monitored.collision_objects[1].pose.position - Vec3(4, 0, 0)).norm(), kNear);
+  EXPECT_LT((monitored.collision_objects[1].pose.position - Vec3(4, 0, 0)).norm(), kNearDistance);
   ASSERT_EQ(monitored.attached.size(), 1u);
   EXPECT_EQ(monitored.attached[0].link_name, "finger");
   EXPECT_EQ(monitored.attached[0].object.id, "part");
-  EXPECT_LT((monitored.attached[0].object.pose.position - Vec3(0.2, 0, 0)).norm(), kNear);
+  EXPECT_LT((monitored.attached[0].object.pose.position - Vec3(0.2, 0, 0)).norm(), kNearDistance);
 
   // A whole scene without objects removes both.
   send(PlanningScene{});
@@ -226,7 +226,7 @@ TEST_F(DaemonMoveIt, PlanningSceneIsInForceAndComesBackAsTheMonitoredOne) {
 // those of the scene before, so that they are refused.
 TEST_F(DaemonMoveIt, TfAndJointStatesGoOnAfterAChangeAndPosesWithoutARevisionAreRefused) {
   const std::string file = (folder / "run.mcap").string();
-  start(kCell, {"--record", file});
+  start(kKeptCell, {"--record", file});
   RosFrames frames(client);
   const dds_entity_t poses = client.writer(TopicKind::kPoses, read.topics.poses);
   ASSERT_TRUE(frames.is_heard() && eventually([&] { return matched_readers(poses) > 0; }));
@@ -252,7 +252,7 @@ TEST_F(DaemonMoveIt, TfAndJointStatesGoOnAfterAChangeAndPosesWithoutARevisionAre
   const auto is_at = [&](const std::string& name, double distance) {
     const auto* pair = pair_of(name, "wall");
     return pair != nullptr && pair->status == static_cast<std::uint8_t>(PairStatus::kConverged) &&
-           std::abs(pair->distance - distance) < kNear;
+           std::abs(pair->distance - distance) < kNearDistance;
   };
   ASSERT_TRUE(step_until(5, send_all(0), [&] {
     return is_at("cart", 5 - 1 - 0.1) && is_at("box", 5 - 2 - 0.1);
@@ -314,14 +314,14 @@ TEST_F(DaemonMoveIt, OfTwoClientsAtOnceIsAllDoneBesideCommands) {
 }
 
 TEST_F(DaemonMoveIt, OnATopicThatTheCellDoesNotNameIsNotHeard) {
-  std::string text = kCell;
+  std::string text = kKeptCell;
   const std::string key = "collision_object: true, ";
   text.erase(text.find(key), key.size());
   start(text);
   const moveit::CollisionObject ball = sphere_object("ball", "map", {4, 0, 0});
   ByteWriter unheard(client, dds.partition, *kRosCollisionObject.descriptor, "rt/collision_object",
                      moveit::cdr_of(ball));
-  PlanningScene message = diff();
+  PlanningScene message = scene_diff();
   message.collision_objects = {sphere_object("other", "map", {4, 0, 0})};
   send(message);
   ASSERT_TRUE(comes("other", "finger", 4 - 0.1 - 2.15)) << daemon->output();
@@ -348,7 +348,7 @@ TEST_F(DaemonMoveIt, ThatIsCutOffIsCountedAndRefusedAndTheNextOneCounts) {
 
 TEST_F(DaemonMoveIt, WithAFaultIsNamedByItsFieldAndTheRestCounts) {
   start();
-  PlanningScene message = diff();
+  PlanningScene message = scene_diff();
   message.collision_objects = {sphere_object("lost", "moon", {4, 0, 0}),
                                sphere_object("ball", "map", {4, 0, 0})};
   send(message);
@@ -360,7 +360,7 @@ TEST_F(DaemonMoveIt, WithAFaultIsNamedByItsFieldAndTheRestCounts) {
 
 TEST_F(DaemonMoveIt, BeyondTheCapacityIsRefusedAndTheNextOneCounts) {
   start();
-  PlanningScene message = diff();
+  PlanningScene message = scene_diff();
   for (const char* name : {"a", "b", "c", "d"})
     message.collision_objects.push_back(sphere_object(name, "map", {4, 0, 0}));
   message.allowed_collision_matrix = {{"a", "finger"}, {{true, true}, {true, true}}, {}, {}};
@@ -374,7 +374,7 @@ TEST_F(DaemonMoveIt, BeyondTheCapacityIsRefusedAndTheNextOneCounts) {
 // The ball is 0.6 m away, and the zone begins at 0.5 m.
 TEST_F(DaemonMoveIt, PaddingOfALinkEntersTheZoneThatIsNearer) {
   start();
-  PlanningScene message = diff();
+  PlanningScene message = scene_diff();
   message.collision_objects = {sphere_object("ball", "map", {2.85, 0, 0})};
   send(message);
   ASSERT_TRUE(comes("ball", "finger", 0.6)) << daemon->output();

@@ -22,10 +22,10 @@ using moveit::sphere_object;
 using testing::Contains;
 using testing::HasSubstr;
 
-constexpr std::int64_t kMs = 1'000'000, kBegin = 1'700'000'000'000'000'000;
+constexpr std::int64_t kMillisecond = 1'000'000, kBagBegin = 1'700'000'000'000'000'000;
 
 // Ticks come every 5 ms, so that the first one after T ms is number T / 5 + 1.
-const std::string kCell =
+const std::string kBagCell =
     "name: moveit\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
     "ros2: {world_frame: map, planning_scene: true, collision_object: true, "
     "attached_collision_object: true}\n"
@@ -35,31 +35,30 @@ const std::string kCell =
     "{between: [moveit, wall]}, {between: [arm, moveit]}]\n";
 
 // Half a second at rest, then the arm swings.
-double shoulder_at(std::int64_t ms) {
-  return ms < 500 ? 0.0 : 1e-3 * static_cast<double>(ms - 500);
-}
+double swing_at(std::int64_t ms) { return ms < 500 ? 0.0 : 1e-3 * static_cast<double>(ms - 500); }
 
-std::vector<RosMessage> motion() {
+std::vector<RosMessage> swing() {
   std::vector<RosMessage> messages;
   for (std::int64_t ms = 0; ms <= 1000; ms += 5) {
-    const std::int64_t t = kBegin + ms * kMs;
+    const std::int64_t t = kBagBegin + ms * kMillisecond;
     messages.push_back(
-        joint_state(t, t, {{"shoulder", "elbow", "push"}, {shoulder_at(ms), 0.0, 0.1}}));
+        joint_state(t, t, {{"shoulder", "elbow", "push"}, {swing_at(ms), 0.0, 0.1}}));
   }
   return messages;
 }
 
 template <class Message>
-RosMessage at_ms(std::int64_t ms, const std::string& topic, const std::string& type,
-                 const Message& message) {
-  return {"/" + topic, "moveit_msgs/msg/" + type, kBegin + ms * kMs, moveit::cdr_of(message)};
+RosMessage message_at(std::int64_t ms, const std::string& topic, const std::string& type,
+                      const Message& message) {
+  return {"/" + topic, "moveit_msgs/msg/" + type, kBagBegin + ms * kMillisecond,
+          moveit::cdr_of(message)};
 }
-RosMessage collision_object(std::int64_t ms, const moveit::CollisionObject& message) {
-  return at_ms(ms, "collision_object", "CollisionObject", message);
+RosMessage object_at(std::int64_t ms, const moveit::CollisionObject& message) {
+  return message_at(ms, "collision_object", "CollisionObject", message);
 }
-RosMessage attached(std::int64_t ms, const moveit::CollisionObject& message) {
-  return at_ms(ms, "attached_collision_object", "AttachedCollisionObject",
-               moveit::AttachedCollisionObject{"finger", message, {}});
+RosMessage attached_at(std::int64_t ms, const moveit::CollisionObject& message) {
+  return message_at(ms, "attached_collision_object", "AttachedCollisionObject",
+                    moveit::AttachedCollisionObject{"finger", message, {}});
 }
 
 class MoveItBag : public testing::Test {
@@ -67,7 +66,7 @@ class MoveItBag : public testing::Test {
   MoveItBag() { write_text(folder / "scara.urdf", kScaraUrdf); }
   OfflineReplay replay(const std::vector<RosMessage>& more,
                        const std::function<void(const ReplayedTick&)>& on_tick = {}) {
-    std::vector<RosMessage> messages = motion();
+    std::vector<RosMessage> messages = swing();
     messages.insert(messages.end(), more.begin(), more.end());
     std::ranges::stable_sort(messages, {}, &RosMessage::log_ns);
     write_mcap_bag(folder / "run.mcap", messages);
@@ -95,7 +94,7 @@ class MoveItBag : public testing::Test {
   ScratchFolder folder;
   Cell cell = [this] {
     write_text(folder / "scara.urdf", kScaraUrdf);
-    return read_good(kCell, folder / "cell.yaml");
+    return read_good(kBagCell, folder / "cell.yaml");
   }();
   std::vector<std::map<std::string, double>> ticks;
   std::vector<std::uint64_t> revisions;
@@ -103,10 +102,10 @@ class MoveItBag : public testing::Test {
 
 TEST_F(MoveItBag, ChangesTheSceneTwoTicksAfterEachMessage) {
   const OfflineReplay done =
-      replay({collision_object(100, sphere_object("ball", "map", {4, 0, 0})),
-              attached(200, sphere_object("part", "lower", {1.3, 0, 0})),
-              attached(900, moveit::operation(Operation::kRemove, "part")),
-              collision_object(950, moveit::operation(Operation::kRemove, "ball"))});
+      replay({object_at(100, sphere_object("ball", "map", {4, 0, 0})),
+              attached_at(200, sphere_object("part", "lower", {1.3, 0, 0})),
+              attached_at(900, moveit::operation(Operation::kRemove, "part")),
+              object_at(950, moveit::operation(Operation::kRemove, "ball"))});
   ASSERT_TRUE(done.ok()) << done.text();
   EXPECT_TRUE(std::isnan(at(105, "ball-finger")));
   EXPECT_NEAR(at(110, "ball-finger"), 4 - 0.1 - 2.15, 1e-9);
@@ -125,10 +124,10 @@ TEST_F(MoveItBag, ChangesTheSceneTwoTicksAfterEachMessage) {
 TEST_F(MoveItBag, GivesTheSameBytesInTwoReplaysOfManyChanges) {
   std::vector<RosMessage> more;
   for (int i = 0; i < 12; ++i) {
-    more.push_back(collision_object(
+    more.push_back(object_at(
         100 + 20 * i, sphere_object("ball" + std::to_string(i), "finger", {1.0 + 0.1 * i, 0, 0})));
   }
-  more.push_back(collision_object(600, moveit::operation(Operation::kRemove, "")));
+  more.push_back(object_at(600, moveit::operation(Operation::kRemove, "")));
   std::vector<std::string> bytes;
   for (int i = 0; i < 2; ++i) {
     ReportRecorder out(folder / "out.mcap", cell);
@@ -145,24 +144,23 @@ TEST_F(MoveItBag, GivesTheSameBytesInTwoReplaysOfManyChanges) {
 }
 
 TEST_F(MoveItBag, MessagesOfOneTickAreDoneOneAfterAnother) {
-  replay({collision_object(100, sphere_object("a", "map", {4, 0, 0})),
-          collision_object(100, sphere_object("b", "a", {0, 0, 1}))});
+  replay({object_at(100, sphere_object("a", "map", {4, 0, 0})),
+          object_at(100, sphere_object("b", "a", {0, 0, 1}))});
   EXPECT_NEAR(at(110, "a-finger"), 4 - 0.1 - 2.15, 1e-9);
   EXPECT_NEAR(at(120, "b-finger"), std::hypot(1.9, 1.0) - 0.15, 1e-9);
 }
 
 TEST_F(MoveItBag, MessagesAreNamedWhereABagIsConverted) {
-  replay({collision_object(100, sphere_object("ball", "map", {4, 0, 0}))});
+  replay({object_at(100, sphere_object("ball", "map", {4, 0, 0}))});
   const LogRecordingResult done = record_log(folder / "run.mcap", folder / "out.mcap", cell);
   EXPECT_THAT(done.notes, Contains(HasSubstr("/collision_object are not used")));
 }
 
 TEST_F(MoveItBag, WhatIsCutOffOrCannotBeUsedIsNamedAndTheRestCounts) {
-  RosMessage cut = collision_object(100, sphere_object("cut", "map", {4, 0, 0}));
+  RosMessage cut = object_at(100, sphere_object("cut", "map", {4, 0, 0}));
   cut.cdr.resize(cut.cdr.size() / 2);
-  const OfflineReplay done =
-      replay({cut, collision_object(150, sphere_object("lost", "moon", {4, 0, 0})),
-              collision_object(200, sphere_object("ball", "map", {4, 0, 0}))});
+  const OfflineReplay done = replay({cut, object_at(150, sphere_object("lost", "moon", {4, 0, 0})),
+                                     object_at(200, sphere_object("ball", "map", {4, 0, 0}))});
   ASSERT_TRUE(done.ok()) << done.text();
   EXPECT_THAT(done.notes, Contains(HasSubstr("does not decode")));
   EXPECT_THAT(done.notes, Contains(HasSubstr("header.frame_id")));
