@@ -172,8 +172,8 @@ TEST_F(DaemonMoveIt, AttachedCollisionObjectIsCarriedAndStaysWhereItIsPutDown) {
   send(attached_to("finger", operation(Operation::kRemove, "part")));
   ASSERT_TRUE(comes("part", "finger", 2.3 - 0.1 - 2.15)) << daemon->output();
   shoulder = 0.5;
-  const double apart = std::hypot(2.3 - 2.1 * std::cos(0.5), 2.1 * std::sin(0.5));
-  EXPECT_TRUE(comes("part", "finger", apart - 0.15)) << daemon->output();
+  const double distance = std::hypot(2.3 - 2.1 * std::cos(0.5), 2.1 * std::sin(0.5));
+  EXPECT_TRUE(comes("part", "finger", distance - 0.15)) << daemon->output();
 }
 
 // The scene that comes back is read by another program, which gets it late.
