@@ -2,33 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <utility>
 #include <variant>
 
+#include "monitor/present_body.hpp"
+
 namespace clearance {
-namespace {
-
-// Links without shapes are no objects.
-std::optional<Pose> pose_of(const std::string& body, const Scene& scene, const Monitor& monitor) {
-  PresentPose pose;
-  const auto object = std::ranges::find(scene.objects, body, &Object::name);
-  if (object != scene.objects.end()) {
-    pose = monitor.present_pose(static_cast<std::uint32_t>(object - scene.objects.begin()));
-  } else {
-    for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
-      const auto& links = scene.robots[robot].links;
-      const auto link = std::ranges::find(links, body, &RobotLink::name);
-      if (link == links.end()) continue;
-      pose = monitor.present_link(robot, static_cast<std::uint32_t>(link - links.begin()));
-      break;
-    }
-  }
-  if (pose.state != PresentPose::State::kUsable) return std::nullopt;
-  return pose.world_from_body;
-}
-
-}  // namespace
 
 bool MoveItChanges::open() {
   if (editor_) return true;
@@ -51,8 +30,11 @@ const Cell* MoveItChanges::next(const Monitor& monitor) {
   while (!waiting_.empty()) {
     const std::shared_ptr<const moveit::RawScene> message = std::move(waiting_.front());
     waiting_.pop_front();
-    auto work = keeper_.take(*message, *cell_, [&](const std::string& body) {
-      return pose_of(body, cell_->scene, monitor);
+    auto work = keeper_.take(*message, *cell_, [&](const std::string& name) -> std::optional<Pose> {
+      const auto body = find_body(name, cell_->scene);
+      const PresentPose pose = body ? present_pose(*body, monitor) : PresentPose{};
+      if (pose.state != PresentPose::State::kUsable) return std::nullopt;
+      return pose.world_from_body;
     });
     for (const std::string& sentence : work.news) notes_.push_back("MoveIt's " + sentence);
     if (work.changes.empty()) continue;
