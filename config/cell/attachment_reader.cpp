@@ -225,7 +225,8 @@ void AttachmentReader::leave_out_rigid() {
   }
 }
 
-// Names are those of objects, or of groups, whose members may then all be touched.
+// Names are those of objects, or of groups, whose members may then all be touched. A link without
+// shapes touches nothing.
 void AttachmentReader::leave_out_touching() {
   std::map<std::string, std::vector<std::uint32_t>> named;
   if (touching_.empty()) return;
@@ -243,12 +244,12 @@ void AttachmentReader::leave_out_touching() {
         for (const std::uint32_t other : found->second) {
           if (other != object) list_.left_out.push_back(pair_key(object, other));
         }
-      } else if (list_.names_known) {
+      } else if (list_.names_known && !links_.contains(*name)) {
         std::vector<std::string> known;
         for (const auto& [each, unused] : named) known.push_back(each);
         diagnostics_.add(
-            item, fmt::format("found the unknown name '{}'; expected an object, a link with shapes "
-                              "or a group that this one may touch{}",
+            item, fmt::format("found the unknown name '{}'; expected an object, a link or a group "
+                              " that this one may touch{}",
                               *name, did_you_mean(*name, known)));
       }
     }

@@ -13,6 +13,7 @@
 #include "config/cell/attachment_reader.hpp"
 #include "config/cell/command_reader.hpp"
 #include "config/cell/contact_reader.hpp"
+#include "config/cell/link_margins.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
@@ -187,6 +188,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* templates_node = map.optional("templates");
   const YamlNode* robots_node = map.optional("robots");
   const YamlNode* scenes_node = map.optional("scenes");
+  const YamlNode* margins_node = map.optional("margins");
   const YamlNode* objects_node = robots_node == nullptr && scenes_node == nullptr
                                      ? map.required("objects")
                                      : map.optional("objects");
@@ -211,7 +213,9 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   } else if (objects_node == nullptr && scenes_node == nullptr) {
     list.names_known = false;
   }
+  if (margins_node != nullptr) read_link_margins(*margins_node, robots, quantities, list);
   attach_objects(quantities, robots, list);
+  allow_by_matrices(list, robots.may_touch);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);

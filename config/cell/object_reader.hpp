@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <list>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/cell/object_template.hpp"
 #include "config/cell/pair_key.hpp"
 #include "config/cell/shape_reader.hpp"
+#include "config/moveit/collision_matrix.hpp"
 #include "config/scene/scene.hpp"
 #include "config/yaml/quantities.hpp"
 
@@ -50,6 +53,9 @@ struct ObjectList {
   std::vector<const YamlNode*> places;        // of each object's name
   std::map<std::string, double> mesh_errors;  // of those with meshes (cell_file.hpp)
   std::vector<StatedAttachment> stated;       // in the order of the file; not among `objects` yet
+  std::list<YamlNode> generated;              // nodes that are in no file
+  // Collision matrices of planning scenes, with the lines of the scenes.
+  std::vector<std::pair<moveit::CollisionMatrix, int>> matrices;
   // attach_objects() (attachment_reader.hpp) makes the rest. An object that is attached to a link
   // without shapes has no entry in `attachments`.
   std::vector<Attachment> attachments;  // ascending by object, a carrier before what it carries

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <map>
+#include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <variant>
@@ -35,7 +37,14 @@ void place_at(const YamlNode& place, YamlNode& node) {
   }
 }
 
-// Reads the objects of planning scenes, one file after another.
+// What a planning scene has, without groups and margins.
+struct ReadScene {
+  std::vector<Object> objects;
+  std::vector<std::pair<Object, YamlNode>> attached;  // with the value of `attached`
+  std::optional<moveit::CollisionMatrix> matrix;
+};
+
+// Reads planning scenes, one file after another.
 class PlanningSceneReader {
  public:
   PlanningSceneReader(const std::filesystem::path& directory, const Quantities& quantities,
@@ -46,13 +55,15 @@ class PlanningSceneReader {
         parts_(quantities, shapes),
         revision_(revision) {}
 
-  // Returns none after a diagnostic.
-  std::vector<Object> objects_of(const YamlNode& file_node);
+  // Returns an empty one after a diagnostic.
+  ReadScene scene_of(const YamlNode& file_node);
 
  private:
-  using Read = std::variant<std::vector<Object>, FileMistake>;
-  static Read objects_of_text(const std::string& text);
-  Read objects_of_yaml(const std::string& text, const YamlNode& file_node);
+  using Read = std::variant<ReadScene, FileMistake>;
+  static Read scene_of_text(const std::string& text);
+  Read scene_of_yaml(const std::string& text, const YamlNode& file_node);
+  std::optional<FileMistake> add_attached(const std::vector<moveit::AttachedCollisionObject>& list,
+                                          const YamlNode& file_node, ReadScene& scene);
   std::variant<Object, FileMistake> object_of(const moveit::CollisionObject& message,
                                               const Pose& scene_from_frame, const std::string& path,
                                               const YamlNode& file_node);
@@ -64,11 +75,11 @@ class PlanningSceneReader {
   Revision& revision_;
 };
 
-PlanningSceneReader::Read PlanningSceneReader::objects_of_text(const std::string& text) {
+PlanningSceneReader::Read PlanningSceneReader::scene_of_text(const std::string& text) {
   auto read = read_planning_scene(text);
   if (auto* fault = std::get_if<PlanningSceneFault>(&read))
     return FileMistake{fault->line, std::move(fault->reason)};
-  return std::get<PlanningScene>(std::move(read)).objects;
+  return ReadScene{std::get<PlanningScene>(std::move(read)).objects, {}, {}};
 }
 
 std::variant<Object, FileMistake> PlanningSceneReader::object_of(
@@ -95,19 +106,51 @@ std::variant<Object, FileMistake> PlanningSceneReader::object_of(
   return object;
 }
 
+// Where a link is in the world, no file says: what is attached has to be in the frame of its link.
+std::optional<FileMistake> PlanningSceneReader::add_attached(
+    const std::vector<moveit::AttachedCollisionObject>& list, const YamlNode& file_node,
+    ReadScene& scene) {
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    const moveit::AttachedCollisionObject& message = list[i];
+    const std::string path = fmt::format("robot_state.attached_collision_objects[{}].object", i);
+    if (message.object.frame_id != message.link_name) {
+      return FileMistake{
+          0, fmt::format("{}.header.frame_id: found '{}'; expected '{}', the link "
+                         "that carries '{}'",
+                         path, message.object.frame_id, message.link_name, message.object.id)};
+    }
+    auto object = object_of(message.object, Pose{}, path, file_node);
+    if (auto* mistake = std::get_if<FileMistake>(&object)) return std::move(*mistake);
+    auto& made = std::get<Object>(object);
+    made.fixed = false;
+    made.max_speed = kInfinity;
+    const YamlNode entry = moveit::attached_entry(
+        made.name, "", {message.link_name, made.world_from_object, message.touch_links}, {},
+        quantities_.units().length);
+    YamlNode attached = *find(entry, "attached");
+    place_at(file_node, attached);
+    scene.attached.emplace_back(std::move(made), std::move(attached));
+  }
+  return std::nullopt;
+}
+
 // The poses of all objects are in one frame, that of the first object, or in a fixed frame that the
 // scene places in that one.
-PlanningSceneReader::Read PlanningSceneReader::objects_of_yaml(const std::string& text,
-                                                               const YamlNode& file_node) {
+PlanningSceneReader::Read PlanningSceneReader::scene_of_yaml(const std::string& text,
+                                                             const YamlNode& file_node) {
   auto read = moveit::read_scene_yaml(text);
   if (auto* fault = std::get_if<moveit::SceneYamlFault>(&read))
     return FileMistake{fault->line, std::move(fault->reason)};
   const auto& scene = std::get<moveit::PlanningScene>(read);
-  if (!scene.attached.empty()) {
-    return FileMistake{
-        0, fmt::format("found '{}', which is attached to '{}'; expected objects of "
-                       "the world: write 'attached' under 'objects' of the cell",
-                       scene.attached.front().object.id, scene.attached.front().link_name)};
+  ReadScene made;
+  if (auto mistake = add_attached(scene.attached, file_node, made)) return *std::move(mistake);
+  if (!scene.allowed_collision_matrix.entry_names.empty() ||
+      !scene.allowed_collision_matrix.default_entry_names.empty()) {
+    const auto fault = made.matrix.emplace().set(scene.allowed_collision_matrix);
+    if (fault) {
+      return FileMistake{
+          0, fmt::format("allowed_collision_matrix.{}: {}", fault->field, fault->reason)};
+    }
   }
   std::map<std::string, Pose> frames;
   for (const moveit::FixedFrame& frame : scene.fixed_frame_transforms) {
@@ -116,7 +159,6 @@ PlanningSceneReader::Read PlanningSceneReader::objects_of_yaml(const std::string
       return FileMistake{0, fault->field + ": " + fault->reason};
     frames[frame.frame_id] = std::get<Pose>(pose);
   }
-  std::vector<Object> objects;
   const std::string first =
       scene.collision_objects.empty() ? "" : scene.collision_objects[0].frame_id;
   const std::string base =
@@ -133,12 +175,12 @@ PlanningSceneReader::Read PlanningSceneReader::objects_of_yaml(const std::string
     auto object =
         object_of(message, frame == frames.end() ? Pose{} : frame->second, path, file_node);
     if (auto* mistake = std::get_if<FileMistake>(&object)) return std::move(*mistake);
-    objects.push_back(std::get<Object>(std::move(object)));
+    made.objects.push_back(std::get<Object>(std::move(object)));
   }
-  return objects;
+  return made;
 }
 
-std::vector<Object> PlanningSceneReader::objects_of(const YamlNode& file_node) {
+ReadScene PlanningSceneReader::scene_of(const YamlNode& file_node) {
   const auto name = read_text(file_node, "a file", diagnostics_);
   if (!name) return {};
   const std::filesystem::path path = path_in(revision_.root(), directory_, *name);
@@ -152,17 +194,17 @@ std::vector<Object> PlanningSceneReader::objects_of(const YamlNode& file_node) {
   const auto& text = std::get<std::string>(bytes);
   revision_.add_file(path, text);
   const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
-  auto read = is_yaml ? objects_of_yaml(text, file_node) : objects_of_text(text);
+  auto read = is_yaml ? scene_of_yaml(text, file_node) : scene_of_text(text);
   if (const auto* mistake = std::get_if<FileMistake>(&read)) {
     const std::string place = mistake->line == 0 ? "" : fmt::format("{}:", mistake->line);
     diagnostics_.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{} {}",
                                             *name, place, excerpt(mistake->reason)));
     return {};
   }
-  auto& objects = std::get<std::vector<Object>>(read);
-  if (objects.empty())
+  auto& scene = std::get<ReadScene>(read);
+  if (scene.objects.empty() && scene.attached.empty())
     diagnostics_.add(file_node, "found a planning scene without objects; expected some");
-  return std::move(objects);
+  return std::move(scene);
 }
 
 void read_scene(const YamlNode& node, const ObjectDefaults& defaults, const Quantities& quantities,
@@ -177,19 +219,29 @@ void read_scene(const YamlNode& node, const ObjectDefaults& defaults, const Quan
                          ? std::nullopt
                          : read_name(*group_node, "the group of its objects", diagnostics);
   const Pose pose = pose_node == nullptr ? Pose{} : quantities.pose(*pose_node).value_or(Pose{});
-  std::vector<Object> objects;
-  if (file != nullptr) objects = reader.objects_of(*file);
-  if (objects.empty() || !group) list.names_known = false;
-  for (Object& object : objects) {
+  ReadScene scene;
+  if (file != nullptr) scene = reader.scene_of(*file);
+  if ((scene.objects.empty() && scene.attached.empty()) || !group) list.names_known = false;
+  if (scene.matrix) list.matrices.emplace_back(*std::move(scene.matrix), file->line);
+  const auto finish = [&](Object& object) {
     YamlNode name = *file;
     name.text = object.name;
     name.quoted = true;
     static_cast<void>(read_name(name, "the name of an object of a planning scene", diagnostics));
     if (group) object.groups = {*group};
     object.margin = defaults.margin;
+  };
+  for (Object& object : scene.objects) {
+    finish(object);
     object.world_from_object = compose(pose, object.world_from_object);
     list.objects.push_back(std::move(object));
     list.places.push_back(file);
+  }
+  for (auto& [object, attached] : scene.attached) {
+    finish(object);
+    object.world_from_object = {};
+    list.generated.push_back(std::move(attached));
+    list.stated.push_back({std::move(object), file, &list.generated.back(), nullptr});
   }
 }
 
@@ -205,6 +257,20 @@ void read_planning_scenes(const YamlNode& node, const std::filesystem::path& dir
   quantities.diagnostics().add(
       node, fmt::format("found {} objects with those of planning scenes; expected at most {}",
                         list.objects.size(), kMaxObjects));
+}
+
+// A name of a matrix may be of a link without shapes, or of another robot: it then means nothing.
+void allow_by_matrices(const ObjectList& list, PairExceptions& may_touch) {
+  for (const auto& [matrix, line] : list.matrices) {
+    const std::set<std::string> names = matrix.names();
+    for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
+      if (!names.contains(list.objects[i].name)) continue;
+      for (std::uint32_t j = 0; j < list.objects.size(); ++j) {
+        if (i != j && matrix.allows(list.objects[i].name, list.objects[j].name))
+          may_touch.emplace_back(pair_key(i, j), line);
+      }
+    }
+  }
 }
 
 }  // namespace clearance

@@ -76,7 +76,7 @@ struct SetMaxSpeed {
   std::optional<double> m_per_s;
 };
 struct SetMargin {
-  std::string object;
+  std::string object;  // or a link of a robot; nothing is then the margin of its robot
   std::optional<double> m;
 };
 struct SetAgeLimit {

@@ -22,8 +22,8 @@ namespace clearance {
 class CellDocument {
  public:
   // The lists of a cell that changes edit, in the order in which a new one is placed in the file.
-  static constexpr std::array<std::string_view, 6> kLists = {
-      "templates", "objects", "pairs", "allowed_collisions", "zones", "contacts"};
+  static constexpr std::array<std::string_view, 7> kLists = {
+      "templates", "objects", "margins", "pairs", "allowed_collisions", "zones", "contacts"};
 
   [[nodiscard]] static std::variant<CellDocument, YamlFault> parse(const std::string& text);
 

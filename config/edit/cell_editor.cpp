@@ -256,6 +256,18 @@ std::variant<Cell, EditRefusal> CellEditor::propose(std::span<const CellChange> 
   return result;
 }
 
+std::variant<Cell, EditRefusal> CellEditor::propose(std::vector<CellChange>& changes,
+                                                    const CompleteChanges& complete) {
+  auto proposed = propose(changes);
+  const auto* cell = std::get_if<Cell>(&proposed);
+  if (cell == nullptr || !complete) return proposed;
+  const std::vector<CellChange> more = complete(cell->scene);
+  if (more.empty()) return proposed;
+  take_back();
+  changes.insert(changes.end(), more.begin(), more.end());
+  return propose(changes);
+}
+
 void CellEditor::keep() {
   state_->before.reset();
   state_->document.keep();

@@ -6,6 +6,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -25,6 +26,9 @@ struct EditRefusal {
   std::string path;
   std::string reason;  // one sentence: what was found; what was expected
 };
+
+// Returns changes that have to follow others in the same list, in the scene to which those lead.
+using CompleteChanges = std::function<std::vector<CellChange>(const Scene& changed)>;
 
 class CellEditor {
  public:
@@ -50,6 +54,9 @@ class CellEditor {
   [[nodiscard]] std::variant<Cell, EditRefusal> propose(std::span<const CellChange> changes);
   void keep();
   void take_back();
+  // The same for `changes` and those that follow, which are appended. `complete` may be empty.
+  [[nodiscard]] std::variant<Cell, EditRefusal> propose(std::vector<CellChange>& changes,
+                                                        const CompleteChanges& complete);
 
   // The present text.
   [[nodiscard]] std::string text() const;

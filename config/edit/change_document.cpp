@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "config/edit/contact_entry.hpp"
+#include "config/edit/object_users.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/quantity_nodes.hpp"
@@ -17,18 +18,6 @@ namespace clearance {
 namespace {
 
 using Fault = std::optional<ChangeFault>;
-
-std::string text_of(const YamlNode* node) {
-  return node != nullptr && node->kind == YamlNode::Kind::kScalar ? node->text : "";
-}
-std::string name_of(const YamlNode& entry) { return text_of(find(entry, "name")); }
-
-// The two sides of `between`, in alphabetic order.
-std::pair<std::string, std::string> sides_of(const YamlNode& entry) {
-  const YamlNode* between = find(entry, "between");
-  if (between == nullptr || between->items.size() != 2) return {};
-  return std::minmax(between->items[0].text, between->items[1].text);
-}
 
 YamlNode list_of(const std::vector<std::string>& names) {
   YamlNode list;
@@ -79,9 +68,7 @@ class ChangeMaker {
   Fault operator()(const SetMaxSpeed& change) {
     return set_length(change.object, "max_speed", change.m_per_s);
   }
-  Fault operator()(const SetMargin& change) {
-    return set_length(change.object, "margin", change.m);
-  }
+  Fault operator()(const SetMargin& change);
   Fault operator()(const SetAgeLimit& change);
   Fault operator()(const SetSource& change);
   Fault operator()(const SetPair& change);
@@ -111,7 +98,6 @@ class ChangeMaker {
   Fault set_value(const std::string& object, const std::string& key, std::optional<YamlNode> value);
   Fault set_length(const std::string& object, const std::string& key,
                    const std::optional<double>& value);
-  [[nodiscard]] std::vector<std::string> users_of(const std::string& name) const;
   [[nodiscard]] YamlNode length(double metres) const { return length_node(metres, unit_); }
   [[nodiscard]] YamlNode pose(const Pose& pose) const { return pose_node(pose, unit_); }
   void erase_pair(std::string_view list, const std::pair<std::string, std::string>& sides);
@@ -186,42 +172,10 @@ Fault ChangeMaker::operator()(const AddFromTemplate& change) {
   return std::nullopt;
 }
 
-// Returns what names the object other than by membership: "pairs[arm, box]".
-std::vector<std::string> ChangeMaker::users_of(const std::string& name) const {
-  std::vector<std::string> users;
-  const auto add = [&](std::string_view list, const YamlNode& entry, std::size_t place) {
-    users.push_back(fmt::format("{}[{}]", list, entry_label(entry, place)));
-  };
-  for (const std::string_view list : {"pairs", "allowed_collisions", "zones", "contacts"}) {
-    const std::vector<YamlNode>& items = document_.items(list);
-    for (std::size_t i = 0; i < items.size(); ++i) {
-      const auto [a, b] = sides_of(items[i]);
-      if (a == name || b == name) add(list, items[i], i);
-    }
-  }
-  const std::vector<YamlNode>& objects = document_.items("objects");
-  for (std::size_t i = 0; i < objects.size(); ++i) {
-    const YamlNode* attached = find(objects[i], "attached");
-    if (attached == nullptr || name_of(objects[i]) == name) continue;
-    const YamlNode* touch = find(*attached, "touch");
-    const bool touches =
-        touch != nullptr &&
-        std::ranges::find(touch->items, name, &YamlNode::text) != touch->items.end();
-    if (text_of(find(*attached, "to")) == name || touches) add("objects", objects[i], i);
-  }
-  if (const YamlNode* robots = find(document_.tree(), "robots")) {
-    for (std::size_t i = 0; i < robots->items.size(); ++i) {
-      const YamlNode* base = find(robots->items[i], "base");
-      if (base != nullptr && text_of(find(*base, "on")) == name) add("robots", robots->items[i], i);
-    }
-  }
-  return users;
-}
-
 Fault ChangeMaker::operator()(const RemoveObject& change) {
   const auto found = named("objects", change.object);
   if (const auto* fault = std::get_if<ChangeFault>(&found)) return *fault;
-  const std::vector<std::string> users = users_of(change.object);
+  const std::vector<std::string> users = users_of(change.object, document_);
   if (!users.empty()) {
     constexpr std::size_t kNamed = 5;
     return ChangeFault{
@@ -286,6 +240,27 @@ Fault ChangeMaker::operator()(const Place& change) {
     set(node, "pose", pose(change.world_from_object));
     return std::nullopt;
   });
+}
+
+// What is no object may be a link of a robot, of which only the reader knows.
+Fault ChangeMaker::operator()(const SetMargin& change) {
+  const auto object = named("objects", change.object);
+  if (std::holds_alternative<Found>(object) || find(document_.tree(), "robots") == nullptr)
+    return set_length(change.object, "margin", change.m);
+  YamlNode margin;
+  set(margin, "name", text_node(change.object));
+  if (change.m) set(margin, "margin", length(*change.m));
+  const auto stated = named("margins", change.object);
+  if (const auto* found = std::get_if<Found>(&stated)) {
+    if (change.m) {
+      document_.replace("margins", found->index, std::move(margin));
+    } else {
+      document_.remove("margins", found->index);
+    }
+  } else if (change.m) {
+    document_.append("margins", std::move(margin));
+  }
+  return std::nullopt;
 }
 
 Fault ChangeMaker::operator()(const SetAgeLimit& change) {

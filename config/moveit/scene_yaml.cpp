@@ -29,14 +29,6 @@ const YamlNode* field(const YamlNode& map, const char* name, const char* type) {
   return clearance::find(map, name);
 }
 
-using Triangle = std::array<std::uint32_t, 3>;
-struct MeshTriangle {
-  Triangle vertices = {};
-};
-struct PlaneMessage {
-  Plane coef = {};
-};
-
 // Templates below find these by name only.
 double read(const YamlNode& node, const double&);
 std::uint32_t read(const YamlNode& node, const std::uint32_t&);
@@ -48,9 +40,7 @@ Vec2 read(const YamlNode& node, const Vec2&);
 Eigen::Quaterniond read(const YamlNode& node, const Eigen::Quaterniond&);
 Pose read(const YamlNode& node, const Pose&);
 SolidPrimitive read(const YamlNode& node, const SolidPrimitive&);
-MeshTriangle read(const YamlNode& node, const MeshTriangle&);
 Mesh read(const YamlNode& node, const Mesh&);
-PlaneMessage read(const YamlNode& node, const PlaneMessage&);
 CollisionObject read(const YamlNode& node, const CollisionObject&);
 AttachedCollisionObject read(const YamlNode& node, const AttachedCollisionObject&);
 FixedFrame read(const YamlNode& node, const FixedFrame&);
@@ -108,6 +98,22 @@ void get(const YamlNode& map, const char* name, const char* type, T& value) {
   if (const YamlNode* node = field(map, name, type)) value = read(*node, T());
 }
 
+const std::vector<YamlNode>& items_of(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::kSequence && node.kind != YamlNode::Kind::kNull)
+    fail(node, fmt::format("found {}; expected a list", describe(node)));
+  return node.items;
+}
+
+// Reads a list of messages of which one field counts.
+template <class T>
+void get_each(const YamlNode& map, const char* name, const char* type, const char* item_field,
+              const char* item_type, std::vector<T>& values) {
+  const YamlNode* list = field(map, name, type);
+  if (list == nullptr) return;
+  for (const YamlNode& item : items_of(*list))
+    get(item, item_field, item_type, values.emplace_back());
+}
+
 Vec3 read(const YamlNode& node, const Vec3&) {
   Vec3 point = Vec3::Zero();
   get(node, "x", "Point", point.x());
@@ -152,25 +158,11 @@ SolidPrimitive read(const YamlNode& node, const SolidPrimitive&) {
   return primitive;
 }
 
-MeshTriangle read(const YamlNode& node, const MeshTriangle&) {
-  MeshTriangle triangle;
-  get(node, "vertex_indices", "MeshTriangle", triangle.vertices);
-  return triangle;
-}
-
 Mesh read(const YamlNode& node, const Mesh&) {
   Mesh mesh;
-  std::vector<MeshTriangle> triangles;
-  get(node, "triangles", "Mesh", triangles);
-  for (const MeshTriangle& each : triangles) mesh.triangles.push_back(each.vertices);
+  get_each(node, "triangles", "Mesh", "vertex_indices", "MeshTriangle", mesh.triangles);
   get(node, "vertices", "Mesh", mesh.vertices);
   return mesh;
-}
-
-PlaneMessage read(const YamlNode& node, const PlaneMessage&) {
-  PlaneMessage plane;
-  get(node, "coef", "Plane", plane.coef);
-  return plane;
 }
 
 std::string frame_of(const YamlNode& node, const char* type) {
@@ -190,9 +182,7 @@ CollisionObject read(const YamlNode& node, const CollisionObject&) {
   get(node, "primitive_poses", kType, object.primitive_poses);
   get(node, "meshes", kType, object.meshes);
   get(node, "mesh_poses", kType, object.mesh_poses);
-  std::vector<PlaneMessage> planes;
-  get(node, "planes", kType, planes);
-  for (const PlaneMessage& plane : planes) object.planes.push_back(plane.coef);
+  get_each(node, "planes", kType, "coef", "Plane", object.planes);
   get(node, "plane_poses", kType, object.plane_poses);
   get(node, "subframe_names", kType, object.subframe_names);
   get(node, "subframe_poses", kType, object.subframe_poses);
@@ -224,10 +214,7 @@ FixedFrame read(const YamlNode& node, const FixedFrame&) {
 template <class T>
 std::vector<T> read(const YamlNode& node, const std::vector<T>&) {
   std::vector<T> list;
-  if (node.kind == YamlNode::Kind::kNull) return list;
-  if (node.kind != YamlNode::Kind::kSequence)
-    fail(node, fmt::format("found {}; expected a list", describe(node)));
-  for (const YamlNode& item : node.items) list.push_back(read(item, T()));
+  for (const YamlNode& item : items_of(node)) list.push_back(read(item, T()));
   return list;
 }
 
@@ -240,6 +227,14 @@ PlanningScene read(const YamlNode& node, const PlanningScene&) {
   if (const YamlNode* state = field(node, "robot_state", kType)) {
     get(*state, "attached_collision_objects", "RobotState", scene.attached);
     get(*state, "is_diff", "RobotState", scene.robot_state_is_diff);
+  }
+  if (const YamlNode* matrix = field(node, "allowed_collision_matrix", kType)) {
+    constexpr const char* kMatrix = "AllowedCollisionMatrix";
+    AllowedCollisionMatrix& to = scene.allowed_collision_matrix;
+    get(*matrix, "entry_names", kMatrix, to.entry_names);
+    get_each(*matrix, "entry_values", kMatrix, "enabled", "AllowedCollisionEntry", to.entry_values);
+    get(*matrix, "default_entry_names", kMatrix, to.default_entry_names);
+    get(*matrix, "default_entry_values", kMatrix, to.default_entry_values);
   }
   const YamlNode* world = field(node, "world", kType);
   if (world == nullptr)

@@ -15,7 +15,7 @@ struct SceneYamlFault {
 };
 
 // Reads one document; "---" behind it ends the text. Of the robot's state, only what is attached is
-// read. Colours, types and stamps are skipped. The first fault ends the reading.
+// read. Colours, types, stamps, padding and scale are skipped. The first fault ends the reading.
 [[nodiscard]] std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text);
 
 }  // namespace clearance::moveit

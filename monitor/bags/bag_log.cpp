@@ -27,7 +27,12 @@ BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputL
       options_(options),
       path_(path),
       bag_(open_bag(path)),
-      intake_(cell, {.is_log = true, .joint_topics = options.joint_topics},
+      intake_(cell,
+              {.is_log = true,
+               .joint_topics = options.joint_topics,
+               .use_scene = options.with_scenes
+                                ? [this](moveit::RawScene message) { use(std::move(message)); }
+                                : MoveItMessages::Use()},
               [this](PoseBatch& batch) {
                 use(std::move(batch));
                 return true;
@@ -52,8 +57,9 @@ bool BagLog::next(LoggedBatch& batch) {
   const auto first = waiting_.begin();
   // A batch with an earlier time that comes after this one is not put back in order.
   last_ns_ = std::max(last_ns_, first->first);
-  given_out_ = true;
-  batch = {std::move(first->second), last_ns_};
+  batch = std::move(first->second);
+  batch.log_ns = last_ns_;
+  given_out_ = given_out_ || batch.scene == nullptr;
   waiting_.erase(first);
   return true;
 }
@@ -88,7 +94,8 @@ void BagLog::take(const BagMessage& message) {
   intake_.take({.topic = *topic.number, .cdr = message.payload, .sent_ns = message.log_ns},
                {.realtime_ns = message.log_ns, .monotonic_ns = message.log_ns});
   for (News& news : intake_.take_news()) {
-    if (news.cause == News::Cause::kSlowInput) slow_.push_back(std::move(news.text));
+    const bool is_unused = news.cause == News::Cause::kTopicHeard && news.is_warning;
+    if (is_unused || news.cause == News::Cause::kSlowInput) told_.push_back(std::move(news.text));
   }
 }
 
@@ -103,8 +110,14 @@ void BagLog::use(PoseBatch batch) {
     return;
   }
   batch.sequence_number = ++sequence_[std::string(batch.source.view())];
-  waiting_.emplace(log_ns_, std::move(batch));
-  if (!given_.empty()) waiting_.emplace(log_ns_, given_.at(log_ns_));
+  waiting_.emplace(log_ns_, LoggedBatch{std::move(batch)});
+  if (!given_.empty()) waiting_.emplace(log_ns_, LoggedBatch{given_.at(log_ns_)});
+}
+
+void BagLog::use(moveit::RawScene message) {
+  waiting_.emplace(
+      log_ns_, LoggedBatch{.batch = {},
+                           .scene = std::make_shared<const moveit::RawScene>(std::move(message))});
 }
 
 // Lists the topics that the bag has instead, so that a user can choose one.
@@ -146,7 +159,7 @@ std::vector<std::string> BagLog::notes() const {
                      "is used",
                      static_cast<double>(counts.clock_difference_ns) * 1e-9));
   }
-  notes.insert(notes.end(), slow_.begin(), slow_.end());
+  notes.insert(notes.end(), told_.begin(), told_.end());
   for (const std::string& joint : intake_.joint_states().unknown_names()) {
     notes.push_back(fmt::format("joint '{}' of the bag is not in the cell: left out{}", joint,
                                 did_you_mean(joint, joint_names(scene_))));

@@ -46,6 +46,7 @@ class BagLog final : public InputLog {
   void read_ahead();
   void take(const BagMessage& message);
   void use(PoseBatch batch);
+  void use(moveit::RawScene message);
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;
@@ -56,9 +57,9 @@ class BagLog final : public InputLog {
 
   std::map<std::string, Topic> topics_;  // by name
   std::vector<bool> heard_;              // by variable
-  std::vector<std::string> slow_;        // a sentence for each input that comes too seldom
+  std::vector<std::string> told_;        // sentences about rare inputs and unused topics
   std::map<std::string, std::uint64_t, std::less<>> sequence_;  // by source
-  std::multimap<std::int64_t, PoseBatch> waiting_;              // by log time; ties in file order
+  std::multimap<std::int64_t, LoggedBatch> waiting_;            // by log time; ties in file order
   Topic* topic_ = nullptr;   // topic of the message that is being taken
   std::int64_t log_ns_ = 0;  // of that message
   std::int64_t read_to_ns_ = 0, last_ns_ = 0;

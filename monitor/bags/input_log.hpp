@@ -13,10 +13,16 @@
 
 namespace clearance {
 
+namespace moveit {
+struct RawScene;
+}
+
 // One message.
 struct LoggedBatch {
   PoseBatch batch;
   std::int64_t log_ns = 0;  // when it was recorded
+  // A message of MoveIt that keeps the scene; the batch is then empty. Null: it is a batch.
+  std::shared_ptr<const moveit::RawScene> scene = {};
 };
 
 struct InputLogOptions {
@@ -25,6 +31,9 @@ struct InputLogOptions {
   std::vector<std::string> joint_topics = {};
   // Constant positions of joints that are not in the log, by name.
   std::map<std::string, double> joints = {};
+  // Gives out the messages of MoveIt on the topics that the cell names. Otherwise they are left
+  // out.
+  bool with_scenes = false;
 };
 
 // Not for several threads at once.

@@ -20,10 +20,6 @@ class MoveItPort {
   void close();
 
  private:
-  void put(QueuedCommand command, const std::string& topic);
-  void follow_matrix(const std::string& topic);
-  static void log_result(const CommandResult& result, const std::string& topic);
-
   std::mutex mutex_;
   Put put_;                     // empty: closed
   moveit::SceneKeeper keeper_;  // used by the scene thread only

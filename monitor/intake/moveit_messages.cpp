@@ -37,8 +37,8 @@ std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
     out_.tell({.cause = News::Cause::kTopicHeard,
                .is_warning = !use_,
                .text = use_ ? fmt::format("the scene of MoveIt on {}", topic.name)
-                            : fmt::format("messages of {} are not used: a replay of a bag does not "
-                                          "change the scene",
+                            : fmt::format("messages of {} are not used: only a daemon or a replay "
+                                          "changes the scene",
                                           topic.name)});
     if (!use_) return std::nullopt;
     return Wanted{port, input.delivery};

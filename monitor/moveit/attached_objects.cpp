@@ -7,7 +7,8 @@
 
 namespace clearance::moveit {
 
-// MoveIt attaches objects however deep they overlap the links that they may touch.
+// MoveIt lets an object overlap its touch links at any depth: a grasp closes fingers in the model
+// of a part, so that a limit would refuse the attachment and leave the part behind as an obstacle.
 constexpr double kAnyDepth = 1e6;  // m
 
 // Names of links without shapes are left out: they touch nothing. The carrier may always touch.

@@ -62,6 +62,13 @@ void add_entry(const YamlNode& entry, const YamlNode& cell, KnownScene& scene) {
 
 NamePair name_pair(const std::string& a, const std::string& b) { return std::minmax(a, b); }
 
+std::set<NamePair> watched_pairs(const Scene& scene) {
+  std::set<NamePair> pairs;
+  for (const ObjectPair& pair : scene.pairs)
+    pairs.insert(name_pair(scene.objects[pair.first].name, scene.objects[pair.second].name));
+  return pairs;
+}
+
 KnownScene known_scene(const Cell& cell) {
   KnownScene known;
   known.world = cell.ros.world();
@@ -71,6 +78,7 @@ KnownScene known_scene(const Cell& cell) {
     KnownObject& added = known.objects[object.name];
     added.where = object.fixed ? KnownObject::Where::kFixed : KnownObject::Where::kMoving;
     added.pose = object.world_from_object;
+    added.margin = object.margin;
   }
   for (const Robot& robot : scene.robots) {
     for (std::uint32_t i = 0; i < robot.links.size() && !robot.is_attached; ++i) {
@@ -80,15 +88,14 @@ KnownScene known_scene(const Cell& cell) {
         known.objects[link.name].where = KnownObject::Where::kLink;
     }
   }
-  for (const ObjectPair& pair : scene.pairs) {
-    known.watched.insert(
-        name_pair(scene.objects[pair.first].name, scene.objects[pair.second].name));
-  }
+  known.watched = watched_pairs(scene);
   const auto read = parse_yaml(cell.yaml);
   const auto* tree = std::get_if<YamlNode>(&read);
   if (tree == nullptr) return known;
   known.unit = length_unit_of(*tree);
   for (const YamlNode& entry : items_of(*tree, "objects")) add_entry(entry, *tree, known);
+  for (const YamlNode& entry : items_of(*tree, "margins"))
+    known.margins.insert(text_of(find(entry, "name")));
   for (const YamlNode& entry : items_of(*tree, "allowed_collisions")) {
     const YamlNode* between = find(entry, "between");
     if (between == nullptr || between->items.size() != 2) continue;

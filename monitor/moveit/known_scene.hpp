@@ -36,6 +36,7 @@ struct KnownObject {
   bool is_moveits = false;     // MoveIt has added it: it is in the group of such objects
   bool is_gone = false;        // MoveIt has dropped it, and the message may bring it again
   Pose pose = {};
+  double margin = 0.0;  // m
   std::string carrier = {};
   YamlNode entry = {};  // of an object in `objects`
 };
@@ -47,12 +48,15 @@ struct KnownScene {
   std::map<std::string, std::optional<Pose>> links;  // where nothing moves the link: in the world
   std::set<NamePair> watched;                        // the pairs of the scene
   std::set<NamePair> exceptions;                     // that follow MoveIt's collision matrix
+  std::set<std::string> margins;                     // links with an entry of `margins`
   LengthUnit unit = LengthUnit::kMetre;
   std::string world;  // the frame that is the cell's world
   std::string group;  // of objects that MoveIt has added
 };
 
 [[nodiscard]] NamePair name_pair(const std::string& a, const std::string& b);
+
+[[nodiscard]] std::set<NamePair> watched_pairs(const Scene& scene);
 
 // Cell::yaml has to be the text of the cell.
 [[nodiscard]] KnownScene known_scene(const Cell& cell);

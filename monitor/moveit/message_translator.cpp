@@ -78,7 +78,7 @@ Body MessageTranslator::body_of_message(const CollisionObject& message, const st
         path + "primitives",
         fmt::format("found no primitives, meshes or planes of '{}'; expected a shape", message.id));
   }
-  Body body = value_of(body_of(message, scene_.unit, MeshForm::kFile), path);
+  Body body = value_of(body_of(message, scene_.unit, kept_.meshes_), path);
   for (MeshFile& file : body.files) {
     const auto same = [&](const MeshFile& each) { return each.name == file.name; };
     if (std::ranges::none_of(result_.files, same)) result_.files.push_back(std::move(file));

@@ -44,7 +44,10 @@ class MessageTranslator {
   void translate(const CollisionObject& message, const std::string& path);
   void translate(const AttachedCollisionObject& message, const std::string& path);
   void translate(const PlanningScene& message);
-  Translation result() { return std::move(result_); }
+  Translation result() {
+    result_.exceptions = std::move(scene_.exceptions);
+    return std::move(result_);
+  }
 
  private:
   template <class Translate>
@@ -73,6 +76,7 @@ class MessageTranslator {
   void forget_exceptions(const std::string& id);
   void keep_subframes(const CollisionObject& message, const std::string& path);
   void set_frames(const PlanningScene& message);
+  void set_margins(const PlanningScene& message);
   void drop_gone();
 
   SceneTranslator& kept_;

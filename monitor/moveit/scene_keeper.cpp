@@ -29,6 +29,8 @@ void SceneKeeper::say(std::string sentence, Work& work) {
 SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
                                     const PresentPoses& poses) {
   const KnownScene scene = known_scene(cell);
+  before_ = translator_;
+  incomplete_.reset();
   std::optional<Translation> done;
   switch (message.type) {
     case RawScene::Type::kCollisionObject:
@@ -56,7 +58,17 @@ SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
     say(fmt::format("{}: {} is not used", message.topic, what), work);
   work.changes = std::move(done->changes);
   work.files = std::move(done->files);
+  if (work.changes.empty()) {
+    work.changes = translator_.exceptions(scene.watched, done->exceptions);
+  } else {
+    incomplete_ = std::move(done->exceptions);
+  }
   return work;
+}
+
+std::vector<CellChange> SceneKeeper::complete(const Scene& changed) const {
+  if (!incomplete_) return {};
+  return translator_.exceptions(watched_pairs(changed), *incomplete_);
 }
 
 }  // namespace clearance::moveit

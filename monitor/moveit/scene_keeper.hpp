@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -22,9 +23,12 @@ struct RawScene {
   CdrBytes bytes = CdrBytes::kUnchecked;
 };
 
-// One thread may use it.
+// One thread may use it. A message is one list of changes: those of take(), then complete(). Call
+// take_back() if they are not done.
 class SceneKeeper {
  public:
+  explicit SceneKeeper(MeshForm meshes = MeshForm::kFile) : translator_(meshes) {}
+
   struct Work {
     std::vector<CellChange> changes = {};  // empty: nothing is to be done
     std::vector<MeshFile> files = {};      // that the changes name
@@ -33,16 +37,18 @@ class SceneKeeper {
   // The changes assume `cell`, whose text has to be Cell::yaml, and the poses of now.
   [[nodiscard]] Work take(const RawScene& message, const Cell& cell, const PresentPoses& poses);
 
-  // Returns changes that follow when those of a message, or of other clients, are in force.
-  [[nodiscard]] std::vector<CellChange> exceptions(const Cell& cell) const {
-    return translator_.exceptions(known_scene(cell));
-  }
+  // Returns the changes that have to follow those of the last take(), which lead to `changed`: the
+  // exceptions of the collision matrix.
+  [[nodiscard]] std::vector<CellChange> complete(const Scene& changed) const;
+  // The changes of the last take() were refused: what it kept is forgotten.
+  void take_back() { translator_ = before_; }
 
  private:
   static constexpr std::size_t kMostSaid = 1000;
   void say(std::string sentence, Work& work);
 
-  SceneTranslator translator_;
+  SceneTranslator translator_, before_;
+  std::optional<std::set<NamePair>> incomplete_;  // exceptions after the changes of take()
   CdrDecoder decoder_;
   std::set<std::string> said_;
 };

@@ -3,6 +3,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "monitor/moveit/message_translator.hpp"
 
 namespace clearance::moveit {
@@ -22,6 +25,41 @@ void MessageTranslator::set_frames(const PlanningScene& message) {
       }
       const Pose pose = value_of(checked_pose(frame.child_from_frame, "transform"), path);
       kept_.world_from_frame_[frame.frame_id] = compose(*world, pose);
+    });
+  }
+}
+
+// A margin that the cell states is the cell's own. A padding that is no larger than what the cell
+// gives to the link adds nothing.
+void MessageTranslator::set_margins(const PlanningScene& message) {
+  for (std::size_t i = 0; i < message.link_padding.size(); ++i) {
+    const auto& [name, padding] = message.link_padding[i];
+    guarded([&, &name = name, &padding = padding] {
+      if (!(std::isfinite(padding) && padding >= 0.0)) {
+        fail(fmt::format("link_padding[{}].padding", i),
+             fmt::format("found {}; expected metres, 0 or more", padding));
+      }
+      const auto link = scene_.objects.find(name);
+      if (link == scene_.objects.end() || link->second.where != Where::kLink) {
+        if (padding > 0.0 && !scene_.links.contains(name))
+          result_.not_understood.push_back(fmt::format("link_padding of '{}'", name));
+        return;
+      }
+      double& margin = link->second.margin;
+      const bool is_stated = scene_.margins.contains(name);
+      if (is_stated && !kept_.padded_.contains(name)) {
+        if (padding > margin) {
+          result_.not_understood.push_back(
+              fmt::format("link_padding of '{}', whose margin the cell states", name));
+        }
+        return;
+      }
+      const double before = kept_.padded_.emplace(name, margin).first->second;
+      const double after = std::max(before, padding);
+      if (after == margin) return;
+      margin = after;
+      result_.changes.emplace_back(
+          SetMargin{name, after > before ? std::optional(after) : std::nullopt});
     });
   }
 }
@@ -61,10 +99,7 @@ void MessageTranslator::translate(const PlanningScene& message) {
       result_.refused.push_back(*std::move(fault));
     }
   }
-  for (const LinkNumber& padding : message.link_padding) {
-    if (padding.value != 0.0)
-      result_.not_understood.push_back(fmt::format("link_padding of '{}'", padding.link_name));
-  }
+  set_margins(message);
   for (const LinkNumber& scale : message.link_scale) {
     if (scale.value != 1.0)
       result_.not_understood.push_back(fmt::format("link_scale of '{}'", scale.link_name));
@@ -94,6 +129,20 @@ Translation SceneTranslator::translate(const PlanningScene& message, const Known
   MessageTranslator translator(*this, scene, poses);
   translator.translate(message);
   return translator.result();
+}
+
+std::vector<CellChange> SceneTranslator::exceptions(const std::set<NamePair>& watched,
+                                                    const std::set<NamePair>& present) const {
+  std::vector<CellChange> changes;
+  if (!matrix_.is_set()) return changes;
+  for (const auto& [a, b] : present) {
+    if (!matrix_.allows(a, b)) changes.emplace_back(SetPair{a, b, SetPair::Rule::kNoException});
+  }
+  for (const auto& [a, b] : watched) {
+    if (matrix_.allows(a, b))
+      changes.emplace_back(SetPair{a, b, SetPair::Rule::kLeaveOut, std::string(kMatrixReason)});
+  }
+  return changes;
 }
 
 }  // namespace clearance::moveit

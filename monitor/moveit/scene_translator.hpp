@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "config/edit/cell_change.hpp"
+#include "config/moveit/collision_matrix.hpp"
 #include "config/moveit/message.hpp"
 #include "config/moveit/object_entry.hpp"
-#include "monitor/moveit/collision_matrix.hpp"
 #include "monitor/moveit/known_scene.hpp"
 
 namespace clearance::moveit {
@@ -21,6 +21,8 @@ namespace clearance::moveit {
 struct Translation {
   std::vector<CellChange> changes = {};
   std::vector<MeshFile> files = {};  // that the changes name
+  // After these changes: pairs with an exception that follows the collision matrix.
+  std::set<NamePair> exceptions = {};
   // Each leaves out the object, or the list, that it names; the rest of the message counts.
   std::vector<FieldFault> refused = {};
   // Parts of the message that are in no change, in words: "link_scale of 'hand'". The caller
@@ -28,10 +30,12 @@ struct Translation {
   std::vector<std::string> not_understood = {};
 };
 
-// Keeps what MoveIt keeps between messages and a cell does not: fixed frames, subframes of objects
-// and the collision matrix. To be used by one thread.
+// Keeps what MoveIt keeps between messages and a cell does not: fixed frames, subframes of objects,
+// the collision matrix, and the margins before a padding. To be used by one thread.
 class SceneTranslator {
  public:
+  explicit SceneTranslator(MeshForm meshes = MeshForm::kFile) : meshes_(meshes) {}
+
   // The changes assume `scene`, and the poses of now.
   [[nodiscard]] Translation translate(const CollisionObject& message, const KnownScene& scene,
                                       const PresentPoses& poses);
@@ -40,11 +44,11 @@ class SceneTranslator {
   [[nodiscard]] Translation translate(const PlanningScene& message, const KnownScene& scene,
                                       const PresentPoses& poses);
 
-  // Call this with the changed scene after each translation: the pairs that the collision matrix
-  // allows are those of the changed scene. Empty: nothing is left to do.
-  [[nodiscard]] std::vector<CellChange> exceptions(const KnownScene& scene) const {
-    return matrix_.exceptions(scene);
-  }
+  // Returns the changes that have to follow those of a translation, in the same command: the
+  // collision matrix is about the pairs that the changed scene watches. `present`:
+  // Translation::exceptions. Empty: nothing is left to do.
+  [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
+                                                   const std::set<NamePair>& present) const;
 
  private:
   friend class MessageTranslator;
@@ -52,8 +56,10 @@ class SceneTranslator {
     std::string object;
     Pose object_from_subframe;
   };
+  MeshForm meshes_;
   std::map<std::string, Pose> world_from_frame_;  // fixed_frame_transforms
   std::map<std::string, Subframe> subframes_;     // by "object/subframe"
+  std::map<std::string, double> padded_;          // links, with their margins before, m
   CollisionMatrix matrix_;
 };
 

@@ -12,7 +12,6 @@
 #include <memory>
 #include <utility>
 
-#include "monitor/files/build_info.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/recorded_loop.hpp"
@@ -45,32 +44,19 @@ std::optional<ReferenceCheck> reference_of(const Scene& scene,
   return ReferenceCheck(scene, options.reference, options.tolerance, options.mesh_errors);
 }
 
-// Added to the text of a difference when another build may be the reason.
-std::string other_build(const std::string& recorded) {
-  if (recorded == kBuild) return {};
-  const std::string ours = kBuild;
-  if (recorded.empty()) {
-    return fmt::format(
-        "; the recording does not name its build: if that is not this one ({}), it may be the "
-        "reason",
-        ours);
-  }
-  return fmt::format("; it was recorded by another build ({}), which may be the reason: this is {}",
-                     recorded, ours);
-}
-
 // One replay from its outline to its result.
 class Replay {
  public:
   Replay(SceneHistory& history, TickFeed feed, const OfflineReplayOptions& options,
-         const RecordingOutline& outline)
+         const RecordingOutline& outline, MoveItChanges* moveit = nullptr)
       : scene_(&history.first().scene),
         options_(options),
         has_reports_(outline.has_reports),
         some_without_pairs_(outline.some_without_pairs),
         other_build_(other_build(outline.build)),
         feed_(std::move(feed)),
-        loop_(history),
+        loop_(history, moveit),
+        moveit_(moveit),
         expectations_(*scene_, options.expect_min_distance, options.expect_no_zone),
         reference_(reference_of(*scene_, options)),
         zones_(*scene_) {
@@ -105,6 +91,7 @@ class Replay {
   std::string other_build_;  // what to add where something differs
   TickFeed feed_;
   RecordedLoop loop_;
+  const MoveItChanges* moveit_;
   Expectations expectations_;
   std::optional<ReferenceCheck> reference_;
   ZoneDifference zones_;
@@ -155,6 +142,7 @@ OfflineReplay Replay::run(const std::function<void(const ReplayedTick&)>& on_tic
   run_ticks(on_tick);
   if (feed_.log() != nullptr)
     std::ranges::copy(feed_.log()->notes(), std::back_inserter(result_.notes));
+  if (moveit_ != nullptr) std::ranges::copy(moveit_->notes(), std::back_inserter(result_.notes));
   result_.damage = feed_.damage();
   result_.batches = feed_.batches();
   if (!result_.stopped && result_.error.empty()) judge_the_whole();
@@ -208,8 +196,9 @@ void Replay::change_scene(const TickInput& input, const Report& report) {
   follow(loop_.cell().scene);
   expectations_.change(*scene_);
   if (reference_) reference_->change(*scene_);
-  zones_.change(*scene_, input.recorded->cycle);
-  const TickNumber tick{report.cycle, input.recorded->cycle};
+  const std::uint64_t cycle = input.recorded != nullptr ? input.recorded->cycle : report.cycle;
+  zones_.change(*scene_, cycle);
+  const TickNumber tick{report.cycle, cycle};
   result_.notes.push_back(fmt::format("the cell {:016x} is in force from {} on ({:f} s)",
                                       scene_->revision, tick.text(), seconds(report.now_ns)));
 }
@@ -373,10 +362,14 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
   if (is_input_log(recording)) {
     adapt(options, options.gradients, first.scene);
     SceneHistory history(first);
-    InputLogOptions log{.joint_topics = options.joint_topics, .joints = options.joints};
+    InputLogOptions log{.joint_topics = options.joint_topics,
+                        .joints = options.joints,
+                        .with_scenes = first.ros.moveit.any()};
+    MoveItChanges moveit(first, [&](Scene& scene) { adapt(options, options.gradients, scene); });
     TickFeed feed(open_input_log(recording, first, log), first.scene,
                   options.tick_hz.value_or(first.scene.rate_hz));
-    return Replay(history, std::move(feed), options, {}).run(on_tick);
+    return Replay(history, std::move(feed), options, {}, log.with_scenes ? &moveit : nullptr)
+        .run(on_tick);
   }
   const RecordingOutline outlined = outline(recording);
   if (!outlined.error.empty()) {

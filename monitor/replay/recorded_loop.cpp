@@ -4,7 +4,8 @@
 
 namespace clearance {
 
-RecordedLoop::RecordedLoop(SceneHistory& history) : history_(history) {
+RecordedLoop::RecordedLoop(SceneHistory& history, MoveItChanges* moveit)
+    : history_(history), moveit_(moveit) {
   start(history.first(), history.begins_changed());
 }
 
@@ -27,6 +28,7 @@ void RecordedLoop::restart(const clearance_msg_Distances& report) {
 const Report* RecordedLoop::tick(const TickInput& input) {
   if (input.restart) restart(*input.recorded);
   if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
+  if (moveit_ != nullptr && next_ && monitor_->cycle() > next_->began_after) succeed();
   poses_.clear();
   joints_.clear();
   for (const PoseBatch& batch : input.batches) take(batch);
@@ -36,10 +38,28 @@ const Report* RecordedLoop::tick(const TickInput& input) {
     keep_mapped(next_->map.variables_now, &JointSample::variable, 0, joints_);
     next_->monitor->tick(poses_, joints_, input.time);
   }
-  return input.recorded == nullptr || change_after(*input.recorded) ? &report : nullptr;
+  const bool goes_on =
+      input.recorded == nullptr ? follow_moveit(input) : change_after(*input.recorded);
+  return goes_on ? &report : nullptr;
+}
+
+// A message waits while the scene changes because of the one before it.
+bool RecordedLoop::follow_moveit(const TickInput& input) {
+  if (moveit_ == nullptr) return true;
+  for (const auto& scene : input.scenes) moveit_->add(scene);
+  if (next_) return true;
+  const Cell* const cell = moveit_->next(*monitor_);
+  return cell == nullptr || begin(*cell, monitor_->cycle() + 1);
 }
 
 void RecordedLoop::take(const PoseBatch& batch) {
+  if (moveit_ != nullptr) {
+    const std::size_t first_pose = poses_.size(), first_joint = joints_.size();
+    ids_->sources().append(batch, poses_, joints_);
+    if (!from_first_) return;
+    keep_mapped(from_first_->objects_now, &PoseSample::object, first_pose, poses_);
+    return keep_mapped(from_first_->variables_now, &JointSample::variable, first_joint, joints_);
+  }
   if (ids_->append(batch, poses_, joints_)) {
     if (!unclear_.empty()) unclear_.erase(batch.source.c_str());
     return;
@@ -69,7 +89,6 @@ bool RecordedLoop::change_after(const clearance_msg_Distances& report) {
   return !due || begin(*change);
 }
 
-// Makes the same calls as Successor, in the same order.
 bool RecordedLoop::begin(const DescribedScene& change) {
   const Cell* const cell = history_.cell(change.revision);
   if (cell == nullptr) {
@@ -78,11 +97,16 @@ bool RecordedLoop::begin(const DescribedScene& change) {
         change.revision, change.since.from, history_.error());
     return false;
   }
+  return begin(*cell, change.since.from);
+}
+
+// Makes the same calls as Successor, in the same order.
+bool RecordedLoop::begin(const Cell& cell, std::uint64_t from) {
   next_ = std::make_unique<Next>();
-  next_->cell = cell;
-  next_->map = scene_map(cell_->scene, cell->scene);
-  next_->monitor = std::make_unique<Monitor>(cell->scene, monitor_.get());
-  next_->from = change.since.from;
+  next_->cell = &cell;
+  next_->map = scene_map(cell_->scene, cell.scene);
+  next_->monitor = std::make_unique<Monitor>(cell.scene, monitor_.get());
+  next_->from = from;
   next_->began_after = monitor_->cycle();
   if (next_->monitor->take_over(*monitor_, next_->map, ids_->sources())) return true;
   error_ = "the recorded cells name more sources than a daemon has places for";
@@ -96,6 +120,7 @@ void RecordedLoop::succeed() {
   ids_->change(cell_->scene.revision, next_->map);
   from_ = next_->from;
   next_ = nullptr;
+  if (moveit_ != nullptr) from_first_ = scene_map(history_.first().scene, cell_->scene);
 }
 
 }  // namespace clearance

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/replay/moveit_changes.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/replay/tick_feed.hpp"
 
@@ -20,8 +22,10 @@ namespace clearance {
 // both run the same ticks. From the second one on, the changed scene is the one that is reported.
 class RecordedLoop {
  public:
-  // The history must outlive this.
-  explicit RecordedLoop(SceneHistory& history);
+  // The history must outlive this, and `moveit`, too. It is null unless messages of MoveIt in a log
+  // change the scene; batches then have the ids of the first cell. A message changes the scene as a
+  // command does that the daemon gets between this tick and the next.
+  explicit RecordedLoop(SceneHistory& history, MoveItChanges* moveit = nullptr);
 
   // Null, and error() says why: the cell of a change cannot be read. The report is valid until the
   // next call.
@@ -53,11 +57,15 @@ class RecordedLoop {
   void take(const PoseBatch& batch);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
+  [[nodiscard]] bool begin(const Cell& cell, std::uint64_t from);
+  [[nodiscard]] bool follow_moveit(const TickInput& input);
   void succeed();
   [[nodiscard]] bool change_before(const clearance_msg_Distances& report);
   [[nodiscard]] bool change_after(const clearance_msg_Distances& report);
 
   SceneHistory& history_;
+  MoveItChanges* moveit_;
+  std::optional<SceneMap> from_first_;  // to the present scene, once MoveIt has changed it
   const Cell* cell_ = nullptr;
   std::unique_ptr<Monitor> monitor_;
   std::unique_ptr<SceneIds> ids_;

@@ -1,5 +1,8 @@
 #include "monitor/replay/report_difference.hpp"
 
+#include <fmt/format.h>
+
+#include "monitor/files/build_info.hpp"
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/wire/convert.hpp"
 
@@ -35,6 +38,19 @@ std::optional<std::string> ReportDifference::first(const TickInput& input, const
     if (found) return "gradients." + *found;
   }
   return std::nullopt;
+}
+
+std::string other_build(const std::string& recorded) {
+  if (recorded == kBuild) return {};
+  const std::string ours = kBuild;
+  if (recorded.empty()) {
+    return fmt::format(
+        "; the recording does not name its build: if that is not this one ({}), it may be the "
+        "reason",
+        ours);
+  }
+  return fmt::format("; it was recorded by another build ({}), which may be the reason: this is {}",
+                     recorded, ours);
 }
 
 }  // namespace clearance

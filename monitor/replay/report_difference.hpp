@@ -37,4 +37,7 @@ class ReportDifference {
   GradientMessage gradients_;
 };
 
+// Added to the text of a difference when another build than this one may be the reason.
+[[nodiscard]] std::string other_build(const std::string& recorded);
+
 }  // namespace clearance

@@ -70,6 +70,7 @@ TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tic
 bool TickFeed::next(TickInput& tick) {
   tick.batches.clear();
   tick.sources.clear();
+  tick.scenes.clear();
   tick.recorded = nullptr;
   tick.separation = nullptr;
   tick.gradients = nullptr;
@@ -84,7 +85,7 @@ bool TickFeed::read_one() {
     LoggedBatch logged;
     if (!log_->next(logged)) return false;
     read_to_ns_ = logged.log_ns;
-    batches_waiting_.push_back({std::move(logged.batch), logged.log_ns});
+    batches_waiting_.push_back(std::move(logged));
     return true;
   }
   RecordedMessage message;
@@ -315,6 +316,11 @@ bool TickFeed::next_by_rate(TickInput& tick) {
 void TickFeed::take_until_now(TickInput& tick) {
   while (!batches_waiting_.empty() && batches_waiting_.front().log_ns <= tick.time.now_ns) {
     last_batch_ns_ = batches_waiting_.front().log_ns;
+    if (auto& scene = batches_waiting_.front().scene) {
+      tick.scenes.push_back(std::move(scene));
+      batches_waiting_.pop_front();
+      continue;
+    }
     PoseBatch& batch = batches_waiting_.front().batch;
     const SourceUse last{batch.source, batch.sequence_number};
     add(batch, tick);

@@ -35,6 +35,8 @@ struct TickInput {
   TickTime time;
   std::vector<PoseBatch> batches;  // in the order of use, with the ids of the scene that they state
   std::vector<SourceUse> sources;
+  // Messages of MoveIt in a log, up to this tick.
+  std::vector<std::shared_ptr<const moveit::RawScene>> scenes;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
   // this tick.
@@ -109,10 +111,7 @@ class TickFeed {
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept { return not_recorded_; }
 
  private:
-  struct Waiting {
-    PoseBatch batch;
-    std::int64_t log_ns = 0;
-  };
+  using Waiting = LoggedBatch;
   struct WaitingReport {
     Sample<clearance_msg_Distances> report;
     std::int64_t log_ns = 0;

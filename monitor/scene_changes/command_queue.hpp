@@ -11,6 +11,7 @@
 #include <string>
 
 #include "config/cell/cell.hpp"
+#include "config/edit/cell_editor.hpp"
 #include "core/pose.hpp"
 #include "monitor/command.hpp"
 
@@ -29,6 +30,8 @@ struct QueuedCommand {
   // Makes the command when its turn comes, in the scene thread, if it depends on the cell in force.
   // One without changes is not done, and has no result.
   std::function<Command(const Cell& cell, const AskPose& pose)> make = {};
+  // Adds changes that depend on the scene to which the others lead. All are done, or none.
+  CompleteChanges complete = {};
 };
 
 // Any thread but that of the tick.

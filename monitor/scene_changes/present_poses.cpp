@@ -11,21 +11,6 @@ namespace {
 
 constexpr std::chrono::microseconds kLookForAnswer{50};
 
-// Links without shapes are no objects.
-std::optional<AskedBody> body_of(const std::string& name, const Scene& scene) {
-  const auto object = std::ranges::find(scene.objects, name, &Object::name);
-  if (object != scene.objects.end())
-    return AskedBody{.object = static_cast<std::uint32_t>(object - scene.objects.begin())};
-  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
-    const auto& links = scene.robots[robot].links;
-    const auto link = std::ranges::find(links, name, &RobotLink::name);
-    if (link == links.end()) continue;
-    return AskedBody{
-        .is_link = true, .robot = robot, .link = static_cast<std::uint32_t>(link - links.begin())};
-  }
-  return std::nullopt;
-}
-
 // What an object is attached to, and its pose there. Nothing: it is not attached.
 struct Carrier {
   std::string name;
@@ -82,9 +67,9 @@ PresentPose pose_in_changed(const std::string& name, const Scene& changed, const
 std::optional<PresentPoses> present_poses(const std::vector<std::string>& names, const Scene& scene,
                                           TickLoop& loop, const std::atomic<bool>& loop_ended) {
   std::vector<std::string> known;
-  std::vector<AskedBody> bodies;
+  std::vector<SceneBody> bodies;
   for (const std::string& name : names) {
-    const auto body = body_of(name, scene);
+    const auto body = find_body(name, scene);
     if (!body) continue;
     known.push_back(name);
     bodies.push_back(*body);

@@ -82,9 +82,10 @@ void SceneCommander::read_ahead() {
 }
 
 CommandResult SceneCommander::execute(const Command& command, bool is_own,
-                                      const std::function<bool()>& may_change) {
+                                      const std::function<bool()>& may_change,
+                                      const CompleteChanges& complete) {
   CommandResult result{.client = command.client, .request = command.request};
-  Work work{command, is_own, command.changes, options_.began_with};
+  Work work{command, is_own, command.changes, options_.began_with, complete};
   Refusal refusal;
   try {
     refusal = do_all(work, may_change, result);
@@ -119,7 +120,7 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
   if (Refusal refusal = take_texts(work)) return refusal;
   if (Refusal refusal = open(work.changes)) return refusal;
   if (Refusal refusal = take_poses(work)) return refusal;
-  auto proposed = editor_->propose(work.changes);
+  auto proposed = editor_->propose(work.changes, work.complete);
   if (auto* refused = std::get_if<EditRefusal>(&proposed)) {
     return CommandRefusal{CommandStatus::kRefused, refused->change, std::move(refused->path),
                           std::move(refused->reason)};

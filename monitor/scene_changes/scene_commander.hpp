@@ -45,9 +45,11 @@ class SceneCommander {
 
   // Does the command, or refuses it and changes nothing. `is_own`: the daemon's own, which may name
   // any file. `may_change` is called once, before the scene changes, after everything that can take
-  // long; if it returns false, the command is refused because the program ends.
+  // long; if it returns false, the command is refused because the program ends. `complete` may be
+  // empty.
   [[nodiscard]] CommandResult execute(const Command& command, bool is_own,
-                                      const std::function<bool()>& may_change);
+                                      const std::function<bool()>& may_change,
+                                      const CompleteChanges& complete = {});
 
   // Reads the text in force if clients may send commands: the first of them is then as fast as
   // others.
@@ -68,6 +70,7 @@ class SceneCommander {
     bool is_own;
     std::vector<CellChange> changes;
     std::uint64_t began_with;  // of the scene that is kept
+    const CompleteChanges& complete;
   };
   Refusal do_all(Work& work, const std::function<bool()>& may_change, CommandResult& result);
   Refusal open(std::span<const CellChange> changes);

@@ -27,9 +27,10 @@ void SceneThread::run() {
     }
     const bool is_empty = next->make && next->command.changes.empty();
     const CommandResult result =
-        is_empty ? CommandResult{} : commander_.execute(next->command, next->is_own, [this] {
-          return enter(Phase::kChanging);
-        });
+        is_empty ? CommandResult{}
+                 : commander_.execute(
+                       next->command, next->is_own, [this] { return enter(Phase::kChanging); },
+                       next->complete);
     if (!enter(Phase::kChanging)) return;
     if (is_empty) continue;
     if (next->answer) next->answer(result);

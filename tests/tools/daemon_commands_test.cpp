@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <chrono>
 #include <csignal>
 #include <memory>
@@ -10,6 +11,8 @@
 #include <thread>
 
 #include "monitor/client/client.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "tests/shared/byte_writer.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/tools/commanding_client.hpp"
 #include "tests/tools/running_cell.hpp"
@@ -202,6 +205,48 @@ TEST_F(DaemonCommands, MalformedOnesAreRefusedByTheirField) {
   EXPECT_EQ(result.path, "changes[1].set_margin.m");
 }
 
+// Both know the first scene. The second command to come would change one that its client does not
+// know.
+TEST_F(DaemonCommands, OfTwoClientsThatKnowOneRevisionIsOneDone) {
+  start();
+  const auto planner = client("planner"), other = client("operator");
+  Command first = planner->command({kBin}), second = other->command({SetMargin{"floor", 0.01}});
+  first.scene_revision = second.scene_revision = read.scene.revision;
+  planner->send(first);
+  other->send(second);
+  const std::array results = {planner->result_of(first).status, other->result_of(second).status};
+  EXPECT_THAT(results,
+              testing::UnorderedElementsAre(CommandStatus::kDone, CommandStatus::kOtherRevision));
+}
+
+// It is cut off behind the client's name, in the middle and in its last byte. Cyclone drops it.
+TEST_F(DaemonCommands, ThatAreCutOffAreCountedAndTheNextOneIsDone) {
+  start();
+  const auto planner = client("planner");
+  const Command command = planner->command({kBin});
+  CdrEncoder encoder;
+  const auto whole = encoder.encode(*to_wire(command));
+  client::Connection connection(dds);
+  client::Health health(connection);
+  std::uint64_t sent = 0;
+  for (const std::size_t size : {std::size_t{16}, whole.size() / 2, whole.size() - 8}) {
+    ByteWriter cut(participant, dds.partition, clearance_msg_Command_desc, Topics{}.commands,
+                   {whole.begin(), whole.begin() + static_cast<long>(size)});
+    ASSERT_TRUE(cut.is_heard());
+    cut.send();
+    ++sent;
+    EXPECT_TRUE(eventually([&] {
+      health.update();
+      return health.message() != nullptr && health.message()->undecodable_samples == sent;
+    })) << size
+        << daemon->output();
+  }
+  EXPECT_TRUE(daemon->told("undecodable")) << daemon->output();
+  EXPECT_EQ(planner->find(command.request), nullptr);
+  const CommandResult result = planner->result_of(command);
+  EXPECT_TRUE(result.done()) << result.reason;
+}
+
 // Two clients: one removes what the other attaches, at the same time. Whichever comes first is
 // done, and the scene is that of one of the two orders.
 TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
@@ -267,6 +312,8 @@ TEST_F(DaemonCommands, ThatWereAcceptedAreResumedAfterAKill) {
     const auto report = distances.next();
     return report != nullptr && (*report)->scene_revision == result.scene_revision;
   }));
+  EXPECT_TRUE(eventually([&] { return daemon->told("scene-resumed", {"scene.yaml"}); }))
+      << daemon->output();
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
   write_text(cell.path(), commanded_cell("commands") + "# changed\n");

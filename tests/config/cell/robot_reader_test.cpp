@@ -106,6 +106,22 @@ TEST_F(Robots, LinksWithShapesAreObjectsAndWhatNothingMovesIsFixed) {
   EXPECT_EQ(hand.parts[1].shape.vertices.size(), 4u);
 }
 
+TEST_F(Robots, ALinkHasTheMarginThatIsStatedForItAndOthersThatOfTheRobot) {
+  std::string robot = kWalker;
+  robot.insert(robot.find("urdf:"), "margin: 0.01, ");
+  const Scene cell =
+      scene(robot, "margins: [{name: hand, margin: 0.03}, {name: left, margin: 1}]\n" + kSelf);
+  EXPECT_EQ(cell.objects[3].margin, 0.03);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(cell.objects[i].margin, 0.01) << i;
+  EXPECT_THAT(errors(robot, "margins: [{name: hant, margin: 0.03}]\n" + kSelf),
+              testing::HasSubstr("'hand'"));
+  EXPECT_THAT(
+      errors(robot, "margins: [{name: hand, margin: 1}, {name: hand, margin: 1}]\n" + kSelf),
+      testing::HasSubstr("again"));
+  EXPECT_THAT(errors(robot, "margins: [{name: hand, margin: -1}]\n" + kSelf),
+              testing::HasSubstr("margin"));
+}
+
 TEST_F(Robots, ParentsComeBeforeWhatTheyCarry) {
   const Scene cell = scene(kWalker, kSelf);
   ASSERT_EQ(cell.robots.size(), 1u);

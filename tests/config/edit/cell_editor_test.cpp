@@ -120,6 +120,17 @@ TEST_F(CellEdits, LimitsAndThresholdsAreSetInMetresAndNanoseconds) {
   EXPECT_EQ(named(edit({SetAgeLimit{"spare", std::nullopt}}), "spare").age_limit_ns, 20'000'000);
 }
 
+TEST_F(CellEdits, AMarginOfALinkIsThatOfItsRobotAgainWhenItIsTakenAway) {
+  EXPECT_EQ(named(edit({SetMargin{"hand", 0.02}}), "hand").margin, 0.02);
+  EXPECT_EQ(named(edit({SetMargin{"base", 0.01}, SetMargin{"hand", 0.03}}), "hand").margin, 0.03);
+  EXPECT_EQ(named(edit({}), "base").margin, 0.01);
+  const EditRefusal refusal = refused({SetMargin{"hant", 0.02}});
+  EXPECT_EQ(refusal.path, "margins[hant].name");
+  EXPECT_THAT(refusal.reason, HasSubstr("'hand'"));
+  EXPECT_EQ(edit({SetMargin{"hand", std::nullopt}, SetMargin{"base", std::nullopt}}).yaml,
+            kEditedCell);
+}
+
 TEST_F(CellEdits, PairsAreWatchedPublishedAndLeftOut) {
   EXPECT_FALSE(pair(edit({}), "hand", "cart")->publish);
   EXPECT_TRUE(

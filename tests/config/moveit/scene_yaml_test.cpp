@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <variant>
 
@@ -184,14 +185,53 @@ TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
               mistake_at(":3:17", "world.collision_objects[0].primitives[1].dimensions"));
   EXPECT_THAT(mistakes("operation: \"\\0\"", "operation: 1"),
               mistake_at(":3:17", "world.collision_objects[0].operation"));
-  EXPECT_THAT(mistakes("attached_collision_objects: []",
-                       "attached_collision_objects: [{link_name: hand, object: {id: tool}}]"),
-              mistake_at(":3:17", "'tool'", "'hand'"));
+  EXPECT_THAT(
+      mistakes("attached_collision_objects: []",
+               "attached_collision_objects: [{link_name: hand, object: {id: tool}}]"),
+      mistake_at(":3:17", "attached_collision_objects[0].object.header.frame_id", "'hand'"));
+  EXPECT_THAT(mistakes("robot_model_name:",
+                       "allowed_collision_matrix: {entry_names: [hand]}\nrobot_model_name:"),
+              mistake_at(":3:17", "allowed_collision_matrix.entry_values"));
   EXPECT_THAT(mistakes("vertex_indices: [1, 2, 3]", "vertex_indices: [1, 2, 4]"),
               mistake_at(":3:17", "meshes[0].triangles[3]"));
   EXPECT_THAT(mistakes("frame_id: world}\n    id: ground", "frame_id: moon}\n    id: ground"),
               mistake_at(":3:17", "world.collision_objects[2].header.frame_id", "'moon'"));
   EXPECT_THAT(mistakes("is_diff: false\nrobot", "is_diff: [\nrobot"), mistake_at(":3:17"));
+}
+
+// The hand is an object here; links carry in the same way. The unit of the cell is mm.
+TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
+  std::string text = kYaml;
+  text.replace(
+      text.find("[]\n  is_diff"), 2,
+      "[{link_name: hand, touch_links: [rock], object: {header: {frame_id: hand}, id: tool, "
+      "pose: {position: {z: 0.2}, orientation: {w: 1.0}}, "
+      "primitives: [{type: 2, dimensions: [0.05]}]}}]");
+  text.replace(text.find("robot_model_name:"), 0,
+               "allowed_collision_matrix: {entry_names: [hand, ground, nothing], entry_values: "
+               "[{enabled: [false, true, true]}, {enabled: [true, false, true]}, "
+               "{enabled: [true, true, true]}]}\n");
+  const Scene scene = read("kitchen.yaml", text);
+  ASSERT_EQ(scene.objects.size(), 5u);
+  EXPECT_EQ(scene.objects[4].name, "tool");
+  EXPECT_FALSE(scene.objects[4].fixed);
+  EXPECT_EQ(scene.objects[4].parts[0].shape.radius, 0.05);
+  ASSERT_EQ(scene.robots.size(), 1u);
+  EXPECT_TRUE(scene.robots[0].is_attached);
+  EXPECT_EQ(scene.robots[0].base.kind, RobotBase::Kind::kObject);
+  EXPECT_LT((scene.robots[0].base.base_from_root.position - Vec3(0, 0, 0.2)).norm(), 1e-15);
+  const auto watched = [&](const std::string& a, const std::string& b) {
+    return std::ranges::any_of(scene.pairs, [&](const ObjectPair& pair) {
+      const std::string &first = scene.objects[pair.first].name,
+                        &second = scene.objects[pair.second].name;
+      return (first == a && second == b) || (first == b && second == a);
+    });
+  };
+  EXPECT_TRUE(watched("hand", "rock"));
+  EXPECT_FALSE(watched("hand", "ground")) << "the matrix allows it";
+  EXPECT_TRUE(watched("tool", "ground"));
+  EXPECT_FALSE(watched("tool", "rock")) << "it may touch that";
+  EXPECT_FALSE(watched("tool", "hand"));
 }
 
 TEST_F(YamlScenes, CutOffAnywhereAreRefusedOrRead) {

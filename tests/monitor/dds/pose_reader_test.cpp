@@ -8,7 +8,9 @@
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
+#include "tests/monitor/bags/ros_bags.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/byte_writer.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
@@ -222,45 +224,15 @@ TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
   const char* domain = std::getenv(kDomain);
   if (domain == nullptr) GTEST_SKIP() << "started by another test only";
   const Cell cell{two_movers()};
-  // The type's operations up to its key, followed by the end marker. Cyclone's descriptors are
-  // lists of these.
-  std::vector<std::uint32_t> operations;
-  const std::uint32_t* original = clearance_msg_PoseBatch_desc.m_ops;
-  while (operations.size() < 3) operations.push_back(*original++);
-  operations.push_back(DDS_OP_RTS);
-  for (int i = 0; i < 2; ++i) operations.push_back(i == 0 ? DDS_OP_KOF | 1 : 0u);
-  const dds_key_descriptor_t key{"source", 4, 0};
-  const dds_topic_descriptor_t type{.m_size = 40,
-                                    .m_align = 1,
-                                    .m_flagset = 0,
-                                    .m_nkeys = 1,
-                                    .m_typename = clearance_msg_PoseBatch_desc.m_typename,
-                                    .m_keys = &key,
-                                    .m_nops = 2,
-                                    .m_ops = operations.data(),
-                                    .m_meta = "",
-                                    .type_information = {},
-                                    .type_mapping = {},
-                                    .restrict_data_representation = 0};
-  Participant participant({.domain = static_cast<std::uint32_t>(std::atoi(domain)),
-                           .partition = std::getenv(kPartition)});
-  const dds_entity_t topic = check_dds(
-      dds_create_topic(participant.handle(), &type, cell.topics.poses.c_str(), nullptr, nullptr),
-      "topic");
-  dds_qos_t* qos = dds_create_qos();
-  dds_qset_partition1(qos, std::getenv(kPartition));
-  const dds_entity_t publisher = dds_create_publisher(participant.handle(), qos, nullptr);
-  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
-  dds_qset_history(qos, DDS_HISTORY_KEEP_ALL, 0);
-  const dds_entity_t writer =
-      check_dds(dds_create_writer(publisher, topic, qos, nullptr), "writer");
-  dds_delete_qos(qos);
-  ASSERT_TRUE(test::eventually([&] { return test::matched_readers(writer) == 1; }));
-  struct {
-    char source[40] = "garbage";
-  } sample;
-  for (int i = 0; i < 100; ++i) ASSERT_EQ(dds_write(writer, &sample), DDS_RETCODE_OK);
-  dds_wait_for_acks(writer, DDS_SECS(10));
+  const std::string partition = std::getenv(kPartition);
+  Participant participant(
+      {.domain = static_cast<std::uint32_t>(std::atoi(domain)), .partition = partition});
+  const auto source = test::RosCdr().text("garbage").bytes();
+  test::ByteWriter cut(participant, partition, clearance_msg_PoseBatch_desc, cell.topics.poses,
+                       source);
+  ASSERT_TRUE(cut.is_heard());
+  for (int i = 0; i < 100; ++i) cut.send();
+  dds_wait_for_acks(cut.writer(), DDS_SECS(10));
 }
 
 TEST(PoseReader, CountsWhatCannotBeDecodedInHealth) {

@@ -15,6 +15,7 @@
 #include "monitor/moveit/known_scene.hpp"
 #include "monitor/moveit/scene_translator.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/monitor/moveit/moveit_messages.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
@@ -76,9 +77,9 @@ class MoveItCell : public testing::Test {
         });
     for (const MeshFile& file : done.files)
       test::write_text(folder_ / ("sent:" + file.name), file.bytes);
-    make(done.changes);
-    make(translator_.exceptions(known_scene(cell_)));
-    EXPECT_TRUE(translator_.exceptions(known_scene(cell_)).empty());
+    make(done);
+    const KnownScene known = known_scene(cell_);
+    EXPECT_TRUE(translator_.exceptions(known.watched, known.exceptions).empty());
     return done;
   }
   // Sends what must be refused, and must change nothing. Returns the field.
@@ -118,33 +119,18 @@ class MoveItCell : public testing::Test {
   std::map<std::string, Pose> poses_;  // of links now
 
  private:
-  void make(const std::vector<CellChange>& changes) {
-    auto result = editor_->edit(changes);
+  void make(const Translation& done) {
+    std::vector<CellChange> changes = done.changes;
+    auto result = editor_->propose(changes, [&](const Scene& changed) {
+      return translator_.exceptions(watched_pairs(changed), done.exceptions);
+    });
     if (const auto* refusal = std::get_if<EditRefusal>(&result)) {
       ADD_FAILURE() << refusal->change << " " << refusal->path << ": " << refusal->reason;
       return;
     }
+    editor_->keep();
     cell_ = std::get<Cell>(std::move(result));
   }
 };
-
-// An object with a box, as most programs send it.
-inline CollisionObject box_object(const std::string& id, const Pose& pose) {
-  CollisionObject object;
-  object.frame_id = "map";
-  object.id = id;
-  object.pose = pose;
-  object.primitives = {{SolidPrimitive::kBox, {0.1, 0.2, 0.3}}};
-  object.primitive_poses = {Pose{}};
-  return object;
-}
-
-inline CollisionObject operation(Operation operation, const std::string& id) {
-  CollisionObject object;
-  object.frame_id = "map";
-  object.id = id;
-  object.operation = static_cast<std::uint8_t>(operation);
-  return object;
-}
 
 }  // namespace clearance::moveit

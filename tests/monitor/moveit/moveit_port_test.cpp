@@ -9,25 +9,20 @@
 #include <utility>
 
 #include "monitor/scene_changes/scene_thread.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/moveit/moveit_messages.hpp"
 #include "tests/monitor/scene_changes/commanded_cell.hpp"
 
 namespace clearance {
 namespace {
 
-using test::RosCdr;
-
-// A sphere of 0.1 m, 0.5 m along x of the frame.
-moveit::RawScene sphere(const std::string& id, const std::string& frame, std::uint8_t operation) {
-  constexpr std::uint32_t kNone = 0;
-  RosCdr cdr;
-  cdr.header(0, frame);
-  for (const double each : {0.5, 0., 0., 0., 0., 0., 1.}) cdr.number(each);
-  cdr.text(id).text("").text("");
-  cdr.number(std::uint32_t{1}).number(std::uint8_t{2}).numbers({0.1}).number(kNone);
-  for (int i = 0; i < 7; ++i) cdr.number(kNone);
-  cdr.number(operation);
-  return {moveit::RawScene::Type::kCollisionObject, "/collision_object", cdr.bytes()};
+moveit::RawScene raw(const moveit::CollisionObject& message) {
+  return {moveit::RawScene::Type::kCollisionObject, "/collision_object", moveit::cdr_of(message)};
+}
+moveit::RawScene sphere(const std::string& id, const std::string& frame) {
+  return raw(moveit::sphere_object(id, frame, {0.5, 0.0, 0.0}));
+}
+moveit::RawScene removal(const std::string& id) {
+  return raw(moveit::operation(moveit::Operation::kRemove, id));
 }
 
 class MoveItPortTest : public test::CommandedCell {
@@ -71,18 +66,18 @@ class MoveItPortTest : public test::CommandedCell {
 TEST_F(MoveItPortTest, AnObjectIsPlacedInAFrameThatMoves) {
   poses->put(test::at(2.0, 1.0, 0.0));
   poses->settle();
-  EXPECT_TRUE(take(sphere("ball", "hand", 0)).done());
+  EXPECT_TRUE(take(sphere("ball", "hand")).done());
   ASSERT_NE(object("ball"), nullptr);
   EXPECT_EQ(object("ball")->world_from_object.position, Vec3(2.5, 1.0, 0.0));
-  EXPECT_TRUE(take(sphere("ball", "hand", 1)).done());
+  EXPECT_TRUE(take(removal("ball")).done());
   EXPECT_EQ(object("ball"), nullptr);
 }
 
 TEST_F(MoveItPortTest, WhatTheCapacityDoesNotAllowIsRefusedAndTheNextMessageCounts) {
-  for (const char* name : {"a", "b"}) EXPECT_TRUE(take(sphere(name, "world", 0)).done());
-  EXPECT_EQ(take(sphere("c", "world", 0)).status, CommandStatus::kBeyondCapacity);
-  EXPECT_TRUE(take(sphere("a", "world", 1)).done());
-  EXPECT_TRUE(take(sphere("c", "world", 0)).done());
+  for (const char* name : {"a", "b"}) EXPECT_TRUE(take(sphere(name, "world")).done());
+  EXPECT_EQ(take(sphere("c", "world")).status, CommandStatus::kBeyondCapacity);
+  EXPECT_TRUE(take(removal("a")).done());
+  EXPECT_TRUE(take(sphere("c", "world")).done());
 }
 
 }  // namespace

@@ -77,6 +77,11 @@ TEST_F(MoveItCell, MalformedMessagesAreRefusedByTheirField) {
   scene.allowed_collision_matrix.entry_names = {"hand"};
   EXPECT_EQ(refused(scene), "allowed_collision_matrix.entry_values");
   scene.allowed_collision_matrix = {};
+  scene.link_padding = {{"hand", -0.01}};
+  EXPECT_EQ(refused(scene), "link_padding[0].padding");
+  scene.link_padding = {{"hand", nan}};
+  EXPECT_EQ(refused(scene), "link_padding[0].padding");
+  scene.link_padding = {};
   scene.collision_objects = {with([](Message& m) { m.primitives[0].type = 0; })};
   EXPECT_EQ(refused(scene), "world.collision_objects[0].primitives[0].type");
 }
@@ -98,11 +103,11 @@ TEST_F(MoveItCell, TheRestOfAMessageCountsWhereOneObjectIsRefused) {
 TEST_F(MoveItCell, WhatIsNotUnderstoodIsNamed) {
   PlanningScene scene;
   scene.is_diff = scene.robot_state_is_diff = true;
-  scene.link_padding = {{"hand", 0.01}, {"finger", 0.0}};
+  scene.link_padding = {{"thumb", 0.01}, {"toe", 0.0}};
   scene.link_scale = {{"hand", 1.0}, {"finger", 1.1}};
   scene.has_octomap = true;
   EXPECT_THAT(send(scene).not_understood,
-              ElementsAre("link_padding of 'hand'", "link_scale of 'finger'", "world.octomap"));
+              ElementsAre("link_padding of 'thumb'", "link_scale of 'finger'", "world.octomap"));
 }
 
 }  // namespace

@@ -331,6 +331,48 @@ TEST_F(MoveItCell, ThePairsThatTheMatrixAllowsAreLeftOutWhileItDoes) {
   EXPECT_EQ(cell_.yaml, kMoveItCell);
 }
 
+TEST_F(MoveItCell, APaddingIsTheMarginOfItsLinkWhileItIsMoreThanTheCells) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.link_padding = {{"hand", 0.02}, {"tip", 0.03}, {"finger", 0.0}};
+  EXPECT_THAT(send(scene).not_understood, IsEmpty());
+  EXPECT_EQ(object("hand")->margin, 0.02);
+  EXPECT_EQ(object("finger")->margin, 0.0);
+  EXPECT_EQ(object("base")->margin, 0.0);
+  EXPECT_THAT(send(scene).changes, IsEmpty()) << "the same again";
+  scene.link_padding = {{"finger", 0.01}};
+  send(scene);
+  EXPECT_EQ(object("hand")->margin, 0.02) << "it is not named";
+  scene.link_padding = {{"hand", 0.0}, {"finger", 0.0}};
+  send(scene);
+  EXPECT_EQ(cell_.yaml, kMoveItCell);
+}
+
+class MoveItCellWithMargins : public MoveItCell {
+ protected:
+  MoveItCellWithMargins() : MoveItCell(text()) {}
+  static std::string text() {
+    std::string text = kMoveItCell;
+    text.replace(text.find("urdf: arm.urdf"), 14, "urdf: arm.urdf, margin: 15");
+    return text + "margins:\n  - {name: hand, margin: 20}\n";
+  }
+};
+
+TEST_F(MoveItCellWithMargins, APaddingNeverTakesAwayWhatTheCellStates) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.link_padding = {{"hand", 0.01}, {"finger", 0.01}};
+  EXPECT_THAT(send(scene).changes, IsEmpty());
+  scene.link_padding = {{"hand", 0.03}, {"finger", 0.03}};
+  EXPECT_THAT(send(scene).not_understood,
+              ElementsAre("link_padding of 'hand', whose margin the cell states"));
+  EXPECT_EQ(object("hand")->margin, 0.02);
+  EXPECT_EQ(object("finger")->margin, 0.03);
+  scene.link_padding = {{"hand", 0.0}, {"finger", 0.01}};
+  send(scene);
+  EXPECT_EQ(cell_.yaml, text());
+}
+
 TEST_F(MoveItCell, TheCellsFixedObjectsMayBeMovedAndAttachedButNotDropped) {
   CollisionObject move = operation(Operation::kMove, "table");
   move.pose = kPlace;

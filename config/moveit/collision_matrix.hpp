@@ -1,15 +1,14 @@
-// MoveIt's allowed collision matrix, as exceptions from the pairs of a cell.
+// MoveIt's allowed collision matrix, by names.
 #pragma once
 
 #include <cstddef>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
-#include "config/edit/cell_change.hpp"
 #include "config/moveit/message.hpp"
-#include "monitor/moveit/known_scene.hpp"
 
 namespace clearance::moveit {
 
@@ -25,9 +24,10 @@ class CollisionMatrix {
   // both have one, both have to allow it.
   [[nodiscard]] bool allows(const std::string& a, const std::string& b) const;
 
-  // Returns the changes after which the exceptions that follow the matrix are those that it states
-  // for the present pairs. There are none before the first set().
-  [[nodiscard]] std::vector<CellChange> exceptions(const KnownScene& scene) const;
+  // False before the first set().
+  [[nodiscard]] bool is_set() const noexcept { return is_set_; }
+  // The names that have entries of any kind.
+  [[nodiscard]] std::set<std::string> names() const;
 
  private:
   bool is_set_ = false;

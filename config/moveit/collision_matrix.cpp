@@ -1,4 +1,4 @@
-#include "monitor/moveit/collision_matrix.hpp"
+#include "config/moveit/collision_matrix.hpp"
 
 #include <fmt/format.h>
 
@@ -46,17 +46,11 @@ bool CollisionMatrix::allows(const std::string& a, const std::string& b) const {
   return (of_a == defaults_.end() || of_a->second) && (of_b == defaults_.end() || of_b->second);
 }
 
-std::vector<CellChange> CollisionMatrix::exceptions(const KnownScene& scene) const {
-  std::vector<CellChange> changes;
-  if (!is_set_) return changes;
-  for (const auto& [a, b] : scene.exceptions) {
-    if (!allows(a, b)) changes.emplace_back(SetPair{a, b, SetPair::Rule::kNoException});
-  }
-  for (const auto& [a, b] : scene.watched) {
-    if (allows(a, b))
-      changes.emplace_back(SetPair{a, b, SetPair::Rule::kLeaveOut, std::string(kMatrixReason)});
-  }
-  return changes;
+std::set<std::string> CollisionMatrix::names() const {
+  std::set<std::string> names;
+  for (const auto& [name, place] : places_) names.insert(name);
+  for (const auto& [name, allowed] : defaults_) names.insert(name);
+  return names;
 }
 
 }  // namespace clearance::moveit
