@@ -38,6 +38,7 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
                  "capsule: {from: [0, 0, 0], to: [0, 0, 70], radius: 9}"},
       .length = 0.001};
   test::DrawnChange draw(random, names);
+  int compared = 0;
   for (int round = 0; round < 24; ++round) {
     editor_.emplace(open(text));
     CellEditor whole = open(text);
@@ -59,9 +60,16 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
       if (HasFailure()) return;
     }
     const auto at_once = whole.edit(done);
-    ASSERT_TRUE(std::holds_alternative<Cell>(at_once));
+    // A rule may become void by a later change. In one list that is a mistake.
+    if (const auto* refused = std::get_if<EditRefusal>(&at_once)) {
+      EXPECT_TRUE(refused->path.starts_with("pairs[")) << refused->path << ": " << refused->reason;
+      EXPECT_TRUE(std::holds_alternative<SetPair>(done[refused->change])) << refused->path;
+      continue;
+    }
+    ++compared;
     EXPECT_EQ(std::get<Cell>(at_once).yaml, editor_->text());
   }
+  EXPECT_GT(compared, 8);
   for (std::size_t kind = 0; kind < test::kChangeKinds; ++kind) {
     const bool is_file = kind == CellChange(ReadCellAgain{}).index();  // a running monitor reads it
     EXPECT_EQ(accepted[kind] == 0, is_file) << kind;
