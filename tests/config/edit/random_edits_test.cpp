@@ -23,7 +23,7 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
   std::string wider = text, invalid = text;
   wider.replace(wider.find("leave_above: 50"), 15, "leave_above: 60");
   invalid.replace(invalid.find("max_speed: 1000"), 15, "max_speed: -1");
-  const test::DrawnNames names{
+  test::DrawnNames names{
       .objects = {"table", "cart", "box", "spare", "hand", "base", "none", "p0", "p1", "p2", "p3"},
       .added = {"p0", "p1", "p2", "p3"},
       .carriers = {"tip", "hand", "base"},
@@ -42,6 +42,7 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
   for (int round = 0; round < 24; ++round) {
     editor_.emplace(open(text));
     CellEditor whole = open(text);
+    names.attached.clear();
     std::vector<CellChange> done;
     for (int step = 0; step < 60; ++step) {
       const std::array<CellChange, 1> change{draw()};
@@ -56,6 +57,11 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
       ++accepted[change[0].index()];
       done.push_back(change[0]);
       const Cell& cell = std::get<Cell>(result);
+      names.attached.clear();
+      for (const Robot& robot : cell.scene.robots) {
+        if (robot.is_attached)
+          names.attached.push_back(cell.scene.objects[robot.links[0].object].name);
+      }
       expect_same(cell, read_good(cell.yaml, folder_ / "cell.yaml"));
       if (HasFailure()) return;
     }
