@@ -1,0 +1,23 @@
+# Runs before CPack makes the packages: gives every package its copyright and changelog, compresses man pages and strips
+# the static libraries of what only debuggers need.
+set(packages programs clearance view clearance-view development libclearance-dev python python3-clearance)
+while(packages)
+  list(POP_FRONT packages group name)
+  set(root ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${group})
+  if(NOT IS_DIRECTORY ${root})
+    continue()
+  endif()
+  set(doc ${root}/usr/share/doc/${name})
+  file(INSTALL ${CPACK_CLEARANCE_SOURCE}/copyright DESTINATION ${doc})
+  file(INSTALL ${CPACK_CLEARANCE_SOURCE}/CHANGELOG.md DESTINATION ${doc})
+  file(READ ${CPACK_CLEARANCE_SOURCE}/CHANGELOG.md text)
+  file(GLOB pages ${root}/usr/share/man/man1/*.1)
+  file(WRITE ${doc}/changelog "${text}")
+  file(REMOVE ${doc}/CHANGELOG.md)
+  execute_process(COMMAND gzip -9nf ${doc}/changelog ${pages} COMMAND_ERROR_IS_FATAL ANY)
+  file(GLOB_RECURSE libraries ${root}/usr/lib/*.a)
+  foreach(library ${libraries})
+    execute_process(COMMAND strip --strip-debug --remove-section=.comment --remove-section=.note --enable-deterministic-archives
+                            ${library} COMMAND_ERROR_IS_FATAL ANY)
+  endforeach()
+endwhile()
