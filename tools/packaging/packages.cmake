@@ -12,6 +12,7 @@ set(CPACK_PACKAGE_CONTACT "${CLEARANCE_MAINTAINER}")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "certified distances in robot cells")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -42,15 +43,16 @@ macro(debian_package group name section summary text)
   set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
   set(CPACK_COMPONENT_${upper}_DESCRIPTION "${summary}\n${text}")
 endmacro()
-set(about "Clearance runs beside a robot controller. A thousand times a second it publishes
-the distance of every pair of interest in a robot cell, with a lower and an upper
-bound that it has proved. Joint states and poses come over DDS, also from ROS 2.")
+set(about "Clearance runs beside a robot controller. A thousand times a second it
+publishes the distance of every pair of interest in a robot cell, with a
+lower and an upper bound that it has proved. Joint states and poses come
+over DDS, also from ROS 2.")
 debian_package(programs clearance science "certified distances in robot cells, a thousand times a second"
                "${about}\n.\nThis package has the daemon, its systemd unit and the tools.")
 debian_package(view clearance-view science "view of a robot cell and its distances in a browser"
                "${about}\n.\nThis package shows a cell in a browser, live or from a recording.")
 debian_package(development libclearance-dev libdevel "certified distances of convex bodies, and client of clearanced"
-               "${about}\n.\nThis package has the libraries, headers, message types and CMake files for clients\nof the daemon, for replays in tests and for distances of bodies without DDS.")
+               "${about}\n.\nThis package has the libraries, headers, message types and CMake files\nfor clients of the daemon, for replays in tests and for distances of\nbodies without DDS.")
 debian_package(python python3-clearance python "certified distances in robot cells, from Python"
                "${about}\n.\nThis package has the Python module.")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "clearance-view")
