@@ -155,13 +155,12 @@ void Daemon::run(StopSignal& signal) {
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
 }
 
-// Both threads are prepared and wait for work. Refusals have the same cause: one line is enough.
+// Both threads are prepared and wait for work. join() has logged a refusal of this priority.
 void Daemon::raise_priorities() {
   const int priority = port_priority(options_);
   if (priority == 0) return;
-  Refusal refusal = use_fifo_scheduling(priority, poses_.thread());
-  if (!refusal) refusal = use_fifo_scheduling(priority, reports_.thread());
-  log_refusal(refusal);
+  (void)use_fifo_scheduling(priority, poses_.thread());
+  (void)use_fifo_scheduling(priority, reports_.thread());
 }
 
 // A refusal (no privilege) is logged and the daemon runs without it.
