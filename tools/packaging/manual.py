@@ -27,7 +27,15 @@ class Help:
             if not block.strip():
                 continue
             title, _, body = block.partition("\n")
+            # Text without a title may follow the entries.
+            listed, _, notes = body.partition("\n\n")
+            if notes.strip() and entries_of(listed):
+                body = listed
+            else:
+                notes = ""
             self.sections.append((title.rstrip(":"), entries_of(body), body))
+            if notes.strip():
+                self.sections.append(("Notes", [], notes))
 
     def options(self):
         """Every option as (its names, the only values that it takes, or an empty list)."""
@@ -44,19 +52,24 @@ class Help:
 
 
 def entries_of(body):
-    """The entries of a section, or none if its text has another form."""
+    """The entries of a section, or none if its text has another form.
+
+    A description stands beside its names, or on the next line if they are too long for the column.
+    """
     entries = []
-    for line in body.splitlines():
+    lines = body.splitlines()
+    for line, following in zip(lines, lines[1:] + [""]):
         if not line.strip():
             continue
         if line.startswith(" " * COLUMN) and entries:
             entries[-1][1] += (" " if entries[-1][1] else "") + line.strip()
         elif re.match(r"  \S", line):
-            split = line[:COLUMN].endswith(" ") and line[COLUMN - 2:COLUMN].strip() == "" and len(line) > COLUMN
+            is_long = following.startswith(" " * COLUMN) and line[COLUMN - 2:COLUMN] != "  "
+            split = line[COLUMN - 1:COLUMN] == " " and line[COLUMN:] != "" and not is_long
             entries.append([line[:COLUMN].strip(), line[COLUMN:].strip()] if split else [line.strip(), ""])
         else:
             return []
-    return entries if all(description for _, description in entries) else []
+    return entries if all(description or head.startswith("-") for head, description in entries) else []
 
 
 def roff(text):
@@ -80,10 +93,10 @@ def sections_of(help_text, macro):
 
 def man_page(name, version, top, parts, others):
     yield f'.TH "{name.upper()}" 1 "" "Clearance {version}" "User Commands"'
-    first, _, more = top.about.partition(". ")
-    yield f".SH NAME\n{roff(name)} \\- {roff(first.rstrip('.'))}"
+    first = " ".join(re.split(r"\.\s|\.$", top.about)[0].split())
+    yield f".SH NAME\n{roff(name)} \\- {roff(first)}"
     yield ".SH SYNOPSIS\n" + "\n.br\n".join(roff(help_text.usage) for help_text in [top, *parts.values()])
-    yield ".SH DESCRIPTION\n" + roff(" ".join(top.about.split()))
+    yield ".SH DESCRIPTION\n" + (".nf\n" + roff(top.about) + "\n.fi" if "\n" in top.about else roff(top.about))
     yield from sections_of(top, "SH")
     for part, help_text in parts.items():
         yield f'.SH "{roff(name.upper() + " " + part.upper())}"\n' + roff(help_text.about)
