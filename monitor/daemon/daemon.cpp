@@ -3,6 +3,8 @@
 // threads that inherit it are created.
 #include "monitor/daemon/daemon.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -32,14 +34,26 @@ void log_refusal(const Refusal& refusal) {
   if (refusal) log_line(lines::kSystemRefuses, *refusal);
 }
 
-// Cyclone's threads and ours inherit the scheduling of the thread that makes them, so this runs
-// first.
-DdsOptions prepare_threads(const DaemonOptions& options) {
+// The priority of the threads that read and publish for the tick thread; 0: ordinary.
+int port_priority(const DaemonOptions& options) noexcept {
+  return options.fifo_priority > 0 ? std::max(1, options.fifo_priority - 1) : 0;
+}
+
+// Cyclone's threads inherit the scheduling of the thread that joins. The calling thread has
+// ordinary scheduling afterwards: reading and preparing a large cell may take longer than a limit
+// of real-time processor time (RLIMIT_RTTIME) allows.
+Participant join(const DaemonOptions& options) {
+  struct Restore {
+    bool raised;
+    ~Restore() {
+      if (raised) log_refusal(use_fifo_scheduling(0));
+    }
+  };
   use_precise_timers();
-  if (options.fifo_priority > 0) {
-    log_refusal(use_fifo_scheduling(std::max(1, options.fifo_priority - 1)));
-  }
-  return options.dds;
+  const int priority = port_priority(options);
+  if (priority > 0) log_refusal(use_fifo_scheduling(priority));
+  const Restore restore{priority > 0};
+  return Participant(options.dds);
 }
 
 std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
@@ -63,7 +77,8 @@ void warn_of_partition(const Cell& cell, const DdsOptions& options) {
 Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
     : options_(options),
       cell_file_(cell.file.string()),
-      participant_(prepare_threads(options)),
+      service_(fmt::format("cell '{}' at {} Hz", cell.scene.name, cell.scene.rate_hz)),
+      participant_(join(options)),
       moveit_([this](QueuedCommand command) { return put(std::move(command)); }),
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
@@ -117,9 +132,8 @@ void Daemon::run(StopSignal& signal) {
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
   poses_.start();
+  raise_priorities();
   std::thread ticking([&] { tick_thread(done); });
-  // The thread that waits for signals needs no priority of its own.
-  if (options_.fifo_priority > 0) log_refusal(use_fifo_scheduling(0));
   scene_thread_->start();
   if (commands_) commands_->start();
   for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
@@ -127,7 +141,9 @@ void Daemon::run(StopSignal& signal) {
     const bool looks = options_.reload && polls % kPollsALook == 0;
     if (signal.hung_up() || (looks && files_.changed())) read_again();
     if (recording_) recording_->watch();
+    service_.notice(reports_.published_cycle());
   }
+  service_.stopping();
   stop_ = true;
   ticking.join();
   end_commands();
@@ -137,6 +153,14 @@ void Daemon::run(StopSignal& signal) {
   if (now_.ros) now_.ros->finish();
   if (recording_) recording_->finish();
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
+}
+
+// Both threads are prepared and wait for work. join() has logged a refusal of this priority.
+void Daemon::raise_priorities() {
+  const int priority = port_priority(options_);
+  if (priority == 0) return;
+  (void)use_fifo_scheduling(priority, poses_.thread());
+  (void)use_fifo_scheduling(priority, reports_.thread());
 }
 
 // A refusal (no privilege) is logged and the daemon runs without it.
@@ -183,17 +207,22 @@ void Daemon::watch_files(const Cell& cell) {
 
 void Daemon::read_again() {
   log_line(lines::kReading, cell_file_);
+  service_.reloading();
   const auto answer = [this](const CommandResult& result) {
     if (result.done()) {
-      if (!note_change(result)) log_line(lines::kSceneUnchanged);
+      const bool is_new = note_change(result);
+      if (!is_new) log_line(lines::kSceneUnchanged);
+      service_.reloaded(is_new ? "the changed cell is in force" : "the cell has not changed");
       return;
     }
     const bool has_mistakes = result.status == CommandStatus::kRefused && options_.list_mistakes;
     if (has_mistakes) options_.list_mistakes();
     log_line(lines::kSceneRefused, has_mistakes ? "its mistakes are listed above" : result.reason);
+    service_.reloaded("the changed cell was refused: see the log");
   };
-  if (!scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer}))
-    log_line(lines::kSceneRefused, "too many commands wait: send SIGHUP again later");
+  if (scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer})) return;
+  log_line(lines::kSceneRefused, "too many commands wait: send SIGHUP again later");
+  service_.reloaded("the cell was not read again: see the log");
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {

@@ -23,6 +23,7 @@
 #include "monitor/ros/ros_writer.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
 #include "monitor/scene_changes/scene_thread.hpp"
+#include "monitor/service/service_manager.hpp"
 
 namespace clearance {
 
@@ -80,6 +81,7 @@ class Daemon : private CellParts {
   };
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
   void tick_thread(std::atomic<bool>& done);
+  void raise_priorities();
   void end_commands();
   void read_again();
   void watch_files(const Cell& cell);
@@ -90,6 +92,7 @@ class Daemon : private CellParts {
 
   DaemonOptions options_;
   std::string cell_file_;
+  ServiceManager service_;
   FileWatch files_;
   Participant participant_;
   MoveItPort moveit_;

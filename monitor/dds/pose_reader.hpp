@@ -44,6 +44,9 @@ class PoseReader final : public PoseSource {
 
   const PoseBatch* next() noexcept override;
 
+  // After start(): the thread that takes.
+  [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
+
   // For any thread but that of the tick.
   [[nodiscard]] std::vector<SourceTally> tallies() const;
   [[nodiscard]] std::vector<RefusedSource> refused_sources() const;

@@ -210,7 +210,7 @@ bool ReportWriter::change() {
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
   to_wire(queued.report, queued.sources(), dds_time(), *now_->distances);
-  write(distances_, &*now_->distances, "distances");
+  const bool published = write(distances_, &*now_->distances, "distances");
   if (separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
   if (now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
@@ -219,6 +219,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   }
   write_zones(queued.report);
   now_->contact_log.note(queued.report.contacts);
+  if (published) published_ = queued.report.cycle;
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -267,15 +268,16 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
-void ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {
-  if (others_.give_way()) return;
+bool ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {
+  if (others_.give_way()) return false;
   const dds_return_t result = dds_write(writer, sample);
-  if (result == DDS_RETCODE_OK) return;
+  if (result == DDS_RETCODE_OK) return true;
   // Failures at the tick rate would flood the log, so only powers of two are logged.
   const std::uint64_t failed = failed_writes_.fetch_add(1) + 1;
   if ((failed & (failed - 1)) == 0) {
     log_line(lines::kWriteFailed, what, dds_strretcode(result), failed);
   }
+  return false;
 }
 
 }  // namespace clearance

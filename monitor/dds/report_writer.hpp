@@ -57,6 +57,10 @@ class ReportWriter {
   // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
+  // The cycle of the last report that was published; 0: none yet.
+  [[nodiscard]] std::uint64_t published_cycle() const noexcept { return published_.load(); }
+  // Before finish(): the thread that writes.
+  [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
   // True if an older daemon publishes this cell. This one then writes nothing more.
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
 
@@ -86,7 +90,7 @@ class ReportWriter {
   void write_separation(const Report& report);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
-  void write(dds_entity_t writer, const void* sample, const char* what);
+  bool write(dds_entity_t writer, const void* sample, const char* what);
 
   Participant& participant_;
   const Topics topics_;
@@ -104,6 +108,7 @@ class ReportWriter {
   bool write_zones_again_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
+  std::atomic<std::uint64_t> published_{0};
   mutable std::mutex mutex_;      // guards the next three
   std::unique_ptr<OfCell> next_;  // null: no other cell follows
   ReportQueue* queue_;            // the last one

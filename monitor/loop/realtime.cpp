@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <pthread.h>
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -20,11 +19,11 @@ namespace clearance {
 void use_precise_timers() noexcept { prctl(PR_SET_TIMERSLACK, 1UL, 0UL, 0UL, 0UL); }
 
 // SCHED_FIFO threads run until they sleep; SCHED_OTHER has only priority 0.
-Refusal use_fifo_scheduling(int priority) {
+Refusal use_fifo_scheduling(int priority, pthread_t thread) {
   sched_param parameters{};
   parameters.sched_priority = priority;
   const int policy = priority > 0 ? SCHED_FIFO : SCHED_OTHER;
-  const int error = pthread_setschedparam(pthread_self(), policy, &parameters);
+  const int error = pthread_setschedparam(thread, policy, &parameters);
   if (error == 0) return std::nullopt;
   return fmt::format(
       "SCHED_FIFO priority {} was refused ({}): ticks may wake late. Run as root, give the binary "

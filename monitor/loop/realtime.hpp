@@ -2,6 +2,8 @@
 // granted, else a text that says what was refused and how to get it.
 #pragma once
 
+#include <pthread.h>
+
 #include <optional>
 #include <string>
 
@@ -13,9 +15,9 @@ using Refusal = std::optional<std::string>;
 // up to 50 us late.
 void use_precise_timers() noexcept;
 
-// For the calling thread and the threads that it makes from now on. Priority 0 restores ordinary
+// For this thread and the threads that it makes from now on. Priority 0 restores ordinary
 // scheduling.
-[[nodiscard]] Refusal use_fifo_scheduling(int priority);
+[[nodiscard]] Refusal use_fifo_scheduling(int priority, pthread_t thread = pthread_self());
 
 // The calling thread then runs on this processor only.
 [[nodiscard]] Refusal pin_to_cpu(int cpu);

@@ -6,6 +6,14 @@
 #include <cmath>
 
 namespace clearance {
+namespace {
+
+// A loop whose ticks all overrun has no time to sleep. Under SCHED_FIFO it would then take its
+// processor from all other threads, and the kernel would end it at a limit of real-time processor
+// time (RLIMIT_RTTIME). Hence it sleeps this long after this time, in ns.
+constexpr std::int64_t kLongestWithoutSleep = 50'000'000, kShortSleep = 10'000;
+
+}  // namespace
 
 // All memory of the tick is sized here: the loop itself allocates nothing.
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
@@ -27,6 +35,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
 // Measures the delay of the wake-up, and the time until the report was handed over.
 void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   std::int64_t deadline = clock_.monotonic_ns() + period_ns_;
+  std::int64_t slept = deadline;  // the end of the last tick before a sleep
   std::uint64_t ticks = 0;
   while (!stop.load(std::memory_order_relaxed)) {
     clock_.sleep_until(deadline);
@@ -40,6 +49,11 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
         std::max(statistics_.wakeup_second_max_ns, started - deadline);
     statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
     deadline = next_deadline(deadline, ended);
+    if (deadline > ended) slept = ended;
+    if (ended - slept > kLongestWithoutSleep) {
+      clock_.sleep_until(ended + kShortSleep);
+      slept = ended;
+    }
     ++ticks;
     if (options_.max_ticks != 0 && ticks == options_.max_ticks) break;
     if (ticks % ticks_a_second_ == 0) hand_over_statistics();

@@ -21,6 +21,7 @@ class TurnedClock final : public Clock {
   std::int64_t monotonic_ns() noexcept override { return now_; }
   std::int64_t steady_ns() noexcept override { return now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
+    if (monotonic_ns > now_) ++rests_;
     now_ = std::max(now_, monotonic_ns + late_);
     ++sleeps_;
     if (while_asleep) while_asleep(sleeps_);
@@ -28,12 +29,14 @@ class TurnedClock final : public Clock {
   void pass(std::int64_t ns) noexcept { now_ += ns; }
   void wake_late_by(std::int64_t ns) noexcept { late_ = ns; }
   [[nodiscard]] int sleeps() const noexcept { return sleeps_; }
+  // Sleeps whose end was still to come: only these leave the processor to others.
+  [[nodiscard]] int rests() const noexcept { return rests_; }
   // What other threads do before the tick of this number, from 1.
   std::function<void(int)> while_asleep;
 
  private:
   std::int64_t now_ = 0, late_ = 0;
-  int sleeps_ = 0;
+  int sleeps_ = 0, rests_ = 0;
 };
 
 class ListedPoses final : public PoseSource {
@@ -74,13 +77,14 @@ class ListedReports final : public ReportSink {
     used.emplace_back(sources.begin(), sources.end());
     inputs_before.push_back(inputs.size());
     rejected = report.rejected;
-    if (report.cycle == slow_cycle) clock_.pass(slow_ns);
+    if (report.cycle == slow_cycle || all_slow) clock_.pass(slow_ns);
   }
   void statistics(const LoopStatistics& statistics) noexcept override {
     all_statistics.push_back(statistics);
   }
 
   std::uint64_t slow_cycle = 0;
+  bool all_slow = false;
   std::int64_t slow_ns = 0;
   std::vector<std::uint64_t> cycles, inputs;
   std::vector<std::size_t> inputs_before;

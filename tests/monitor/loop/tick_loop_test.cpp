@@ -87,6 +87,17 @@ TEST(TickLoop, SkipsMissedDeadlinesAndIsBackOnItsGridWithoutAGapInTheCycles) {
       (std::vector<std::int64_t>{kTick, 2 * kTick, 7 * kTick + kTick / 2, 8 * kTick, 9 * kTick}));
 }
 
+TEST(TickLoop, RestsAboutEvery50MillisecondsWhenNoTickIsInTime) {
+  Loop loop;
+  loop.reports.all_slow = true;
+  loop.reports.slow_ns = kTick + kTick / 4;
+  loop.run({.max_ticks = 400});
+  EXPECT_EQ(loop.statistics.overruns, 400u);
+  const std::int64_t lasted_ns = loop.clock.monotonic_ns();
+  EXPECT_GE(loop.clock.rests(), lasted_ns / 55'000'000);
+  EXPECT_LE(loop.clock.rests(), lasted_ns / 45'000'000);
+}
+
 TEST(TickLoop, CountsHowLateItWakesAndHowLongTicksTake) {
   Loop loop;
   loop.clock.wake_late_by(20'000);
