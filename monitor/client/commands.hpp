@@ -60,8 +60,7 @@ class Commands {
 
   bool write(const Command& command);
   void take_results();
-  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns,
-                                        Stop& stop);
+  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns, Stop& stop);
 
   std::string client_;
   std::uint64_t request_ = 0;  // the last one

@@ -42,8 +42,7 @@ objects:
   - {name: wall, fixed: true, box: {size: [0.2, 4, 4]}, pose: {xyz: [3.1, 0, 0]}}
   - {name: ball, sphere: {radius: 0.25}, max_speed: 100}
 pairs:
-  - {between: [lower, wall], publish: true}
-  - {between: [upper, wall], publish: true}
+  - {between: [arm, wall], publish: true}
   - {between: [lower, ball], publish: true}
   - {between: [ball, wall], publish: true}
 zones:

@@ -14,7 +14,7 @@ rate_hz: 100
 robots: [{name: arm, urdf: planar.urdf}]
 objects:
   - {name: wall, fixed: true, box: {size: [0.2, 4, 4]}, pose: {xyz: [3.1, 0, 0]}}
-pairs: [{between: [lower, wall], publish: true}, {between: [upper, wall]}]
+pairs: [{between: [arm, wall], publish: true}]
 zones: [{name: stop, between: [lower, wall], enter_below: 1.0, leave_above: 1.05}]
 """
 COUNT = 200
@@ -45,14 +45,15 @@ def test_each_tick_has_the_distances_of_its_configuration(cell, joints, recordin
     ticks = clearance.replay(cell, recording, tick_hz=0)
     assert isinstance(ticks, np.recarray) and len(ticks) == COUNT
     exact = cell.distances(joints)
-    column = cell.pairs.index(cell.published_pairs[0])
-    assert ticks.distance.shape == (COUNT, 1)
-    assert np.all(ticks.lower[:, 0] <= exact.upper[:, column])
-    assert np.all(exact.lower[:, column] <= ticks.upper[:, 0])
+    assert ticks.distance.shape == (COUNT, 2)
+    assert np.all(ticks.lower <= exact.upper) and np.all(exact.lower <= ticks.upper)
+    assert np.all(ticks.status == 0)
     np.testing.assert_allclose(ticks.time_s, 0.01 * np.arange(COUNT), atol=1e-9)
     np.testing.assert_array_equal(ticks.cycle, 1 + np.arange(COUNT))
+    column = next(i for i, pair in enumerate(cell.pairs) if "lower" in pair)
     assert np.all(ticks.minimum_pair == column)
     inside = exact.distance[:, column] < 1.0
+    assert inside.any()
     assert np.all(ticks.zone_active[inside, 0]) and not ticks.zone_active.all()
 
 
@@ -68,8 +69,9 @@ def test_the_records_outlive_everything_else(cell, recording):
 
 
 def test_the_helper_passes_what_is_far_enough_and_names_what_is_not(cell, joints, recording):
-    least = cell.distances(joints).distance[:, 0].min()
-    check = assert_min_distance(recording, cell, least - 1e-6)
+    least = cell.distances(joints).distance.min()
+    # Bounds for the time between two ticks are lower by the curvature of the path.
+    check = assert_min_distance(recording, cell, least - 1e-3)
     assert check.ok and check.ticks > 0
     assert math.isclose(check.closest_distance, least, abs_tol=1e-9)
     with pytest.raises(AssertionError, match="lower.*wall|wall.*lower"):

@@ -21,8 +21,9 @@ std::string shape_text(const py::ssize_t* shape, std::size_t count) {
 
 void check(const Pose& pose, const std::string& name) {
   if (!pose.position.allFinite() || pose.position.cwiseAbs().maxCoeff() > kLargestCoordinate) {
-    throw py::value_error(fmt::format("{}: the position is ({}, {}, {}); expected finite numbers up to 1e12 m",
-                                      name, pose.position.x(), pose.position.y(), pose.position.z()));
+    throw py::value_error(
+        fmt::format("{}: the position is ({}, {}, {}); expected finite numbers up to 1e12 m", name,
+                    pose.position.x(), pose.position.y(), pose.position.z()));
   }
   if (!is_unit(pose.orientation)) {
     throw py::value_error(

@@ -16,17 +16,17 @@ namespace {
 
 const py::dtype& result_dtype() {
   // Never destroyed: the interpreter may be gone by then.
-  static const auto* const dtype = new py::dtype(record_dtype(
-      {{"distance", "f8", offsetof(DistanceResult, distance)},
-       {"lower", "f8", offsetof(DistanceResult, lower)},
-       {"upper", "f8", offsetof(DistanceResult, upper)},
-       {"normal", "3f8", offsetof(DistanceResult, normal)},
-       {"point_on_a", "3f8", offsetof(DistanceResult, point_on_a)},
-       {"point_on_b", "3f8", offsetof(DistanceResult, point_on_b)},
-       {"status", "u1", offsetof(DistanceResult, status)},
-       {"path", "u1", offsetof(DistanceResult, path)},
-       {"iterations", "u2", offsetof(DistanceResult, iterations)}},
-      sizeof(DistanceResult)));
+  static const auto* const dtype =
+      new py::dtype(record_dtype({{"distance", "f8", offsetof(DistanceResult, distance)},
+                                  {"lower", "f8", offsetof(DistanceResult, lower)},
+                                  {"upper", "f8", offsetof(DistanceResult, upper)},
+                                  {"normal", "3f8", offsetof(DistanceResult, normal)},
+                                  {"point_on_a", "3f8", offsetof(DistanceResult, point_on_a)},
+                                  {"point_on_b", "3f8", offsetof(DistanceResult, point_on_b)},
+                                  {"status", "u1", offsetof(DistanceResult, status)},
+                                  {"path", "u1", offsetof(DistanceResult, path)},
+                                  {"iterations", "u2", offsetof(DistanceResult, iterations)}},
+                                 sizeof(DistanceResult)));
   return *dtype;
 }
 
@@ -35,8 +35,11 @@ class Batch {
   Batch(const py::sequence& bodies, const py::object& pairs) {
     std::vector<const ConvexBody*> pointers;
     for (const py::handle body : bodies) {
+      if (!py::isinstance<ConvexBody>(body)) {
+        throw py::type_error(fmt::format("bodies[{}]: found {}; expected a Body", bodies_.size(),
+                                         Py_TYPE(body.ptr())->tp_name));
+      }
       bodies_.push_back(body.cast<std::shared_ptr<ConvexBody>>());
-      if (!bodies_.back()) throw py::type_error("bodies: found None; expected a Body");
       pointers.push_back(bodies_.back().get());
     }
     const Doubles array = doubles_of(pairs, "pairs", {kAny, 2});
@@ -71,9 +74,10 @@ class Batch {
 
  private:
   [[nodiscard]] std::uint32_t index(double value, py::ssize_t pair) const {
-    if (!(value >= 0.0 && value < static_cast<double>(bodies_.size()) && value == std::floor(value))) {
-      throw py::value_error(fmt::format("pairs[{}]: found the index {}; expected 0 to {}", pair, value,
-                                        static_cast<py::ssize_t>(bodies_.size()) - 1));
+    if (!(value >= 0.0 && value < static_cast<double>(bodies_.size()) &&
+          value == std::floor(value))) {
+      throw py::value_error(fmt::format("pairs[{}]: found the index {}; expected 0 to {}", pair,
+                                        value, static_cast<py::ssize_t>(bodies_.size()) - 1));
     }
     return static_cast<std::uint32_t>(value);
   }

@@ -98,7 +98,8 @@ Bodies do not change. They may be shared by threads. Lengths are in metres.)")
 Each row is the outward unit normal and the offset d, m, of a half-space n.x <= d.)")
       .def_readonly("radius", &ConvexBody::radius, "The radius around the body, m.")
       .def_property_readonly(
-          "bounding_radius", [](const ConvexBody& b) { return b.bounded() ? b.bounding_radius : kInfinity; },
+          "bounding_radius",
+          [](const ConvexBody& b) { return b.bounded() ? b.bounding_radius : kInfinity; },
           "The largest distance of a point from the origin, without the radius, m.")
       .def_property_readonly("bounded", &ConvexBody::bounded, "False for a floor, say.")
       .def_property_readonly("curved", &ConvexBody::is_curved,
@@ -119,10 +120,13 @@ Raises ShapeError if the intersection is empty, flat, or no row bounds it.)");
 
 points: (n, 3), m; at least four, not all in one plane.
 radius: m. Raises ShapeError.)");
-  module.def("box", [](const py::object& half_extents, double radius) {
-    return made(box(vec3_of(half_extents, "half_extents")), radius);
-  }, py::arg("half_extents"), py::arg("radius") = 0.0,
-             R"(A box around the origin, along the axes.
+  module.def(
+      "box",
+      [](const py::object& half_extents, double radius) {
+        return made(box(vec3_of(half_extents, "half_extents")), radius);
+      },
+      py::arg("half_extents"), py::arg("radius") = 0.0,
+      R"(A box around the origin, along the axes.
 
 half_extents: (3,), m, all positive. radius: m. Raises ShapeError.)");
   module.def("prism", &prism_of, py::arg("base"), py::arg("z_low"), py::arg("z_high"),
@@ -130,46 +134,66 @@ half_extents: (3,), m, all positive. radius: m. Raises ShapeError.)");
              R"(The hull of the base polygon, extruded along z from z_low to z_high.
 
 base: (n, 2), m, in any order. radius: m. Raises ShapeError.)");
-  module.def("point", [](const py::object& position, double radius) {
-    return made(point(vec3_of(position, "position"), radius));
-  }, py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("radius") = 0.0,
-             R"(A point; with a radius, a sphere.
+  module.def(
+      "point",
+      [](const py::object& position, double radius) {
+        return made(point(vec3_of(position, "position"), radius));
+      },
+      py::arg("position") = py::make_tuple(0.0, 0.0, 0.0), py::arg("radius") = 0.0,
+      R"(A point; with a radius, a sphere.
 
 position: (3,), m. radius: m. Raises ShapeError.)");
-  module.def("segment", [](const py::object& start, const py::object& end, double radius) {
-    return made(segment(vec3_of(start, "start"), vec3_of(end, "end"), radius));
-  }, py::arg("start"), py::arg("end"), py::arg("radius") = 0.0,
-             R"(A segment; with a radius, a capsule.
+  module.def(
+      "segment",
+      [](const py::object& start, const py::object& end, double radius) {
+        return made(segment(vec3_of(start, "start"), vec3_of(end, "end"), radius));
+      },
+      py::arg("start"), py::arg("end"), py::arg("radius") = 0.0,
+      R"(A segment; with a radius, a capsule.
 
 start, end: (3,), m, different. radius: m. Raises ShapeError.)");
-  module.def("ellipsoid", [](const py::object& semi_axes, double radius) {
-    return made(ellipsoid(vec3_of(semi_axes, "semi_axes"), radius));
-  }, py::arg("semi_axes"), py::arg("radius") = 0.0,
-             R"(An ellipsoid around the origin, along the axes.
+  module.def(
+      "ellipsoid",
+      [](const py::object& semi_axes, double radius) {
+        return made(ellipsoid(vec3_of(semi_axes, "semi_axes"), radius));
+      },
+      py::arg("semi_axes"), py::arg("radius") = 0.0,
+      R"(An ellipsoid around the origin, along the axes.
 
 semi_axes: (3,), m. radius: m. Raises ShapeError.)");
-  module.def("cylinder", [](double radius_of_base, double half_length, double radius) {
-    return made(cylinder(radius_of_base, half_length, radius));
-  }, py::arg("base_radius"), py::arg("half_length"), py::arg("radius") = 0.0,
-             R"(A cylinder around the z-axis, from z = -half_length to half_length.
+  module.def(
+      "cylinder",
+      [](double radius_of_base, double half_length, double radius) {
+        return made(cylinder(radius_of_base, half_length, radius));
+      },
+      py::arg("base_radius"), py::arg("half_length"), py::arg("radius") = 0.0,
+      R"(A cylinder around the z-axis, from z = -half_length to half_length.
 
 All in m; `radius` is that of a sphere around every point. Raises ShapeError.)");
-  module.def("cone", [](double base_radius, double half_length, double radius) {
-    return made(cone(base_radius, half_length, radius));
-  }, py::arg("base_radius"), py::arg("half_length"), py::arg("radius") = 0.0,
-             R"(A cone: the base at z = -half_length, the apex at z = half_length.
+  module.def(
+      "cone",
+      [](double base_radius, double half_length, double radius) {
+        return made(cone(base_radius, half_length, radius));
+      },
+      py::arg("base_radius"), py::arg("half_length"), py::arg("radius") = 0.0,
+      R"(A cone: the base at z = -half_length, the apex at z = half_length.
 
 All in m; `radius` is that of a sphere around every point. Raises ShapeError.)");
-  module.def("truncated_cone", [](double lower, double upper, double half_length, double radius) {
-    return made(truncated_cone(lower, upper, half_length, radius));
-  }, py::arg("lower_radius"), py::arg("upper_radius"), py::arg("half_length"), py::arg("radius") = 0.0,
-             R"(The hull of a disc at z = -half_length and one at z = half_length.
+  module.def(
+      "truncated_cone",
+      [](double lower, double upper, double half_length, double radius) {
+        return made(truncated_cone(lower, upper, half_length, radius));
+      },
+      py::arg("lower_radius"), py::arg("upper_radius"), py::arg("half_length"),
+      py::arg("radius") = 0.0,
+      R"(The hull of a disc at z = -half_length and one at z = half_length.
 
 All in m; one of the discs may have the radius 0. Raises ShapeError.)");
-  module.def("rounded_by", [](double radius, const ConvexBody& body) {
-    return made(rounded_by(radius, body));
-  }, py::arg("radius"), py::arg("body"),
-             R"(The same body with this radius in place of its former one, m. Raises ShapeError.)");
+  module.def(
+      "rounded_by",
+      [](double radius, const ConvexBody& body) { return made(rounded_by(radius, body)); },
+      py::arg("radius"), py::arg("body"),
+      R"(The same body with this radius in place of its former one, m. Raises ShapeError.)");
 }
 
 void add_poses(py::module_& module) {
@@ -188,21 +212,30 @@ Functions take a Pose, seven numbers (x, y, z, and the quaternion x, y, z, w) or
 
 Raises ValueError if a number is not finite, or if the quaternion is off unit length by more than
 1e-6.)")
-      .def_static("of", [](const py::object& pose) { return pose_of(pose, "pose"); }, py::arg("pose"),
-                  "A pose from seven numbers or a 4 x 4 matrix. Raises ValueError.")
-      .def_property_readonly("position", [](const Pose& p) { return array_of(p.position); }, "(3,), m.")
-      .def_property_readonly("orientation", [](const Pose& p) {
-        Doubles q(4);
-        std::copy_n(p.orientation.coeffs().data(), 4, q.mutable_data());
-        return q;
-      }, "The quaternion x, y, z, w.")
-      .def("__matmul__", [](const Pose& outer, const Pose& inner) { return compose(outer, inner); },
-           py::arg("inner"), "outer_from_middle @ middle_from_inner.")
-      .def("apply", [](const Pose& pose, const py::object& at) {
-        return array_of(transform(pose, vec3_of(at, "point")));
-      }, py::arg("point"), "The place of a point, (3,), m.")
-      .def("__eq__", [](const Pose& a, const Pose& b) { return same_pose(a, b); },
-           py::is_operator())
+      .def_static(
+          "of", [](const py::object& pose) { return pose_of(pose, "pose"); }, py::arg("pose"),
+          "A pose from seven numbers or a 4 x 4 matrix. Raises ValueError.")
+      .def_property_readonly(
+          "position", [](const Pose& p) { return array_of(p.position); }, "(3,), m.")
+      .def_property_readonly(
+          "orientation",
+          [](const Pose& p) {
+            Doubles q(4);
+            std::copy_n(p.orientation.coeffs().data(), 4, q.mutable_data());
+            return q;
+          },
+          "The quaternion x, y, z, w.")
+      .def(
+          "__matmul__", [](const Pose& outer, const Pose& inner) { return compose(outer, inner); },
+          py::arg("inner"), "outer_from_middle @ middle_from_inner.")
+      .def(
+          "apply",
+          [](const Pose& pose, const py::object& at) {
+            return array_of(transform(pose, vec3_of(at, "point")));
+          },
+          py::arg("point"), "The place of a point, (3,), m.")
+      .def(
+          "__eq__", [](const Pose& a, const Pose& b) { return same_pose(a, b); }, py::is_operator())
       .def("__repr__", [](const Pose& p) {
         return fmt::format("clearance.Pose(({}, {}, {}), ({}, {}, {}, {}))", p.position.x(),
                            p.position.y(), p.position.z(), p.orientation.x(), p.orientation.y(),
@@ -220,15 +253,19 @@ A query with it costs less than one with a Pose.)")
            }),
            py::arg("world_from_a"), py::arg("world_from_b"),
            "From the poses of both bodies in one frame. Raises ValueError.")
-      .def_property_readonly("translation", [](const RelativePose& r) { return array_of(r.translation); },
-                             "(3,), m, in frame A.")
-      .def_property_readonly("rotation", [](const RelativePose& r) {
-        Doubles m({3, 3});
-        for (int i = 0; i < 3; ++i) {
-          for (int j = 0; j < 3; ++j) m.mutable_at(i, j) = r.rotation(i, j);
-        }
-        return m;
-      }, "(3, 3): x_a = rotation @ x_b + translation.");
+      .def_property_readonly(
+          "translation", [](const RelativePose& r) { return array_of(r.translation); },
+          "(3,), m, in frame A.")
+      .def_property_readonly(
+          "rotation",
+          [](const RelativePose& r) {
+            Doubles m({3, 3});
+            for (int i = 0; i < 3; ++i) {
+              for (int j = 0; j < 3; ++j) m.mutable_at(i, j) = r.rotation(i, j);
+            }
+            return m;
+          },
+          "(3, 3): x_a = rotation @ x_b + translation.");
 }
 
 }  // namespace

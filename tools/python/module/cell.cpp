@@ -40,7 +40,8 @@ std::shared_ptr<CellObject> cell_by(const Read& read) {
   CellResult result;
   {
     const py::gil_scoped_release unlock;
-    result = read(CellOptions{.tell = [&notes](const std::string& line) { notes.push_back(line); }});
+    result =
+        read(CellOptions{.tell = [&notes](const std::string& line) { notes.push_back(line); }});
   }
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result)) refuse(*errors);
   return std::make_shared<CellObject>(std::get<Cell>(std::move(result)), std::move(notes));
@@ -155,6 +156,10 @@ std::optional<std::size_t> evaluate_all(Configurations& configurations, const do
 
 void place_objects(const Scene& scene, const py::dict& poses, Configurations& configurations) {
   for (const auto& [key, value] : poses) {
+    if (!py::isinstance<py::str>(key)) {
+      throw py::type_error(fmt::format("poses: found a key of type {}; expected names of objects",
+                                       Py_TYPE(key.ptr())->tp_name));
+    }
     const auto name = key.cast<std::string>();
     std::uint32_t i = 0;
     while (i < scene.objects.size() && scene.objects[i].name != name) ++i;
@@ -165,9 +170,9 @@ void place_objects(const Scene& scene, const py::dict& poses, Configurations& co
     for (const Robot& robot : scene.robots) {
       for (const RobotLink& link : robot.links) {
         if (link.object == i)
-          throw py::value_error(fmt::format(
-              "poses: '{}' follows the joints of '{}'; expected an object with a pose", name,
-              robot.name));
+          throw py::value_error(
+              fmt::format("poses: '{}' follows the joints of '{}'; expected an object with a pose",
+                          name, robot.name));
       }
     }
     configurations.place(i, pose_of(value, ("poses['" + name + "']").c_str()));
@@ -309,10 +314,14 @@ the parts are then kept beside the cell. Releases the interpreter's lock.)")
 urdf: xacro expanded. srdf: None: a link and the next above it that has shapes may touch.
 packages: folders by name, for package:// paths. age_limit_ms: of live joint states.
 Raises CellError.)")
-      .def_static("from_yaml", [](const std::string& yaml, const std::filesystem::path& file) {
-             return cell_by([&](const CellOptions& options) { return parse_cell(yaml, file, options); });
-           },
-           py::arg("yaml"), py::arg("file") = std::filesystem::path("cell.yaml"), R"(A cell from its text.
+      .def_static(
+          "from_yaml",
+          [](const std::string& yaml, const std::filesystem::path& file) {
+            return cell_by(
+                [&](const CellOptions& options) { return parse_cell(yaml, file, options); });
+          },
+          py::arg("yaml"), py::arg("file") = std::filesystem::path("cell.yaml"),
+          R"(A cell from its text.
 
 file: the name in messages; paths in the cell are relative to its folder. Raises CellError.)")
       .def("distances", &distances, py::arg("joints"), py::arg("poses") = py::dict(), py::kw_only(),
@@ -326,30 +335,40 @@ out. gradients: True adds the derivatives with respect to the joints.
 Raises ValueError for another shape, or for a position that is not finite or outside the joint's
 limits and their tolerance; KeyError for an unknown object. Releases the interpreter's lock; Ctrl-C
 ends it. The same call gives the same bits.)")
-      .def_property_readonly("name", [](const CellObject& c) { return c.scene().name; },
-                             "The name in the file.")
-      .def_property_readonly("joints", [](const CellObject& c) { return names_of(c.scene().variables); },
-                             "Names of the joint positions of all robots.")
+      .def_property_readonly(
+          "name", [](const CellObject& c) { return c.scene().name; }, "The name in the file.")
+      .def_property_readonly(
+          "joints", [](const CellObject& c) { return names_of(c.scene().variables); },
+          "Names of the joint positions of all robots.")
       .def_property_readonly("joint_limits", &limits_of,
                              "(joints, 2): lower and upper, rad or m; infinite: not stated.")
-      .def_property_readonly("objects", [](const CellObject& c) { return names_of(c.scene().objects); },
-                             "Names of objects, links included.")
-      .def_property_readonly("zones", [](const CellObject& c) { return names_of(c.scene().zones); },
-                             "Names of zones.")
-      .def_property_readonly("pairs", [](const CellObject& c) { return pairs_of(c, false); },
-                             "The watched pairs, two names each.")
-      .def_property_readonly("published_pairs", [](const CellObject& c) { return pairs_of(c, true); },
-                             "Those that are in every report.")
-      .def_property_readonly("revision", [](const CellObject& c) { return c.scene().revision; },
-                             "As in live reports.")
-      .def_property_readonly("rate_hz", [](const CellObject& c) { return c.scene().rate_hz; }, "Ticks a second.")
-      .def_property_readonly("domain", [](const CellObject& c) { return c.cell().domain; }, "Of DDS.")
-      .def_property_readonly("partition", [](const CellObject& c) { return c.cell().partition; }, "Of DDS.")
-      .def_property_readonly("interface", [](const CellObject& c) { return c.cell().interface; },
-                             "The network of DDS.")
-      .def_property_readonly("yaml", [](const CellObject& c) { return c.cell().yaml; }, "The text.")
+      .def_property_readonly(
+          "objects", [](const CellObject& c) { return names_of(c.scene().objects); },
+          "Names of objects, links included.")
+      .def_property_readonly(
+          "zones", [](const CellObject& c) { return names_of(c.scene().zones); }, "Names of zones.")
+      .def_property_readonly(
+          "pairs", [](const CellObject& c) { return pairs_of(c, false); },
+          "The watched pairs, two names each.")
+      .def_property_readonly(
+          "published_pairs", [](const CellObject& c) { return pairs_of(c, true); },
+          "Those that are in every report.")
+      .def_property_readonly(
+          "revision", [](const CellObject& c) { return c.scene().revision; }, "As in live reports.")
+      .def_property_readonly(
+          "rate_hz", [](const CellObject& c) { return c.scene().rate_hz; }, "Ticks a second.")
+      .def_property_readonly(
+          "domain", [](const CellObject& c) { return c.cell().domain; }, "Of DDS.")
+      .def_property_readonly(
+          "partition", [](const CellObject& c) { return c.cell().partition; }, "Of DDS.")
+      .def_property_readonly(
+          "interface", [](const CellObject& c) { return c.cell().interface; },
+          "The network of DDS.")
+      .def_property_readonly(
+          "yaml", [](const CellObject& c) { return c.cell().yaml; }, "The text.")
       .def_property_readonly("notes", &CellObject::notes, "What the reader told, a line each.")
-      .def("__repr__", [](const CellObject& c) { return "<clearance.Cell: " + summary(c.scene()) + ">"; });
+      .def("__repr__",
+           [](const CellObject& c) { return "<clearance.Cell: " + summary(c.scene()) + ">"; });
 }
 
 }  // namespace clearance::python

@@ -80,17 +80,21 @@ void add_commands(py::module_& module) {
   const py::handle status_type =
       add_enum(module, "CommandStatus", statuses, "The answer to a command.").release();
   py::class_<CommandResult>(module, "CommandResult", "The daemon's answer to a command.")
-      .def_property_readonly("status", [status_type](const CommandResult& r) -> py::object {
-        const int value = static_cast<int>(r.status);
-        if (value >= static_cast<int>(kCommandStatuses)) return py::int_(value);
-        return status_type(value);
-      }, "A CommandStatus, or the number of one that this client does not know.")
+      .def_property_readonly(
+          "status",
+          [status_type](const CommandResult& r) -> py::object {
+            const int value = static_cast<int>(r.status);
+            if (value >= static_cast<int>(kCommandStatuses)) return py::int_(value);
+            return status_type(value);
+          },
+          "A CommandStatus, or the number of one that this client does not know.")
       .def_property_readonly("done", &CommandResult::done, "The changes are in force.")
       .def_readonly("change", &CommandResult::change, "Of a refusal: index of the change at fault.")
       .def_readonly("path", &CommandResult::path, "Of a refusal: the field at fault.")
       .def_readonly("reason", &CommandResult::reason, "Of a refusal: a sentence.")
       .def_readonly("revision", &CommandResult::scene_revision, "Of the scene in force afterwards.")
-      .def_readonly("in_force_from", &CommandResult::in_force_from, "The first cycle of that revision.")
+      .def_readonly("in_force_from", &CommandResult::in_force_from,
+                    "The first cycle of that revision.")
       .def("__repr__", [](const CommandResult& r) {
         return fmt::format("<clearance.CommandResult: {}{}{}>", name_of(r.status),
                            r.reason.empty() ? "" : ": ", r.reason);
@@ -99,9 +103,10 @@ void add_commands(py::module_& module) {
 
 idl/COMMANDS.md has all changes.)");
   commands
-      .def(py::init<const std::string&, const SharedConnection&>(), py::arg("client"),
-           py::arg("connection") = py::none(),
-           R"(client: a name of 1 to 32 bytes under `commands` of the daemon's cell, which no other running
+      .def(
+          py::init<const std::string&, const SharedConnection&>(), py::arg("client"),
+          py::arg("connection") = py::none(),
+          R"(client: a name of 1 to 32 bytes under `commands` of the daemon's cell, which no other running
 program uses. Raises ValueError and DdsError.)")
       .def("send", &Commands::send, py::arg("changes"), py::arg("timeout") = 10.0, py::kw_only(),
            py::arg("dry_run") = false, py::arg("revision") = 0,
@@ -113,8 +118,9 @@ unless this one is in force; 0: any. files: bytes by name, for "sent:NAME".
 
 Returns a CommandResult, also of a refusal. Raises ValueError with every mistake in the text, and
 TimeoutError when no result came within `timeout` s. Releases the interpreter's lock; Ctrl-C ends it.)")
-      .def_property_readonly("is_heard", [](Commands& self) { return self.use()->commands.is_heard(); },
-                             "True when a daemon takes commands on this topic.");
+      .def_property_readonly(
+          "is_heard", [](Commands& self) { return self.use()->commands.is_heard(); },
+          "True when a daemon takes commands on this topic.");
   add_closing(commands);
 }
 

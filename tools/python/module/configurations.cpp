@@ -72,7 +72,8 @@ Configurations::Configurations(const Scene& scene)
   }
   std::uint32_t states = 0;
   for (const ObjectPair& pair : scene.pairs) {
-    Pair& added = pairs_.emplace_back(Pair{.a = pair.first, .b = pair.second, .first_state = states});
+    Pair& added =
+        pairs_.emplace_back(Pair{.a = pair.first, .b = pair.second, .first_state = states});
     states += static_cast<std::uint32_t>(scene.objects[pair.first].parts.size() *
                                          scene.objects[pair.second].parts.size());
     added.first_term = static_cast<std::uint32_t>(terms_.size());
@@ -154,8 +155,7 @@ void Configurations::evaluate(Pair& pair, std::size_t index,
   const std::uint32_t first_a = first_part_[pair.a], first_b = first_part_[pair.b];
   const std::uint32_t parts_of_a = first_part_[pair.a + 1] - first_a;
   const std::uint32_t parts_of_b = first_part_[pair.b + 1] - first_b;
-  double* const rates =
-      to.gradient == nullptr ? nullptr : to.gradient + index * variables_.size();
+  double* const rates = to.gradient == nullptr ? nullptr : to.gradient + index * variables_.size();
   if (!known_[pair.a] || !known_[pair.b] || parts_of_a * parts_of_b == 0) {
     to.distance[index] = kUnknown;
     to.lower[index] = -kInfinity;

@@ -22,8 +22,8 @@ namespace clearance::python {
 // pairs * variables of gradients. Null: not wanted.
 struct ConfigurationResults {
   double *distance = nullptr, *lower = nullptr, *upper = nullptr;
-  std::uint8_t* status = nullptr;                     // PairStatus
-  std::uint32_t *part_a = nullptr, *part_b = nullptr;  // closest parts
+  std::uint8_t* status = nullptr;                                        // PairStatus
+  std::uint32_t *part_a = nullptr, *part_b = nullptr;                    // closest parts
   double *witness_a = nullptr, *witness_b = nullptr, *normal = nullptr;  // in the world
   double* gradient = nullptr;                                            // m/rad or m/m
 };
@@ -54,9 +54,9 @@ class Configurations {
     bool moves_b;
   };
   struct Pair {
-    std::uint32_t a, b;            // objects
-    std::uint32_t first_state;     // of its part pairs, part by part of A
-    std::uint32_t closest = 0;     // the part pair that was closest in the last configuration
+    std::uint32_t a, b;         // objects
+    std::uint32_t first_state;  // of its part pairs, part by part of A
+    std::uint32_t closest = 0;  // the part pair that was closest in the last configuration
     std::uint32_t first_term = 0, end_term = 0;
   };
   // The closest parts of a pair.
@@ -76,8 +76,8 @@ class Configurations {
   const Scene& scene_;
   ForwardKinematics kinematics_;
   std::vector<TrackedVariable> variables_;
-  std::vector<double> least_, largest_;  // plausible positions, by variable
-  std::vector<LinkState> bases_;         // by robot
+  std::vector<double> least_, largest_;        // plausible positions, by variable
+  std::vector<LinkState> bases_;               // by robot
   std::vector<std::uint8_t> known_, is_link_;  // by object
   std::vector<PosedPart> parts_;
   std::vector<std::uint32_t> first_part_;  // by object

@@ -25,8 +25,8 @@ class ClosedError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// An object on DDS that close() ends. Using it afterwards is an exception, and so is using it in two
-// threads at once.
+// An object on DDS that close() ends. Using it afterwards is an exception, and so is using it in
+// two threads at once.
 template <class T>
 class Live {
  public:
@@ -68,10 +68,11 @@ template <class Class>
 void add_closing(Class& type) {
   using T = typename Class::type;
   namespace py = pybind11;
-  type.def("close", [](T& self) { self.close(); },
-           "Leaves DDS. Any other use is a ClosedError afterwards.")
-      .def_property_readonly("closed", [](const T& self) { return self.closed(); },
-                             "True after close().")
+  type.def(
+          "close", [](T& self) { self.close(); },
+          "Leaves DDS. Any other use is a ClosedError afterwards.")
+      .def_property_readonly(
+          "closed", [](const T& self) { return self.closed(); }, "True after close().")
       .def("__enter__", [](py::object self) { return self; })
       .def("__exit__", [](T& self, const py::args&) { self.close(); });
 }

@@ -16,8 +16,7 @@ namespace {
 
 // The Python object with a result.
 struct ResultObject {
-  PyObject_HEAD
-  DistanceResult value;
+  PyObject_HEAD DistanceResult value;
 };
 
 // Filled when the module is made. The module keeps them, and is never unloaded.
@@ -75,18 +74,19 @@ void free_result(PyObject* self) {
 
 PyGetSetDef members[] = {
     {"distance", number<&DistanceResult::distance>, nullptr,
-     "The signed distance, m, within the bounds; minus the penetration depth if the bodies overlap.",
+     "The signed distance, m, within the bounds; minus the penetration depth if the bodies "
+     "overlap.",
      nullptr},
-    {"lower", number<&DistanceResult::lower>, nullptr, "Certified: the true distance is not smaller, m.",
-     nullptr},
-    {"upper", number<&DistanceResult::upper>, nullptr, "Certified: the true distance is not larger, m.",
-     nullptr},
+    {"lower", number<&DistanceResult::lower>, nullptr,
+     "Certified: the true distance is not smaller, m.", nullptr},
+    {"upper", number<&DistanceResult::upper>, nullptr,
+     "Certified: the true distance is not larger, m.", nullptr},
     {"normal", vector<&DistanceResult::normal>, nullptr,
      "Unit vector from A towards B, (3,), in frame A.", nullptr},
-    {"point_on_a", vector<&DistanceResult::point_on_a>, nullptr, "Witness point, (3,), m, in frame A.",
-     nullptr},
-    {"point_on_b", vector<&DistanceResult::point_on_b>, nullptr, "Witness point, (3,), m, in frame A.",
-     nullptr},
+    {"point_on_a", vector<&DistanceResult::point_on_a>, nullptr,
+     "Witness point, (3,), m, in frame A.", nullptr},
+    {"point_on_b", vector<&DistanceResult::point_on_b>, nullptr,
+     "Witness point, (3,), m, in frame A.", nullptr},
     {"status", status, nullptr, "A DistanceStatus.", nullptr},
     {"path", path, nullptr, "The method that has answered: a DistancePath.", nullptr},
     {"iterations", iterations, nullptr, "The iterations of that method.", nullptr},
@@ -128,7 +128,8 @@ bool read(PyObject* const* given, Py_ssize_t count, PyObject* keywords, Argument
   PyObject** const places[] = {&to.a, &to.b, &to.pose, &to.state, &to.depth};
   if (count > 4) {
     PyErr_Format(PyExc_TypeError,
-                 "distance(): found %zd arguments by position; expected a, b, pose and state", count);
+                 "distance(): found %zd arguments by position; expected a, b, pose and state",
+                 count);
     return false;
   }
   for (Py_ssize_t i = 0; i < count; ++i) *places[i] = given[i];
@@ -216,22 +217,29 @@ void add_distance(py::module_& module) {
     values.push_back({constant_name(name(static_cast<DistanceStatus>(i))), i});
   const py::object status_enum = add_enum(module, "DistanceStatus", values, "Why a query ended.");
   for (int i = 0; i < 6; ++i) statuses[i] = status_enum(i).release().ptr();
-  const py::object path_enum = add_enum(
-      module, "DistancePath",
-      {{"FEATURE_TRACKING", 0}, {"ACTIVE_SET", 1}, {"GJK", 2}, {"PENETRATION", 3}, {"DIRECTION", 4}},
-      "The method that has answered a query.");
+  const py::object path_enum = add_enum(module, "DistancePath",
+                                        {{"FEATURE_TRACKING", 0},
+                                         {"ACTIVE_SET", 1},
+                                         {"GJK", 2},
+                                         {"PENETRATION", 3},
+                                         {"DIRECTION", 4}},
+                                        "The method that has answered a query.");
   for (int i = 0; i < 5; ++i) paths[i] = path_enum(i).release().ptr();
 
   py::class_<TrackingState>(module, "TrackingState", R"(What a pair keeps between two queries.
 
 A hint and never a fact: any state leaves the bounds true. One thread uses it at a time.)")
       .def(py::init<>())
-      .def("forget", [](TrackingState& state) { state = {}; }, "The next query starts from nothing.");
+      .def(
+          "forget", [](TrackingState& state) { state = {}; },
+          "The next query starts from nothing.");
 
   result_type = reinterpret_cast<PyTypeObject*>(PyType_FromSpec(&spec));
   if (result_type == nullptr) throw py::error_already_set();
-  module.attr("Distance") = py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(result_type));
-  PyObject* const function = PyCFunction_NewEx(&distance_method, nullptr, py::str(module.attr("__name__")).ptr());
+  module.attr("Distance") =
+      py::reinterpret_borrow<py::object>(reinterpret_cast<PyObject*>(result_type));
+  PyObject* const function =
+      PyCFunction_NewEx(&distance_method, nullptr, py::str(module.attr("__name__")).ptr());
   module.attr("distance") = py::reinterpret_steal<py::object>(function);
 }
 

@@ -25,8 +25,8 @@ class RefusedReplay : public std::runtime_error {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Writes ticks as records of one layout. Pairs and zones are those of the cell that the caller gave,
-// by name, also after the recording has changed its cell.
+// Writes ticks as records of one layout. Pairs and zones are those of the cell that the caller
+// gave, by name, also after the recording has changed its cell.
 class TickRecords {
  public:
   explicit TickRecords(const Scene& scene) : scene_(scene) {
@@ -35,7 +35,8 @@ class TickRecords {
     }
     zones_ = scene.zones.size();
     for (const Number& number : kNumbers) place(number.name, number.type, 8);
-    for (const char* name : kByPair) by_pair_.push_back(place(name, format(pairs_, "f8"), 8 * pairs_));
+    for (const char* name : kByPair)
+      by_pair_.push_back(place(name, format(pairs_, "f8"), 8 * pairs_));
     minimum_pair_ = place("minimum_pair", "i4", 4);
     status_ = place("status", format(pairs_, "u1"), pairs_);
     zone_active_ = place("zone_active", format(zones_, "?"), zones_);
@@ -82,10 +83,10 @@ class TickRecords {
   struct Number {
     const char *name, *type;
   };
-  static constexpr Number kNumbers[] = {
-      {"cycle", "u8"},           {"now_ns", "i8"},           {"time_s", "f8"},
-      {"lower_all", "f8"},       {"swept_lower_all", "f8"},  {"minimum_distance", "f8"},
-      {"minimum_lower", "f8"},   {"minimum_upper", "f8"}};
+  static constexpr Number kNumbers[] = {{"cycle", "u8"},           {"now_ns", "i8"},
+                                        {"time_s", "f8"},          {"lower_all", "f8"},
+                                        {"swept_lower_all", "f8"}, {"minimum_distance", "f8"},
+                                        {"minimum_lower", "f8"},   {"minimum_upper", "f8"}};
   static constexpr const char* kByPair[] = {"distance", "lower", "upper", "swept_lower",
                                             "closing_speed"};
   using Names = std::pair<std::string, std::string>;
@@ -118,7 +119,8 @@ class TickRecords {
   void put_pair(std::byte* row, std::size_t column, const PairReport& pair) {
     const double numbers[] = {pair.distance, pair.lower, pair.upper, pair.swept_lower,
                               pair.closing_speed};
-    for (std::size_t i = 0; i < by_pair_.size(); ++i) put(row, by_pair_[i] + 8 * column, numbers[i]);
+    for (std::size_t i = 0; i < by_pair_.size(); ++i)
+      put(row, by_pair_[i] + 8 * column, numbers[i]);
     put(row, status_ + column, static_cast<std::uint8_t>(pair.status));
   }
   [[nodiscard]] std::vector<Field> fields_with_names() const {
@@ -142,7 +144,8 @@ class TickRecords {
       pair_of_.push_back(found == all.end() ? -1 : found->second);
       if (!pair.publish) continue;
       const auto column = column_of_.find(key);
-      columns_.push_back(column == column_of_.end() ? -1 : static_cast<std::int32_t>(column->second));
+      columns_.push_back(column == column_of_.end() ? -1
+                                                    : static_cast<std::int32_t>(column->second));
     }
     for (const Zone& zone : now.zones) {
       std::int32_t column = -1;
@@ -238,8 +241,7 @@ OfflineReplay run(const CellObject& cell, const std::filesystem::path& recording
 }
 
 void warn(const OfflineReplay& result) {
-  if (!result.damage.empty() &&
-      PyErr_WarnEx(PyExc_RuntimeWarning, result.damage.c_str(), 1) != 0)
+  if (!result.damage.empty() && PyErr_WarnEx(PyExc_RuntimeWarning, result.damage.c_str(), 1) != 0)
     throw py::error_already_set();
 }
 
@@ -248,7 +250,7 @@ py::object replay(const CellObject& cell, const std::filesystem::path& recording
                   std::vector<std::string> joint_topics, std::map<std::string, double> joints,
                   bool evaluate_all) {
   TickRecords records(cell.scene());
-  const ReplayArguments arguments{start_s, end_s, tick_hz, std::move(joint_topics),
+  const ReplayArguments arguments{start_s,           end_s,       tick_hz, std::move(joint_topics),
                                   std::move(joints), evaluate_all};
   warn(run(cell, recording, arguments.options(), &records));
   return records.take().attr("view")(py::module_::import("numpy").attr("recarray"));
@@ -261,7 +263,7 @@ OfflineReplay check(const CellObject& cell, const std::filesystem::path& recordi
                     bool evaluate_all) {
   if (min_distance && !std::isfinite(*min_distance))
     throw py::value_error("min_distance: expected a finite distance, m, or None");
-  const ReplayArguments arguments{start_s, end_s, tick_hz, std::move(joint_topics),
+  const ReplayArguments arguments{start_s,           end_s,       tick_hz, std::move(joint_topics),
                                   std::move(joints), evaluate_all};
   OfflineReplayOptions options = arguments.options();
   options.expect_min_distance = min_distance;
@@ -282,11 +284,14 @@ void add_replay(py::module_& module) {
       .def_property_readonly("ok", &OfflineReplay::ok, "True if no expectation failed.")
       .def_property_readonly("text", &OfflineReplay::text,
                              "Everything that went wrong or is worth knowing, a line each.")
-      .def_property_readonly("failures", [](const OfflineReplay& r) {
-        py::list texts;
-        for (const ReplayFailure& failure : r.failures) texts.append(failure.what);
-        return texts;
-      }, "The first failure of each expectation: pair or zone, and figures.")
+      .def_property_readonly(
+          "failures",
+          [](const OfflineReplay& r) {
+            py::list texts;
+            for (const ReplayFailure& failure : r.failures) texts.append(failure.what);
+            return texts;
+          },
+          "The first failure of each expectation: pair or zone, and figures.")
       .def_readonly("notes", &OfflineReplay::notes, "What a person should know, in sentences.")
       .def_readonly("damage", &OfflineReplay::damage,
                     "Not empty: the recording was read up to a damage.")
@@ -295,11 +300,12 @@ void add_replay(py::module_& module) {
                              "The smallest distance of all ticks, m; None: no pair was known.")
       .def_readonly("closest_pair", &OfflineReplay::closest_pair, "Its name.")
       .def("__repr__", [](const OfflineReplay& r) {
-        return fmt::format("<clearance.ReplayCheck: {}, {} ticks>", r.ok() ? "ok" : "failed", r.ticks);
+        return fmt::format("<clearance.ReplayCheck: {}, {} ticks>", r.ok() ? "ok" : "failed",
+                           r.ticks);
       });
   module.def("replay", &replay, py::arg("cell"), py::arg("recording"), py::kw_only(),
-             py::arg("start_s") = 0.0, py::arg("end_s") = kInfinity, py::arg("tick_hz") = py::none(),
-             py::arg("joint_topics") = std::vector<std::string>(),
+             py::arg("start_s") = 0.0, py::arg("end_s") = kInfinity,
+             py::arg("tick_hz") = py::none(), py::arg("joint_topics") = std::vector<std::string>(),
              py::arg("joints") = std::map<std::string, double>(), py::arg("evaluate_all") = false,
              R"(Runs the daemon's tick on a recording; returns a record array, one record a tick.
 

@@ -23,15 +23,14 @@ inline void check_signals() {
 }
 
 // Seconds to wait; None: without an end. Throws ValueError.
-inline std::optional<double> timeout_of(const py::object& seconds) {
-  if (seconds.is_none()) return std::nullopt;
-  const double timeout = seconds.cast<double>();
-  if (!(timeout >= 0.0)) throw py::value_error("timeout: expected seconds, at least 0, or None");
-  return std::min(timeout, 1e9);
+inline std::optional<double> timeout_of(const std::optional<double>& seconds) {
+  if (!seconds) return std::nullopt;
+  if (!(*seconds >= 0.0)) throw py::value_error("timeout: expected seconds, at least 0, or None");
+  return std::min(*seconds, 1e9);
 }
 
-// Calls `attempt` with the time that it may wait, until it returns true or the time is over. Must be
-// called without the interpreter's lock.
+// Calls `attempt` with the time that it may wait, until it returns true or the time is over. Must
+// be called without the interpreter's lock.
 template <class Attempt>
 bool wait_in_slices(std::optional<double> timeout_s, const Attempt& attempt) {
   using Clock = std::chrono::steady_clock;

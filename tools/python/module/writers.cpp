@@ -20,7 +20,8 @@ std::int64_t stamp_of(const std::optional<std::int64_t>& stamp_ns) {
 void expect_finite(const Doubles& array, const char* name) {
   for (py::ssize_t i = 0; i < array.shape(0); ++i) {
     if (!std::isfinite(array.at(i)))
-      throw py::value_error(fmt::format("{}[{}]: found {}; expected a finite number", name, i, array.at(i)));
+      throw py::value_error(
+          fmt::format("{}[{}]: found {}; expected a finite number", name, i, array.at(i)));
   }
 }
 
@@ -93,7 +94,8 @@ class PoseWriter : public Live<PoseParts> {
     py::ssize_t i = 0;
     for (client::Object& object : parts->objects) {
       const std::optional<std::uint32_t> id = object.id(revision);
-      if (!id) throw py::key_error(fmt::format("the daemon's cell has no object '{}'", object.name()));
+      if (!id)
+        throw py::key_error(fmt::format("the daemon's cell has no object '{}'", object.name()));
       const Pose pose = pose_in(rows.data(i, 0), "poses", i);
       const Eigen::Quaterniond& q = pose.orientation;
       clearance_msg_ObjectPose& one = message.emplace_back();
@@ -122,46 +124,60 @@ class PoseWriter : public Live<PoseParts> {
 };
 
 constexpr const char* kWaitHeard =
-    "Waits until a daemon listens; False if none came within `timeout` s (None: no end). Ctrl-C ends it.";
+    "Waits until a daemon listens; False if none came within `timeout` s (None: no end). Ctrl-C "
+    "ends it.";
 
 }  // namespace
 
 void add_writers(py::module_& module) {
-  py::class_<JointWriter> joints(module, "JointWriter", "Sends joint states of robots of the cell.");
+  py::class_<JointWriter> joints(module, "JointWriter",
+                                 "Sends joint states of robots of the cell.");
   joints
-      .def(py::init<const std::string&, std::vector<std::string>, const SharedConnection&>(),
-           py::arg("source"), py::arg("names"), py::arg("connection") = py::none(),
-           R"(source: 1 to 32 bytes, of no other writer. names: of joints, as in the URDF, with the prefix
+      .def(
+          py::init<const std::string&, std::vector<std::string>, const SharedConnection&>(),
+          py::arg("source"), py::arg("names"), py::arg("connection") = py::none(),
+          R"(source: 1 to 32 bytes, of no other writer. names: of joints, as in the URDF, with the prefix
 that the cell gives. Raises ValueError and DdsError.)")
-      .def("write", &JointWriter::write, py::arg("positions"), py::arg("velocities") = py::none(),
-           py::arg("stamp_ns") = py::none(),
-           R"(positions: (names,), rad or m. velocities: (names,), per second. stamp_ns: when they held;
+      .def(
+          "write", &JointWriter::write, py::arg("positions"), py::arg("velocities") = py::none(),
+          py::arg("stamp_ns") = py::none(),
+          R"(positions: (names,), rad or m. velocities: (names,), per second. stamp_ns: when they held;
 None: now. Returns False if DDS did not take them. Raises ValueError for another shape or a number that
 is not finite.)")
-      .def("wait_heard", [](JointWriter& self, const py::object& timeout) {
-        return wait_heard(*self.use(), timeout_of(timeout));
-      }, py::arg("timeout") = py::none(), kWaitHeard)
-      .def_property_readonly("is_heard", [](JointWriter& self) { return self.use()->writer.is_heard(); },
-                             "True when a daemon listens.");
+      .def(
+          "wait_heard",
+          [](JointWriter& self, const std::optional<double>& timeout) {
+            return wait_heard(*self.use(), timeout_of(timeout));
+          },
+          py::arg("timeout") = py::none(), kWaitHeard)
+      .def_property_readonly(
+          "is_heard", [](JointWriter& self) { return self.use()->writer.is_heard(); },
+          "True when a daemon listens.");
   add_closing(joints);
   py::class_<PoseWriter> poses(module, "PoseWriter", "Sends poses of moving objects of the cell.");
   poses
-      .def(py::init<const std::string&, std::vector<std::string>, const SharedConnection&>(),
-           py::arg("source"), py::arg("objects"), py::arg("connection") = py::none(),
-           R"(source: 1 to 32 bytes, of no other writer. objects: their names in the cell. Raises ValueError
+      .def(
+          py::init<const std::string&, std::vector<std::string>, const SharedConnection&>(),
+          py::arg("source"), py::arg("objects"), py::arg("connection") = py::none(),
+          R"(source: 1 to 32 bytes, of no other writer. objects: their names in the cell. Raises ValueError
 and DdsError.)")
-      .def("write", &PoseWriter::write, py::arg("poses"), py::arg("twists") = py::none(),
-           py::arg("stamp_ns") = py::none(),
-           R"(poses: (objects, 7), each x, y, z, and the quaternion x, y, z, w, in the world, m. twists:
+      .def(
+          "write", &PoseWriter::write, py::arg("poses"), py::arg("twists") = py::none(),
+          py::arg("stamp_ns") = py::none(),
+          R"(poses: (objects, 7), each x, y, z, and the quaternion x, y, z, w, in the world, m. twists:
 (objects, 6), linear m/s and angular rad/s, along world axes. stamp_ns: when they held; None: now.
 
 Returns False if no daemon has sent its names yet, or if DDS did not take the poses. Raises KeyError for
 an object that the cell does not have, ValueError for another shape or a bad pose.)")
-      .def("wait_heard", [](PoseWriter& self, const py::object& timeout) {
-        return wait_heard(*self.use(), timeout_of(timeout));
-      }, py::arg("timeout") = py::none(), kWaitHeard)
-      .def_property_readonly("is_heard", [](PoseWriter& self) { return self.use()->writer.is_heard(); },
-                             "True when a daemon listens.");
+      .def(
+          "wait_heard",
+          [](PoseWriter& self, const std::optional<double>& timeout) {
+            return wait_heard(*self.use(), timeout_of(timeout));
+          },
+          py::arg("timeout") = py::none(), kWaitHeard)
+      .def_property_readonly(
+          "is_heard", [](PoseWriter& self) { return self.use()->writer.is_heard(); },
+          "True when a daemon listens.");
   add_closing(poses);
 }
 
