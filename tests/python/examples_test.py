@@ -46,7 +46,7 @@ def test_a_plot_shows_the_least_distance_of_a_recording(planar_file, tmp_path):
 
 
 def test_the_live_example_prints_distances(run_daemon, arm_files, arm):
-    daemon = run_daemon("--urdf", arm_files[0], "--srdf", arm_files[1])
+    daemon = run_daemon("--urdf", arm_files[0], "--srdf", arm_files[1], "--age-limit-ms", 10_000)
     # The example joins domain 0: here its first lines run in the test's domain.
     text = (EXAMPLES / "live_distances.py").read_text()
     assert "clearance.Connection(cell, " in text
