@@ -1,6 +1,8 @@
 """A running daemon as a Python program meets it, on loopback and in a partition of its own."""
 
 import signal
+import subprocess
+import sys
 import threading
 import time
 
@@ -157,6 +159,24 @@ def test_a_wait_lets_other_threads_run(nobody):
         reports.next(0.3)
         assert len(counted) == 1000
         thread.join()
+
+
+@pytest.mark.parametrize("daemon_thread", [False, True])
+def test_a_program_ends_in_peace_while_objects_are_open_and_a_thread_waits(daemon_thread):
+    program = f"""
+import threading, time, clearance
+connection = clearance.Connection(domain=7, partition="python-tests-without-a-daemon")
+reports, waiting = clearance.Reports(connection), clearance.Reports(connection)
+joints = clearance.JointWriter("python", ["a"], connection)
+if {daemon_thread}:
+    for timeout in (0.05, 0.1, 0.11, 600):
+        one = clearance.Reports(connection)
+        threading.Thread(target=lambda r=one, t=timeout: [r.next(t) for _ in range(9)], daemon=True).start()
+    time.sleep(0.1)
+"""
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_a_second_thread_is_refused_and_so_is_closing_under_a_wait(nobody):

@@ -59,7 +59,7 @@ class Batch {
       poses_[static_cast<std::size_t>(i)] = pose_in(array.data(i, 0), "poses", i);
     std::span<const DistanceResult> found;
     {
-      const py::gil_scoped_release unlock;
+      const Unlocked unlock;
       found = batch_->evaluate(poses_);
     }
     return records_of(result_dtype(), found.data(), found.size());

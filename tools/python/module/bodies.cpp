@@ -10,6 +10,7 @@
 #include "core/shapes.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/module.hpp"
+#include "tools/python/module/waiting.hpp"
 
 namespace clearance::python {
 namespace {
@@ -31,7 +32,7 @@ Body made(ShapeResult result, double radius = 0.0) {
 // Exact arithmetic may take milliseconds.
 template <class Make>
 Body made_unlocked(const Make& make, double radius) {
-  const py::gil_scoped_release unlock;
+  const Unlocked unlock;
   return made(make(), radius);
 }
 

@@ -39,7 +39,7 @@ std::shared_ptr<CellObject> cell_by(const Read& read) {
   std::vector<std::string> notes;
   CellResult result;
   {
-    const py::gil_scoped_release unlock;
+    const Unlocked unlock;
     result =
         read(CellOptions{.tell = [&notes](const std::string& line) { notes.push_back(line); }});
   }
@@ -193,7 +193,7 @@ Distances distances(const CellObject& self, const py::object& joints, const py::
   {
     const double* const data = array.data();
     const auto count = static_cast<std::size_t>(array.shape(0));
-    const py::gil_scoped_release unlock;
+    const Unlocked unlock;
     bad = evaluate_all(*configurations, data, count, rows);
   }
   if (bad) {

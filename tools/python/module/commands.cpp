@@ -45,19 +45,15 @@ class Commands : public Live<CommandParts> {
     const Use parts = use();
     client::CommandOptions options{.scene_revision = revision, .dry_run = dry_run};
     for (const auto& [name, bytes] : files) options.files.push_back({name, std::string(bytes)});
-    bool interrupted = false;
-    options.stop = [&interrupted] {
-      const py::gil_scoped_acquire lock;
-      interrupted = PyErr_CheckSignals() != 0;
-      return interrupted;
-    };
+    bool stopped = false;
+    options.stop = [&stopped] { return stopped = interrupted(); };
     std::optional<CommandResult> result;
     {
-      const py::gil_scoped_release unlock;
+      const Unlocked unlock;
       result = parts->commands.send(
           changes, options, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * timeout)));
     }
-    if (interrupted) throw py::error_already_set();
+    if (stopped) throw py::error_already_set();
     if (result) return *result;
     const std::string why = parts->commands.is_heard()
                                 ? "the changes may be made or not"

@@ -1,10 +1,11 @@
 #include "tools/python/module/module.hpp"
 
+#include "tools/python/module/waiting.hpp"
+
 PYBIND11_MODULE(_clearance, module) {
   using namespace clearance::python;
   module.doc() = "Clearance in C++. Import clearance instead, which has the same names.";
-  pybind11::options options;
-  options.disable_enum_members_docstring();
+  watch_for_the_end();
   add_bodies(module);
   add_distance(module);
   add_batch(module);

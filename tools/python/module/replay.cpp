@@ -177,28 +177,21 @@ class TickRecords {
   std::size_t count_ = 0;
 };
 
-// Asks for signals between ticks, and ends the replay at the first.
+// Looks for signals between ticks; the first one ends the replay.
 class Interruption {
  public:
   [[nodiscard]] bool operator()() {
     const auto now = Clock::now();
     if (raised_ || now < look_) return raised_;
     look_ = now + kSlice;
-    const py::gil_scoped_acquire lock;
-    raised_ = PyErr_CheckSignals() != 0;
-    if (raised_) error_.emplace();
-    return raised_;
+    return raised_ = interrupted();
   }
-  // Throws the exception of the signal.
-  void rethrow() const {
-    if (error_) throw py::error_already_set(*error_);
-  }
+  [[nodiscard]] bool raised() const noexcept { return raised_; }
 
  private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point look_ = Clock::now() + kSlice;
   bool raised_ = false;
-  std::optional<py::error_already_set> error_;
 };
 
 struct ReplayArguments {
@@ -229,13 +222,13 @@ OfflineReplay run(const CellObject& cell, const std::filesystem::path& recording
   OfflineReplay result;
   Interruption interruption;
   {
-    const py::gil_scoped_release unlock;
+    const Unlocked unlock;
     options.stop = std::ref(interruption);
     result = replay_offline(cell.cell(), recording, options, [records](const ReplayedTick& tick) {
       if (records != nullptr) records->add(tick);
     });
   }
-  interruption.rethrow();
+  if (interruption.raised()) throw py::error_already_set();
   if (!result.error.empty()) throw RefusedReplay(result.error);
   return result;
 }

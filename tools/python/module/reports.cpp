@@ -152,7 +152,7 @@ class Reports : public Live<ReportParts> {
     const Use parts = use();
     bool came = false;
     {
-      const py::gil_scoped_release unlock;
+      const Unlocked unlock;
       came = wait_in_slices(timeout_s, [&](std::chrono::nanoseconds slice) {
         return newest ? parts->stream.newest(slice) : parts->stream.next(slice);
       });
@@ -191,7 +191,7 @@ void add_connection(py::module_& module) {
             if (options.domain > 232) throw py::value_error("domain: expected 0 to 232");
             if (!is_partition(options.partition))
               throw py::value_error("partition: expected at most 255 bytes without wildcards");
-            const py::gil_scoped_release unlock;
+            const Unlocked unlock;
             return std::make_shared<client::Connection>(options, topics);
           }),
           py::arg("cell") = py::none(), py::kw_only(), py::arg("domain") = py::none(),
@@ -268,7 +268,7 @@ refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)")
 
 SharedConnection connection_of(const SharedConnection& given) {
   if (given) return given;
-  const py::gil_scoped_release unlock;
+  const Unlocked unlock;
   return std::make_shared<client::Connection>();
 }
 

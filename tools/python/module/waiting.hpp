@@ -16,8 +16,42 @@ namespace py = pybind11;
 // Signals are looked for this often.
 inline constexpr std::chrono::milliseconds kSlice{50};
 
-// Throws the exception of a pending signal: KeyboardInterrupt. Takes the interpreter's lock.
+// Tells whether the program is leaving Python, and whether this is Python's main thread, the only
+// one that gets signals. Both need no lock.
+[[nodiscard]] bool is_ending() noexcept;
+[[nodiscard]] bool is_main_thread() noexcept;
+// To be called once, when the module is made.
+void watch_for_the_end();
+
+// Releases the interpreter's lock for a scope. A thread that would take it again while the program
+// ends stays here instead: Python would end it by unwinding, which C++ answers with an abort.
+class Unlocked {
+ public:
+  Unlocked() : state_(PyEval_SaveThread()) {}
+  ~Unlocked() {
+    if (is_ending() && !is_main_thread()) stay();
+    PyEval_RestoreThread(state_);
+  }
+  Unlocked(const Unlocked&) = delete;
+  Unlocked& operator=(const Unlocked&) = delete;
+
+ private:
+  [[noreturn]] static void stay() noexcept;
+
+  PyThreadState* state_;
+};
+
+// True if a signal is pending; its exception is set. Called without the interpreter's lock.
+[[nodiscard]] inline bool interrupted() {
+  if (!is_main_thread()) return false;
+  const py::gil_scoped_acquire lock;
+  return PyErr_CheckSignals() != 0;
+}
+
+// Throws the exception of a pending signal: KeyboardInterrupt. Called without the interpreter's
+// lock.
 inline void check_signals() {
+  if (!is_main_thread()) return;
   const py::gil_scoped_acquire lock;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }

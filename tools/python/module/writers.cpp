@@ -27,7 +27,7 @@ void expect_finite(const Doubles& array, const char* name) {
 
 template <class Parts>
 bool wait_heard(Parts& parts, const std::optional<double>& timeout_s) {
-  const py::gil_scoped_release unlock;
+  const Unlocked unlock;
   return wait_in_slices(timeout_s, [&](std::chrono::nanoseconds slice) {
     if (parts.writer.is_heard()) return true;
     dds_sleepfor(std::min<std::int64_t>(slice.count(), 5'000'000));
