@@ -101,7 +101,9 @@ def test_each_configuration_alone_agrees_with_the_series(arm):
 
 def test_points_are_left_out_on_request(arm):
     found = arm.distances(np.zeros((2, len(arm.joints))).clip(*arm.joint_limits.T), points=False)
-    assert found.point_a is None and found.normal is None and found.gradient is None
+    for name in ("point_a", "point_b", "normal", "gradient"):
+        with pytest.raises(AttributeError, match="points=True"):
+            getattr(found, name)
     assert found.part_a.shape == found.distance.shape
 
 
@@ -203,6 +205,31 @@ def test_a_signal_ends_a_long_series(arm, interrupt):
     with pytest.raises(interrupt):
         for _ in range(1000):
             arm.distances(joints, points=False)
+
+
+def test_a_signal_ends_the_reading_of_meshes(tmp_path, interrupt):
+    # A bumpy ball, many times in other sizes, which all have to be split into convex parts.
+    angles = np.linspace(0, np.pi, 40), np.linspace(0, 2 * np.pi, 80, endpoint=False)
+    polar, round_ = (a.ravel() for a in np.meshgrid(*angles, indexing="ij"))
+    bumps = 1 + 0.3 * np.sin(5 * round_) * np.sin(polar) * np.cos(4 * polar)
+    points = np.stack([np.sin(polar) * np.cos(round_), np.sin(polar) * np.sin(round_), np.cos(polar)], 1)
+    points *= bumps[:, None]
+    faces = []
+    for i in range(39):
+        for j in range(80):
+            k = (j + 1) % 80
+            faces.append([1 + 80 * i + j, 81 + 80 * i + j, 81 + 80 * i + k, 1 + 80 * i + k])
+    objects = ""
+    for number in range(30):
+        with open(tmp_path / f"{number}.obj", "w", encoding="utf-8") as file:
+            file.writelines("v {} {} {}\n".format(*p) for p in points * (1 + 0.1 * number))
+            file.writelines("f {} {} {}\nf {} {} {}\n".format(*f[:3], f[0], *f[2:]) for f in faces)
+        objects += f"  - {{name: o{number}, mesh: {{file: {number}.obj}}}}\n"
+    text = "name: x\nunits: {length: m, angle: deg}\nobjects:\n" + objects
+    text += "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}\n"
+    text += "pairs:\n" + "".join(f"  - {{between: [o{n}, floor]}}\n" for n in range(30))
+    with pytest.raises(interrupt):
+        clearance.Cell.from_yaml(text, tmp_path / "x.yaml")
 
 
 def test_every_mistake_of_a_cell_is_listed(tmp_path):

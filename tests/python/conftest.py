@@ -10,8 +10,8 @@ import pytest
 import clearance
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
-# The partition is that of a daemon alone; the network is loopback. Domains below 100 avoid the ports that the kernel
-# assigns.
+# Each daemon has a partition alone; the network is loopback. Domains below 100 avoid the ports that the
+# kernel assigns.
 DOMAIN = 1 + os.getpid() % 99
 
 # Two links of length 1 m that turn about z in a plane; spheres of 0.1 m at the elbow and at the tip.

@@ -56,16 +56,11 @@ def test_every_name_has_a_docstring():
 
 
 def test_mypy_is_strict_with_the_package_and_its_examples(tmp_path):
-    checked = subprocess.run(
-        [sys.executable, "-m", "mypy", "--strict", "--cache-dir", str(tmp_path), "--config-file", str(ROOM / "mypy.ini"),
-         "-p", "clearance"],
-        capture_output=True, text=True, cwd=ROOM,
-    )
-    assert checked.returncode == 0, checked.stdout + checked.stderr
-    for example in sorted((ROOM / "examples").glob("*.py")):
-        checked = subprocess.run(
-            [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path), "--config-file", str(ROOM / "mypy.ini"),
-             "--check-untyped-defs", str(example)],
-            capture_output=True, text=True, cwd=ROOM,
-        )
+    mypy = [sys.executable, "-m", "mypy", "--cache-dir", str(tmp_path)]
+    mypy += ["--config-file", str(ROOM / "mypy.ini")]
+    examples = sorted((ROOM / "examples").glob("*.py"))
+    calls = [["--strict", "-p", "clearance"]]
+    calls += [["--check-untyped-defs", str(example)] for example in examples]
+    for call in calls:
+        checked = subprocess.run(mypy + call, capture_output=True, text=True, cwd=ROOM)
         assert checked.returncode == 0, checked.stdout + checked.stderr

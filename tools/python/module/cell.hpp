@@ -37,4 +37,9 @@ class CellObject {
   mutable std::vector<std::unique_ptr<Configurations>> idle_;
 };
 
+using CellClass = pybind11::class_<CellObject, std::shared_ptr<CellObject>>;
+
+// Adds the class Distances, and Cell.distances(), which returns one.
+void add_distances(pybind11::module_& module, CellClass& cells);
+
 }  // namespace clearance::python
