@@ -188,21 +188,21 @@ class Interrupted(Exception):
 
 @pytest.fixture
 def interrupt():
-    """A signal in 0.2 s whose handler raises, as Ctrl-C does."""
+    """Sends a signal in 0.2 s whose handler raises, as Ctrl-C does."""
 
     def raise_it(*_):
         raise Interrupted
 
     former = signal.signal(signal.SIGALRM, raise_it)
-    signal.setitimer(signal.ITIMER_REAL, 0.2)
-    yield Interrupted
+    yield lambda: signal.setitimer(signal.ITIMER_REAL, 0.2)
     signal.setitimer(signal.ITIMER_REAL, 0)
     signal.signal(signal.SIGALRM, former)
 
 
 def test_a_signal_ends_a_long_series(arm, interrupt):
     joints = np.zeros((400_000, len(arm.joints))).clip(*arm.joint_limits.T)
-    with pytest.raises(interrupt):
+    with pytest.raises(Interrupted):
+        interrupt()
         for _ in range(1000):
             arm.distances(joints, points=False)
 
@@ -228,7 +228,8 @@ def test_a_signal_ends_the_reading_of_meshes(tmp_path, interrupt):
     text = "name: x\nunits: {length: m, angle: deg}\nobjects:\n" + objects
     text += "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: 0}}\n"
     text += "pairs:\n" + "".join(f"  - {{between: [o{n}, floor]}}\n" for n in range(30))
-    with pytest.raises(interrupt):
+    with pytest.raises(Interrupted):
+        interrupt()
         clearance.Cell.from_yaml(text, tmp_path / "x.yaml")
 
 

@@ -34,7 +34,7 @@ class Batch {
  public:
   Batch(const py::sequence& bodies, const py::object& pairs) {
     std::vector<const ConvexBody*> pointers;
-    for (const py::handle body : bodies) {
+    for (const py::object body : bodies) {  // an owner: some sequences make their items on demand
       if (!py::isinstance<ConvexBody>(body)) {
         throw py::type_error(fmt::format("bodies[{}]: found {}; expected a Body", bodies_.size(),
                                          Py_TYPE(body.ptr())->tp_name));

@@ -113,7 +113,10 @@ std::optional<BadPosition> evaluate_all(Configurations& configurations, const do
 }
 
 void place_objects(const Scene& scene, const py::dict& poses, Configurations& configurations) {
-  for (const auto& [key, value] : poses) {
+  // A copy, since the conversion of a value may run code that changes the dictionary.
+  const py::list items(poses.attr("items")());
+  for (const py::handle item : items) {
+    const auto [key, value] = item.cast<std::pair<py::object, py::object>>();
     if (!py::isinstance<py::str>(key)) {
       throw py::type_error(fmt::format("poses: found a key of type {}; expected names of objects",
                                        Py_TYPE(key.ptr())->tp_name));
