@@ -69,6 +69,14 @@ def wheel():
     return f"Wheel-Version: 1.0\nGenerator: clearance\nRoot-Is-Purelib: false\nTag: {tag()}\n"
 
 
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):
+    folder = pathlib.Path(metadata_directory) / f"clearance-{version()}.dist-info"
+    folder.mkdir()
+    (folder / "METADATA").write_text(metadata())
+    (folder / "WHEEL").write_text(wheel())
+    return folder.name
+
+
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
     folder = build()
     name = f"clearance-{version()}"
