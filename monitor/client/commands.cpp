@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "monitor/commands/command_message.hpp"
 #include "monitor/participant/participant.hpp"
@@ -16,6 +17,7 @@ namespace {
 constexpr std::size_t kKeptResults = 64;
 constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent again
 constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
+constexpr std::int64_t kAskNs = 50'000'000;       // until the caller is asked again
 
 bool has_matched(dds_entity_t writer, dds_entity_t reader) {
   dds_publication_matched_status_t readers{};
@@ -26,6 +28,26 @@ bool has_matched(dds_entity_t writer, dds_entity_t reader) {
 }
 
 }  // namespace
+
+// Asks the caller whether to end a wait, not more often than every kAskNs.
+class Commands::Stop {
+ public:
+  explicit Stop(std::function<bool()> ask) : ask_(std::move(ask)) {}
+  [[nodiscard]] bool operator()() {
+    if (stopped_ || !ask_ || dds_time() < next_ns_) return stopped_;
+    next_ns_ = dds_time() + kAskNs;
+    return stopped_ = ask_();
+  }
+  // The time until a wait has to end so that the caller can be asked.
+  [[nodiscard]] std::int64_t slice(std::int64_t left_ns) const noexcept {
+    return ask_ ? std::min(left_ns, kAskNs) : left_ns;
+  }
+
+ private:
+  std::function<bool()> ask_;
+  std::int64_t next_ns_ = 0;
+  bool stopped_ = false;
+};
 
 Commands::Commands(Connection& connection, std::string_view client) : client_(client) {
   if (client.empty() || client.size() > 32) {
@@ -65,27 +87,30 @@ std::optional<CommandResult> Commands::send(const std::vector<CellChange>& chang
                                             const CommandOptions& options,
                                             std::chrono::nanoseconds timeout) {
   const std::int64_t end_ns = dds_time() + timeout.count();
-  while (!is_heard() && dds_time() < end_ns) dds_sleepfor(kLookNs);
-  if (!is_heard()) return std::nullopt;
+  Stop stop(options.stop);
+  while (!is_heard() && dds_time() < end_ns && !stop()) dds_sleepfor(kLookNs);
+  if (!is_heard() || stop()) return std::nullopt;
   request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
   const Command command{client_,         request_, options.scene_revision,
                         options.dry_run, changes,  options.files};
   do {
     (void)write(command);
-    if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs))) {
+    if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {
       // A busy daemon has not taken the request.
       if (result->status != CommandStatus::kBusy) return result;
       if (dds_time() + kAgainNs >= end_ns) return result;
       results_.erase(request_);
-      dds_sleepfor(kAgainNs);
+      const std::int64_t again_ns = dds_time() + kAgainNs;
+      while (dds_time() < again_ns && !stop()) dds_sleepfor(stop.slice(again_ns - dds_time()));
     }
-  } while (dds_time() < end_ns);
+  } while (dds_time() < end_ns && !stop());
   return std::nullopt;
 }
 
 std::optional<CommandResult> Commands::result(std::uint64_t request,
                                               std::chrono::nanoseconds timeout) {
-  return wait_for(request, dds_time() + timeout.count());
+  Stop never({});
+  return wait_for(request, dds_time() + timeout.count(), never);
 }
 
 void Commands::take_results() {
@@ -99,13 +124,14 @@ void Commands::take_results() {
   }
 }
 
-std::optional<CommandResult> Commands::wait_for(std::uint64_t request, std::int64_t end_ns) {
+std::optional<CommandResult> Commands::wait_for(std::uint64_t request, std::int64_t end_ns,
+                                                Stop& stop) {
   while (true) {
     take_results();
     if (const auto found = results_.find(request); found != results_.end()) return found->second;
     const std::int64_t left_ns = end_ns - dds_time();
-    if (left_ns <= 0) return std::nullopt;
-    wait_->wait(left_ns);
+    if (left_ns <= 0 || stop()) return std::nullopt;
+    wait_->wait(stop.slice(left_ns));
   }
 }
 

@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
@@ -21,6 +22,8 @@ struct CommandOptions {
   std::uint64_t scene_revision = 0;  // of the scene that the client knows; 0: not checked
   bool dry_run = false;              // answer only, change nothing
   std::vector<SentFile> files = {};  // that changes name as "sent:NAME"
+  // Asked about every 50 ms while send() waits: true ends the wait as if its time were over.
+  std::function<bool()> stop = {};
 };
 
 // Sends commands under the name of one client, which the daemon's cell names under `commands`, and
@@ -53,9 +56,11 @@ class Commands {
   [[nodiscard]] bool is_heard() const;
 
  private:
+  class Stop;
+
   bool write(const Command& command);
   void take_results();
-  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns);
+  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns, Stop& stop);
 
   std::string client_;
   std::uint64_t request_ = 0;  // the last one

@@ -153,6 +153,27 @@ TEST(ClientCommands, WithoutADaemonGiveUpAfterTheTimeout) {
   EXPECT_FALSE(commands.send(kAttach, {}, milliseconds(50)));
 }
 
+TEST(ClientCommands, StopWaitingForADaemonWhenTheCallerSaysSo) {
+  client::Connection connection(test::own_dds());
+  client::Commands commands(connection, "planner");
+  int asked = 0;
+  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return ++asked == 3; }}, seconds(600)));
+  EXPECT_EQ(asked, 3);
+}
+
+TEST(ClientCommands, StopWaitingForAResultWhenTheCallerSaysSo) {
+  const DdsOptions dds = test::own_dds();
+  std::atomic<bool> came = false;
+  AnsweringDaemon daemon(dds, [&](const Command&) {
+    came = true;
+    return std::vector<CommandResult>{};
+  });
+  client::Connection connection(dds);
+  client::Commands commands(connection, "planner");
+  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return came.load(); }}, seconds(600)));
+  EXPECT_TRUE(came);
+}
+
 TEST(ClientCommands, RefuseANameThatNoCellCanHave) {
   client::Connection connection(test::own_dds());
   EXPECT_THROW(client::Commands(connection, ""), std::invalid_argument);

@@ -1,0 +1,259 @@
+"""A running daemon as a Python program meets it, on loopback and in a partition of its own."""
+
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import clearance
+from clearance import CommandStatus
+
+LIMIT_S = 30.0  # only a broken program takes longer
+ARM = ["shoulder", "elbow"]
+
+
+def eventually(report_of, is_so):
+    """The first report for which it is so."""
+    end = time.monotonic() + LIMIT_S
+    while time.monotonic() < end:
+        report = report_of()
+        if report is not None and is_so(report):
+            return report
+    raise AssertionError(f"not within {LIMIT_S} s: {report}")
+
+
+@pytest.fixture
+def daemon(run_daemon, planar_file):
+    return run_daemon(planar_file)
+
+
+def test_a_robot_and_an_object_are_told_and_their_distances_come_back(daemon):
+    connection = daemon.connection()
+    with clearance.Reports(connection) as reports, clearance.JointWriter(
+        "python joints", ARM, connection
+    ) as arm, clearance.PoseWriter("python poses", ["ball"], connection) as ball:
+        assert arm.wait_heard(LIMIT_S) and ball.wait_heard(LIMIT_S)
+
+        def sent_and_heard():
+            arm.write([0.0, np.pi / 2], [0.0, 0.0])
+            ball.write([[1.0, 1.0, 1.0, 0, 0, 0, 1]], [[0] * 6])
+            return reports.next(0.05)
+
+        report = eventually(sent_and_heard, lambda r: r.unknown == 0 and None not in r.pair_names)
+        # The tip is at (1, 1, 0): spheres of 0.1 and 0.25 m, and a wall at x = 3.
+        closed_forms = {
+            ("lower", "ball"): 0.65,
+            ("wall", "lower"): 1.9,
+            ("wall", "upper"): 1.9,
+            ("ball", "wall"): 1.75,
+        }
+        assert len(report.pairs) == len(report.pair_names) == 4
+        for pair, truth in closed_forms.items():
+            row = report[pair]
+            assert row["lower"] <= truth + 1e-9 and row["upper"] >= truth - 1e-9
+            assert row["pair"] == report[pair[::-1]]["pair"]
+        assert set(report.minimum_names) == {"lower", "ball"} and report.minimum_known
+        assert report.minimum["distance"] == pytest.approx(0.65, abs=1e-9)
+        np.testing.assert_allclose(report[("lower", "ball")]["witness_a"][:2], [1, 1], atol=1e-9)
+        assert report.fresh and report.age_s < 1 and report.cycle > 0 and report.revision != 0
+        assert report.pairs_total == 4 and reports.daemons == 1 and reports.refusal == ""
+        with pytest.raises(KeyError):
+            report[("lower", "nothing")]
+        before = report.cycle
+        later = eventually(lambda: reports.newest(0.05), lambda r: r.cycle > before)
+        assert later.revision == report.revision and not later.other_daemon
+
+
+def test_commands_change_the_scene_and_refusals_say_why(daemon):
+    connection = daemon.connection()
+    with clearance.Commands("python tests", connection) as commands, clearance.Reports(
+        connection
+    ) as reports:
+        moved = "- place: {object: wall, pose: {xyz: [5.1, 0, 0]}}"
+        assert commands.send(moved, LIMIT_S, dry_run=True).status is CommandStatus.DONE
+        done = commands.send(moved, LIMIT_S)
+        assert done.done and done.revision != 0 and done.in_force_from > 0
+        eventually(lambda: reports.next(0.1), lambda r: r.revision == done.revision)
+        refused = commands.send("- remove_object: {object: ball}", LIMIT_S)
+        assert refused.status is CommandStatus.REFUSED and refused.reason and not refused.done
+        stale = commands.send(moved, LIMIT_S, revision=1)
+        assert stale.status is CommandStatus.OTHER_REVISION
+        with pytest.raises(ValueError, match="plce"):
+            commands.send("- plce: {object: wall}", LIMIT_S)
+        with pytest.raises(ValueError):
+            commands.send("- place: {object: wall}", -1)
+
+
+def test_an_unknown_object_of_poses_is_named(daemon):
+    with clearance.PoseWriter("python", ["nothing"], daemon.connection()) as writer:
+        assert writer.wait_heard(LIMIT_S)
+        end = time.monotonic() + LIMIT_S
+        with pytest.raises(KeyError, match="nothing"):
+            while time.monotonic() < end:
+                writer.write([[0, 0, 0, 0, 0, 0, 1]])
+
+
+def test_a_daemon_that_ends_is_noticed(daemon):
+    with clearance.Reports(daemon.connection()) as reports:
+        assert reports.next(LIMIT_S) is not None
+        daemon.end()
+        end = time.monotonic() + LIMIT_S
+        while not reports.has_ended and time.monotonic() < end:
+            reports.next(0.05)
+        assert reports.has_ended
+
+
+@pytest.fixture
+def nobody(run_daemon):
+    return clearance.Connection(domain=7, partition="python-tests-without-a-daemon")
+
+
+def test_without_a_daemon_waits_end_with_nothing(nobody):
+    with clearance.Reports(nobody) as reports:
+        assert reports.next(0.05) is None and reports.newest(0) is None and reports.daemons == 0
+    with clearance.PoseWriter("python", ["ball"], nobody) as poses:
+        assert not poses.wait_heard(0.05) and not poses.is_heard
+        assert poses.write([[0, 0, 0, 0, 0, 0, 1]]) is False
+    with clearance.Commands("python tests", nobody) as commands, pytest.raises(TimeoutError):
+        commands.send("- place: {object: wall, pose: {xyz: [0, 0, 0]}}", 0.1)
+
+
+class Interrupted(Exception):
+    pass
+
+
+@pytest.mark.parametrize(
+    "wait",
+    [
+        lambda c: clearance.Reports(c).next(),
+        lambda c: clearance.Reports(c).newest(600),
+        lambda c: list(clearance.Reports(c)),
+        lambda c: clearance.JointWriter("python", ARM, c).wait_heard(),
+        lambda c: clearance.PoseWriter("python", ["ball"], c).wait_heard(600),
+        lambda c: clearance.Commands("python", c).send("- place: {object: a, pose: {xyz: [0, 0, 0]}}", 600),
+    ],
+)
+def test_a_signal_ends_every_wait(nobody, wait):
+    def raise_it(*_):
+        raise Interrupted
+
+    former = signal.signal(signal.SIGALRM, raise_it)
+    signal.setitimer(signal.ITIMER_REAL, 0.2)
+    try:
+        with pytest.raises(Interrupted):
+            wait(nobody)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, former)
+
+
+def test_a_wait_lets_other_threads_run(nobody):
+    counted = []
+    with clearance.Reports(nobody) as reports:
+        thread = threading.Thread(target=lambda: counted.extend(range(1000)))
+        thread.start()
+        reports.next(0.3)
+        assert len(counted) == 1000
+        thread.join()
+
+
+@pytest.mark.parametrize("daemon_thread", [False, True])
+def test_a_program_ends_in_peace_while_objects_are_open_and_a_thread_waits(daemon_thread):
+    program = f"""
+import threading, time, clearance
+connection = clearance.Connection(domain=7, partition="python-tests-without-a-daemon")
+reports, waiting = clearance.Reports(connection), clearance.Reports(connection)
+joints = clearance.JointWriter("python", ["a"], connection)
+if {daemon_thread}:
+    for timeout in (0.05, 0.1, 0.11, 600):
+        one = clearance.Reports(connection)
+        threading.Thread(target=lambda r=one, t=timeout: [r.next(t) for _ in range(9)], daemon=True).start()
+    time.sleep(0.1)
+"""
+    for _ in range(3):
+        done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=60)
+        assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_second_thread_is_refused_and_so_is_closing_under_a_wait(nobody):
+    reports = clearance.Reports(nobody)
+    waiting = threading.Thread(target=lambda: reports.next(1.0))
+    waiting.start()
+    refusals = []
+    while waiting.is_alive():
+        for call in (lambda: reports.next(0), reports.close):
+            try:
+                call()
+            except clearance.ClosedError:
+                break
+            except RuntimeError as error:
+                refusals.append(str(error))
+    waiting.join()
+    assert refusals and all("thread" in text for text in refusals)
+
+
+@pytest.mark.parametrize(
+    "make, calls",
+    [
+        (lambda c: clearance.Reports(c), [lambda r: r.next(0), lambda r: r.daemons, next]),
+        (
+            lambda c: clearance.JointWriter("a", ARM, c),
+            [lambda w: w.write([0, 0]), lambda w: w.is_heard, lambda w: w.wait_heard(0)],
+        ),
+        (
+            lambda c: clearance.PoseWriter("a", ["ball"], c),
+            [lambda w: w.write([[0] * 6 + [1]]), lambda w: w.is_heard],
+        ),
+        (
+            lambda c: clearance.Commands("a", c),
+            [lambda w: w.send("- place: {object: a, pose: {xyz: [0, 0, 0]}}", 0), lambda w: w.is_heard],
+        ),
+    ],
+)
+def test_a_closed_object_says_so(nobody, make, calls):
+    live = make(nobody)
+    assert not live.closed
+    live.close()
+    live.close()
+    assert live.closed
+    for call in calls:
+        with pytest.raises(clearance.ClosedError):
+            call(live)
+
+
+@pytest.mark.parametrize(
+    "call, error",
+    [
+        (lambda c: clearance.JointWriter("", ARM, c), ValueError),
+        (lambda c: clearance.JointWriter("x" * 33, ARM, c), ValueError),
+        (lambda c: clearance.JointWriter("x", 5, c), TypeError),
+        (lambda c: clearance.JointWriter("x", ARM, "here"), TypeError),
+        (lambda c: clearance.JointWriter("x", ARM, c).write([1]), ValueError),
+        (lambda c: clearance.JointWriter("x", ARM, c).write([1, float("nan")]), ValueError),
+        (lambda c: clearance.JointWriter("x", ARM, c).write([1, 2], [1]), ValueError),
+        (lambda c: clearance.JointWriter("x", ARM, c).write(None), TypeError),
+        (lambda c: clearance.PoseWriter("", ["a"], c), ValueError),
+        (lambda c: clearance.PoseWriter("x", [], c), ValueError),
+        (lambda c: clearance.PoseWriter("x", ["a"], c).write([1, 2]), ValueError),
+        (lambda c: clearance.PoseWriter("x", ["a"], c).write(None), TypeError),
+        (lambda c: clearance.Commands("", c), ValueError),
+        (lambda c: clearance.Commands("x", c).send(5), TypeError),
+        (lambda c: clearance.Reports(c, old_after_s=-1), ValueError),
+        (lambda c: clearance.Reports(c, depth=0), ValueError),
+        (lambda c: clearance.Reports(c).next(-1), ValueError),
+        (lambda c: clearance.Reports(c).next(float("nan")), ValueError),
+        (lambda c: clearance.Reports(c).next("soon"), TypeError),
+        (lambda c: clearance.Connection(domain=500), ValueError),
+        (lambda c: clearance.Connection(domain=-1), TypeError),
+        (lambda c: clearance.Connection(partition="a*"), ValueError),
+        (lambda c: clearance.Connection(interface="no such card", domain=8), clearance.DdsError),
+        (lambda c: clearance.Connection(5), TypeError),
+    ],
+)
+def test_a_wrong_argument_is_an_exception(nobody, call, error):
+    with pytest.raises(error):
+        call(nobody)

@@ -1,0 +1,89 @@
+// The distances of a cell's pairs in given configurations, each by itself: no time, no motion.
+//
+// A pair's bounds are those of its parts at the exact poses of forward kinematics, rounding
+// included. Parts whose bounding spheres prove them farther than another part of the pair are not
+// queried. README.md measures it.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "core/distance.hpp"
+#include "monitor/geometry/posed_part.hpp"
+#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/kinematics/joint_screw.hpp"
+
+namespace clearance::python {
+
+// Where the results of a configuration go: `pairs` values each, three times as many of vectors, and
+// pairs * variables of gradients. Null: not wanted.
+struct ConfigurationResults {
+  double *distance = nullptr, *lower = nullptr, *upper = nullptr;
+  std::uint8_t* status = nullptr;                                        // PairStatus
+  std::uint32_t *part_a = nullptr, *part_b = nullptr;                    // closest parts
+  double *witness_a = nullptr, *witness_b = nullptr, *normal = nullptr;  // in the world
+  double* gradient = nullptr;                                            // m/rad or m/m
+};
+
+class Configurations {
+ public:
+  // The scene must outlive this.
+  explicit Configurations(const Scene& scene);
+
+  // Places a moving object that is no link, for all configurations that follow.
+  void place(std::uint32_t object, const Pose& world_from_object);
+
+  // A new series of configurations: the same series gives the same bits. Poses of objects are
+  // forgotten.
+  void begin();
+
+  // The first variable whose position is not finite or not plausible: beyond the joint's limits and
+  // their tolerance.
+  [[nodiscard]] std::optional<std::uint32_t> implausible(std::span<const double> joints) const;
+
+  // `joints`: plausible positions in the order of Scene::variables. Allocates nothing.
+  void evaluate(std::span<const double> joints, const ConfigurationResults& to) noexcept;
+
+ private:
+  // A joint position that moves one object of a pair relative to the other.
+  struct Term {
+    std::uint32_t robot, joint, first_variable, count;
+    bool moves_b;
+  };
+  struct Pair {
+    std::uint32_t a, b;         // objects
+    std::uint32_t first_state;  // of its part pairs, part by part of A
+    std::uint32_t closest = 0;  // the part pair that was closest in the last configuration
+    std::uint32_t first_term = 0, end_term = 0;
+  };
+  // The closest parts of a pair.
+  struct Closest {
+    double lower = kInfinity, upper = kInfinity;
+    std::uint32_t part_pair = 0;
+    DistanceResult found;
+  };
+
+  void place_links() noexcept;
+  void put(std::uint32_t object, const Pose& pose) noexcept;
+  void query(const Pair& pair, std::uint32_t part_pair, Closest& closest) noexcept;
+  void evaluate(Pair& pair, std::size_t index, const ConfigurationResults& to) noexcept;
+  void differentiate(const Pair& pair, const Vec3& on_a, const Vec3& on_b, const Vec3& normal,
+                     double* rates) noexcept;
+
+  const Scene& scene_;
+  ForwardKinematics kinematics_;
+  std::vector<TrackedVariable> variables_;
+  std::vector<double> least_, largest_;        // plausible positions, by variable
+  std::vector<LinkState> bases_;               // by robot
+  std::vector<std::uint8_t> known_, is_link_;  // by object
+  std::vector<PosedPart> parts_;
+  std::vector<std::uint32_t> first_part_;  // by object
+  std::vector<TrackingState> states_;      // by part pair
+  std::vector<Pair> pairs_;
+  std::vector<Term> terms_;
+};
+
+}  // namespace clearance::python

@@ -1,0 +1,47 @@
+#include "tools/python/module/module.hpp"
+
+#include "tools/python/module/waiting.hpp"
+
+namespace clearance::python {
+namespace {
+
+namespace py = pybind11;
+
+PyTypeObject* base_type() {
+  return reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
+}
+
+PyObject* make(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  return base_type()->tp_new(type, arguments, keywords);
+}
+
+// pybind11 gives the methods of an object whose __init__ was not called memory that nothing has
+// filled. Body.__new__(Body) is the only way to such an object. Python refuses that call, by
+// itself, where a class makes its objects in another way than its base does.
+void refuse_new_without_init(const py::module_& module) {
+  for (const auto& [name, value] : module.attr("__dict__").cast<py::dict>()) {
+    if (!PyType_Check(value.ptr())) continue;
+    auto* const type = reinterpret_cast<PyTypeObject*>(value.ptr());
+    if (PyType_IsSubtype(type, base_type()) == 0) continue;
+    type->tp_new = make;
+    PyType_Modified(type);
+  }
+}
+
+}  // namespace
+}  // namespace clearance::python
+
+PYBIND11_MODULE(_clearance, module) {
+  using namespace clearance::python;
+  module.doc() = "Clearance in C++. Import clearance instead, which has the same names.";
+  watch_for_the_end();
+  add_bodies(module);
+  add_distance(module);
+  add_batch(module);
+  add_cell(module);
+  add_replay(module);
+  add_reports(module);
+  add_writers(module);
+  add_commands(module);
+  refuse_new_without_init(module);
+}
