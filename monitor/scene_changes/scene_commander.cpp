@@ -332,9 +332,9 @@ SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const C
     const Scene& running = changer_.cell().scene;
     // The change states the pose relative to the carrier, so that a lone carrier may be anywhere.
     const bool is_alone = others == std::vector<std::string>{attach->to};
-    const auto poses = is_alone ? PresentPoses{}
-                                : present_poses(with_carriers(others, cell.scene), running, loop_,
-                                                loop_ended_);
+    const auto poses =
+        is_alone ? PresentPoses{}
+                 : present_poses(with_carriers(others, cell.scene), running, loop_, loop_ended_);
     if (!poses) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
     PresentPoses changed;
     for (const std::string& name : others)

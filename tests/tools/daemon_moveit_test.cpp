@@ -1,5 +1,4 @@
-// MoveIt's messages keep the scene of a running daemon, over real DDS: what each of them changes,
-// what goes on meanwhile, and what each fault does.
+// MoveIt's messages keep the scene of a running daemon, over real DDS.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
