@@ -1,4 +1,4 @@
-// Where a body is in the last tick of a monitor, by its name.
+// Finds the pose of a body in the last tick of a monitor, by its name.
 #pragma once
 
 #include <algorithm>

@@ -37,7 +37,7 @@ void place_at(const YamlNode& place, YamlNode& node) {
   }
 }
 
-// What a planning scene has, without groups and margins.
+// The content of a planning scene, without groups and margins.
 struct ReadScene {
   std::vector<Object> objects;
   std::vector<std::pair<Object, YamlNode>> attached;  // with the value of `attached`
@@ -106,7 +106,7 @@ std::variant<Object, FileMistake> PlanningSceneReader::object_of(
   return object;
 }
 
-// Where a link is in the world, no file says: what is attached has to be in the frame of its link.
+// No file says where a link is in the world: an attached body has to be in the frame of its link.
 std::optional<FileMistake> PlanningSceneReader::add_attached(
     const std::vector<moveit::AttachedCollisionObject>& list, const YamlNode& file_node,
     ReadScene& scene) {

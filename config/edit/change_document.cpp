@@ -242,7 +242,7 @@ Fault ChangeMaker::operator()(const Place& change) {
   });
 }
 
-// What is no object may be a link of a robot, of which only the reader knows.
+// A name without an object may be a link of a robot, which only the reader knows.
 Fault ChangeMaker::operator()(const SetMargin& change) {
   const auto object = named("objects", change.object);
   if (std::holds_alternative<Found>(object) || find(document_.tree(), "robots") == nullptr)

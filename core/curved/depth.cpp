@@ -293,8 +293,8 @@ class DepthSearch {
   CurvedPair& pair_;
   ActiveParts active_;
   double ball_, taken_off_ = 0.0;
-  // Of one cover: the value that all directions have to have, the cap, and points of A - B without
-  // the ball.
+  // One cover has these: the value that all directions have to have, the cap, and points of A - B
+  // without the ball.
   Ball inscribed_;  // in A - B
   double target_ = 0.0, least_cosine_ = 2.0;
   Vec3 axis_ = Vec3::Zero();

@@ -1,4 +1,4 @@
-// What a daemon does, in the text format of Prometheus (version 0.0.4).
+// Writes what a daemon does in the text format of Prometheus (version 0.0.4).
 #pragma once
 
 #include <functional>

@@ -29,7 +29,7 @@ class MoveItChanges {
   // The cell after the first of the waiting messages that changes it; it lives as long as this.
   // Null: no message does. The monitor has run the last tick of the present cell.
   [[nodiscard]] const Cell* next(const Monitor& monitor);
-  // What was left out, and why: each is one sentence.
+  // The parts that were left out, and why: each is one sentence.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
 
  private:

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::chrono::microseconds kLookForAnswer{50};
 
-// What an object is attached to, and its pose there. Nothing: it is not attached.
+// The carrier of an object, and the pose relative to it. Nothing: it is not attached.
 struct Carrier {
   std::string name;
   Pose carrier_from_object;

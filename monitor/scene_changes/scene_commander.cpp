@@ -209,7 +209,7 @@ SceneCommander::Refusal SceneCommander::take_texts(Work& work) {
   return std::nullopt;
 }
 
-// Where a body is after the changes before this one, as if they had been made one after another.
+// The pose of a body after the changes before this one, as if they had been made one by one.
 std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& name,
                                                            const Work& work, std::size_t change,
                                                            const PresentPoses& poses) {

@@ -1,4 +1,4 @@
-// What a service manager (systemd, or any other that sets NOTIFY_SOCKET) learns from the daemon.
+// Tells a service manager (systemd, or any other that sets NOTIFY_SOCKET) about the daemon.
 #pragma once
 
 #include <cstdint>

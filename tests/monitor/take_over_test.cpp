@@ -254,7 +254,7 @@ TEST(TakeOverOfRobots, LinksAreWhereTheJointsSayWithoutANewSample) {
               1e-9);
 }
 
-// What is known of the cart is not known any more once another source has to send it.
+// The cart is not known any more once another source has to send it.
 TEST(TakeOverOfAttachedObjects, ForgetsThemWithTheirCarrier) {
   const auto scene_with = [](const std::string& keys) {
     return scene_of(

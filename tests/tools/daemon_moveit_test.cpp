@@ -128,7 +128,7 @@ class DaemonMoveIt : public WatchedDaemon {
   bool changed_times(std::size_t times) {
     return step_until(5, inputs(), [&] { return changes() == times; });
   }
-  // What cannot be decoded, by health.
+  // The messages that cannot be decoded, by health.
   bool is_counted_as_undecodable(std::uint64_t count) {
     client::Health health(connection);
     return step_until(5, inputs(), [&] {

@@ -68,7 +68,7 @@ class Manual : public testing::TestWithParam<std::string> {
     return output_of("/usr/bin/env", {"LC_ALL=C.UTF-8", "MANWIDTH=400", "GROFF_NO_SGR=1", "man",
                                       "--nh", "-P", "/bin/cat", "-l", manuals + GetParam() + ".1"});
   }
-  // What the shell offers after these words.
+  // The words that the shell offers after these.
   [[nodiscard]] Words offered(const std::string& before, const std::string& begun) const {
     std::string function = "_" + GetParam();
     std::replace(function.begin(), function.end(), '-', '_');

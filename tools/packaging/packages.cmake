@@ -1,4 +1,4 @@
-# What CPack makes: a Debian package for each component. tools/package calls it.
+# CPack makes a Debian package for each component. tools/package calls it.
 #   component    package
 #   programs     clearance            daemon, tools, unit, example cells, pages
 #   view         clearance-view       the page, with its JavaScript

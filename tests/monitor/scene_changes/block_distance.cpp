@@ -14,7 +14,7 @@ struct Block {
   LongVec centre = LongVec::Zero();
   std::vector<LongVec> generators = {};
   long double radius = 0;
-  // Of a half-space instead: the outward normal, and the plane's distance from the origin.
+  // A half-space has these instead: the outward normal, and the plane's distance from the origin.
   bool is_half_space = false;
   LongVec normal = LongVec::Zero();
   long double offset = 0;

@@ -1,4 +1,4 @@
-// What the contacts of a running monitor have to be, by their history and by monitors built anew.
+// The contacts that a running monitor has to have, by their history and by monitors built anew.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -226,7 +226,7 @@ class RandomCommands : public testing::Test, private CellParts {
     places.arm[2] = std::clamp(places.arm[2] + 0.03 * turn.z(), 0.0, 0.2);
     return places;
   }
-  // What is sent, or is a link, and is on time.
+  // The objects that are sent, or are links, and are on time.
   [[nodiscard]] std::set<std::string> usable_names() const {
     std::set<std::string> names;
     const Monitor& monitor = loop_->monitor();

@@ -61,7 +61,7 @@ contacts:
 // The joints shoulder, elbow and push.
 using ArmPosition = std::array<double, 3>;
 
-// Where everything is that moves by itself: every name may become such an object.
+// The poses of everything that moves by itself: every name may become such an object.
 struct Places {
   std::map<std::string, Pose> poses;
   ArmPosition arm{};
@@ -158,7 +158,7 @@ class RandomSenders final : public PoseSource {
     return &batches_[turn_++];
   }
 
-  // What was sent for one object, or for the joints ("arm"), which has been silent since.
+  // The samples of one object, or of the joints ("arm"), which has been silent since.
   [[nodiscard]] PoseBatch batch_of(const std::string& name, std::int64_t stamp_ns) const {
     PoseBatch batch;
     batch.source = SourceName("robot");

@@ -17,7 +17,7 @@
 namespace clearance::test {
 namespace {
 
-// Of the memory, bytes: a byte for each command of a long campaign is more.
+// The growth of the memory, bytes: a byte for each command of a long campaign is more.
 constexpr std::size_t kMostGrowth = 32'000;
 
 std::uint64_t number_of(const char* variable, std::uint64_t usual) {

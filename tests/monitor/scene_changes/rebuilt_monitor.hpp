@@ -132,7 +132,8 @@ class Comparison {
   }
 
  private:
-  // Of distances of metres: the oracle has the bodies as their doubles say, and they have errors.
+  // The error of distances of metres: the oracle has the bodies as their doubles say, and they have
+  // errors.
   static constexpr double kRounding = 1e-9;
 
   static bool is_known(PairStatus status) { return status < PairStatus::kStale; }

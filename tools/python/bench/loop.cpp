@@ -1,5 +1,5 @@
-// What the Python package wraps, in C++: the time of a tracked query, and that of each of COUNT
-// random configurations. bench/measure.py runs it in turns with the same in Python.
+// Times what the Python package wraps, in C++: the time of a tracked query, and that of each of
+// COUNT random configurations. bench/measure.py runs it in turns with the same in Python.
 //
 // usage: clearance_python_loop URDF SRDF COUNT
 #include <algorithm>

@@ -18,8 +18,8 @@
 
 namespace clearance::python {
 
-// Where the results of a configuration go: `pairs` values each, three times as many of vectors, and
-// pairs * variables of gradients. Null: not wanted.
+// The places for the results of a configuration: `pairs` values each, three times as many of
+// vectors, and pairs * variables of gradients. Null: not wanted.
 struct ConfigurationResults {
   double *distance = nullptr, *lower = nullptr, *upper = nullptr;
   std::uint8_t* status = nullptr;                                        // PairStatus
