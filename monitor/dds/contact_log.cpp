@@ -1,6 +1,8 @@
 #include "monitor/dds/contact_log.hpp"
 
+#include <algorithm>
 #include <string>
+#include <utility>
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/contact_text.hpp"
@@ -29,9 +31,15 @@ void log_contact(const Scene& scene, const ContactReport& contact) {
 
 }  // namespace
 
-void ContactLog::take_over(const ContactLog& before, const SceneMap& map) {
-  for (std::size_t i = 0; i < logged_.size(); ++i) {
-    if (map.contact_pairs[i] != SceneMap::kNone) logged_[i] = before.logged_[map.contact_pairs[i]];
+void ContactLog::change(const Scene& scene) {
+  const std::vector<Entry> before = std::exchange(entries_, {});
+  scene_ = &scene;
+  for (const ContactPair& each : contact_pairs(scene)) {
+    Entry entry{scene.contacts[each.contact].name, pair_name(scene, each.pair), {}, 0};
+    const auto same = std::ranges::find_if(before, [&entry](const Entry& other) {
+      return other.contact == entry.contact && other.pair == entry.pair;
+    });
+    entries_.push_back(same == before.end() ? std::move(entry) : *same);
   }
 }
 
@@ -39,14 +47,17 @@ void ContactLog::note(std::span<const ContactReport> contacts) {
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     const ContactStatus status = contacts[i].status;
     const bool is_news = status != ContactStatus::kUnknown && status != ContactStatus::kAbsent;
-    if (!is_news || logged_[i] == status) continue;
-    logged_[i] = status;
+    Entry& last = entries_[i];
+    if (!is_news || (last.status == status && last.since_cycle == contacts[i].since_cycle))
+      continue;
+    last.status = status;
+    last.since_cycle = contacts[i].since_cycle;
     if (lines_ == kLines) {
       ++left_out_;
       continue;
     }
     ++lines_;
-    log_contact(scene_, contacts[i]);
+    log_contact(*scene_, contacts[i]);
   }
 }
 

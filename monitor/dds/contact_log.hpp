@@ -4,10 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "config/scene/scene_map.hpp"
 #include "monitor/report.hpp"
 
 namespace clearance {
@@ -17,12 +17,11 @@ class ContactLog {
   // The most lines between two calls of end_second().
   static constexpr std::uint64_t kLines = 20;
 
-  // The scene must outlive this.
-  explicit ContactLog(const Scene& scene) : scene_(scene), logged_(contact_pairs(scene).size()) {}
-
-  // Before the first note(), for a changed scene: what was logged there is no news. `map` is that
-  // of the two scenes.
-  void take_over(const ContactLog& before, const SceneMap& map);
+  // The scene must outlive this, or its use until the next call of change().
+  explicit ContactLog(const Scene& scene) { change(scene); }
+  // The following reports are of this scene. Contacts are known by their names and those of their
+  // pairs: what was logged of one is no news.
+  void change(const Scene& scene);
 
   // `contacts` of a report. Contacts that are not known or absent are no news: the log says why by
   // other lines.
@@ -31,8 +30,15 @@ class ContactLog {
   void end_second();
 
  private:
-  const Scene& scene_;
-  std::vector<std::optional<ContactStatus>> logged_;  // by entry
+  // One pair of a contact, and what was logged of it last.
+  struct Entry {
+    std::string contact, pair;
+    std::optional<ContactStatus> status;
+    std::uint64_t since_cycle = 0;  // another one: it was allowed anew
+  };
+
+  const Scene* scene_ = nullptr;
+  std::vector<Entry> entries_;  // as contact_pairs() of the scene
   std::uint64_t lines_ = 0, left_out_ = 0;
 };
 

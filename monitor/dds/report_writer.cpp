@@ -55,8 +55,7 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
       gradients(cell.scene),
-      written_zones(cell.scene.zones.size()),
-      contact_log(cell.scene) {
+      written_zones(cell.scene.zones.size()) {
   distances->daemon = separation->daemon = daemon;
 }
 
@@ -79,6 +78,7 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       others_(participant, topics_.distances, identity_),
       now_(std::make_unique<OfCell>(cell, SceneInForce(), queue, identity_.id)),
       zone_log_(cell.scene),
+      contact_log_(cell.scene),
       health_log_(cell.scene),
       queue_(&queue),
       written_(&queue) {
@@ -191,13 +191,10 @@ bool ReportWriter::change() {
     gone.zone = zone;
     if (zone >= zones.size()) dds_dispose(zones_, &gone);
   }
-  if (!changed->cell.scene.contacts.empty()) {
-    changed->contact_log.take_over(now_->contact_log,
-                                   scene_map(now_->cell.scene, changed->cell.scene));
-  }
   dropped_before_ += now_->queue.dropped_reports();
   now_ = std::move(changed);
   zone_log_.change(now_->cell.scene);
+  contact_log_.change(now_->cell.scene);
   health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
   write_zones_again_ = true;
@@ -218,7 +215,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     write(gradients_, &gradients, "gradients");
   }
   write_zones(queued.report);
-  now_->contact_log.note(queued.report.contacts);
+  contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
 }
 
@@ -264,7 +261,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
          .statistics = &statistics});
   }
   zone_log_.end_second();
-  now_->contact_log.end_second();
+  contact_log_.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 

@@ -74,7 +74,6 @@ class ReportWriter {
     Sample<clearance_msg_Separation> separation;
     GradientMessage gradients;
     WrittenZones written_zones;
-    ContactLog contact_log;
 
     OfCell(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
            std::uint64_t daemon);
@@ -104,6 +103,7 @@ class ReportWriter {
   OtherDaemons others_;
   std::unique_ptr<OfCell> now_;
   ZoneLog zone_log_;
+  ContactLog contact_log_;
   HealthLog health_log_;
   bool write_zones_again_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "monitor/pair_name.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 
@@ -76,11 +77,39 @@ TEST_F(ContactLogTest, DoesNotFloodTheLog) {
 
 TEST_F(ContactLogTest, AChangeOfTheSceneIsNoNewsOfAContact) {
   note(ContactStatus::kAllowed);
-  ContactLog next(scene);
-  next.take_over(contacts, scene_map(scene, scene));
-  const ContactReport same = report(ContactStatus::kAllowed);
-  next.note(std::span(&same, 1));
-  EXPECT_EQ(logged->count("[contact-allowed]"), 1u);
+  // The same contact is the second entry of the next scene, and the first one is new.
+  Scene next = cell_of({fixed("wall", {ball(0.1)}, at(2, 0, 0)), moving("part", {ball(0.1)}),
+                        fixed("table", {ball(0.1)}, at(1, 0, 0))});
+  AllowedContact other = scene.contacts[0];
+  other.name = "lean";
+  next.contacts = {other, scene.contacts[0]};
+  for (std::uint32_t pair = 0; pair < next.pairs.size(); ++pair) {
+    const std::string name = pair_name(next, pair);
+    if (name.find("part") == std::string::npos) continue;
+    next.contacts[name.find("table") == std::string::npos ? 0 : 1].pairs = {pair};
+  }
+  contacts.change(next);
+  std::vector<ContactReport> reports;
+  for (const ContactPair& pair : contact_pairs(next)) {
+    reports.push_back(report(ContactStatus::kAllowed));
+    reports.back().contact = pair.contact;
+    reports.back().pair = pair.pair;
+  }
+  ASSERT_EQ(reports.size(), 2u);
+  contacts.note(reports);
+  EXPECT_EQ(logged->count("[contact-allowed]"), 2u) << logged->text();
+  EXPECT_EQ(logged->count("'lift'"), 1u) << logged->text();
+  EXPECT_EQ(logged->count("'lean'"), 1u) << logged->text();
+}
+
+TEST_F(ContactLogTest, AContactThatIsAllowedAnewUnderItsNameIsNews) {
+  note(ContactStatus::kAllowed);
+  contacts.change(scene);
+  ContactReport anew = report(ContactStatus::kAllowed);
+  anew.since_cycle = 50;
+  contacts.note(std::span(&anew, 1));
+  EXPECT_EQ(logged->count("[contact-allowed]"), 2u);
+  EXPECT_TRUE(logged->has("since cycle 50")) << logged->text();
 }
 
 }  // namespace
