@@ -23,7 +23,7 @@ enum class DistancePath : std::uint8_t {
   kFeatureTracking,  // feature tracking certified it
   kActiveSet,        // the active-set iteration, and for bodies that touch or overlap the depth
   kGjk,              // the active-set iteration and then GJK
-  kPenetration,      // penetration depth, at once from the features of the last overlap
+  kPenetration,      // depth or contact, at once from the features of the last one
   kDirection,        // of curved bodies: the search for the separating direction (core/curved)
 };
 
@@ -90,7 +90,7 @@ enum class FeatureKind : std::uint8_t {
 struct alignas(64) TrackingState {
   struct Side {
     FeatureKind kind = FeatureKind::kUnknown;
-    bool penetrating = false;      // of A only: the bodies overlapped
+    bool penetrating = false;      // of A only: the bodies touched or overlapped
     std::int32_t feature = kNone;  // index into the body's vertices, edges or facets
     Vec3 point = Vec3::Zero();     // in the body's frame
   };

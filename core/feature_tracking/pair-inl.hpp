@@ -298,6 +298,7 @@ struct TrackedPair {
   bool penetrating = false;
   double inradius;     // m: from the crossing of the edges to their nearest end
   double depth_error;  // m: the depth may be smaller by this
+  bool touching;       // neither certainly disjoint nor certainly overlapping
 
   [[nodiscard]] HWY_INLINE FeaturePair features() const {
     return feature_pair(on_a.kind, on_b.kind);

@@ -114,28 +114,42 @@ HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
   return radius > height && d * (1.0 - k * k) - 2.0 * k * l > height * (1.0 + k * k);
 }
 
+// The features meet within rounding, so the bodies are neither certainly disjoint nor certainly
+// overlapping. The plane of the features bounds the distance from below, as for all bodies. The
+// points on them are points of the bodies, so their distance bounds it from above.
+HWY_INLINE bool is_contact(const TrackedPair& pair, const Precision& p) {
+  const double between = std::abs(pair.distance);
+  const double gap = between - pair.certified + pair.depth_error;
+  return between <= p.error_bound && gap <= 0.5 * p.error_bound + 5.0 * p.gap_tolerance;
+}
+
 HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.translation_length};
   const Precision p = precision(pair.a, pair.b, place, std::abs(pair.distance));
   pair.error_bound = p.error_bound;
-  const bool certified = pair.distance > 0.0 ? pair.certified > p.error_bound
-                                             : pair.distance + pair.depth_error < -p.error_bound &&
-                                                   is_shortest(pair, p.size);
-  const double noise = pair.distance - pair.certified;
-  const double gap = noise + pair.depth_error + 2.0 * p.error_bound;
-  if (!certified || !(noise <= p.gap_tolerance) ||
-      !converges_with_radii(pair.a, pair.b, p.size, pair.distance, gap)) {
-    return false;
+  pair.touching = is_contact(pair, p);
+  if (!pair.touching) {
+    const bool certified =
+        pair.distance > 0.0
+            ? pair.certified > p.error_bound
+            : pair.distance + pair.depth_error < -p.error_bound && is_shortest(pair, p.size);
+    const double noise = pair.distance - pair.certified;
+    const double gap = noise + pair.depth_error + 2.0 * p.error_bound;
+    if (!certified || !(noise <= p.gap_tolerance) ||
+        !converges_with_radii(pair.a, pair.b, p.size, pair.distance, gap)) {
+      return false;
+    }
   }
-  pair.on_a.penetrating = !(pair.distance > 0.0);
+  pair.on_a.penetrating = pair.touching || !(pair.distance > 0.0);
   pair.on_a.point = vec3(pair.point_a);
   pair.on_b.point = vec3(pair.local_b);
   return true;
 }
 
-// Tracks the features of bodies that penetrated each other. True: either the depth is certified, or
-// the bodies are certified disjoint now. False: the features are unchanged.
+// Tracks the features of bodies that touched or penetrated each other. True: the depth is
+// certified, or the bodies are certified to touch or to be disjoint now. False: the features are
+// unchanged.
 HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   if (!pair.a.bounded() && !pair.b.bounded()) return false;
   if (!exists(pair.a, pair.on_a) || !exists(pair.b, pair.on_b)) return false;
@@ -152,10 +166,15 @@ HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   return false;
 }
 
-// The result of tracking that has certified the depth or the distance.
+// The result of tracking that has certified the depth, a contact or the distance.
 HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
   DistanceResult r = result_of(pair);
   r.path = DistancePath::kPenetration;
+  if (pair.touching) {
+    r.upper = (std::abs(pair.distance) + pair.depth_error) + pair.error_bound;
+    if (!(r.lower > 0.0)) r.status = DistanceStatus::kTouching;
+    return r;
+  }
   if (pair.distance > 0.0) return r;
   r.upper = (pair.distance + pair.depth_error) + pair.error_bound;
   r.status = DistanceStatus::kOverlapping;

@@ -69,18 +69,20 @@ void conclude_penetrating(const ConvexBody& a, const ConvexBody& b, const Relati
 }  // namespace
 
 bool track_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                       TrackingState& state, DistanceResult& result) noexcept {
+                       TrackingState& state, DistanceResult& result,
+                       std::optional<Depth>& found) noexcept {
   if (!state.a.penetrating) return false;
   state.a.penetrating = false;
-  const Depth found = tracked_depth(a, b, a_from_b, state);
-  if (!(found.lower > 0.0)) return false;
-  conclude_penetrating(a, b, a_from_b, found, state, result);
+  found = tracked_depth(a, b, a_from_b, state);
+  if (!(found->lower > 0.0)) return false;
+  conclude_penetrating(a, b, a_from_b, *found, state, result);
   return true;
 }
 
 void measure_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                         TrackingState& state, DistanceResult& result) noexcept {
-  const Depth found = tracked_depth(a, b, a_from_b, state);
+                         TrackingState& state, DistanceResult& result,
+                         const std::optional<Depth>& known) noexcept {
+  const Depth found = known ? *known : tracked_depth(a, b, a_from_b, state);
   if (found.lower > 0.0) {
     conclude_penetrating(a, b, a_from_b, found, state, result);
     return;
@@ -97,6 +99,9 @@ void measure_penetration(const ConvexBody& a, const ConvexBody& b, const Relativ
   // A penetration by less than the error bound can be seen from one side only: thrice.
   const bool narrow = result.upper - result.lower <= 3.0 * p.error_bound + 5.0 * p.gap_tolerance;
   if (narrow) {
+    // A facet that touches certifies the contact of the next query by itself.
+    state.a.penetrating =
+        state.a.kind == FeatureKind::kFacet || state.b.kind == FeatureKind::kFacet;
     result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
     return;
   }

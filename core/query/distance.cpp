@@ -5,7 +5,7 @@
 //                             └─ moved ─┐
 //   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
 //                                                 └─ left open ─► search.hpp
-//   penetrating in the last query ─────────► penetrating features ─► certified ───► result
+//   touched or penetrated in the last query ► penetrating features ─► certified ───► result
 //                                                 └─ left open ─► search.hpp
 //   a curved body ─────────────────────────► core/curved
 //
@@ -374,7 +374,7 @@ DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
   return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
 }
 
-// The bodies penetrated each other in the last query.
+// The bodies touched or penetrated each other in the last query.
 HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);

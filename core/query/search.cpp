@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <optional>
 
 #include "core/active_set/active_feature.hpp"
 #include "core/active_set/certificate.hpp"
@@ -126,7 +127,8 @@ DistanceResult core_distance(ActiveFeature& a, ActiveFeature& b,
 // Starts from the features of the state, and writes the new ones to it. For the polyhedra, without
 // radii.
 DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                        TrackingState& state, bool depth) noexcept {
+                        TrackingState& state, bool depth,
+                        const std::optional<Depth>& known) noexcept {
   ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
   const double between_origins = a_from_b.translation.norm();
   side_a.place_near(state.a, side_b, between_origins);
@@ -136,10 +138,17 @@ DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const Relative
   state = {side_a.tracked(), side_b.tracked()};
   if (result.lower > 0.0) return result;
   if (depth) {
-    measure_penetration(a, b, a_from_b, state, result);
+    measure_penetration(a, b, a_from_b, state, result, known);
   } else {
     result.status = DistanceStatus::kDepthNotAsked;
   }
+  return result;
+}
+
+DistanceResult with_radii(DistanceResult result, const ConvexBody& a,
+                          const ConvexBody& b) noexcept {
+  add_radii(result, a, b);
+  assert(keeps_promises(result));
   return result;
 }
 
@@ -149,10 +158,7 @@ DistanceResult search_distance(const ConvexBody& a, const ConvexBody& b,
                                const RelativePose& a_from_b, TrackingState& state,
                                bool depth) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
-  DistanceResult result = searched(a, b, a_from_b, state, depth);
-  add_radii(result, a, b);
-  assert(keeps_promises(result));
-  return result;
+  return with_radii(searched(a, b, a_from_b, state, depth, {}), a, b);
 }
 
 DistanceResult curved_pair_distance(const ConvexBody& a, const ConvexBody& b,
@@ -171,14 +177,13 @@ DistanceResult penetrating_distance(const ConvexBody& a, const ConvexBody& b,
                                     const RelativePose& a_from_b, TrackingState& state) noexcept {
   if (!is_good(a_from_b)) return of_bad_pose(state);
   DistanceResult result;
-  if (track_penetration(a, b, a_from_b, state, result)) {
+  std::optional<Depth> depth;
+  if (track_penetration(a, b, a_from_b, state, result, depth)) {
     result.path = DistancePath::kPenetration;
   } else if (track_features(a, b, a_from_b, state, result) != TrackingEnd::kCertified) {
-    return search_distance(a, b, a_from_b, state, true);
+    result = searched(a, b, a_from_b, state, true, depth);
   }
-  add_radii(result, a, b);
-  assert(keeps_promises(result));
-  return result;
+  return with_radii(result, a, b);
 }
 
 }  // namespace clearance

@@ -38,12 +38,13 @@ struct LevelBoxes {
   [[nodiscard]] DistanceJudge judge() const { return {hard::box(half_a), hard::box(half_b)}; }
 };
 
-LevelBoxes level_boxes(Motion motion, std::uint64_t seed) {
+// With a gap of 0 the boxes rest on each other, up to the rounding of their poses.
+LevelBoxes level_boxes(Motion motion, std::uint64_t seed, bool rest = false) {
   Random random(seed);
   const auto half = [&] { return random.uniform(0.1, 0.5); };
   LevelBoxes made{{half(), half(), half()}, {half(), half(), half()}, 0.0, {}, kStep};
   if (motion == Motion::kAlongFlushEdges) made.half_b.x() = made.half_a.x();
-  made.gap = random.log_uniform(1e-3, 0.3);
+  made.gap = rest ? 0.0 : random.log_uniform(1e-3, 0.3);
   const Pose a = random.pose(2.0);
   const double angle = random.uniform(0.0, 6.3);
   const Vec3 way = motion == Motion::kAlongFlushEdges ? Vec3(0, 1, 0)
@@ -105,6 +106,31 @@ TEST(LevelBoxes, BoundsHoldTrackedAndCold) {
       }
     }
   });
+}
+
+TEST(LevelBoxes, ThatRestOnEachOtherTouchAndTheirFeaturesCertifyIt) {
+  int all = 0, at_once = 0;
+  for (const Motion motion : kMotions) {
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const LevelBoxes boxes = level_boxes(motion, seed, true);
+      DistanceJudge judge = boxes.judge();
+      TrackingState state;
+      for (std::size_t k = 0; k < boxes.poses.size(); ++k) {
+        const auto& [a, b] = boxes.poses[k];
+        const DistanceResult result = judge.ask(a, b, state);
+        const bool touch = result.status == DistanceStatus::kTouching;
+        all += touch;
+        at_once += touch && result.path == DistancePath::kPenetration;
+        if (k % 40 != seed) continue;
+        for (const std::string& fault : judge.faults(result, judge.truth(a, b), a, b)) {
+          ADD_FAILURE() << "seed " << seed << " step " << k << ": " << fault;
+        }
+      }
+    }
+  }
+  // The others are the first query of each motion, and those whose features change.
+  EXPECT_GT(all, 10'000);
+  EXPECT_GT(at_once, 0.8 * all);
 }
 
 TEST(LevelBoxes, ARelativePoseGivesTheBitsOfTwoPoses) {
