@@ -2,13 +2,14 @@
 // for a scene before it.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "config/scene/scene_map.hpp"
+#include "monitor/inputs/former_scenes.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 
@@ -33,7 +34,7 @@ void keep_mapped(std::span<const std::uint32_t> now, std::uint32_t Sample::*inpu
 // not allocate after construction where the capacities of the lists suffice.
 class SceneIds {
  public:
-  static constexpr std::size_t kFormerScenes = 8;
+  static constexpr std::size_t kFormerScenes = FormerScenes<SceneMap>::kMost;
 
   // `followed`: this scene followed others, which are not known.
   explicit SceneIds(const Scene& scene, bool followed = false)
@@ -50,24 +51,20 @@ class SceneIds {
   // for one that is no longer needed.
   void change(std::uint64_t revision, SceneMap& map) noexcept;
 
+  // Before the first batch, where scenes followed each other before: passes on the poses of a batch
+  // for this former scene. To be called in the order of FormerScenes::for_each. May allocate.
+  void restore(std::uint64_t revision, std::vector<std::uint32_t> objects_now) {
+    former_.slot(revision).kept.objects_now = std::move(objects_now);
+  }
+
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] SourceNumbers& sources() noexcept { return sources_; }
   [[nodiscard]] const SourceNumbers& sources() const noexcept { return sources_; }
 
  private:
-  // A scene before, and how its ids are passed on. When there are more than these, a new one takes
-  // the place of the one that has been there longest.
-  struct Former {
-    std::uint64_t revision = 0;
-    SceneMap map = {};
-  };
-  [[nodiscard]] Former& slot(std::uint64_t revision) noexcept;
-  [[nodiscard]] const Former* former(std::uint64_t revision) const noexcept;
-
   std::uint64_t revision_;
   SourceNumbers sources_;
-  std::array<Former, kFormerScenes> former_;
-  std::size_t count_ = 0;  // of scenes with another revision, those that are lost included
+  FormerScenes<SceneMap> former_;  // how their ids are passed on
   bool has_changed_;
 };
 

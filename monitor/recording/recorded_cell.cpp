@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <fstream>
+#include <sstream>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -116,6 +117,19 @@ std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::
       });
       all.push_back(std::move(scene));
     }
+  }
+  return all;
+}
+
+std::vector<FormerScene> former_scenes(const std::filesystem::path& file) {
+  std::vector<FormerScene> all;
+  for (const McapMetadata& found : read_metadata(file)) {
+    const auto objects = found.values.find("objects");
+    if (found.name != kFormerMetadata || objects == found.values.end()) continue;
+    FormerScene& scene = all.emplace_back();
+    scene.revision = number_of(found.values, "scene_revision");
+    std::istringstream names(objects->second);
+    for (std::string name; std::getline(names, name, ',');) scene.objects.push_back(name);
   }
   return all;
 }

@@ -41,6 +41,15 @@ struct DescribedScene {
 [[nodiscard]] std::vector<DescribedScene> described_scenes(
     const std::vector<std::filesystem::path>& files);
 
+// A scene that was in force before a file began which continues a recording.
+struct FormerScene {
+  std::uint64_t revision = 0;
+  std::vector<std::string> objects;  // their names by id
+};
+
+// Those that the file states at its head, in their order.
+[[nodiscard]] std::vector<FormerScene> former_scenes(const std::filesystem::path& file);
+
 // Reads the cell of a description, as recorded_cell does.
 [[nodiscard]] CellResult cell_of(const DescribedScene& described, CellOptions options = {});
 

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <utility>
 
 #include "config/scene/revision.hpp"
@@ -100,8 +101,34 @@ void RecordingWriter::end_chunk() {
   if (mcap_->messages() > 0) mcap_->flush();
 }
 
+// A scene that follows none begins a run of the daemon: no sender has ids of the scenes before.
+void RecordingWriter::note_former(const clearance_msg_Catalogue& next) {
+  const auto revision = about_.find("scene_revision");
+  if (next.in_force_from == 0) {
+    former_.clear();
+  } else if (revision != about_.end()) {
+    std::uint64_t number = 0;
+    const std::string& text = revision->second;
+    std::from_chars(text.data(), text.data() + text.size(), number);
+    former_.slot(number).kept = std::move(object_names_);
+  }
+  object_names_.clear();
+  for (std::uint32_t i = 0; i < next.objects._length; ++i) {
+    if (i > 0) object_names_ += ',';
+    object_names_ += next.objects._buffer[i].name;
+  }
+}
+
+void RecordingWriter::write_former() {
+  former_.for_each([this](const auto& scene) {
+    mcap_->metadata(kFormerMetadata,
+                    {{"scene_revision", std::to_string(scene.revision)}, {"objects", scene.kept}});
+  });
+}
+
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.
 void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
+  note_former(catalogue);
   about_ = {{"version", CLEARANCE_VERSION},
             {"scene", catalogue.scene},
             {"scene_revision", std::to_string(catalogue.scene_revision)},
@@ -157,6 +184,7 @@ bool RecordingWriter::roll(std::int64_t log_ns) {
   ++part_;
   open();
   attached_bytes_ = 0;
+  write_former();
   for (const Attached& file : attached_) write_attachment(file);
   if (!about_.empty()) {
     about_["part"] = std::to_string(part_);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/inputs/former_scenes.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"
@@ -27,6 +28,11 @@ namespace clearance {
 // recording from DDS. `began_after` and `in_force_from` stand where the scene followed another one
 // (SceneInForce). The record is repeated for each scene, in front of its first report.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
+
+// Name of a metadata record at the head of a file that continues a recording: a scene that was in
+// force before the file begins (FormerScenes), the one that has been there longest first. Senders
+// may still use its ids. Its keys are scene_revision, and objects: their names by id, with commas.
+inline constexpr std::string_view kFormerMetadata = "clearance.former_scene";
 
 // Errors are kept, as in McapWriter. Only one thread may use it at a time.
 class RecordingWriter {
@@ -98,6 +104,8 @@ class RecordingWriter {
                                   std::uint64_t revision) const;
   void write_attachment(const Attached& file);
   void end_chunk();
+  void note_former(const clearance_msg_Catalogue& next);
+  void write_former();
   [[nodiscard]] bool is_due(std::int64_t log_ns) const noexcept;
 
   std::filesystem::path file_;
@@ -115,6 +123,9 @@ class RecordingWriter {
   std::string cell_file_;                            // where the cell stood; empty: not known
   McapMap about_;                                    // the last description
   std::optional<std::vector<std::byte>> catalogue_;  // the last one, as CDR
+  // By id, with commas: of the last description, and of those before in the same run of the daemon.
+  std::string object_names_;
+  FormerScenes<std::string> former_;
 };
 
 }  // namespace clearance

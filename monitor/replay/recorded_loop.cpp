@@ -2,11 +2,32 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <utility>
+
 namespace clearance {
+
+namespace {
+
+void restore_former(const SceneHistory& history, const Cell& cell, SceneIds& ids) {
+  for (const FormerScene& scene : history.former()) {
+    std::vector<std::uint32_t> objects_now;
+    for (const std::string& name : scene.objects) {
+      const auto& now = cell.scene.objects;
+      const auto found = std::ranges::find(now, name, &Object::name);
+      objects_now.push_back(found == now.end() ? SceneMap::kNone
+                                               : static_cast<std::uint32_t>(found - now.begin()));
+    }
+    ids.restore(scene.revision, std::move(objects_now));
+  }
+}
+
+}  // namespace
 
 RecordedLoop::RecordedLoop(SceneHistory& history, MoveItChanges* moveit)
     : history_(history), moveit_(moveit) {
   start(history.first(), history.begins_changed());
+  restore_former(history_, *cell_, *ids_);
 }
 
 void RecordedLoop::start(const Cell& cell, bool followed) {
@@ -68,11 +89,23 @@ void RecordedLoop::take(const PoseBatch& batch) {
   if (history_.begins_changed() && batch.scene_revision != 0) unclear_.insert(batch.source.c_str());
 }
 
+// A file that continues a recording may begin with the first report of a changed scene. The scene
+// at its head is then the one before.
+void RecordedLoop::begin_with(const clearance_msg_Distances& report) {
+  begun_ = true;
+  from_ = report.cycle;
+  const Cell* const cell = history_.cell(report.scene_revision);
+  if (monitor_->cycle() > 0 || cell == nullptr || cell == cell_) return;
+  start(*cell, true);
+  restore_former(history_, *cell, *ids_);
+  const Scene& before = history_.first().scene;
+  ids_->restore(before.revision, scene_map(before, cell->scene).objects_now);
+}
+
 // The changes that are in force with this report. The first one of a recording begins where it can
 // if the recording begins between the two steps.
 bool RecordedLoop::change_before(const clearance_msg_Distances& report) {
-  if (!begun_) from_ = report.cycle;
-  begun_ = true;
+  if (!begun_) begin_with(report);
   const DescribedScene* change = history_.next_change(report.daemon, from_);
   for (; change != nullptr && change->since.from <= report.cycle;
        change = history_.next_change(report.daemon, from_)) {

@@ -54,6 +54,7 @@ class RecordedLoop {
   };
 
   void start(const Cell& cell, bool followed);
+  void begin_with(const clearance_msg_Distances& report);
   void take(const PoseBatch& batch);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);

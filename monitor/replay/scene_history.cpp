@@ -12,7 +12,10 @@ SceneHistory::SceneHistory(const Cell& first) : first_(first) {}
 
 SceneHistory::SceneHistory(const Cell& first, const std::vector<std::filesystem::path>& files,
                            std::function<void(Scene&)> adapt)
-    : first_(first), described_(described_scenes(files)), adapt_(std::move(adapt)) {}
+    : first_(first),
+      described_(described_scenes(files)),
+      former_(former_scenes(files.front())),
+      adapt_(std::move(adapt)) {}
 
 bool SceneHistory::has_changes() const noexcept {
   return std::ranges::any_of(described_, [this](const DescribedScene& scene) {

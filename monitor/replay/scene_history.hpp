@@ -28,11 +28,14 @@ class SceneHistory {
   // Whether the recording describes other scenes than the first one.
   [[nodiscard]] bool has_changes() const noexcept;
 
-  // Whether the first cell had followed another one before the recording begins. Batches for that
-  // one cannot be told from others.
+  // Whether the first cell had followed another one before the recording begins. Batches for one
+  // that former() lacks cannot be told from others.
   [[nodiscard]] bool begins_changed() const noexcept {
     return !described_.empty() && described_.front().since.from > 0;
   }
+
+  // Scenes before the recording begins, whose ids batches may have.
+  [[nodiscard]] const std::vector<FormerScene>& former() const noexcept { return former_; }
 
   // The next change of this run of the daemon whose first cycle is after `cycle`; null: none.
   [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::uint64_t cycle) const;
@@ -45,6 +48,7 @@ class SceneHistory {
  private:
   const Cell& first_;
   std::vector<DescribedScene> described_;
+  std::vector<FormerScene> former_;
   std::function<void(Scene&)> adapt_;
   std::map<std::uint64_t, std::unique_ptr<const Cell>> read_;  // by revision
   std::string error_;

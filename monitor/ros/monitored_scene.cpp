@@ -76,6 +76,8 @@ void SceneWriter::write_links() {
     }
   }
   bodies_.assign(links_.begin(), links_.end());
+  for (const std::uint32_t link : links_)
+    message_.link_padding.push_back({scene_.objects[link].name, scene_.objects[link].margin});
 }
 
 void SceneWriter::write_attached(const Robot& robot) {
@@ -140,6 +142,10 @@ void put(const moveit::SolidPrimitive& from, shape_msgs_msg_dds__SolidPrimitive_
 void put(const moveit::Mesh& from, shape_msgs_msg_dds__Mesh_& to);
 void put(const moveit::Plane& from, shape_msgs_msg_dds__Plane_& to) {
   std::ranges::copy(from, to.coef);
+}
+void put(const moveit::LinkNumber& from, moveit_msgs_msg_dds__LinkPadding_& to) {
+  put(from.link_name, to.link_name);
+  to.padding = from.value;
 }
 void put(const std::array<std::uint32_t, 3>& from, shape_msgs_msg_dds__MeshTriangle_& to) {
   std::ranges::copy(from, to.vertex_indices);
@@ -207,6 +213,7 @@ Sample<moveit_msgs_msg_dds__PlanningScene_> to_wire(const moveit::PlanningScene&
   reserve_sequence(matrix.entry_values, rows.size());
   for (const std::vector<bool>& row : rows)
     put_flags(row, matrix.entry_values._buffer[matrix.entry_values._length++].enabled);
+  put_all(scene.link_padding, message->link_padding);
   put_all(scene.collision_objects, message->world.collision_objects);
   auto& octomap = message->world.octomap;
   put(std::string(), octomap.header.frame_id);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <utility>
+#include <variant>
 
 #include "config/scene/rigid_root.hpp"
 #include "core/distance.hpp"
@@ -21,6 +22,20 @@ RigidRoot root_of(const Scene& scene, std::uint32_t object) {
   return {true, object, 0};
 }
 
+// Tells whether a change says anew where this object is. An entry of text does so, too, but its
+// name is in the text.
+struct PutsElsewhere {
+  const std::string& object;
+  bool operator()(const Attach& change) const { return change.object == object; }
+  bool operator()(const Detach& change) const { return change.object == object; }
+  bool operator()(const Place& change) const { return change.object == object; }
+  bool operator()(const RemoveObject& change) const { return change.object == object; }
+  template <class Change>
+  bool operator()(const Change&) const {
+    return false;
+  }
+};
+
 // m; 0 if they are disjoint, or if it is not known that they overlap.
 double depth_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
   double depth = 0.0;
@@ -37,6 +52,27 @@ double depth_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
 }
 
 }  // namespace
+
+std::optional<Attach> as_attached(const Attach& change, std::span<const CellChange> later,
+                                  const Scene& scene) {
+  const auto elsewhere = [&change](const CellChange& each) {
+    return std::visit(PutsElsewhere{change.object}, each);
+  };
+  const Object* const object = find_object(scene, change.object);
+  if (object == nullptr || std::ranges::any_of(later, elsewhere)) return std::nullopt;
+  Attach attached = change;
+  if (const auto carrier = carrier_of(change.object, scene)) {
+    if (carrier->name != change.to) return std::nullopt;
+    attached.carrier_from_object = carrier->carrier_from_object;
+    return attached;
+  }
+  if (!object->fixed) return std::nullopt;
+  const Object* const to = find_object(scene, change.to);
+  if (to == nullptr) return attached;
+  if (!to->fixed) return std::nullopt;
+  attached.carrier_from_object = a_from_b(to->world_from_object, object->world_from_object);
+  return attached;
+}
 
 std::vector<std::string> left_out_with(const Attach& change, const Scene& scene) {
   std::vector<std::string> names{change.to};

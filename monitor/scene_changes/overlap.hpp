@@ -1,7 +1,9 @@
 // Measures the overlap of an attached object with the bodies that it may touch from then on.
 #pragma once
 
+#include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -14,6 +16,13 @@ namespace clearance {
 // The depth by which an attached object may overlap if the change states none, m. What the parts of
 // both objects exceed their meshes is added.
 inline constexpr double kDefaultOverlap = 1e-3;
+
+// Returns the change with the pose that the object has in `scene`, to which the whole list leads.
+// `later`: the changes after this one. Nothing: by one of them it is not attached there any more,
+// or is attached once more.
+[[nodiscard]] std::optional<Attach> as_attached(const Attach& change,
+                                                std::span<const CellChange> later,
+                                                const Scene& scene);
 
 // Names of all objects that the attached one is not watched against: those that are rigidly
 // connected to its carrier, and those that it may touch. Sorted.

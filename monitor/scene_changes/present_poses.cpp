@@ -11,11 +11,8 @@ namespace {
 
 constexpr std::chrono::microseconds kLookForAnswer{50};
 
-// The carrier of an object, and the pose relative to it. Nothing: it is not attached.
-struct Carrier {
-  std::string name;
-  Pose carrier_from_object;
-};
+}  // namespace
+
 std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene) {
   for (const Robot& robot : scene.robots) {
     if (!robot.is_attached || robot.links.front().name != name) continue;
@@ -27,8 +24,6 @@ std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene) {
   }
   return std::nullopt;
 }
-
-}  // namespace
 
 const Object* find_object(const Scene& scene, const std::string& name) noexcept {
   const auto found = std::ranges::find(scene.objects, name, &Object::name);

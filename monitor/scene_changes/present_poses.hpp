@@ -24,6 +24,14 @@ using PresentPoses = std::map<std::string, PresentPose>;
 // Null: the scene has no such object.
 [[nodiscard]] const Object* find_object(const Scene& scene, const std::string& name) noexcept;
 
+// What moves an attached object, and the object's pose in its frame.
+struct Carrier {
+  std::string name;
+  Pose carrier_from_object;
+};
+// Returns nothing if nothing moves the object: it is not attached, or to what is fixed.
+[[nodiscard]] std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene);
+
 // The names, and those of the objects and links that carry them in this scene.
 [[nodiscard]] std::vector<std::string> with_carriers(const std::vector<std::string>& names,
                                                      const Scene& scene);

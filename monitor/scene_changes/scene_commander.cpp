@@ -326,8 +326,10 @@ SceneCommander::Refusal SceneCommander::check_files(const Cell& cell) const {
 
 SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const Cell& cell) {
   for (std::size_t i = 0; i < work.changes.size(); ++i) {
-    const auto* attach = std::get_if<Attach>(&work.changes[i]);
-    if (attach == nullptr) continue;
+    const auto* stated = std::get_if<Attach>(&work.changes[i]);
+    if (stated == nullptr) continue;
+    const auto attach = as_attached(*stated, std::span(work.changes).subspan(i + 1), cell.scene);
+    if (!attach) continue;
     const std::vector<std::string> others = left_out_with(*attach, cell.scene);
     const Scene& running = changer_.cell().scene;
     // The change states the pose relative to the carrier, so that a lone carrier may be anywhere.

@@ -48,5 +48,21 @@ TEST_F(MoveItCell, ThePublishedSceneGivesTheSameSceneToAnotherCell) {
   EXPECT_EQ(known_scene(first).watched, known_scene(cell_).watched);
 }
 
+TEST_F(MoveItCell, ThePublishedPaddingsAreTheMarginsOfTheLinks) {
+  PlanningScene scene;
+  scene.is_diff = scene.robot_state_is_diff = true;
+  scene.link_padding = {{"hand", 0.02}};
+  send(scene);
+  const PlanningScene published = from_wire(*to_wire(monitored_scene(cell_)));
+  std::map<std::string, double> paddings;
+  for (const LinkNumber& each : published.link_padding) paddings[each.link_name] = each.value;
+  EXPECT_EQ(paddings, (std::map<std::string, double>{{"base", 0}, {"finger", 0}, {"hand", 0.02}}));
+  scene.link_padding = {{"hand", 0.0}, {"finger", 0.01}};
+  send(scene);
+  send(published);
+  EXPECT_EQ(object("hand")->margin, 0.02);
+  EXPECT_EQ(object("finger")->margin, 0.0);
+}
+
 }  // namespace
 }  // namespace clearance::moveit

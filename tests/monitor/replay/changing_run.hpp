@@ -2,26 +2,17 @@
 // and the part stands where it was put down. Poses and joints come in, also for scenes before.
 #pragma once
 
-#include <gtest/gtest.h>
-
-#include <atomic>
+#include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <list>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "monitor/loop/successor.hpp"
-#include "monitor/loop/tick_loop.hpp"
-#include "monitor/recording/recorder.hpp"
-#include "tests/monitor/loop/listed_ports.hpp"
-#include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/monitor/replay/recorded_changes.hpp"
 #include "tests/monitor/scara_cell.hpp"
 
 namespace clearance::test {
 
-class ChangingRun : public testing::Test {
+class ChangingRun : public RecordedChanges {
  protected:
   static constexpr int kTicks = 235;
 
@@ -58,60 +49,12 @@ class ChangingRun : public testing::Test {
         pairs + "  - {between: [part, arm], publish: true}\n");
   }
 
-  // Runs the loop with its changes and records it. Changes are offered before ticks 50, 100 and
-  // 150, and each catches up `lag` ticks later.
+  // Changes are offered before ticks 50, 100 and 150, and each catches up `lag` ticks later.
   void record(const RecordingOptions& options = {.overwrite = false}, int lag = 7) {
-    recorder = std::make_unique<Recorder>(run, cells.front(), kStart, options);
-    std::list<Sink> sinks;
-    sinks.emplace_back(*this, cells.front());
-    TickLoop loop(cells.front().scene, poses, {&sinks.front()}, clock, {.max_ticks = kTicks});
-    TickRecords records;
-    std::list<Successor> successors;
-    clock.while_asleep = [&](int tick) {
-      poses.now = tick;
-      const std::size_t made = successors.size();
-      if (made + 1 < cells.size() && tick == 50 * static_cast<int>(made + 1)) {
-        sinks.emplace_back(*this, cells[made + 1]);
-        sinks.back().successor =
-            &successors.emplace_back(cells[made].scene, loop.monitor(), cells[made + 1].scene,
-                                     std::vector<ReportSink*>{&sinks.back()}, records);
-        ASSERT_TRUE(loop.offer(successors.back()));
-      }
-      if (made > 0 && tick >= 50 * static_cast<int>(made) + lag) successors.back().catch_up();
-    };
-    std::atomic<bool> stop{false};
-    loop.run(stop);
-    EXPECT_TRUE(recorder->close()) << recorder->error();
-    for (const Successor& each : successors) changes.push_back(each.in_force());
-    ASSERT_EQ(changes.size(), 3u);
-    for (const SceneInForce& change : changes) EXPECT_GE(change.from, change.began_after + 7);
+    on_report = [this](const Report& report) { unknown.push_back(report.unknown); };
+    Poses poses(*this);
+    RecordedChanges::record(poses, kTicks, {50, 100, 150}, options, lag);
   }
-
-  // The recorder's thread in the daemon: the description stands in front of the first report.
-  class Sink final : public ReportSink {
-   public:
-    Sink(ChangingRun& test, const Cell& cell) : test_(test), cell_(cell) {}
-    void input(const PoseBatch& batch) noexcept override {
-      begin();
-      test_.recorder->poses(batch);
-    }
-    void report(const Report& report, std::span<const SourceUse> sources) noexcept override {
-      begin();
-      test_.recorder->report(report, sources, report.now_ns);
-      test_.unknown.push_back(report.unknown);
-    }
-    void statistics(const LoopStatistics&) noexcept override {}
-
-    Successor* successor = nullptr;
-
-   private:
-    void begin() {
-      if (successor != nullptr) test_.recorder->change(cell_, successor->in_force());
-      successor = nullptr;
-    }
-    ChangingRun& test_;
-    const Cell& cell_;
-  };
 
   // A batch of joints and one of poses each tick. The sender of poses knows the scene of 20 ticks
   // ago, one batch in ten is for a scene that never was, and some are of a scene without a
@@ -120,11 +63,10 @@ class ChangingRun : public testing::Test {
    public:
     explicit Poses(ChangingRun& test) : test_(test) {}
     const PoseBatch* next() noexcept override {
-      if (given_ == 2 * now) return nullptr;
+      if (given_ == 2 * test_.now) return nullptr;
       const int of = given_ / 2 + 1;
       return given_++ % 2 == 0 ? joints(of) : poses(of);
     }
-    int now = 0;  // the tick that is due
 
    private:
     const Cell& known(int tick) const {
@@ -168,13 +110,6 @@ class ChangingRun : public testing::Test {
     return scene.objects[object].name == "cart" || scene.objects[object].may_jump;
   }
 
-  ScratchFolder folder;
-  std::filesystem::path run = folder / "run.mcap";
-  std::vector<Cell> cells;
-  TurnedClock clock;
-  Poses poses{*this};
-  std::unique_ptr<Recorder> recorder;
-  std::vector<SceneInForce> changes;
   std::vector<std::uint32_t> unknown;  // by tick
 };
 

@@ -179,7 +179,6 @@ TEST_F(EveryField, OfAMessageIsComparedButWhatNoTickDetermines) {
   expect_named<clearance_msg_Gradients>(TopicKind::kGradients, 30);
 }
 
-// No cell of a recording has a contact yet.
 TEST_F(EveryField, OfAContactIsCompared) {
   Kept& message = messages_.at(place_of(TopicKind::kDistances, 3));
   message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& content) {

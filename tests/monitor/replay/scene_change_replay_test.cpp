@@ -112,25 +112,56 @@ TEST_F(ChangingRun, ReplaysUpToTheCutWhereItIsTruncated) {
   }
 }
 
-TEST_F(ChangingRun, InSeveralFilesReplaysAsOneAndFromAnyFileOn) {
-  record({.roll_ns = 30 * kTick});
-  std::vector<std::filesystem::path> files;
-  for (int part = 2; std::filesystem::exists(folder / ("run-" + std::to_string(part) + ".mcap"));
-       ++part) {
-    files.push_back(folder / ("run-" + std::to_string(part) + ".mcap"));
+// The periods make files begin before, in and after the two steps of a change, and with its first
+// report.
+TEST_F(ChangingRun, InSeveralFilesReplaysAsOneAndEachFileByItself) {
+  for (const int ticks : {7, 30, 53, 57, 58, 107}) {
+    SCOPED_TRACE(ticks);
+    record({.roll_ns = ticks * kTick});
+    const std::vector<std::filesystem::path> files = later_files();
+    ASSERT_GE(files.size(), 2u);
+    const OfflineReplay whole =
+        replay_offline(cells.front(), run, {.compare = Comparison::kBits, .continued_in = files});
+    EXPECT_TRUE(whole.ok()) << whole.text();
+    EXPECT_EQ(whole.compared, static_cast<std::uint64_t>(kTicks));
+    for (const std::filesystem::path& file : files) {
+      const std::vector<Kept> messages = messages_of(file);
+      const auto first = recorded_cell(file, outline(file));
+      ASSERT_TRUE(first);
+      const OfflineReplay alone =
+          replay_offline(std::get<Cell>(*first), file, {.compare = Comparison::kBounds});
+      EXPECT_TRUE(alone.ok()) << file << alone.text();
+      EXPECT_EQ(alone.ticks, static_cast<std::uint64_t>(
+                                 std::ranges::count(messages, TopicKind::kDistances, &Kept::kind)));
+      // The ticks after a batch of a scene that never was are not compared.
+      EXPECT_GE(alone.compared, alone.ticks - alone.ticks / 5 - 1) << file << alone.text();
+    }
+    std::filesystem::remove(run);
+    for (const std::filesystem::path& file : files) std::filesystem::remove(file);
   }
-  ASSERT_GE(files.size(), 6u);
-  const OfflineReplay whole =
-      replay_offline(cells.front(), run, {.compare = Comparison::kBits, .continued_in = files});
-  EXPECT_TRUE(whole.ok()) << whole.text();
-  EXPECT_EQ(whole.compared, static_cast<std::uint64_t>(kTicks));
-  for (const std::filesystem::path& file : files) {
-    const auto first = recorded_cell(file, outline(file));
-    ASSERT_TRUE(first);
-    const OfflineReplay alone =
-        replay_offline(std::get<Cell>(*first), file, {.compare = Comparison::kBounds});
-    EXPECT_TRUE(alone.ok()) << file << alone.text();
-    EXPECT_GT(alone.compared, 4u);
+}
+
+// Every tick of such a file has the scene that the daemon ticked.
+TEST_F(ChangingRun, AFileThatBeginsInALaterSceneIsReplayedWithThatScene) {
+  for (const int ticks : {19, 27, 28, 29, 53, 55, 56, 57, 58}) {
+    SCOPED_TRACE(ticks);
+    record({.compress = false, .roll_ns = ticks * kTick});
+    const std::vector<std::filesystem::path> files = later_files();
+    for (const std::filesystem::path& file : files) {
+      std::vector<std::uint64_t> recorded, replayed;
+      for (const Kept& message : messages_of(file)) {
+        if (message.kind == TopicKind::kDistances)
+          recorded.push_back(decoded<clearance_msg_Distances>(message)->scene_revision);
+      }
+      const auto first = recorded_cell(file, outline(file));
+      ASSERT_TRUE(first);
+      const OfflineReplay alone = replay_offline(
+          std::get<Cell>(*first), file, {},
+          [&](const ReplayedTick& tick) { replayed.push_back(tick.report.scene_revision); });
+      EXPECT_EQ(recorded, replayed) << file << alone.text();
+    }
+    std::filesystem::remove(run);
+    for (const std::filesystem::path& file : files) std::filesystem::remove(file);
   }
 }
 

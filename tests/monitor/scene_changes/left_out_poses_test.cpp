@@ -81,5 +81,41 @@ TEST_F(LeftOutPoses, AreThoseByWhichAnOverlapIsFoundToo) {
   EXPECT_TRUE(execute({part, Attach{"bin_1", "hand", at(0.3, 0, 0.2)}}).done());
 }
 
+// Only the scene to which the list leads comes into force.
+TEST_F(LeftOutPoses, AreNotThoseOfAnOverlapWhereALaterChangePutsTheObjectElsewhere) {
+  begin();
+  const std::string text = changer->cell().yaml;
+  const Attach deep{"part", "hand", Pose{}}, beside{"part", "hand", at(0.3, 0, 0)};
+  const std::vector<CellChange> elsewhere = {
+      beside, Detach{"part", at(3, 0, 0)}, ReplaceObject{kPartElsewhere},
+      ReplaceObject{"{name: part, groups: [things], attached: {to: hand, pose: {xyz: [0.3, 0, 0]}},"
+                    " box: {size: [0.1, 0.1, 0.1]}}"}};
+  for (const CellChange& later : elsewhere) {
+    const CommandResult result = execute({deep, later});
+    EXPECT_TRUE(result.done()) << later.index() << result.reason;
+    ASSERT_TRUE(execute({ReplaceCell{text}}).done());
+  }
+  EXPECT_EQ(expect_refused({beside, deep}, CommandStatus::kOverlap).change, 1u);
+}
+
+TEST_F(LeftOutPoses, AreThoseOfTheLastEntryByWhichAnOverlapIsFound) {
+  begin();
+  const Attach beside{"part", "hand", at(0.3, 0, 0)};
+  const std::string into_hand =
+      "{name: part, groups: [things], attached: {to: hand, pose: {xyz: [0.1, 0, 0]}},"
+      " box: {size: [0.1, 0.1, 0.1]}}";
+  const CommandResult result =
+      expect_refused({beside, ReplaceObject{into_hand}}, CommandStatus::kOverlap);
+  EXPECT_EQ(result.change, 0u);
+  // The table is fixed, and its upper side is at -0.95 m.
+  const Attach on_table{"part", "table", at(0, 0, 0.1)};
+  EXPECT_TRUE(execute({on_table, SetMargin{"part", 0.01}}).done());
+  const std::string into_table =
+      "{name: part, groups: [things], attached: {to: table, pose: {xyz: [0, 0, 0.08]}},"
+      " box: {size: [0.1, 0.1, 0.1]}}";
+  EXPECT_EQ(expect_refused({on_table, ReplaceObject{into_table}}, CommandStatus::kOverlap).change,
+            0u);
+}
+
 }  // namespace
 }  // namespace clearance
