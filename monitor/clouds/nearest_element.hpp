@@ -1,0 +1,41 @@
+// The element of a cloud that is nearest to a convex part, with certified bounds.
+#pragma once
+
+#include <cstdint>
+
+#include "core/distance.hpp"
+#include "monitor/clouds/point_cloud.hpp"
+
+namespace clearance {
+
+// What a part keeps between queries, also from one frame to the next. A hint and never a fact.
+struct CloudTracking {
+  std::uint32_t block = 0;  // the block of the last nearest element
+  TrackingState features;   // of the part and that element
+};
+
+enum class CloudAnswer : std::uint8_t {
+  kNearest,
+  kEmpty,    // the cloud has no element: both bounds are infinite
+  kBadPose,  // as DistanceStatus::kBadPose: nothing is known
+};
+
+// lower <= signed distance of the part and the nearest ball <= upper, rounding included, as in
+// DistanceResult. If the core's queries converge and all coordinates are below 100 m, upper - lower
+// is at most 1e-9 m. Points and normal are in the frame of the part. They belong to the element
+// that has the least upper bound.
+struct NearestElement {
+  CloudAnswer answer = CloudAnswer::kEmpty;
+  double lower = kInfinity, upper = kInfinity;  // m
+  Vec3 normal = Vec3::Zero();                   // unit, from the part towards the element
+  Vec3 point_on_part = Vec3::Zero(), point_on_element = Vec3::Zero();
+  std::uint32_t source = 0;   // index of the element's point in the input of PointCloud::build()
+  std::uint32_t queries = 0;  // of the core
+};
+
+// noexcept, no heap, deterministic. Any tracking state is accepted.
+[[nodiscard]] NearestElement nearest_element(const ConvexBody& part, const PointCloud& cloud,
+                                             const RelativePose& part_from_cloud,
+                                             CloudTracking& tracking) noexcept;
+
+}  // namespace clearance
