@@ -234,6 +234,17 @@ void DepthCloud::remove(std::size_t block, std::size_t lane) noexcept {
   --size_;
 }
 
+void DepthCloud::refit() noexcept {
+  if (levels_ == 0) return;
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    Node& node = nodes_[b];
+    if (is_empty(node)) continue;
+    node.low = *std::min_element(blocks_[b].low.begin(), blocks_[b].low.end());
+    node.high = *std::max_element(blocks_[b].high.begin(), blocks_[b].high.end());
+  }
+  add_levels();
+}
+
 DepthCloud::Slab DepthCloud::slab(std::size_t level, std::size_t i) const noexcept {
   const Node& n = node(level, i);
   const std::uint32_t right =

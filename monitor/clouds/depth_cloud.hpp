@@ -101,8 +101,11 @@ class DepthCloud {
   [[nodiscard]] DepthBuild build(const PinholeCamera& camera, const DepthImage& image,
                                  const DepthError& error, const DepthRange& range) noexcept;
 
-  // Leaves out a pixel from now on. The boxes above stay as they are, so bounds stay true.
+  // Leaves out a pixel from now on. The tiles above stay as they are, so bounds stay true, but
+  // queries look into them in vain until refit().
   void remove(std::size_t block, std::size_t lane) noexcept;
+  // Fits all tiles to the pixels that are left.
+  void refit() noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }        // pixels with a slab
   [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // or out of range

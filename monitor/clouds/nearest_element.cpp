@@ -33,6 +33,7 @@ class Balls {
   [[nodiscard]] const ConvexBody& origin() const noexcept { return cloud_.origin(); }
   [[nodiscard]] double least_along(std::size_t level, std::size_t i, const Vec3& n) const noexcept {
     const PointCloud::Node& node = cloud_.node(level, i);
+    if (PointCloud::is_empty(node)) return kInfinity;
     double least = -node.radius;
     for (int k = 0; k < 3; ++k) {
       const auto axis = static_cast<std::size_t>(k);
@@ -61,10 +62,13 @@ class Balls {
     return cloud_.block(b).source[lane];
   }
   // A ball's signed distance is that of its centre less its radius.
-  [[nodiscard]] static Lanes present(std::size_t) noexcept {
-    Lanes all;
-    all.fill(-kInfinity);
-    return all;
+  // The bound of a lane without a plane: none, or infinite for a point that was left out.
+  [[nodiscard]] Lanes present(std::size_t b) const noexcept {
+    Lanes bound;
+    for (std::size_t k = 0; k < bound.size(); ++k) {
+      bound[k] = cloud_.block(b).is_present(k) ? -kInfinity : kInfinity;
+    }
+    return bound;
   }
   template <class Search>
   [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane,
@@ -108,7 +112,8 @@ class Slabs {
   [[nodiscard]] std::uint32_t source(std::size_t b, std::size_t lane) const noexcept {
     return cloud_.source(b, lane);
   }
-  // The bound of a lane without a plane: none, or infinite for a missing pixel.
+  // The bound of a lane without a plane: none, or infinite for a pixel that is missing or was left
+  // out.
   [[nodiscard]] Lanes present(std::size_t b) const noexcept {
     const DepthCloud::Block& block = cloud_.block(b);
     Lanes bound;

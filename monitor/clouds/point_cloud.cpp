@@ -79,7 +79,7 @@ CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
                      static_cast<std::uint32_t>(i)};
     extent2 = std::max(extent2, at.squaredNorm());
   }
-  size_ = kept;
+  size_ = built_ = kept;
   missing_ = missing;
   cropped_ = cropped;
   extent_ = std::sqrt(extent2) * (1.0 + 0x1p-50);
@@ -116,6 +116,7 @@ void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
   count_[0] = (size_ + kFanOut - 1) / kFanOut;
   for (std::size_t b = 0; b < count_[0]; ++b) {
     Block& block = blocks_[b];
+    block.removed = 0;
     Node node;
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       const std::uint32_t source = keys_[std::min(b * kFanOut + lane, size_ - 1)].source;
@@ -131,6 +132,33 @@ void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
     }
     nodes_[b] = node;
   }
+}
+
+bool PointCloud::remove(std::size_t block, std::size_t lane) noexcept {
+  if (!blocks_[block].is_present(lane)) return false;
+  blocks_[block].removed |= 1U << lane;
+  if (block * kFanOut + lane >= built_) return false;
+  --size_;
+  return true;
+}
+
+void PointCloud::refit() noexcept {
+  if (levels_ == 0) return;
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    const Block& block = blocks_[b];
+    if (block.removed == 0) continue;
+    Node& node = nodes_[b];
+    node.low.fill(std::numeric_limits<float>::infinity());
+    node.high.fill(-std::numeric_limits<float>::infinity());
+    node.radius = 0.0F;
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      if (!block.is_present(lane)) continue;
+      const std::array<float, 3> at{block.x[lane], block.y[lane], block.z[lane]};
+      include(node, {at, at, block.radius[lane]});
+    }
+  }
+  levels_ = 1;
+  add_levels();
 }
 
 void PointCloud::add_levels() noexcept {

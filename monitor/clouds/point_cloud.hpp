@@ -52,6 +52,11 @@ class PointCloud {
   struct Block {
     std::array<float, kFanOut> x{}, y{}, z{}, radius{};
     std::array<std::uint32_t, kFanOut> source{};  // index of the point in the input of build()
+    std::uint32_t removed = 0;                    // a bit a lane
+
+    [[nodiscard]] bool is_present(std::size_t lane) const noexcept {
+      return (removed >> lane & 1U) == 0;
+    }
   };
 
   // Allocates the memory for this many points within the crop.
@@ -61,6 +66,17 @@ class PointCloud {
   // the previous cloud as it is. Deterministic to the bit; allocates nothing.
   [[nodiscard]] CloudBuild build(std::span<const MeasuredPoint> points,
                                  const CloudCrop& crop) noexcept;
+
+  // Leaves out a point from now on. The boxes above stay as they are, so bounds stay true, but
+  // queries look into them in vain until refit(). Returns false for a lane that repeats another
+  // one, or that was left out before.
+  bool remove(std::size_t block, std::size_t lane) noexcept;
+  // Fits all boxes to the points that are left. A box without points has low > high.
+  void refit() noexcept;
+
+  [[nodiscard]] static bool is_empty(const Node& node) noexcept {
+    return node.low[0] > node.high[0];
+  }
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // not finite
@@ -94,7 +110,7 @@ class PointCloud {
   std::vector<Block> blocks_;
   std::vector<Node> nodes_;
   std::array<std::size_t, kMostLevels> first_{}, count_{};
-  std::size_t levels_ = 0, size_ = 0, missing_ = 0, cropped_ = 0;
+  std::size_t levels_ = 0, built_ = 0, size_ = 0, missing_ = 0, cropped_ = 0;
   double extent_ = 0.0;
   ConvexBody origin_;
 };
