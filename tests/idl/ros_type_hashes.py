@@ -88,7 +88,7 @@ def type_hash(name, types):
 
 def main(root):
     types = {}
-    for path in ("idl/ros2.idl", "idl/moveit.idl"):
+    for path in ("idl/ros2.idl", "idl/moveit.idl", "idl/camera.idl"):
         types.update(types_in((root / path).read_text()))
     stated = []
     for path in sorted((root / "monitor/wire").glob("*_types.hpp")):

@@ -1,0 +1,150 @@
+// A depth image as the union of its pixels' slabs, in a pyramid for the nearest-element query.
+//
+// The slab of a pixel is the part of its square cone between the depths z - e(z) and z + e(z): a
+// convex body of eight vertices. Coordinates are in the optical frame, where z leads forward, x to
+// the right and y down. Depth is z, not the length of the ray. Pixels are sorted in tiles of four
+// by two, and eight tiles make the next larger one. A tile spans the least and the greatest depth
+// of its pixels, so it is a slab as well. All memory is allocated by the constructor.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/vec.hpp"
+
+namespace clearance {
+
+// A pinhole without distortion (sensor_msgs/CameraInfo: K). The centre of column u and row v has
+// the ray ((u - cx) / fx, (v - cy) / fy, 1). Lengths are in pixels.
+struct PinholeCamera {
+  std::uint32_t width = 0, height = 0;
+  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
+
+  friend bool operator==(const PinholeCamera&, const PinholeCamera&) = default;
+};
+
+// The stated bound of a depth's error: |measured - true| <= constant + quadratic z^2, m. It must
+// hold for the measured z, and includes quantisation.
+struct DepthError {
+  double constant = 0.0, quadratic = 0.0;
+
+  [[nodiscard]] double at(double z) const noexcept { return constant + quadratic * z * z; }
+};
+
+// The pixels of an image, row by row, in the byte order of this machine.
+struct DepthImage {
+  enum class Format : std::uint8_t {
+    kMillimetres16,  // uint16, 0: missing
+    kMetres32,       // float32, NaN, infinite, 0 or negative: missing
+  };
+  Format format = Format::kMetres32;
+  std::uint32_t width = 0, height = 0;
+  std::size_t step = 0;  // bytes from one row to the next
+  std::span<const std::byte> bytes;
+};
+
+struct DepthRange {
+  double least = 0.0, greatest = 0.0;  // m; depths outside of it count as missing
+};
+
+enum class DepthBuild : std::uint8_t {
+  kBuilt,
+  kBadCamera,   // a length is not positive or finite, or a side ray is over 51 degrees off the axis
+  kWrongSize,   // the image and the camera differ, or have more pixels than the capacity
+  kShortImage,  // fewer bytes than rows
+  kBadRange,    // not 0 < least <= greatest <= kGreatestDepth, or e(z) is negative or reaches z
+};
+
+inline constexpr double kGreatestDepth = 1e4;  // m
+// Of the sine between a side ray and the optical axis. Up to it no corner of a slab is sharp.
+inline constexpr double kWidestSine = 7.0 / 9.0;
+
+class DepthCloud {
+ public:
+  static constexpr std::size_t kFanOut = 8;  // pixels a tile, children a node
+
+  // A tile of columns [column, column + width), rows likewise; the sizes follow from its level. It
+  // is empty if low > high.
+  struct Node {
+    float low = 0.0F, high = 0.0F;  // m, rounded outward
+    std::uint16_t column = 0, row = 0;
+  };
+  // The slabs of a tile of four by two pixels, row by row. Missing pixels have low > high.
+  struct Block {
+    std::array<float, kFanOut> low{}, high{};  // m, rounded outward
+  };
+  // A slab between rays: x from x0 z to x1 z, y likewise, z from low to high.
+  struct Slab {
+    double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0, low = 0.0, high = 0.0;
+
+    // min n.p over the slab: it is attained at a vertex.
+    [[nodiscard]] double least_along(const Vec3& n) const noexcept {
+      const double at_unit_depth =
+          std::min(n.x() * x0, n.x() * x1) + std::min(n.y() * y0, n.y() * y1) + n.z();
+      return std::min(low * at_unit_depth, high * at_unit_depth);
+    }
+    [[nodiscard]] Vec3 middle() const noexcept {
+      const double z = 0.5 * (low + high);
+      return {0.5 * (x0 + x1) * z, 0.5 * (y0 + y1) * z, z};
+    }
+  };
+
+  // Allocates the memory for images of up to this size, each 1 to 65535.
+  DepthCloud(std::uint32_t most_columns, std::uint32_t most_rows);
+
+  // Replaces the cloud by the pixels of the image. Any other result than kBuilt leaves the previous
+  // cloud as it is. Deterministic to the bit; allocates nothing.
+  [[nodiscard]] DepthBuild build(const PinholeCamera& camera, const DepthImage& image,
+                                 const DepthError& error, const DepthRange& range) noexcept;
+
+  // Leaves out a pixel from now on. The tiles above stay as they are, so bounds stay true, but
+  // queries look into them in vain until refit().
+  void remove(std::size_t block, std::size_t lane) noexcept;
+  // Fits all tiles to the pixels that are left.
+  void refit() noexcept;
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }        // pixels with a slab
+  [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // or out of range
+  // No vertex is farther from the origin of the frame, m.
+  [[nodiscard]] double extent() const noexcept { return extent_; }
+
+  [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : count_[0]; }
+  [[nodiscard]] const Block& block(std::size_t i) const noexcept { return blocks_[i]; }
+  [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
+  [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return count_[level]; }
+  [[nodiscard]] const Node& node(std::size_t level, std::size_t i) const noexcept {
+    return nodes_[first_[level] + i];
+  }
+  [[nodiscard]] static bool is_empty(const Node& node) noexcept { return node.low > node.high; }
+  // The slabs of a tile and of a pixel. Neither may be empty.
+  [[nodiscard]] Slab slab(std::size_t level, std::size_t i) const noexcept;
+  [[nodiscard]] Slab pixel_slab(std::size_t block, std::size_t lane) const noexcept;
+  // row * width + column of a pixel.
+  [[nodiscard]] std::uint32_t source(std::size_t block, std::size_t lane) const noexcept;
+
+ private:
+  static constexpr std::size_t kMostLevels = 12;
+
+  [[nodiscard]] DepthBuild judge(const PinholeCamera& camera, const DepthImage& image,
+                                 const DepthError& error, const DepthRange& range) const noexcept;
+  void set_camera(const PinholeCamera& camera) noexcept;
+  template <class Pixel>
+  void fill_blocks(const DepthImage& image, const DepthError& error,
+                   const DepthRange& range) noexcept;
+  void add_levels() noexcept;
+
+  std::uint32_t most_columns_, most_rows_;
+  PinholeCamera camera_;
+  std::vector<double> column_edges_, row_edges_;  // (u - 1/2 - cx) / fx for u = 0 .. width
+  std::vector<Block> blocks_;
+  std::vector<Node> nodes_;
+  std::array<std::size_t, kMostLevels> first_{}, count_{};
+  std::size_t levels_ = 0, size_ = 0, missing_ = 0;
+  double extent_ = 0.0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,159 @@
+#include "monitor/clouds/own_points.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/distance.hpp"
+
+namespace clearance {
+namespace {
+
+// A bound of the errors in lengths that are computed here, relative to them.
+constexpr double kRoundedUp = 1.0 + 0x1p-40;
+
+// The longest diagonal of a slab: a convex function of two points is largest at two vertices.
+double diameter(const DepthCloud::Slab& s) noexcept {
+  const double x =
+      std::max(std::abs(s.x0), std::abs(s.x1)) * (s.high - s.low) + (s.x1 - s.x0) * s.high;
+  const double y =
+      std::max(std::abs(s.y0), std::abs(s.y1)) * (s.high - s.low) + (s.y1 - s.y0) * s.high;
+  return std::hypot(x, y, s.high - s.low) * kRoundedUp;
+}
+
+class SlabShelf {
+ public:
+  SlabShelf(const ConvexBody& part, const RelativePose& pose, double shell, DepthCloud& cloud,
+            SlabBody& body) noexcept
+      : part_(part), pose_(pose), shell_(shell), cloud_(cloud), body_(body) {}
+
+  BlindShell run() noexcept {
+    if (cloud_.levels() > 0) descend(cloud_.levels() - 1, 0);
+    return blind_;
+  }
+
+ private:
+  [[nodiscard]] bool is_near(const DepthCloud::Slab& slab) noexcept {
+    // A plane that separated a slab before mostly separates its neighbours as well.
+    for (const Plane& plane : planes_) {
+      if (slab.least_along(plane.normal) - plane.offset > shell_) return false;
+    }
+    const DistanceResult r = distance(part_, body_.of(slab), pose_, features_, {.depth = false});
+    if (r.status == DistanceStatus::kBadPose || !(r.lower > shell_)) {
+      return r.status != DistanceStatus::kBadPose;
+    }
+    const Vec3 n = pose_.rotation.transpose() * r.normal;
+    planes_[next_] = {n, slab.least_along(n) - r.lower};
+    next_ = (next_ + 1) % planes_.size();
+    return false;
+  }
+
+  void descend(std::size_t level, std::size_t i) noexcept {
+    if (DepthCloud::is_empty(cloud_.node(level, i)) || !is_near(cloud_.slab(level, i))) return;
+    if (level == 0) {
+      shelve(i);
+      return;
+    }
+    const std::size_t first = i * DepthCloud::kFanOut;
+    const std::size_t end = std::min(first + DepthCloud::kFanOut, cloud_.nodes(level - 1));
+    for (std::size_t child = first; child < end; ++child) descend(level - 1, child);
+  }
+
+  void shelve(std::size_t b) noexcept {
+    for (std::size_t lane = 0; lane < DepthCloud::kFanOut; ++lane) {
+      if (cloud_.block(b).low[lane] > cloud_.block(b).high[lane]) continue;
+      const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
+      if (!is_near(slab)) continue;
+      cloud_.remove(b, lane);
+      ++blind_.elements;
+      blind_.thickness = std::max(blind_.thickness, shell_ + diameter(slab));
+    }
+  }
+
+  const ConvexBody& part_;
+  const RelativePose& pose_;
+  double shell_;
+  DepthCloud& cloud_;
+  SlabBody& body_;
+  TrackingState features_;
+  // Half-spaces n.x <= offset of the cloud's frame that contain the part, but for rounding.
+  struct Plane {
+    Vec3 normal = Vec3::Zero();
+    double offset = kInfinity;
+  };
+  std::array<Plane, 4> planes_;
+  std::size_t next_ = 0;
+  BlindShell blind_;
+};
+
+class BallShelf {
+ public:
+  BallShelf(const ConvexBody& part, const RelativePose& pose, double shell,
+            PointCloud& cloud) noexcept
+      : part_(part), pose_(pose), shell_(shell), cloud_(cloud) {}
+
+  BlindShell run() noexcept {
+    if (cloud_.levels() > 0) descend(cloud_.levels() - 1, 0);
+    return blind_;
+  }
+
+ private:
+  // Does the ball of this radius around the point come near?
+  [[nodiscard]] bool is_near(const Vec3& p, double radius) noexcept {
+    RelativePose at;
+    at.translation = pose_.rotation * p + pose_.translation;
+    at.translation_error = pose_.translation_error + pose_.rotation_error * p.norm() +
+                           0x1p-49 * (p.norm() + pose_.translation.norm());
+    const DistanceResult r = distance(part_, cloud_.origin(), at, features_, {.depth = false});
+    return r.status != DistanceStatus::kBadPose && r.lower <= (shell_ + radius) * kRoundedUp;
+  }
+
+  void descend(std::size_t level, std::size_t i) noexcept {
+    const PointCloud::Node& node = cloud_.node(level, i);
+    if (PointCloud::is_empty(node)) return;
+    Vec3 low, high;
+    for (int k = 0; k < 3; ++k) {
+      low[k] = node.low[static_cast<std::size_t>(k)];
+      high[k] = node.high[static_cast<std::size_t>(k)];
+    }
+    if (!is_near(0.5 * (low + high), node.radius + 0.5 * (high - low).norm() * kRoundedUp)) return;
+    if (level == 0) {
+      shelve(i);
+      return;
+    }
+    const std::size_t first = i * PointCloud::kFanOut;
+    const std::size_t end = std::min(first + PointCloud::kFanOut, cloud_.nodes(level - 1));
+    for (std::size_t child = first; child < end; ++child) descend(level - 1, child);
+  }
+
+  void shelve(std::size_t b) noexcept {
+    const PointCloud::Block& block = cloud_.block(b);
+    for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
+      if (!block.is_present(lane)) continue;
+      if (!is_near({block.x[lane], block.y[lane], block.z[lane]}, block.radius[lane])) continue;
+      blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
+      blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * block.radius[lane]);
+    }
+  }
+
+  const ConvexBody& part_;
+  const RelativePose& pose_;
+  double shell_;
+  PointCloud& cloud_;
+  TrackingState features_;
+  BlindShell blind_;
+};
+
+}  // namespace
+
+BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,
+                             double shell, DepthCloud& cloud, SlabBody& body) noexcept {
+  return SlabShelf(part, part_from_cloud, shell, cloud, body).run();
+}
+
+BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,
+                             double shell, PointCloud& cloud) noexcept {
+  return BallShelf(part, part_from_cloud, shell, cloud).run();
+}
+
+}  // namespace clearance

@@ -1,0 +1,34 @@
+// Shelves the elements of a cloud in which a robot sees itself.
+#pragma once
+
+#include <cstddef>
+
+#include "core/convex_body.hpp"
+#include "core/pose.hpp"
+#include "monitor/clouds/depth_cloud.hpp"
+#include "monitor/clouds/point_cloud.hpp"
+#include "monitor/clouds/slab_body.hpp"
+
+namespace clearance {
+
+// What shelving has made blind. Everything else within `thickness` of the part may be hidden too: a
+// hand there is shelved with the part.
+struct BlindShell {
+  std::size_t elements = 0;
+  double thickness = 0.0;  // m: no point of a shelved element is farther from the part
+};
+
+// Shelves every element that comes within `shell` (m, >= 0) of the part: queries do not meet it any
+// more. The pose is that of the frame's stamp, never the present one. A surface of the robot lies
+// in the parts, and the elements contain it, so a shell of 0 is enough if the pose is exact. The
+// caller adds the error of the pose to the shell, and calls refit() of the cloud after the last
+// part. A bad pose shelves nothing. noexcept, no heap,
+// deterministic.
+[[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
+                                           const RelativePose& part_from_cloud, double shell,
+                                           DepthCloud& cloud, SlabBody& body) noexcept;
+[[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
+                                           const RelativePose& part_from_cloud, double shell,
+                                           PointCloud& cloud) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,179 @@
+#include "monitor/clouds/point_cloud.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "core/shapes.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::uint32_t kCodeBits = 10, kCells = 1U << kCodeBits;  // per axis
+
+// Puts two zero bits between the ten bits of a cell number.
+std::uint32_t spread(std::uint32_t v) noexcept {
+  v = (v | v << 16) & 0x030000FFU;
+  v = (v | v << 8) & 0x0300F00FU;
+  v = (v | v << 4) & 0x030C30C3U;
+  return (v | v << 2) & 0x09249249U;
+}
+
+std::uint32_t cell(double from_low, double scale) noexcept {
+  return static_cast<std::uint32_t>(std::clamp(from_low * scale, 0.0, kCells - 1.0));
+}
+
+void include(PointCloud::Node& node, const PointCloud::Node& other) noexcept {
+  for (std::size_t k = 0; k < 3; ++k) {
+    node.low[k] = std::min(node.low[k], other.low[k]);
+    node.high[k] = std::max(node.high[k], other.high[k]);
+  }
+  node.radius = std::max(node.radius, other.radius);
+}
+
+}  // namespace
+
+PointCloud::PointCloud(std::size_t capacity)
+    : capacity_(capacity), origin_(std::get<ConvexBody>(point(Vec3::Zero(), 0.0))) {
+  keys_.resize(capacity);
+  sorted_.resize(capacity);
+  std::size_t of_level = (capacity + kFanOut - 1) / kFanOut, nodes = of_level;
+  blocks_.resize(of_level);
+  while (of_level > 1) {
+    of_level = (of_level + kFanOut - 1) / kFanOut;
+    nodes += of_level;
+  }
+  nodes_.resize(nodes);
+}
+
+CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
+                             const CloudCrop& crop) noexcept {
+  // The negated comparisons refuse NaN.
+  if (!(crop.radius >= 0.0) ||
+      !(crop.centre.cwiseAbs().maxCoeff() + crop.radius <= kLargestCloudCoordinate)) {
+    return CloudBuild::kBadCrop;
+  }
+  std::size_t kept = 0, missing = 0, cropped = 0;
+  double extent2 = 0.0;
+  // A cell of the Morton curve is a part of the crop's cube. Cells decide the order alone.
+  const Vec3 low = crop.centre - Vec3::Constant(crop.radius);
+  const double scale = crop.radius > 0.0 ? kCells / (2.0 * crop.radius) : 0.0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const MeasuredPoint& p = points[i];
+    if (!(std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z))) {
+      ++missing;
+      continue;
+    }
+    if (!(p.radius >= 0.0F && std::isfinite(p.radius))) return CloudBuild::kBadRadius;
+    const Vec3 at(p.x, p.y, p.z), from_low = at - low;
+    // The rounding of the two sides is far below 2^-40 of either, so no ball that meets the crop is
+    // dropped.
+    if ((at - crop.centre).norm() > (crop.radius + p.radius) * (1.0 + 0x1p-40) + 0x1p-30) {
+      ++cropped;
+      continue;
+    }
+    if (kept == capacity_) return CloudBuild::kTooManyPoints;
+    keys_[kept++] = {spread(cell(from_low.x(), scale)) | spread(cell(from_low.y(), scale)) << 1 |
+                         spread(cell(from_low.z(), scale)) << 2,
+                     static_cast<std::uint32_t>(i)};
+    extent2 = std::max(extent2, at.squaredNorm());
+  }
+  size_ = built_ = kept;
+  missing_ = missing;
+  cropped_ = cropped;
+  extent_ = std::sqrt(extent2) * (1.0 + 0x1p-50);
+  levels_ = 0;
+  if (size_ == 0) return CloudBuild::kBuilt;
+  sort();
+  fill_blocks(points);
+  add_levels();
+  return CloudBuild::kBuilt;
+}
+
+// A stable radix sort: three passes over ten bits each.
+void PointCloud::sort() noexcept {
+  for (std::uint32_t pass = 0; pass < 3; ++pass) {
+    std::array<std::uint32_t, kCells> next{};
+    const std::uint32_t shift = pass * kCodeBits;
+    for (std::size_t i = 0; i < size_; ++i) ++next[keys_[i].code >> shift & (kCells - 1)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& n : next) {
+      const std::uint32_t count = n;
+      n = sum;
+      sum += count;
+    }
+    for (std::size_t i = 0; i < size_; ++i) {
+      sorted_[next[keys_[i].code >> shift & (kCells - 1)]++] = keys_[i];
+    }
+    keys_.swap(sorted_);
+  }
+}
+
+void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
+  levels_ = 1;
+  first_[0] = 0;
+  count_[0] = (size_ + kFanOut - 1) / kFanOut;
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    Block& block = blocks_[b];
+    block.removed = 0;
+    Node node;
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      const std::uint32_t source = keys_[std::min(b * kFanOut + lane, size_ - 1)].source;
+      const MeasuredPoint& p = points[source];
+      block.x[lane] = p.x;
+      block.y[lane] = p.y;
+      block.z[lane] = p.z;
+      block.radius[lane] = p.radius;
+      block.source[lane] = source;
+      const Node one{{p.x, p.y, p.z}, {p.x, p.y, p.z}, p.radius};
+      if (lane == 0) node = one;
+      include(node, one);
+    }
+    nodes_[b] = node;
+  }
+}
+
+bool PointCloud::remove(std::size_t block, std::size_t lane) noexcept {
+  if (!blocks_[block].is_present(lane)) return false;
+  blocks_[block].removed |= 1U << lane;
+  if (block * kFanOut + lane >= built_) return false;
+  --size_;
+  return true;
+}
+
+void PointCloud::refit() noexcept {
+  if (levels_ == 0) return;
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    const Block& block = blocks_[b];
+    if (block.removed == 0) continue;
+    Node& node = nodes_[b];
+    node.low.fill(std::numeric_limits<float>::infinity());
+    node.high.fill(-std::numeric_limits<float>::infinity());
+    node.radius = 0.0F;
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      if (!block.is_present(lane)) continue;
+      const std::array<float, 3> at{block.x[lane], block.y[lane], block.z[lane]};
+      include(node, {at, at, block.radius[lane]});
+    }
+  }
+  levels_ = 1;
+  add_levels();
+}
+
+void PointCloud::add_levels() noexcept {
+  while (count_[levels_ - 1] > 1) {
+    const std::size_t below = levels_ - 1;
+    first_[levels_] = first_[below] + count_[below];
+    count_[levels_] = (count_[below] + kFanOut - 1) / kFanOut;
+    for (std::size_t i = 0; i < count_[levels_]; ++i) {
+      const std::size_t end = std::min((i + 1) * kFanOut, count_[below]);
+      Node node = nodes_[first_[below] + i * kFanOut];
+      for (std::size_t k = i * kFanOut + 1; k < end; ++k) include(node, nodes_[first_[below] + k]);
+      nodes_[first_[levels_] + i] = node;
+    }
+    ++levels_;
+  }
+}
+
+}  // namespace clearance

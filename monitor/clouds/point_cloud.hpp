@@ -1,0 +1,118 @@
+// The points that a sensor has measured, as balls, sorted into blocks for the nearest-element
+// query.
+//
+// The union of the balls is the obstacle. Coordinates stay the float32 numbers of the message, in
+// the frame of the sensor, so no distance is rounded to a voxel. A build sorts the points along a
+// Morton curve (G. M. Morton, 1966). Blocks of eight neighbours have a box each, and so has every
+// group of eight boxes. All memory is allocated by the constructor.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/convex_body.hpp"
+
+namespace clearance {
+
+// Metres, in the frame of the sensor. A coordinate that is not finite means a missing point.
+struct MeasuredPoint {
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+  float radius = 0.0F;  // of the ball that contains what was measured; finite, not negative
+};
+
+// The ball that contains everything which the links can reach, in the frame of the sensor, m.
+struct CloudCrop {
+  Vec3 centre = Vec3::Zero();
+  double radius = 0.0;
+};
+
+// No crop contains a coordinate larger than this, m.
+inline constexpr double kLargestCloudCoordinate = 1e6;
+
+enum class CloudBuild : std::uint8_t {
+  kBuilt,
+  kTooManyPoints,  // more points within the crop than the capacity
+  kBadRadius,      // a radius is negative or not finite
+  kBadCrop,        // not finite, or beyond kLargestCloudCoordinate
+};
+
+class PointCloud {
+ public:
+  static constexpr std::size_t kFanOut = 8;  // points a block, children a node
+
+  // A box around the centres of all points below, and the largest of their radii.
+  struct Node {
+    std::array<float, 3> low{}, high{};
+    float radius = 0.0F;
+  };
+  // Eight points as vector lanes. The last block repeats its last point.
+  struct Block {
+    std::array<float, kFanOut> x{}, y{}, z{}, radius{};
+    std::array<std::uint32_t, kFanOut> source{};  // index of the point in the input of build()
+    std::uint32_t removed = 0;                    // a bit a lane
+
+    [[nodiscard]] bool is_present(std::size_t lane) const noexcept {
+      return (removed >> lane & 1U) == 0;
+    }
+  };
+
+  // Allocates the memory for this many points within the crop.
+  explicit PointCloud(std::size_t capacity);
+
+  // Replaces the cloud by the points whose balls meet the crop. Any other result than kBuilt leaves
+  // the previous cloud as it is. Deterministic to the bit; allocates nothing.
+  [[nodiscard]] CloudBuild build(std::span<const MeasuredPoint> points,
+                                 const CloudCrop& crop) noexcept;
+
+  // Leaves out a point from now on. The boxes above stay as they are, so bounds stay true, but
+  // queries look into them in vain until refit(). Returns false for a lane that repeats another
+  // one, or that was left out before.
+  bool remove(std::size_t block, std::size_t lane) noexcept;
+  // Fits all boxes to the points that are left. A box without points has low > high.
+  void refit() noexcept;
+
+  [[nodiscard]] static bool is_empty(const Node& node) noexcept {
+    return node.low[0] > node.high[0];
+  }
+
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }
+  [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // not finite
+  [[nodiscard]] std::size_t cropped() const noexcept { return cropped_; }  // outside the crop
+  // No centre is farther from the origin of the frame, m.
+  [[nodiscard]] double extent() const noexcept { return extent_; }
+
+  [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : count_[0]; }
+  [[nodiscard]] const Block& block(std::size_t i) const noexcept { return blocks_[i]; }
+  // Level 0 has a node a block; the last level has one node. An empty cloud has no level.
+  [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
+  [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return count_[level]; }
+  [[nodiscard]] const Node& node(std::size_t level, std::size_t i) const noexcept {
+    return nodes_[first_[level] + i];
+  }
+  // A point at the origin, which queries place at each element.
+  [[nodiscard]] const ConvexBody& origin() const noexcept { return origin_; }
+
+ private:
+  struct Key {
+    std::uint32_t code, source;
+  };
+  static constexpr std::size_t kMostLevels = 12;
+
+  void sort() noexcept;
+  void fill_blocks(std::span<const MeasuredPoint> points) noexcept;
+  void add_levels() noexcept;
+
+  std::size_t capacity_;
+  std::vector<Key> keys_, sorted_;
+  std::vector<Block> blocks_;
+  std::vector<Node> nodes_;
+  std::array<std::size_t, kMostLevels> first_{}, count_{};
+  std::size_t levels_ = 0, built_ = 0, size_ = 0, missing_ = 0, cropped_ = 0;
+  double extent_ = 0.0;
+  ConvexBody origin_;
+};
+
+}  // namespace clearance

@@ -1,0 +1,175 @@
+#include "monitor/intake/camera_messages.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string_view>
+
+namespace clearance {
+namespace {
+
+constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
+constexpr bool kIsBigEndian = std::endian::native == std::endian::big;
+
+// Products of the message's 32-bit numbers do not overflow 64 bits.
+FrameFault size_of(std::uint32_t width, std::uint32_t height, std::size_t most) noexcept {
+  if (width == 0 || height == 0) return FrameFault::kNoPixels;
+  if (std::uint64_t{width} * height > most) return FrameFault::kTooManyPixels;
+  return FrameFault::kNone;
+}
+
+// The last row may end without its padding.
+bool has_rows(std::size_t bytes, std::uint64_t row, std::uint64_t step,
+              std::uint32_t rows) noexcept {
+  return bytes >= row && (bytes - row) / step >= rows - 1;
+}
+
+std::span<const std::byte> bytes_of(const dds_sequence_octet& data) noexcept {
+  return std::as_bytes(std::span(data._buffer, data._length));
+}
+
+// Exactly one field of the name, a single float32 within the point.
+bool find_field(const sensor_msgs_msg_dds__PointCloud2_& message, std::string_view name,
+                std::size_t& offset) noexcept {
+  std::size_t found = 0;
+  for (std::uint32_t i = 0; i < message.fields._length; ++i) {
+    const sensor_msgs_msg_dds__PointField_& field = message.fields._buffer[i];
+    if (name != field.name) continue;
+    // Some drivers write a count of 0 for one number.
+    if (field.datatype != kFloat32 || field.count > 1) return false;
+    if (std::uint64_t{field.offset} + sizeof(float) > message.point_step) return false;
+    offset = field.offset;
+    ++found;
+  }
+  return found == 1;
+}
+
+bool is_identity_or_zero(const double (&r)[9]) noexcept {
+  constexpr std::array<double, 9> kIdentity{1, 0, 0, 0, 1, 0, 0, 0, 1};
+  return std::equal(kIdentity.begin(), kIdentity.end(), r) ||
+         std::all_of(std::begin(r), std::end(r), [](double x) { return x == 0.0; });
+}
+
+}  // namespace
+
+const char* text(FrameFault fault) noexcept {
+  switch (fault) {
+    case FrameFault::kNone:
+      return "nothing is wrong";
+    case FrameFault::kUndecodable:
+      return "the bytes are not a message of this type";
+    case FrameFault::kEncoding:
+      return "the encoding is neither 16UC1 nor 32FC1";
+    case FrameFault::kByteOrder:
+      return "the byte order is not that of this machine";
+    case FrameFault::kNoPixels:
+      return "the width or height is 0";
+    case FrameFault::kTooManyPixels:
+      return "it has more pixels than the cell states";
+    case FrameFault::kStep:
+      return "the step is smaller than a row or a point";
+    case FrameFault::kShortData:
+      return "it has fewer bytes than its size says";
+    case FrameFault::kFields:
+      return "x, y and z are not one float32 each within the point";
+    case FrameFault::kIntrinsics:
+      return "the intrinsics are not those of a pinhole camera";
+    case FrameFault::kDistorted:
+      return "it has a distortion, rotation, binning or region: use the rectified image";
+    case FrameFault::kNoCameraInfo:
+      return "no CameraInfo has come yet";
+    case FrameFault::kCameraInfoChanged:
+      return "the CameraInfo differs from the first one";
+    case FrameFault::kSizeChanged:
+      return "its size is not that of the CameraInfo";
+    case FrameFault::kNoStamp:
+      return "its stamp is 0";
+    case FrameFault::kOtherClock:
+      return "its stamp is of another clock";
+    case FrameFault::kOldStamp:
+      return "its stamp is not newer than that of the frame before";
+    case FrameFault::kFrozen:
+      return "its depth is bit for bit that of the frame before";
+    case FrameFault::kSecondPublisher:
+      return "another publisher sends frames as well";
+    case FrameFault::kTooOften:
+      return "frames come more often than the cell states";
+  }
+  return "";
+}
+
+FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pixels,
+                DepthImage& out) noexcept {
+  const std::string_view encoding = message.encoding;
+  const bool is_millimetres = encoding == "16UC1";
+  if (!is_millimetres && encoding != "32FC1") return FrameFault::kEncoding;
+  if ((message.is_bigendian != 0) != kIsBigEndian) return FrameFault::kByteOrder;
+  const FrameFault size = size_of(message.width, message.height, most_pixels);
+  if (size != FrameFault::kNone) return size;
+  const std::uint64_t row = std::uint64_t{message.width} * (is_millimetres ? 2 : 4);
+  if (message.step < row) return FrameFault::kStep;
+  const std::span<const std::byte> bytes = bytes_of(message.data);
+  if (!has_rows(bytes.size(), row, message.step, message.height)) return FrameFault::kShortData;
+  out = {is_millimetres ? DepthImage::Format::kMillimetres16 : DepthImage::Format::kMetres32,
+         message.width, message.height, message.step, bytes};
+  return FrameFault::kNone;
+}
+
+FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t most_points,
+                PointsView& out) noexcept {
+  if (message.is_bigendian != kIsBigEndian) return FrameFault::kByteOrder;
+  PointsView found;
+  if (!find_field(message, "x", found.x) || !find_field(message, "y", found.y) ||
+      !find_field(message, "z", found.z)) {
+    return FrameFault::kFields;
+  }
+  const FrameFault size = size_of(message.width, message.height, most_points);
+  if (size != FrameFault::kNone) return size;
+  // A row_step of 0 is common where there is one row.
+  const std::uint64_t row = std::uint64_t{message.width} * message.point_step;
+  const std::uint64_t step =
+      message.height == 1 ? std::max<std::uint64_t>(row, message.row_step) : message.row_step;
+  if (step < row) return FrameFault::kStep;
+  const std::span<const std::byte> bytes = bytes_of(message.data);
+  if (!has_rows(bytes.size(), row, step, message.height)) return FrameFault::kShortData;
+  found.width = message.width;
+  found.height = message.height;
+  found.point_step = message.point_step;
+  found.row_step = step;
+  found.bytes = bytes;
+  out = found;
+  return FrameFault::kNone;
+}
+
+// A rectified image follows P, a raw one K. Both are the same where nothing is distorted, so that
+// no mistake between the two is possible.
+FrameFault view(const sensor_msgs_msg_dds__CameraInfo_& message, PinholeCamera& out) noexcept {
+  if (message.width == 0 || message.height == 0) return FrameFault::kNoPixels;
+  const double* const k = message.k;
+  const double* const p = message.p;
+  for (std::uint32_t i = 0; i < message.d._length; ++i) {
+    if (message.d._buffer[i] != 0.0) return FrameFault::kDistorted;  // NaN as well
+  }
+  const sensor_msgs_msg_dds__RegionOfInterest_& roi = message.roi;
+  const bool is_whole = roi.x_offset == 0 && roi.y_offset == 0 &&
+                        (roi.width == 0 || roi.width == message.width) &&
+                        (roi.height == 0 || roi.height == message.height);
+  if (!is_whole || message.binning_x > 1 || message.binning_y > 1 ||
+      !is_identity_or_zero(message.r)) {
+    return FrameFault::kDistorted;
+  }
+  const bool finite =
+      std::isfinite(k[0]) && std::isfinite(k[2]) && std::isfinite(k[4]) && std::isfinite(k[5]);
+  const bool is_pinhole = finite && k[0] > 0.0 && k[4] > 0.0 && k[1] == 0.0 && k[3] == 0.0 &&
+                          k[6] == 0.0 && k[7] == 0.0 && k[8] == 1.0;
+  const bool has_projection =
+      std::any_of(message.p, message.p + 12, [](double x) { return x != 0.0; });
+  const bool agrees = !has_projection || (p[0] == k[0] && p[1] == 0.0 && p[2] == k[2] &&
+                                          p[3] == 0.0 && p[5] == k[4] && p[6] == k[5]);
+  if (!is_pinhole || !agrees) return FrameFault::kIntrinsics;
+  out = {message.width, message.height, k[0], k[4], k[2], k[5]};
+  return FrameFault::kNone;
+}
+
+}  // namespace clearance

@@ -1,0 +1,63 @@
+// Decodes the messages of a camera, and refuses with a cause what is not a whole frame of it.
+//
+// A refused frame changes nothing: the frame before stays in use and grows old. Nothing here makes
+// anything clear.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+
+#include "monitor/clouds/depth_cloud.hpp"
+#include "monitor/wire/camera_types.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance {
+
+enum class FrameFault : std::uint8_t {
+  kNone,
+  // Of one message.
+  kUndecodable,    // the bytes are not a message of the type: cut, or with lengths that lie
+  kEncoding,       // neither 16UC1 nor 32FC1
+  kByteOrder,      // not that of this machine
+  kNoPixels,       // a width or height of 0
+  kTooManyPixels,  // more than the memory that the cell fixes
+  kStep,           // rows or points overlap: step 0, or below the size of their content
+  kShortData,      // fewer bytes than the size says: half a frame
+  kFields,         // x, y or z is missing, twice there, no single float32, or outside of the point
+  kIntrinsics,  // focal lengths that are not positive, numbers that are not finite, or P unlike K
+  kDistorted,   // a distortion, rotation, binning or region: the image is not a plain pinhole's
+  // Of the stream of messages.
+  kNoCameraInfo,       // no image can be used before the first CameraInfo
+  kCameraInfoChanged,  // images are refused until the first CameraInfo comes again
+  kSizeChanged,        // the image has another size than its CameraInfo
+  kNoStamp,            // a stamp of 0
+  kOtherClock,         // the stamp is far from the time of sending
+  kOldStamp,           // not newer than the frame before
+  kFrozen,             // bit for bit the depth of the frame before, under a newer stamp
+  kSecondPublisher,    // the writer of the frames in use is still heard
+  kTooOften,           // more frames than the cell states
+};
+inline constexpr std::size_t kFrameFaults = 20;
+
+// A sentence without its end: what is wrong with the message.
+[[nodiscard]] const char* text(FrameFault fault) noexcept;
+
+// The points of a PointCloud2: x, y and z are float32 at these offsets of each point.
+struct PointsView {
+  std::uint32_t width = 0, height = 0;  // height 1: not organised
+  std::size_t point_step = 0, row_step = 0;
+  std::size_t x = 0, y = 0, z = 0;
+  std::span<const std::byte> bytes;
+};
+
+// Views of a message's own memory. They are written only if the result is kNone.
+[[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pixels,
+                              DepthImage& out) noexcept;
+[[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message,
+                              std::size_t most_points, PointsView& out) noexcept;
+[[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__CameraInfo_& message,
+                              PinholeCamera& out) noexcept;
+
+}  // namespace clearance

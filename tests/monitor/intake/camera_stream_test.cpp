@@ -1,0 +1,329 @@
+// The frames of a camera: what is used, and the cause for which each other message is refused.
+//
+// The bytes are made by the rules of CDR, without the types of the wire. Oracles: the numbers that
+// the test put in; and for damaged messages, views that stay within the bytes of the message, which
+// sanitizers check where they are read.
+#include "monitor/intake/camera_stream.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance::camera_stream_test {
+
+using test::RosCdr;
+
+namespace {
+
+constexpr std::int64_t kStart = 1'700'000'000'000'000'000, kFrame = 33'333'333;
+
+// An image of 8 x 6 pixels.
+struct ImageText {
+  std::uint32_t height = 6, width = 8;
+  std::string encoding = "16UC1";
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t step = 16;
+  std::vector<std::uint8_t> data = std::vector<std::uint8_t>(16 * 6, 7);
+  std::int64_t stamp_ns = kStart;
+
+  [[nodiscard]] std::vector<std::byte> cdr() const {
+    RosCdr out;
+    out.header(stamp_ns, "camera").number(height).number(width).text(encoding);
+    out.number(is_bigendian).number(step).number(static_cast<std::uint32_t>(data.size()));
+    for (const std::uint8_t byte : data) out.number(byte);
+    return out.bytes();
+  }
+};
+
+struct InfoText {
+  std::uint32_t height = 6, width = 8;
+  std::vector<double> d = {0, 0, 0, 0, 0};
+  std::vector<double> k = {10, 0, 3.5, 0, 11, 2.5, 0, 0, 1};
+  std::vector<double> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  std::vector<double> p = {10, 0, 3.5, 0, 0, 11, 2.5, 0, 0, 0, 1, 0};
+  std::uint32_t binning = 0, x_offset = 0;
+
+  [[nodiscard]] std::vector<std::byte> cdr() const {
+    RosCdr out;
+    out.header(kStart, "camera").number(height).number(width).text("plumb_bob").numbers(d);
+    for (const auto* matrix : {&k, &r, &p}) {
+      for (const double x : *matrix) out.number(x);
+    }
+    out.number(binning).number(binning).number(x_offset).number(std::uint32_t{0});
+    out.number(std::uint32_t{0}).number(std::uint32_t{0}).number(std::uint8_t{0});
+    return out.bytes();
+  }
+};
+
+struct FieldText {
+  std::string name;
+  std::uint32_t offset = 0;
+  std::uint8_t datatype = 7;
+  std::uint32_t count = 1;
+};
+
+// Five points of 20 bytes in one row.
+struct CloudText {
+  std::uint32_t height = 1, width = 5;
+  std::vector<FieldText> fields = {{"x", 0}, {"y", 4}, {"z", 8}, {"rgb", 16}};
+  std::uint8_t is_bigendian = 0;
+  std::uint32_t point_step = 20, row_step = 100;
+  std::vector<std::uint8_t> data = std::vector<std::uint8_t>(100, 3);
+  std::int64_t stamp_ns = kStart;
+
+  [[nodiscard]] std::vector<std::byte> cdr() const {
+    RosCdr out;
+    out.header(stamp_ns, "camera").number(height).number(width);
+    out.number(static_cast<std::uint32_t>(fields.size()));
+    for (const FieldText& field : fields) {
+      out.text(field.name).number(field.offset).number(field.datatype).number(field.count);
+    }
+    out.number(is_bigendian).number(point_step).number(row_step);
+    out.number(static_cast<std::uint32_t>(data.size()));
+    for (const std::uint8_t byte : data) out.number(byte);
+    out.number(std::uint8_t{1});
+    return out.bytes();
+  }
+};
+
+class CameraStreamTest : public testing::Test {
+ protected:
+  FrameFault take(const InfoText& text) {
+    return decoder.decode(text.cdr(), info) ? stream.take(*info) : FrameFault::kUndecodable;
+  }
+  FrameFault take(const ImageText& text, std::uint64_t writer = 1) {
+    return take(text, {text.stamp_ns, text.stamp_ns + 1'000'000, writer});
+  }
+  FrameFault take(const ImageText& text, const FrameOrigin& origin) {
+    if (!decoder.decode(text.cdr(), image)) return FrameFault::kUndecodable;
+    return stream.take(*image, origin, seen);
+  }
+  FrameFault take(const CloudText& text) {
+    if (!decoder.decode(text.cdr(), cloud)) return FrameFault::kUndecodable;
+    return stream.take(*cloud, {text.stamp_ns, text.stamp_ns, 1}, points);
+  }
+  // A frame after so many others, with a depth of its own.
+  static ImageText frame(int number) {
+    ImageText text;
+    text.stamp_ns += number * kFrame;
+    text.data.assign(text.data.size(), static_cast<std::uint8_t>(number + 1));
+    return text;
+  }
+
+  CameraStream stream{{.most_pixels = 100, .least_interval_ns = 10'000'000}};
+  CdrDecoder decoder;
+  Sample<sensor_msgs_msg_dds__Image_> image;
+  Sample<sensor_msgs_msg_dds__CameraInfo_> info;
+  Sample<sensor_msgs_msg_dds__PointCloud2_> cloud;
+  DepthImage seen;
+  PointsView points;
+};
+
+TEST_F(CameraStreamTest, AFrameIsItsPixelsWithTheCameraOfItsInfo) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  EXPECT_EQ(stream.camera(), (PinholeCamera{8, 6, 10.0, 11.0, 3.5, 2.5}));
+  ImageText text;
+  text.step = 18;
+  text.data.assign(18 * 6 - 2, 9);  // the padding of the last row may be missing
+  ASSERT_EQ(take(text), FrameFault::kNone);
+  EXPECT_EQ(seen.format, DepthImage::Format::kMillimetres16);
+  EXPECT_EQ(seen.width, 8U);
+  EXPECT_EQ(seen.height, 6U);
+  EXPECT_EQ(seen.step, 18U);
+  EXPECT_EQ(stream.stamp_ns(), kStart);
+  ImageText metres = frame(1);
+  metres.encoding = "32FC1";
+  metres.step = 32;
+  metres.data.assign(32 * 6, 1);
+  ASSERT_EQ(take(metres), FrameFault::kNone);
+  EXPECT_EQ(seen.format, DepthImage::Format::kMetres32);
+}
+
+TEST_F(CameraStreamTest, ImagesThatLieAboutTheirPixelsAreRefusedByCause) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  const auto with = [&](const auto& change) {
+    ImageText text;
+    change(text);
+    return take(text);
+  };
+  using Fault = FrameFault;
+  EXPECT_EQ(with([](ImageText& t) { t.encoding = "rgb8"; }), Fault::kEncoding);
+  EXPECT_EQ(with([](ImageText& t) { t.encoding = "mono16"; }), Fault::kEncoding);
+  EXPECT_EQ(with([](ImageText& t) { t.is_bigendian = 1; }), Fault::kByteOrder);
+  EXPECT_EQ(with([](ImageText& t) { t.height = 0; }), Fault::kNoPixels);
+  EXPECT_EQ(with([](ImageText& t) { t.step = 0; }), Fault::kStep);
+  EXPECT_EQ(with([](ImageText& t) { t.step = 15; }), Fault::kStep);
+  EXPECT_EQ(with([](ImageText& t) { t.data.resize(48); }), Fault::kShortData);
+  EXPECT_EQ(with([](ImageText& t) { t.data.clear(); }), Fault::kShortData);
+  EXPECT_EQ(with([](ImageText& t) { t.step = 0xFFFFFFFF; }), Fault::kShortData);
+  EXPECT_EQ(with([](ImageText& t) { t.width = t.height = 0x80000000; }), Fault::kTooManyPixels);
+  EXPECT_EQ(with([](ImageText& t) { t.width = 16, t.step = 32, t.data.resize(192); }),
+            Fault::kSizeChanged);
+  EXPECT_EQ(stream.stamp_ns(), 0) << "none of them is a frame";
+  EXPECT_EQ(stream.counts()[static_cast<std::size_t>(Fault::kStep)], 2U);
+}
+
+TEST_F(CameraStreamTest, AnImageNeedsACameraInfoThatStaysTheSame) {
+  EXPECT_EQ(take(frame(0)), FrameFault::kNoCameraInfo);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  EXPECT_EQ(take(frame(0)), FrameFault::kNone);
+  InfoText other;
+  other.k[0] = other.p[0] = 12;
+  EXPECT_EQ(take(other), FrameFault::kCameraInfoChanged);
+  EXPECT_EQ(take(frame(1)), FrameFault::kCameraInfoChanged);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  EXPECT_EQ(take(frame(2)), FrameFault::kNone);
+}
+
+TEST_F(CameraStreamTest, ACameraInfoThatIsNoPlainPinholeIsRefused) {
+  const auto with = [&](const auto& change) {
+    InfoText text;
+    change(text);
+    const FrameFault fault = take(text);
+    EXPECT_FALSE(stream.camera());
+    return fault;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  using Fault = FrameFault;
+  EXPECT_EQ(with([](InfoText& t) { t.d[1] = 0.01; }), Fault::kDistorted);
+  EXPECT_EQ(with([&](InfoText& t) { t.d[1] = nan; }), Fault::kDistorted);
+  EXPECT_EQ(with([](InfoText& t) { t.r[1] = 0.01; }), Fault::kDistorted);
+  EXPECT_EQ(with([](InfoText& t) { t.binning = 2; }), Fault::kDistorted);
+  EXPECT_EQ(with([](InfoText& t) { t.x_offset = 2; }), Fault::kDistorted);
+  EXPECT_EQ(with([](InfoText& t) { t.k[0] = 0; }), Fault::kIntrinsics);
+  EXPECT_EQ(with([](InfoText& t) { t.k[4] = -1; }), Fault::kIntrinsics);
+  EXPECT_EQ(with([&](InfoText& t) { t.k[2] = nan; }), Fault::kIntrinsics);
+  EXPECT_EQ(with([](InfoText& t) { t.p[0] = 9; }), Fault::kIntrinsics);
+  EXPECT_EQ(with([](InfoText& t) { t.p[3] = -0.4; }), Fault::kIntrinsics) << "a stereo baseline";
+  EXPECT_EQ(with([](InfoText& t) { t.width = 0; }), Fault::kNoPixels);
+}
+
+TEST_F(CameraStreamTest, ADepthThatRepeatsUnderFreshStampsIsFrozenUnlessItMay) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ASSERT_EQ(take(frame(0)), FrameFault::kNone);
+  ImageText same = frame(0);
+  same.stamp_ns += kFrame;
+  EXPECT_EQ(take(same), FrameFault::kFrozen);
+  EXPECT_EQ(stream.stamp_ns(), kStart) << "the frame in use grows old";
+  ImageText one_pixel = same;
+  one_pixel.stamp_ns += kFrame;
+  one_pixel.data[37] ^= 1;
+  EXPECT_EQ(take(one_pixel), FrameFault::kNone);
+  stream = CameraStream({.most_pixels = 100, .may_repeat = true});
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ASSERT_EQ(take(frame(0)), FrameFault::kNone);
+  EXPECT_EQ(take(same), FrameFault::kNone);
+}
+
+TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePublisher) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ImageText unstamped = frame(0);
+  unstamped.stamp_ns = 0;
+  EXPECT_EQ(take(unstamped, {0, kStart, 1}), FrameFault::kNoStamp);
+  EXPECT_EQ(take(frame(0), {1'000'000'000, kStart, 1}), FrameFault::kOtherClock);
+  EXPECT_EQ(take(frame(0), {std::numeric_limits<std::int64_t>::max(), -kStart, 1}),
+            FrameFault::kOtherClock);
+  ASSERT_EQ(take(frame(5)), FrameFault::kNone);
+  EXPECT_EQ(take(frame(4)), FrameFault::kOldStamp);
+  EXPECT_EQ(take(frame(5)), FrameFault::kOldStamp);
+  EXPECT_EQ(take(frame(6), 2), FrameFault::kSecondPublisher);
+  ImageText soon = frame(6);
+  soon.stamp_ns = frame(5).stamp_ns + kFrame / 10;
+  EXPECT_EQ(take(soon), FrameFault::kTooOften);
+  EXPECT_EQ(take(frame(6)), FrameFault::kNone);
+  // After half a second of silence another publisher has the stream.
+  EXPECT_EQ(take(frame(22), 2), FrameFault::kNone);
+  EXPECT_EQ(take(frame(23), 1), FrameFault::kSecondPublisher);
+}
+
+TEST_F(CameraStreamTest, CloudsThatLieAboutTheirFieldsAreRefusedByCause) {
+  const auto with = [&](const auto& change) {
+    CloudText text;
+    change(text);
+    return take(text);
+  };
+  using Fault = FrameFault;
+  EXPECT_EQ(with([](CloudText& t) { t.fields.erase(t.fields.begin() + 2); }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[1].datatype = 8; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[1].count = 2; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[2].offset = 17; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[2].offset = 0xFFFFFFFE; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[3].name = "x"; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.point_step = 0; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.is_bigendian = 1; }), Fault::kByteOrder);
+  EXPECT_EQ(with([](CloudText& t) { t.width = 0; }), Fault::kNoPixels);
+  EXPECT_EQ(with([](CloudText& t) { t.width = 101; }), Fault::kTooManyPixels);
+  EXPECT_EQ(with([](CloudText& t) { t.width = 6; }), Fault::kShortData);
+  EXPECT_EQ(with([](CloudText& t) { t.height = 2, t.row_step = 0; }), Fault::kStep);
+  EXPECT_EQ(with([](CloudText& t) { t.height = 2; }), Fault::kShortData);
+  ASSERT_EQ(with([](CloudText& t) { t.row_step = 0; }), Fault::kNone) << "one row needs no step";
+  EXPECT_EQ(points.x, 0U);
+  EXPECT_EQ(points.z, 8U);
+  EXPECT_EQ(points.bytes.size(), 100U);
+}
+
+// Reads everything that a view names.
+template <class View>
+std::size_t sum_of(const View& view, std::size_t row, std::size_t step) {
+  std::size_t sum = 0;
+  for (std::uint32_t v = 0; v < view.height; ++v) {
+    for (const std::byte byte : view.bytes.subspan(v * step, row)) {
+      sum += std::to_integer<std::size_t>(byte);
+    }
+  }
+  return sum;
+}
+
+TEST_F(CameraStreamTest, DamagedBytesAreRefusedOrNameOnlyWhatIsThere) {
+  Random random(36);
+  const std::vector<std::byte> messages[] = {ImageText{}.cdr(), InfoText{}.cdr(),
+                                             CloudText{}.cdr()};
+  std::size_t refused = 0, used = 0;
+  for (int round = 0; round < 60'000; ++round) {
+    const int kind = round % 3;
+    std::vector<std::byte> bytes = messages[kind];
+    const int last = static_cast<int>(bytes.size()) - 1;
+    for (int i = random.integer(1, 4); i > 0; --i) {
+      const auto at = static_cast<std::size_t>(random.integer(0, last));
+      bytes[at] = static_cast<std::byte>(random.chance(0.3) ? 0xFF : random.integer(0, 255));
+    }
+    if (random.chance(0.2)) bytes.resize(static_cast<std::size_t>(random.integer(0, last)));
+    FrameFault fault = FrameFault::kUndecodable;
+
+    if (kind == 0 && decoder.decode(bytes, image)) {
+      fault = view(*image, 100, seen);
+      if (fault == FrameFault::kNone) {
+        const bool is_millimetres = seen.format == DepthImage::Format::kMillimetres16;
+        EXPECT_LE(sum_of(seen, seen.width * (is_millimetres ? 2U : 4U), seen.step), 255U * 400U);
+      }
+    } else if (kind == 1 && decoder.decode(bytes, info)) {
+      fault = stream.take(*info);
+    } else if (kind == 2 && decoder.decode(bytes, cloud)) {
+      fault = view(*cloud, 100, points);
+      if (fault == FrameFault::kNone) {
+        EXPECT_LE(sum_of(points, points.width * points.point_step, points.row_step), 255U * 100U);
+      }
+    }
+    ++(fault == FrameFault::kNone ? used : refused);
+  }
+  EXPECT_GT(refused, 1000U);
+  EXPECT_GT(used, 1000U) << "much of a message is depth, which may be anything";
+}
+
+TEST(FrameFault, EveryCauseHasATextOfItsOwn) {
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < kFrameFaults; ++i) {
+    texts.emplace_back(text(static_cast<FrameFault>(i)));
+    EXPECT_FALSE(texts.back().empty()) << i;
+    for (std::size_t k = 0; k < i; ++k) EXPECT_NE(texts[k], texts[i]);
+  }
+}
+
+}  // namespace
+}  // namespace clearance::camera_stream_test
