@@ -74,12 +74,15 @@ bool Commands::write(const Command& command) {
   return dds_write(writer_, &*message) == DDS_RETCODE_OK;
 }
 
+Command Commands::next_command(const std::vector<CellChange>& changes,
+                               const CommandOptions& options) {
+  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
+  return {client_, request_, options.scene_revision, options.dry_run, changes, options.files};
+}
+
 std::uint64_t Commands::post(const std::vector<CellChange>& changes,
                              const CommandOptions& options) {
-  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
-  const Command command{client_,         request_, options.scene_revision,
-                        options.dry_run, changes,  options.files};
-  return write(command) ? request_ : 0;
+  return write(next_command(changes, options)) ? request_ : 0;
 }
 
 // A volatile topic: what is written before a daemon is met does not arrive.
@@ -90,9 +93,7 @@ std::optional<CommandResult> Commands::send(const std::vector<CellChange>& chang
   Stop stop(options.stop);
   while (!is_heard() && dds_time() < end_ns && !stop()) dds_sleepfor(kLookNs);
   if (!is_heard() || stop()) return std::nullopt;
-  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
-  const Command command{client_,         request_, options.scene_revision,
-                        options.dry_run, changes,  options.files};
+  const Command command = next_command(changes, options);
   do {
     (void)write(command);
     if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {

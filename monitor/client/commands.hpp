@@ -58,6 +58,8 @@ class Commands {
  private:
   class Stop;
 
+  [[nodiscard]] Command next_command(const std::vector<CellChange>& changes,
+                                     const CommandOptions& options);
   bool write(const Command& command);
   void take_results();
   std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns, Stop& stop);

@@ -86,7 +86,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
-  watch_files(cell);
+  watch_files(cell.files);
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
                                                              PoseReader::joints_a_batch(cell))};
@@ -138,8 +138,8 @@ void Daemon::run(StopSignal& signal) {
   if (commands_) commands_->start();
   for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
     ++polls;
-    const bool looks = options_.reload && polls % kPollsALook == 0;
-    if (signal.hung_up() || (looks && files_.changed())) read_again();
+    const bool looks = polls % kPollsALook == 0;
+    if (signal.hung_up() || (looks && (files_changed() || wants_to_read_))) read_again();
     if (recording_) recording_->watch();
     service_.notice(reports_.published_cycle());
   }
@@ -200,10 +200,21 @@ bool Daemon::note_change(const CommandResult& result) {
 }
 
 // The cell's own file counts even where another text is in force.
-void Daemon::watch_files(const Cell& cell) {
-  std::vector<std::filesystem::path> files = cell.files;
-  files.emplace_back(cell_file_);
-  files_.watch(files);
+void Daemon::watch_files(const std::vector<std::filesystem::path>& files) {
+  std::vector<std::filesystem::path> all = files;
+  all.emplace_back(cell_file_);
+  files_.watch(all);
+}
+
+// A cell that was read again may name other files.
+bool Daemon::files_changed() {
+  std::optional<std::vector<std::filesystem::path>> read;
+  {
+    const std::lock_guard lock(read_mutex_);
+    read = std::exchange(read_files_, std::nullopt);
+  }
+  if (read) watch_files(*read);
+  return options_.reload && files_.changed();
 }
 
 void Daemon::read_again() {
@@ -211,6 +222,10 @@ void Daemon::read_again() {
   service_.reloading();
   const auto answer = [this](const CommandResult& result) {
     if (result.done()) {
+      {
+        const std::lock_guard lock(read_mutex_);
+        read_files_ = changer_->cell().files;
+      }
       const bool is_new = note_change(result);
       if (!is_new) log_line(lines::kSceneUnchanged);
       service_.reloaded(is_new ? "the changed cell is in force" : "the cell has not changed");
@@ -221,9 +236,11 @@ void Daemon::read_again() {
     log_line(lines::kSceneRefused, has_mistakes ? "its mistakes are listed above" : result.reason);
     service_.reloaded("the changed cell was refused: see the log");
   };
-  if (scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer})) return;
-  log_line(lines::kSceneRefused, "too many commands wait: send SIGHUP again later");
-  service_.reloaded("the cell was not read again: see the log");
+  wants_to_read_ =
+      !scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer});
+  if (!wants_to_read_) return;
+  log_line(lines::kSceneRefused, "too many commands wait: it is tried again");
+  service_.reloaded("the cell waits to be read again: see the log");
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
@@ -236,7 +253,7 @@ std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell
 }
 
 // Returns when no other thread uses the cell before, except a recording: a disk may be slow.
-void Daemon::follow(const SceneInForce& since) {
+void Daemon::follow(const SceneInForce& since) noexcept {
   reports_.continue_with(*next_.cell, since, *next_.queue);
   if (recording_) recording_->follow(since);
   poses_.change(*next_.cell);

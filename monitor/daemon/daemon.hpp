@@ -4,10 +4,13 @@
 
 #include <atomic>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
@@ -84,16 +87,20 @@ class Daemon : private CellParts {
   void raise_priorities();
   void end_commands();
   void read_again();
-  void watch_files(const Cell& cell);
+  [[nodiscard]] bool files_changed();
+  void watch_files(const std::vector<std::filesystem::path>& files);
   bool note_change(const CommandResult& result);
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
-  void follow(const SceneInForce& since) override;
+  void follow(const SceneInForce& since) noexcept override;
   void abandon() override;
 
   DaemonOptions options_;
   std::string cell_file_;
   ServiceManager service_;
   FileWatch files_;
+  bool wants_to_read_ = false;                                    // the queue was full
+  std::mutex read_mutex_;                                         // guards the next one
+  std::optional<std::vector<std::filesystem::path>> read_files_;  // of the cell that was read again
   Participant participant_;
   MoveItPort moveit_;
   PoseReader poses_;

@@ -11,6 +11,7 @@ void MoveItPort::take(moveit::RawScene message) {
   const std::string topic = message.topic;
   QueuedCommand queued;
   queued.is_own = true;
+  queued.bytes_to_make = message.cdr.size();
   queued.make = [this, message = std::move(message)](const Cell& cell, const AskPose& pose) {
     moveit::SceneKeeper::Work work = keeper_.take(message, cell, pose);
     for (const std::string& sentence : work.news) log_line(lines::kMoveItLeftOut, sentence);

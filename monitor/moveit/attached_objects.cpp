@@ -128,7 +128,7 @@ void MessageTranslator::detach(const AttachedCollisionObject& message, const std
   for (auto& [id, object] : scene_.objects) {
     if (object.is_moveits && !object.is_gone && object.where == Where::kAttached &&
         (link.empty() || link == object.carrier)) {
-      detach(id, object, path);
+      guarded([&] { detach(id, object, path); });
     }
   }
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <optional>
 #include <utility>
 
@@ -22,8 +23,20 @@ std::optional<Translation> translated(const RawScene& message, CdrDecoder& decod
 }  // namespace
 
 void SceneKeeper::say(std::string sentence, Work& work) {
-  if (said_.size() < kMostSaid && said_.insert(sentence).second)
+  if (said_.size() < kMostSaid && said_.emplace(sentence, 1).second)
     work.news.push_back(std::move(sentence));
+}
+
+// An object that is refused is missing in the scene, so a person has to hear of it each time that
+// it may be another one. Beyond the most sentences that are kept, all are told.
+void SceneKeeper::say_refused(std::string sentence, Work& work) {
+  const auto known = said_.find(sentence);
+  if (known == said_.end()) {
+    if (said_.size() < kMostSaid) said_.emplace(sentence, 1);
+    work.news.push_back(std::move(sentence));
+  } else if (std::has_single_bit(++known->second)) {
+    work.news.push_back(fmt::format("{} ({} times)", sentence, known->second));
+  }
 }
 
 SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
@@ -53,7 +66,7 @@ SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
     return work;
   }
   for (const FieldFault& fault : done->refused)
-    say(fmt::format("{}: {}: {}", message.topic, fault.field, fault.reason), work);
+    say_refused(fmt::format("{}: {}: {}", message.topic, fault.field, fault.reason), work);
   for (const std::string& what : done->not_understood)
     say(fmt::format("{}: {} is not used", message.topic, what), work);
   work.changes = std::move(done->changes);

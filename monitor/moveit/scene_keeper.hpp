@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,7 +33,9 @@ class SceneKeeper {
   struct Work {
     std::vector<CellChange> changes = {};  // empty: nothing is to be done
     std::vector<MeshFile> files = {};      // that the changes name
-    std::vector<std::string> news = {};    // sentences for a person, each once
+    // Sentences for a person. One about what is not used comes once; one about what is refused
+    // comes again, with its number, whenever that is a power of two.
+    std::vector<std::string> news = {};
   };
   // The changes assume `cell`, whose text has to be Cell::yaml, and the poses of now.
   [[nodiscard]] Work take(const RawScene& message, const Cell& cell, const PresentPoses& poses);
@@ -46,11 +49,12 @@ class SceneKeeper {
  private:
   static constexpr std::size_t kMostSaid = 1000;
   void say(std::string sentence, Work& work);
+  void say_refused(std::string sentence, Work& work);
 
   SceneTranslator translator_, before_;
   std::optional<std::set<NamePair>> incomplete_;  // exceptions after the changes of take()
   CdrDecoder decoder_;
-  std::set<std::string> said_;
+  std::map<std::string, std::uint64_t> said_;  // how often
 };
 
 }  // namespace clearance::moveit

@@ -17,7 +17,7 @@ std::size_t bytes_of(const Command& command) {
 }
 
 bool CommandQueue::put(QueuedCommand command) {
-  const std::size_t bytes = bytes_of(command.command);
+  const std::size_t bytes = bytes_of(command.command) + command.bytes_to_make;
   {
     const std::lock_guard lock(mutex_);
     const bool is_full =
@@ -36,7 +36,7 @@ std::optional<QueuedCommand> CommandQueue::next() {
   if (closed_) return std::nullopt;
   QueuedCommand command = std::move(waiting_.front());
   waiting_.pop_front();
-  bytes_ -= bytes_of(command.command);
+  bytes_ -= bytes_of(command.command) + command.bytes_to_make;
   return command;
 }
 

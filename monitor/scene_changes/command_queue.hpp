@@ -30,6 +30,7 @@ struct QueuedCommand {
   // Makes the command when its turn comes, in the scene thread, if it depends on the cell in force.
   // One without changes is not done, and has no result.
   std::function<Command(const Cell& cell, const AskPose& pose)> make = {};
+  std::size_t bytes_to_make = 0;  // the bytes that `make` holds
   // Adds changes that depend on the scene to which the others lead. All are done, or none.
   CompleteChanges complete = {};
 };

@@ -13,8 +13,8 @@
 
 namespace clearance {
 
-// The depth by which an attached object may overlap if the change states none, m. What the parts of
-// both objects exceed their meshes is added.
+// The depth by which an attached object may overlap if the change states none, m. The errors
+// of both objects' parts against their meshes are added.
 inline constexpr double kDefaultOverlap = 1e-3;
 
 // Returns the change with the pose that the object has in `scene`, to which the whole list leads.

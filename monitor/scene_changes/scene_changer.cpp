@@ -47,8 +47,8 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
     Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks, records_);
     state = run(successor, loop_ended);
     if (state != Successor::State::kSucceeded) continue;
-    parts_.follow(successor.in_force());
     std::swap(cell_, cell);
+    parts_.follow(successor.in_force());
     return {.in_force_from = successor.in_force_from()};
   }
   parts_.abandon();

@@ -16,7 +16,7 @@
 
 namespace clearance {
 
-// What else of a program belongs to one cell: readers, writers, queues. The preparing thread calls
+// The readers, writers and queues of a program that belong to one cell. The preparing thread calls
 // all of these.
 class CellParts {
  public:
@@ -24,8 +24,8 @@ class CellParts {
   // Makes the sinks of the changed cell. They get no report yet.
   virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
-  // cell before may go.
-  virtual void follow(const SceneInForce& since) = 0;
+  // cell before may go. There is no way back, so whatever can fail belongs into prepare().
+  virtual void follow(const SceneInForce& since) noexcept = 0;
   // The changed cell is given up, and so is what prepare() made.
   virtual void abandon() = 0;
 };

@@ -78,7 +78,11 @@ SceneCommander::SceneCommander(SceneChanger& changer, TickLoop& loop,
 // A text that cannot be read is refused with the first command.
 void SceneCommander::read_ahead() {
   if (cell().commands.from.empty() && !cell().ros.moveit.any()) return;
-  (void)open({});
+  try {
+    (void)open({});
+  } catch (const std::exception&) {
+    editor_.reset();
+  }
 }
 
 CommandResult SceneCommander::execute(const Command& command, bool is_own,
@@ -360,13 +364,18 @@ SceneCommander::Refusal SceneCommander::put_in_force(const Work& work, Cell cell
     return options_.keep_scene.empty() ? std::string()
                                        : keep_scene(options_.keep_scene, {began_with, yaml});
   };
-  if (std::string reason = keep(work.began_with, cell.yaml); !reason.empty())
+  const std::string former = changer_.cell().yaml;
+  // A folder that cannot be synchronised may hold the new text already.
+  if (std::string reason = keep(work.began_with, cell.yaml); !reason.empty()) {
+    (void)keep(options_.began_with, former);
     return CommandRefusal{CommandStatus::kFailed, 0, "", std::move(reason)};
+  }
+  const std::vector<std::filesystem::path> files = cell.files;
   if (cell.scene.revision == revision()) {
     options_.began_with = work.began_with;
+    sent_.settle(files);
     return std::nullopt;
   }
-  const std::string former = changer_.cell().yaml;
   SceneChanger::Outcome outcome;
   try {
     outcome = changer_.change(std::make_shared<const Cell>(std::move(cell)), loop_ended_);
@@ -381,6 +390,7 @@ SceneCommander::Refusal SceneCommander::put_in_force(const Work& work, Cell cell
   }
   options_.began_with = work.began_with;
   in_force_from_ = outcome.in_force_from;
+  sent_.settle(files);
   return std::nullopt;
 }
 

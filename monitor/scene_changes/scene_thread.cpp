@@ -1,5 +1,7 @@
 #include "monitor/scene_changes/scene_thread.hpp"
 
+#include <exception>
+
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
@@ -20,26 +22,33 @@ void SceneThread::run() {
   if (!enter(Phase::kChanging)) return;
   while (auto next = queue_.next()) {
     if (!enter(Phase::kReading)) return;
-    if (next->make) {
-      next->command = next->make(commander_.cell(), [this](const std::string& name) {
-        return commander_.present_pose(name);
-      });
+    std::optional<CommandResult> result;
+    if (next->make) result = make(*next);
+    const bool is_empty = next->make && !result && next->command.changes.empty();
+    if (!result && !is_empty) {
+      result = commander_.execute(
+          next->command, next->is_own, [this] { return enter(Phase::kChanging); }, next->complete);
     }
-    const bool is_empty = next->make && next->command.changes.empty();
-    const CommandResult result =
-        is_empty ? CommandResult{}
-                 : commander_.execute(
-                       next->command, next->is_own, [this] { return enter(Phase::kChanging); },
-                       next->complete);
     if (!enter(Phase::kChanging)) return;
-    if (is_empty) continue;
-    if (next->answer) next->answer(result);
+    if (result && next->answer) next->answer(*result);
+  }
+}
+
+// A message of another program may have any size.
+std::optional<CommandResult> SceneThread::make(QueuedCommand& queued) {
+  try {
+    queued.command = queued.make(commander_.cell(), [this](const std::string& name) {
+      return commander_.present_pose(name);
+    });
+    return std::nullopt;
+  } catch (const std::exception& error) {
+    return CommandResult{.status = CommandStatus::kFailed, .reason = error.what()};
   }
 }
 
 bool SceneThread::enter(Phase phase) {
   const std::lock_guard lock(mutex_);
-  if (phase_ == Phase::kEnded) return false;
+  if (phase_ == Phase::kEnded || (is_ending_ && phase == Phase::kReading)) return false;
   phase_ = phase;
   return true;
 }
@@ -49,6 +58,7 @@ bool SceneThread::end() {
   bool is_reading = false;
   {
     const std::lock_guard lock(mutex_);
+    is_ending_ = true;
     is_reading = phase_ == Phase::kReading;
     if (is_reading) phase_ = Phase::kEnded;
   }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "monitor/scene_changes/command_queue.hpp"
@@ -32,13 +33,16 @@ class SceneThread {
  private:
   enum class Phase { kReading, kChanging, kEnded };
   void run();
-  // Returns false after end().
+  // Makes the command of a message. Returns why it failed, or nothing.
+  std::optional<CommandResult> make(QueuedCommand& queued);
+  // Returns false after end(); then nothing may be read any more.
   bool enter(Phase phase);
 
   CommandQueue queue_;
   SceneCommander commander_;
   std::mutex mutex_;
   Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing
+  bool is_ending_ = false;
   std::thread thread_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <system_error>
@@ -67,6 +68,23 @@ void SentFiles::take_back() {
   std::error_code error;
   for (const std::filesystem::path& file : written_) std::filesystem::remove(file, error);
   written_.clear();
+}
+
+void SentFiles::settle(const std::vector<std::filesystem::path>& named) {
+  settled_.insert(written_.begin(), written_.end());
+  written_.clear();
+  Paths& now = named_.emplace_back();
+  for (const std::filesystem::path& file : named) {
+    if (settled_.contains(file)) now.insert(file);
+  }
+  if (named_.size() > kScenes) named_.pop_front();
+  std::erase_if(settled_, [this](const std::filesystem::path& file) {
+    if (std::ranges::any_of(named_, [&](const Paths& paths) { return paths.contains(file); }))
+      return false;
+    std::error_code error;
+    std::filesystem::remove(file, error);
+    return true;
+  });
 }
 
 std::string with_paths(const std::string& yaml, const std::map<std::string, std::string>& paths) {

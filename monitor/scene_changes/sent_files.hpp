@@ -4,8 +4,11 @@
 // a recording, or after a restart.
 #pragma once
 
+#include <cstddef>
+#include <deque>
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <variant>
 #include <vector>
@@ -27,10 +30,19 @@ class SentFiles {
       const std::vector<SentFile>& files);
   // Removes what the last keep() wrote, since no cell names it.
   void take_back();
+  // A cell that names these files is in force, so those of the last keep() stay. Files that this
+  // object wrote and none of the last kScenes cells names are removed. Until then a recording can
+  // still read them.
+  void settle(const std::vector<std::filesystem::path>& named);
+  static constexpr std::size_t kScenes = 8;
 
  private:
+  using Paths = std::set<std::filesystem::path>;
+
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> written_;  // by the last keep()
+  Paths settled_;                               // written, and named by a cell since
+  std::deque<Paths> named_;                     // by the last cells, of settled_
 };
 
 // The text with each "sent:NAME" replaced by the path of that name. Names that were not sent stay,

@@ -157,7 +157,7 @@ class CommandedCell : public testing::Test, private CellParts {
 
  private:
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>&) override { return {}; }
-  void follow(const SceneInForce&) override {}
+  void follow(const SceneInForce&) noexcept override {}
   void abandon() override {}
 };
 

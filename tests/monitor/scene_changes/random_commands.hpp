@@ -348,7 +348,7 @@ class RandomCommands : public testing::Test, private CellParts {
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>&) override {
     return {&reports_};
   }
-  void follow(const SceneInForce&) override {}
+  void follow(const SceneInForce&) noexcept override {}
   void abandon() override {}
 
   ScratchFolder folder_;

@@ -200,6 +200,44 @@ TEST_F(SceneCommands, NameFilesOfStatedFoldersOnlyAndSendThem) {
   EXPECT_EQ(std::get<Cell>(later).scene.revision, revision());
 }
 
+TEST_F(SceneCommands, KeepSentFilesAsLongAsACellOfTheLastEightNamesThem) {
+  start();
+  const auto add = [&](const std::string& name) {
+    const std::string file = name + ".obj";
+    return execute(Command{.changes = {AddObject{"{name: " + name +
+                                                 ", groups: [things], fixed: true, mesh: {file: "
+                                                 "\"sent:" +
+                                                 file + "\"}}"}},
+                           .files = {{file, kTetrahedron + "# " + name + "\n"}}});
+  };
+  const auto kept = [&] {
+    std::size_t files = 0;
+    for ([[maybe_unused]] const auto& file :
+         std::filesystem::directory_iterator(folder / "clearance.sent"))
+      ++files;
+    return files;
+  };
+  ASSERT_TRUE(add("n").done());
+  EXPECT_EQ(kept(), 1u);
+  // Commands that change nothing take nothing back but their own files.
+  EXPECT_FALSE(execute({RemoveObject{"nothing"}}).done());
+  EXPECT_TRUE(execute(Command{.dry_run = true, .changes = {RemoveObject{"n"}}}).done());
+  EXPECT_EQ(kept(), 1u);
+  EXPECT_FALSE(add("n").done());
+  EXPECT_EQ(kept(), 1u);
+  // A client that adds and removes meshes for ever.
+  ASSERT_TRUE(execute({RemoveObject{"n"}}).done());
+  for (int i = 0; i < 3 * static_cast<int>(SentFiles::kScenes); ++i) {
+    const std::string name = "m" + std::to_string(i);
+    ASSERT_TRUE(add(name).done()) << i;
+    ASSERT_TRUE(execute({RemoveObject{name}}).done()) << i;
+    EXPECT_LE(kept(), SentFiles::kScenes) << i;
+  }
+  ASSERT_TRUE(add("last").done());
+  write_text(folder / "later.yaml", changer->cell().yaml);
+  EXPECT_TRUE(std::holds_alternative<Cell>(read_cell(folder / "later.yaml")));
+}
+
 TEST_F(SceneCommands, ReadTheCellAgainFromItsFileOrFromAStatedFolder) {
   start();
   std::filesystem::create_directories(folder / "allowed");
