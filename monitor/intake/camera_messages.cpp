@@ -16,7 +16,7 @@ constexpr bool kIsBigEndian = std::endian::native == std::endian::big;
 FrameFault size_of(std::uint32_t width, std::uint32_t height, std::size_t most) noexcept {
   if (width == 0 || height == 0) return FrameFault::kNoPixels;
   if (std::uint64_t{width} * height > most) return FrameFault::kTooManyPixels;
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 // The last row may end without its padding.
@@ -55,7 +55,7 @@ bool is_identity_or_zero(const double (&r)[9]) noexcept {
 
 const char* text(FrameFault fault) noexcept {
   switch (fault) {
-    case FrameFault::kNone:
+    case FrameFault::kNoFault:
       return "nothing is wrong";
     case FrameFault::kUndecodable:
       return "the bytes are not a message of this type";
@@ -106,14 +106,14 @@ FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pix
   if (!is_millimetres && encoding != "32FC1") return FrameFault::kEncoding;
   if ((message.is_bigendian != 0) != kIsBigEndian) return FrameFault::kByteOrder;
   const FrameFault size = size_of(message.width, message.height, most_pixels);
-  if (size != FrameFault::kNone) return size;
+  if (size != FrameFault::kNoFault) return size;
   const std::uint64_t row = std::uint64_t{message.width} * (is_millimetres ? 2 : 4);
   if (message.step < row) return FrameFault::kStep;
   const std::span<const std::byte> bytes = bytes_of(message.data);
   if (!has_rows(bytes.size(), row, message.step, message.height)) return FrameFault::kShortData;
   out = {is_millimetres ? DepthImage::Format::kMillimetres16 : DepthImage::Format::kMetres32,
          message.width, message.height, message.step, bytes};
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t most_points,
@@ -125,7 +125,7 @@ FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t mo
     return FrameFault::kFields;
   }
   const FrameFault size = size_of(message.width, message.height, most_points);
-  if (size != FrameFault::kNone) return size;
+  if (size != FrameFault::kNoFault) return size;
   // A row_step of 0 is common where there is one row.
   const std::uint64_t row = std::uint64_t{message.width} * message.point_step;
   const std::uint64_t step =
@@ -139,7 +139,7 @@ FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t mo
   found.row_step = step;
   found.bytes = bytes;
   out = found;
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 // A rectified image follows P, a raw one K. Both are the same where nothing is distorted, so that
@@ -169,7 +169,7 @@ FrameFault view(const sensor_msgs_msg_dds__CameraInfo_& message, PinholeCamera& 
                                           p[3] == 0.0 && p[5] == k[4] && p[6] == k[5]);
   if (!is_pinhole || !agrees) return FrameFault::kIntrinsics;
   out = {message.width, message.height, k[0], k[4], k[2], k[5]};
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 }  // namespace clearance

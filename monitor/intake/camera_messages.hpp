@@ -16,7 +16,7 @@
 namespace clearance {
 
 enum class FrameFault : std::uint8_t {
-  kNone,
+  kNoFault,
   // Of one message.
   kUndecodable,    // the bytes are not a message of the type: cut, or with lengths that lie
   kEncoding,       // neither 16UC1 nor 32FC1
@@ -52,7 +52,7 @@ struct PointsView {
   std::span<const std::byte> bytes;
 };
 
-// Views of a message's own memory. They are written only if the result is kNone.
+// Views of a message's own memory. They are written only if the result is kNoFault.
 [[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pixels,
                               DepthImage& out) noexcept;
 [[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message,

@@ -53,7 +53,7 @@ FrameFault CameraStream::counted(FrameFault fault) noexcept {
 FrameFault CameraStream::take(const sensor_msgs_msg_dds__CameraInfo_& message) noexcept {
   PinholeCamera camera;
   const FrameFault fault = view(message, camera);
-  if (fault != FrameFault::kNone) {
+  if (fault != FrameFault::kNoFault) {
     camera_.reset();
     return counted(fault);
   }
@@ -63,14 +63,14 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__CameraInfo_& message) n
     return counted(FrameFault::kCameraInfoChanged);
   }
   camera_ = camera;
-  return counted(FrameFault::kNone);
+  return counted(FrameFault::kNoFault);
 }
 
 FrameFault CameraStream::take(const sensor_msgs_msg_dds__Image_& message, const FrameOrigin& origin,
                               DepthImage& out) noexcept {
   DepthImage image;
   FrameFault fault = view(message, options_.most_pixels, image);
-  if (fault != FrameFault::kNone) return counted(fault);
+  if (fault != FrameFault::kNoFault) return counted(fault);
   if (!camera_) {
     return counted(first_ ? FrameFault::kCameraInfoChanged : FrameFault::kNoCameraInfo);
   }
@@ -78,10 +78,10 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__Image_& message, const 
     return counted(FrameFault::kSizeChanged);
   }
   fault = judge(origin);
-  if (fault != FrameFault::kNone) return counted(fault);
+  if (fault != FrameFault::kNoFault) return counted(fault);
   const std::size_t pixel = image.format == DepthImage::Format::kMillimetres16 ? 2 : 4;
   fault = accept(origin, digest_of(image.bytes, image.width * pixel, image.step, image.height));
-  if (fault == FrameFault::kNone) out = image;
+  if (fault == FrameFault::kNoFault) out = image;
   return counted(fault);
 }
 
@@ -89,11 +89,11 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__PointCloud2_& message,
                               const FrameOrigin& origin, PointsView& out) noexcept {
   PointsView points;
   FrameFault fault = view(message, options_.most_pixels, points);
-  if (fault == FrameFault::kNone) fault = judge(origin);
-  if (fault != FrameFault::kNone) return counted(fault);
+  if (fault == FrameFault::kNoFault) fault = judge(origin);
+  if (fault != FrameFault::kNoFault) return counted(fault);
   fault = accept(origin, digest_of(points.bytes, points.width * points.point_step, points.row_step,
                                    points.height));
-  if (fault == FrameFault::kNone) out = points;
+  if (fault == FrameFault::kNoFault) out = points;
   return counted(fault);
 }
 
@@ -103,7 +103,7 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
       static_cast<std::uint64_t>(options_.clock_limit_ns)) {
     return FrameFault::kOtherClock;
   }
-  if (last_.stamp_ns == 0) return FrameFault::kNone;
+  if (last_.stamp_ns == 0) return FrameFault::kNoFault;
   const bool is_heard =
       time_between(origin.sent_ns, last_.sent_ns) < static_cast<std::uint64_t>(options_.silence_ns);
   if (origin.writer != last_.writer && is_heard) return FrameFault::kSecondPublisher;
@@ -112,7 +112,7 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
       static_cast<std::uint64_t>(options_.least_interval_ns)) {
     return FrameFault::kTooOften;
   }
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 // A frozen frame is refused, so the stamp in use stays the one of the first such frame.
@@ -121,7 +121,7 @@ FrameFault CameraStream::accept(const FrameOrigin& origin, std::uint64_t digest)
   has_digest_ = true;
   digest_ = digest;
   last_ = origin;
-  return FrameFault::kNone;
+  return FrameFault::kNoFault;
 }
 
 }  // namespace clearance

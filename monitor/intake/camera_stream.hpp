@@ -33,7 +33,7 @@ class CameraStream {
  public:
   explicit CameraStream(const CameraStreamOptions& options) : options_(options) {}
 
-  // Each returns kNone if the message can be used. The views are those of camera_messages.hpp.
+  // Each returns kNoFault if the message can be used. The views are those of camera_messages.hpp.
   [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__CameraInfo_& message) noexcept;
   [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__Image_& message,
                                 const FrameOrigin& origin, DepthImage& out) noexcept;
@@ -46,7 +46,7 @@ class CameraStream {
   [[nodiscard]] const std::optional<PinholeCamera>& camera() const noexcept { return camera_; }
   // The stamp of the last frame that was used; 0: none.
   [[nodiscard]] std::int64_t stamp_ns() const noexcept { return last_.stamp_ns; }
-  // Frames and CameraInfo that were used (kNone) or refused, by cause.
+  // Frames and CameraInfo that were used (kNoFault) or refused, by cause.
   [[nodiscard]] const std::array<std::uint64_t, kFrameFaults>& counts() const noexcept {
     return counts_;
   }

@@ -126,12 +126,12 @@ class CameraStreamTest : public testing::Test {
 };
 
 TEST_F(CameraStreamTest, AFrameIsItsPixelsWithTheCameraOfItsInfo) {
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   EXPECT_EQ(stream.camera(), (PinholeCamera{8, 6, 10.0, 11.0, 3.5, 2.5}));
   ImageText text;
   text.step = 18;
   text.data.assign(18 * 6 - 2, 9);  // the padding of the last row may be missing
-  ASSERT_EQ(take(text), FrameFault::kNone);
+  ASSERT_EQ(take(text), FrameFault::kNoFault);
   EXPECT_EQ(seen.format, DepthImage::Format::kMillimetres16);
   EXPECT_EQ(seen.width, 8U);
   EXPECT_EQ(seen.height, 6U);
@@ -141,12 +141,12 @@ TEST_F(CameraStreamTest, AFrameIsItsPixelsWithTheCameraOfItsInfo) {
   metres.encoding = "32FC1";
   metres.step = 32;
   metres.data.assign(32 * 6, 1);
-  ASSERT_EQ(take(metres), FrameFault::kNone);
+  ASSERT_EQ(take(metres), FrameFault::kNoFault);
   EXPECT_EQ(seen.format, DepthImage::Format::kMetres32);
 }
 
 TEST_F(CameraStreamTest, ImagesThatLieAboutTheirPixelsAreRefusedByCause) {
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   const auto with = [&](const auto& change) {
     ImageText text;
     change(text);
@@ -171,14 +171,14 @@ TEST_F(CameraStreamTest, ImagesThatLieAboutTheirPixelsAreRefusedByCause) {
 
 TEST_F(CameraStreamTest, AnImageNeedsACameraInfoThatStaysTheSame) {
   EXPECT_EQ(take(frame(0)), FrameFault::kNoCameraInfo);
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
-  EXPECT_EQ(take(frame(0)), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  EXPECT_EQ(take(frame(0)), FrameFault::kNoFault);
   InfoText other;
   other.k[0] = other.p[0] = 12;
   EXPECT_EQ(take(other), FrameFault::kCameraInfoChanged);
   EXPECT_EQ(take(frame(1)), FrameFault::kCameraInfoChanged);
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
-  EXPECT_EQ(take(frame(2)), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  EXPECT_EQ(take(frame(2)), FrameFault::kNoFault);
 }
 
 TEST_F(CameraStreamTest, ACameraInfoThatIsNoPlainPinholeIsRefused) {
@@ -205,8 +205,8 @@ TEST_F(CameraStreamTest, ACameraInfoThatIsNoPlainPinholeIsRefused) {
 }
 
 TEST_F(CameraStreamTest, ADepthThatRepeatsUnderFreshStampsIsFrozenUnlessItMay) {
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
-  ASSERT_EQ(take(frame(0)), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  ASSERT_EQ(take(frame(0)), FrameFault::kNoFault);
   ImageText same = frame(0);
   same.stamp_ns += kFrame;
   EXPECT_EQ(take(same), FrameFault::kFrozen);
@@ -214,31 +214,31 @@ TEST_F(CameraStreamTest, ADepthThatRepeatsUnderFreshStampsIsFrozenUnlessItMay) {
   ImageText one_pixel = same;
   one_pixel.stamp_ns += kFrame;
   one_pixel.data[37] ^= 1;
-  EXPECT_EQ(take(one_pixel), FrameFault::kNone);
+  EXPECT_EQ(take(one_pixel), FrameFault::kNoFault);
   stream = CameraStream({.most_pixels = 100, .may_repeat = true});
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
-  ASSERT_EQ(take(frame(0)), FrameFault::kNone);
-  EXPECT_EQ(take(same), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  ASSERT_EQ(take(frame(0)), FrameFault::kNoFault);
+  EXPECT_EQ(take(same), FrameFault::kNoFault);
 }
 
 TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePublisher) {
-  ASSERT_EQ(take(InfoText{}), FrameFault::kNone);
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ImageText unstamped = frame(0);
   unstamped.stamp_ns = 0;
   EXPECT_EQ(take(unstamped, {0, kStart, 1}), FrameFault::kNoStamp);
   EXPECT_EQ(take(frame(0), {1'000'000'000, kStart, 1}), FrameFault::kOtherClock);
   EXPECT_EQ(take(frame(0), {std::numeric_limits<std::int64_t>::max(), -kStart, 1}),
             FrameFault::kOtherClock);
-  ASSERT_EQ(take(frame(5)), FrameFault::kNone);
+  ASSERT_EQ(take(frame(5)), FrameFault::kNoFault);
   EXPECT_EQ(take(frame(4)), FrameFault::kOldStamp);
   EXPECT_EQ(take(frame(5)), FrameFault::kOldStamp);
   EXPECT_EQ(take(frame(6), 2), FrameFault::kSecondPublisher);
   ImageText soon = frame(6);
   soon.stamp_ns = frame(5).stamp_ns + kFrame / 10;
   EXPECT_EQ(take(soon), FrameFault::kTooOften);
-  EXPECT_EQ(take(frame(6)), FrameFault::kNone);
+  EXPECT_EQ(take(frame(6)), FrameFault::kNoFault);
   // After half a second of silence another publisher has the stream.
-  EXPECT_EQ(take(frame(22), 2), FrameFault::kNone);
+  EXPECT_EQ(take(frame(22), 2), FrameFault::kNoFault);
   EXPECT_EQ(take(frame(23), 1), FrameFault::kSecondPublisher);
 }
 
@@ -262,7 +262,7 @@ TEST_F(CameraStreamTest, CloudsThatLieAboutTheirFieldsAreRefusedByCause) {
   EXPECT_EQ(with([](CloudText& t) { t.width = 6; }), Fault::kShortData);
   EXPECT_EQ(with([](CloudText& t) { t.height = 2, t.row_step = 0; }), Fault::kStep);
   EXPECT_EQ(with([](CloudText& t) { t.height = 2; }), Fault::kShortData);
-  ASSERT_EQ(with([](CloudText& t) { t.row_step = 0; }), Fault::kNone) << "one row needs no step";
+  ASSERT_EQ(with([](CloudText& t) { t.row_step = 0; }), Fault::kNoFault) << "one row needs no step";
   EXPECT_EQ(points.x, 0U);
   EXPECT_EQ(points.z, 8U);
   EXPECT_EQ(points.bytes.size(), 100U);
@@ -298,7 +298,7 @@ TEST_F(CameraStreamTest, DamagedBytesAreRefusedOrNameOnlyWhatIsThere) {
 
     if (kind == 0 && decoder.decode(bytes, image)) {
       fault = view(*image, 100, seen);
-      if (fault == FrameFault::kNone) {
+      if (fault == FrameFault::kNoFault) {
         const bool is_millimetres = seen.format == DepthImage::Format::kMillimetres16;
         EXPECT_LE(sum_of(seen, seen.width * (is_millimetres ? 2U : 4U), seen.step), 255U * 400U);
       }
@@ -306,11 +306,11 @@ TEST_F(CameraStreamTest, DamagedBytesAreRefusedOrNameOnlyWhatIsThere) {
       fault = stream.take(*info);
     } else if (kind == 2 && decoder.decode(bytes, cloud)) {
       fault = view(*cloud, 100, points);
-      if (fault == FrameFault::kNone) {
+      if (fault == FrameFault::kNoFault) {
         EXPECT_LE(sum_of(points, points.width * points.point_step, points.row_step), 255U * 100U);
       }
     }
-    ++(fault == FrameFault::kNone ? used : refused);
+    ++(fault == FrameFault::kNoFault ? used : refused);
   }
   EXPECT_GT(refused, 1000U);
   EXPECT_GT(used, 1000U) << "much of a message is depth, which may be anything";
