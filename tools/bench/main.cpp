@@ -30,6 +30,7 @@ Usage: clearance-bench [OPTIONS]
   --tick          the rows tick/
   --sweeps        the rows tick/ and sweep/
   --parts         the rows parts/
+  --clouds        the rows cloud/
   --cell FILE     also the rows cell/ and robot/ of this cell; repeatable
   --mesh FILE     also the row parts/ of this mesh; repeatable
   --version       print the version and the build
@@ -58,6 +59,8 @@ Rows:
                      timed as often; own_..._us: the tick alone, each tick at its best of own_runs runs
   tick/NAME/plain    the same with every pair evaluated; tick/NAME/fcl: the minimum alone, by FCL's
                      DynamicAABBTreeCollisionManager
+  cloud/build/...    a depth image of 640 x 480 pixels as slabs (16UC1, 32FC1) or balls; cloud/cold/slabs, cloud/tracked/slabs:
+                     the slab nearest to a box; also balls; cloud/brute_force/balls: every ball, one by one
   parts/NAME         splitting a mesh into convex parts; counters parts, error_mm, triangles; CPU time of all threads
   sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), and of other numbers of
                      objects; counters objects, speed (m/s) and density (objects a cubic metre)
@@ -95,6 +98,7 @@ Options of Google Benchmark:
   register_cells(cells);
   register_robots(cells);
   register_ticks();
+  register_clouds();
   return register_splits(meshes);
 }
 
@@ -108,6 +112,7 @@ constexpr Part kParts[] = {
     {"--curved", "^(peer/[^/]+/)?(curved|pair)/"},
     {"--tick", "^tick/"},
     {"--parts", "^parts/"},
+    {"--clouds", "^cloud/"},
     {"--sweeps", "^(tick|sweep)/"},
 };
 

@@ -27,6 +27,11 @@ void register_nearness();
 // kinematics, and of a tick with and without it.
 void register_robots(const std::vector<std::filesystem::path>& cells);
 
+// cloud/build/..., cloud/cold/..., cloud/tracked/... and cloud/brute_force/balls: a made frame of
+// 640 x 480 pixels as slabs and as balls, and the element nearest to a box. Times are a frame and a
+// query. Counters: pixels; queries, the mean number of the core's; widest_gap, m.
+void register_clouds();
+
 // parts/NAME: splitting a mesh into convex parts, for drawn meshes and for these files, STL, OBJ,
 // PLY or DAE in metres. Counters: parts, error_mm (certified) and triangles; the time is that of
 // all threads. Returns false if a file cannot be read, and says why.
