@@ -53,6 +53,12 @@ class DaemonCommands : public testing::Test {
     }
     return nullptr;
   }
+  // The log has a line about a refusal with this status, name or field.
+  testing::AssertionResult logged_refusal(const std::vector<std::string>& names) {
+    if (eventually([&] { return daemon->told("command-refused", names); }))
+      return testing::AssertionSuccess();
+    return testing::AssertionFailure() << daemon->output();
+  }
   // No cycle is missing among the reports that come in this time.
   void expect_every_cycle(std::chrono::milliseconds time) {
     const auto end = std::chrono::steady_clock::now() + time;
@@ -166,9 +172,11 @@ TEST_F(DaemonCommands, OutOfOrderOrWithAnotherContentAreRefused) {
   Command earlier = planner->command({RemoveObject{"bin_1"}});
   earlier.request = 9;
   EXPECT_EQ(planner->result_of(earlier).status, CommandStatus::kOutOfOrder);
+  EXPECT_TRUE(logged_refusal({"planner", "out-of-order"}));
   planner->forget();
   earlier.request = 10;
   EXPECT_EQ(planner->result_of(earlier).status, CommandStatus::kOtherContent);
+  EXPECT_TRUE(logged_refusal({"planner", "other-content"}));
 }
 
 TEST_F(DaemonCommands, OfAClientThatIsNotNamedAreRefused) {
@@ -177,7 +185,7 @@ TEST_F(DaemonCommands, OfAClientThatIsNotNamedAreRefused) {
   const CommandResult result = stranger->result_of({kBin});
   EXPECT_EQ(result.status, CommandStatus::kNotNamed);
   EXPECT_EQ(result.scene_revision, read.scene.revision);
-  EXPECT_TRUE(eventually([&] { return daemon->told("command-refused", {"stranger"}); }));
+  EXPECT_TRUE(logged_refusal({"stranger", "not-named"}));
 }
 
 TEST_F(DaemonCommands, OfTwoProgramsUnderOneNameAreRefusedUntilOneHasLeft) {
@@ -188,6 +196,7 @@ TEST_F(DaemonCommands, OfTwoProgramsUnderOneNameAreRefusedUntilOneHasLeft) {
   other.request = 2;
   EXPECT_EQ(second->result_of(other).status, CommandStatus::kTwoWriters);
   EXPECT_EQ(first->result_of({SetMargin{"floor", 0.03}}).status, CommandStatus::kTwoWriters);
+  EXPECT_TRUE(logged_refusal({"planner", "two-writers"}));
   first->leave();
   EXPECT_TRUE(eventually([&] {
     second->forget();
@@ -203,6 +212,7 @@ TEST_F(DaemonCommands, MalformedOnesAreRefusedByTheirField) {
   EXPECT_EQ(result.status, CommandStatus::kMalformed);
   EXPECT_EQ(result.change, 1u);
   EXPECT_EQ(result.path, "changes[1].set_margin.m");
+  EXPECT_TRUE(logged_refusal({"planner", "malformed", "changes[1].set_margin.m"}));
 }
 
 // Both know the first scene. The second command to come would change one that its client does not
@@ -217,6 +227,7 @@ TEST_F(DaemonCommands, OfTwoClientsThatKnowOneRevisionIsOneDone) {
   const std::array results = {planner->result_of(first).status, other->result_of(second).status};
   EXPECT_THAT(results,
               testing::UnorderedElementsAre(CommandStatus::kDone, CommandStatus::kOtherRevision));
+  EXPECT_TRUE(logged_refusal({"other-revision"}));
 }
 
 // It is cut off behind the client's name, in the middle and in its last byte. Cyclone drops it.
@@ -268,6 +279,15 @@ TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
     EXPECT_TRUE(second.done() || second.status == CommandStatus::kRefused) << second.reason;
   }
   EXPECT_EQ(removed, 20);
+  // Both wait in one queue, and the removal is the first in it.
+  ASSERT_TRUE(planner->result_of({kBin}).done());
+  const Command remove = planner->command({RemoveObject{"bin_1"}}),
+                attach = planner->command({Attach{"bin_1", "left", at(0, 0, 1)}});
+  planner->send(remove);
+  planner->send(attach);
+  EXPECT_TRUE(planner->result_of(remove).done());
+  EXPECT_EQ(planner->result_of(attach).status, CommandStatus::kRefused);
+  EXPECT_TRUE(logged_refusal({"(refused)", "bin_1"}));
   EXPECT_TRUE(daemon->running());
 }
 
@@ -292,6 +312,8 @@ TEST_F(DaemonCommands, AtTenKilohertzAreAnsweredOrRefusedAsBusyAndNoTickIsMissin
     done += result.done() ? 1 : 0;
   }
   EXPECT_GT(done, 0u);
+  EXPECT_TRUE(logged_refusal({"planner", "busy"}));
+  EXPECT_TRUE(daemon->told("commands-left-out")) << daemon->output();
   EXPECT_TRUE(eventually([&] { return planner->result_of({SetMargin{"floor", 0.6}}).done(); }));
 }
 

@@ -1,6 +1,7 @@
 // clearance-watch and clearance-robot as a user starts them.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <thread>
@@ -152,6 +153,46 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
     return watch.wrote("no minimum known, poses are late: least upper bound ") &&
            watch.wrote("zone near: poses of left are late");
   })) << watch.output();
+}
+
+// A box that stands on the floor, is pressed into it, rises, and comes back.
+TEST(Watch, ShowsAContactThatIsAllowedTooDeepEndedAndTooLate) {
+  std::string text = small_cell("contact");
+  text.replace(text.find("max_speed: 5"), 12, "may_jump: true");
+  text = text.substr(0, text.find("simulation:")) +
+         "contacts:\n  - {name: stand, between: [left, floor], depth: 0.002, until: {distance: "
+         "0.03}, by: planner, reason: it stands there}\n"
+         "simulation:\n  movers:\n"
+         "    - {object: left, centre: {xyz: [0, 0, 0.1]}, amplitude: [0, 0, 0], frequency_hz: 1}\n"
+         "    - {object: right, centre: {xyz: [1, 0, 1]}, amplitude: [0, 0, 0], frequency_hz: 1}\n";
+  const CellFile cell(text);
+  const Cell read = cell.cell();
+  const DdsOptions dds = own_dds();
+  Participant client(dds);
+  Poses poses(client, read);
+  ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)));
+  ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
+  ASSERT_TRUE(eventually([&] {
+    return watch.wrote("contact 'stand' not known: poses are missing or late, left - floor");
+  })) << watch.output();
+  ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; }));
+  const auto expect_at = [&](double height, const std::string& code,
+                             const std::vector<std::string>& texts) {
+    poses.move_by(Vec3(0, 0, height));
+    EXPECT_TRUE(eventually([&] {
+      poses.send(0.0);
+      return std::ranges::all_of(texts, [&](const auto& each) { return watch.wrote(each); });
+    })) << watch.output();
+    EXPECT_TRUE(daemon.told(code, {"'stand'"})) << daemon.output();
+  };
+  expect_at(-0.001, "contact-allowed",
+            {"contact 'stand' allowed by planner: 1.0 of 2.0 mm deep, since cycle ",
+             ", until the distance is 30.0 mm, left - floor"});
+  expect_at(-0.003, "contact-too-deep",
+            {"contact 'stand' deeper than allowed by planner: 3.0 of 2.0 mm deep, since cycle "});
+  expect_at(0.05, "contact-ended", {"contact 'stand' ended by distance at cycle "});
+  expect_at(-0.001, "contact-too-late",
+            {"contact 'stand' later than allowed by planner: ended by distance at cycle "});
 }
 
 TEST(Watch, EndsAfterItsSecondsAndSaysSoWhenNothingCame) {
