@@ -39,7 +39,13 @@ void refuse_same_topics(const YamlNode& node, const RosSettings& settings,
                                       "topic of its own for each",
                                       topic, same->second, key));
   };
-  for (const RosOutput& output : kRosOutputs) take(settings.outputs.*output.topic, output.key);
+  for (const RosOutput& output : kRosOutputs) {
+    if (output.topic != &RosOutputs::messages) take(settings.outputs.*output.topic, output.key);
+  }
+  if (const std::string& space = settings.outputs.messages; !space.empty()) {
+    for (const std::string_view name : kRosMessages)
+      take(fmt::format("{}/{}", space, name), "messages");
+  }
   for (const MoveItInput& input : kMoveItInputs) take(settings.moveit.*input.topic, input.key);
 }
 

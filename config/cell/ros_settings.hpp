@@ -14,6 +14,7 @@ namespace clearance {
 // Topics by their names in ROS 2, "/diagnostics"; an empty one is not written.
 struct RosOutputs {
   std::string markers, diagnostics, minimum_distance, speed_scaling, monitored_planning_scene;
+  std::string messages;  // not a topic, but the namespace of those in kRosMessages
 };
 
 // One row an output: its key in a cell, and its topic where the cell names none.
@@ -22,14 +23,19 @@ struct RosOutput {
   std::string RosOutputs::*topic;
   std::string_view standard_topic;
 };
-inline constexpr std::array<RosOutput, 5> kRosOutputs = {{
+inline constexpr std::array<RosOutput, 6> kRosOutputs = {{
     {"markers", &RosOutputs::markers, "/clearance/markers"},
     {"diagnostics", &RosOutputs::diagnostics, "/diagnostics"},
     {"minimum_distance", &RosOutputs::minimum_distance, "/clearance/minimum_distance"},
     {"speed_scaling", &RosOutputs::speed_scaling, "/clearance/speed_scaling"},
     {"monitored_planning_scene", &RosOutputs::monitored_planning_scene,
      "/clearance/monitored_planning_scene"},
+    {"messages", &RosOutputs::messages, "/clearance"},
 }};
+
+// The topics below the namespace `messages`, by the keys of the daemon's own topics.
+inline constexpr std::array<std::string_view, 6> kRosMessages = {
+    "catalogue", "distances", "zones", "health", "separation", "gradients"};
 
 // MoveIt's messages that keep the scene. Topics by their names in ROS 2; an empty one is not read.
 struct MoveItInputs {

@@ -65,7 +65,8 @@ std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cel
 
 // ROS 2 knows the default partition only.
 void warn_of_partition(const Cell& cell, const DdsOptions& options) {
-  const bool wants_ros = writes_ros(cell) || TrackedFrames(cell).any();
+  const bool wants_ros =
+      writes_ros(cell) || !cell.ros.outputs.messages.empty() || TrackedFrames(cell).any();
   if (options.partition.empty() || !wants_ros) return;
   log_line(lines::kPartitionWithoutRos, options.partition);
 }
@@ -83,7 +84,9 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
-      reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health),
+      messages_(cell, participant_),
+      reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health,
+               &messages_),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
   watch_files(cell.files);

@@ -23,6 +23,7 @@
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/ros/ros_messages.hpp"
 #include "monitor/ros/ros_writer.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
 #include "monitor/scene_changes/scene_thread.hpp"
@@ -107,6 +108,7 @@ class Daemon : private CellParts {
   RecordingHealth recording_health_;
   OfCell now_, next_;
   std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
+  RosMessages messages_;
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
   SystemClock clock_;

@@ -98,7 +98,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                "'gradients: true' in the cell does");
   app.add_option("--ros2", arguments.ros,
                  "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
-                 "minimum_distance, speed_scaling, monitored_planning_scene, or all; repeatable")
+                 "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
+                 "repeatable")
       ->allow_extra_args(false)
       ->check(is_ros_output);
   app.add_option("--commands", arguments.commands,

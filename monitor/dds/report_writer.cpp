@@ -62,12 +62,13 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
 // The catalogue is latched, so later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording,
-                           OnHealth on_health)
+                           OnHealth on_health, PublishedSamples* also)
     : participant_(participant),
       topics_(cell.topics),
       poses_(poses),
       recording_(recording),
       on_health_(std::move(on_health)),
+      also_(also),
       identity_(make_identity()),
       distances_(make_writer(
           participant, topics_, TopicKind::kDistances,
@@ -83,7 +84,9 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       queue_(&queue),
       written_(&queue) {
   open_topics(cell.scene);
-  check_dds(dds_write(catalogue_, &*own_catalogue()), "writing the catalogue");
+  const auto catalogue = own_catalogue();
+  check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
+  if (also_ != nullptr) also_->published(TopicKind::kCatalogue, &*catalogue);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -142,7 +145,7 @@ void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
   write_zones_again_ = true;
-  write(catalogue_, &*own_catalogue(), "catalogue");
+  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
 }
 
 // Writes reports in order, then statistics. Ends when the queue is closed and empty, and no other
@@ -198,7 +201,7 @@ bool ReportWriter::change() {
   health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
   write_zones_again_ = true;
-  write(catalogue_, &*own_catalogue(), "catalogue");
+  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
   const std::lock_guard lock(mutex_);
   written_ = &now_->queue;
   return true;
@@ -207,21 +210,22 @@ bool ReportWriter::change() {
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
   to_wire(queued.report, queued.sources(), dds_time(), *now_->distances);
-  const bool published = write(distances_, &*now_->distances, "distances");
+  const bool published = write(TopicKind::kDistances, distances_, &*now_->distances, "distances");
   if (separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
   if (now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
-    write(gradients_, &gradients, "gradients");
+    write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
   write_zones(queued.report);
+  if (also_ != nullptr) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
 }
 
 void ReportWriter::write_separation(const Report& report) {
   to_wire(report, dds_time(), *now_->separation);
-  write(separation_, &*now_->separation, "separation");
+  write(TopicKind::kSeparation, separation_, &*now_->separation, "separation");
 }
 
 // Writes a zone at the start, after each change, and again after another daemon may have written
@@ -235,7 +239,7 @@ void ReportWriter::write_zones(const Report& report) {
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);
-    write(zones_, &state, "zone state");
+    write(TopicKind::kZones, zones_, &state, "zone state");
     if (!is_written && (now_->written_zones.any(zone) || active)) {
       zone_log_.note(zone, report.zones[zone], report.cycle);
     }
@@ -251,7 +255,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->daemon = identity_.id;
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
-  write(health_, &*sample, "health");
+  write(TopicKind::kHealth, health_, &*sample, "health");
   if (on_health_) {
     on_health_(
         {.scene = now_->cell.scene,
@@ -265,8 +269,10 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
-bool ReportWriter::write(dds_entity_t writer, const void* sample, const char* what) {
+bool ReportWriter::write(TopicKind kind, dds_entity_t writer, const void* sample,
+                         const char* what) {
   if (others_.give_way()) return false;
+  if (also_ != nullptr) also_->published(kind, sample);
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return true;
   // Failures at the tick rate would flood the log, so only powers of two are logged.

@@ -31,6 +31,16 @@ namespace clearance {
 // 100 ms, so that neither a lost datagram nor a busy machine has this effect.
 [[nodiscard]] std::int64_t lease_ns(double rate_hz) noexcept;
 
+// Gets what is published, in the thread that writes.
+class PublishedSamples {
+ public:
+  virtual ~PublishedSamples() = default;
+  // `sample` has the type of the topic and is valid during the call.
+  virtual void published(TopicKind kind, const void* sample) = 0;
+  // Everything of one tick is published.
+  virtual void report_ended() = 0;
+};
+
 // The only thread that writes to DDS. A report that cannot be written is counted and left out; the
 // tick thread never waits for DDS.
 class ReportWriter {
@@ -38,9 +48,10 @@ class ReportWriter {
   // Is called once a second, in the thread that writes. May be empty.
   using OnHealth = std::function<void(const MetricsSource&)>;
 
-  // Publishes the catalogue at once. Everything given must outlive this.
+  // Publishes the catalogue at once. Everything given must outlive this. `also` may be null.
   ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
-               const PoseReader& poses, const RecordingHealth& recording, OnHealth on_health = {});
+               const PoseReader& poses, const RecordingHealth& recording, OnHealth on_health = {},
+               PublishedSamples* also = nullptr);
   ~ReportWriter();  // finishes
 
   // The cell has changed: closes the present queue. Once that is empty, the catalogue of this cell
@@ -89,13 +100,14 @@ class ReportWriter {
   void write_separation(const Report& report);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
-  bool write(dds_entity_t writer, const void* sample, const char* what);
+  bool write(TopicKind kind, dds_entity_t writer, const void* sample, const char* what);
 
   Participant& participant_;
   const Topics topics_;
   const PoseReader& poses_;
   const RecordingHealth& recording_;
   const OnHealth on_health_;
+  PublishedSamples* const also_;
   DaemonIdentity identity_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0;  // 0: no zone has had one yet

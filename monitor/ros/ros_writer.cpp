@@ -47,7 +47,7 @@ double speed_scaling(const Report& report) noexcept {
 
 bool writes_ros(const Cell& cell) noexcept {
   return std::ranges::any_of(kRosOutputs, [&](const RosOutput& output) {
-    return !(cell.ros.outputs.*output.topic).empty();
+    return output.topic != &RosOutputs::messages && !(cell.ros.outputs.*output.topic).empty();
   });
 }
 
@@ -118,7 +118,7 @@ void RosWriter::run() {
     write_numbers();
     while (const QueuedReport* queued = queue_.reports().front()) {
       last_ = queued->report;
-      if (unwritten_scene_) write(planning_scene_, &**unwritten_scene_);
+      if (unwritten_scene_) writes_.write(planning_scene_, &**unwritten_scene_);
       unwritten_scene_.reset();
       if (markers_ != 0) write_markers(*queued);
       queue_.reports().pop();
@@ -135,8 +135,8 @@ void RosWriter::write_numbers() {
     const std_msgs_msg_dds__Float64_ distance{numbers->minimum_distance};
     const std_msgs_msg_dds__Float64_ scaling{numbers->speed_scaling};
     numbers_.pop();
-    if (minimum_distance_ != 0) write(minimum_distance_, &distance);
-    if (speed_scaling_ != 0) write(speed_scaling_, &scaling);
+    if (minimum_distance_ != 0) writes_.write(minimum_distance_, &distance);
+    if (speed_scaling_ != 0) writes_.write(speed_scaling_, &scaling);
   }
 }
 
@@ -149,30 +149,20 @@ void RosWriter::write_markers(const QueuedReport& queued) {
   const std::int64_t now_ns = queued.handed_over_ns;
   if (bodies_due_ || std::abs(now_ns - bodies_written_ns_) >= kBodiesAgainNs) {
     if (!bodies_) bodies_ = bodies_message_for_tf(scene_, settings_.world());
-    write(markers_, &**bodies_);
+    writes_.write(markers_, &**bodies_);
     bodies_written_ns_ = now_ns;
     bodies_due_ = false;
   }
   to_wire(queued.report, queued.sources(), 0, *distances_);
   const std::int64_t stamp_ns = queued.report.now_ns + queued.report.clock_offset_ns;
-  write(markers_, &*closest_message(scene_, *distances_, stamp_ns, settings_.world()));
+  writes_.write(markers_, &*closest_message(scene_, *distances_, stamp_ns, settings_.world()));
 }
 
 void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
   const auto health =
       make_health(scene_, statistics, poses_, published_.dropped_reports(), recording_);
   const auto sample = cell_diagnostics_.make(*health, last_, dds_time());
-  write(diagnostics_, &*sample);
-}
-
-// Failures are logged at powers of two, which is often enough.
-void RosWriter::write(dds_entity_t writer, const void* sample) {
-  const dds_return_t result = dds_write(writer, sample);
-  if (result == DDS_RETCODE_OK) return;
-  const std::uint64_t failed = ++failed_writes_;
-  if ((failed & (failed - 1)) == 0) {
-    log_line(lines::kRosWriteFailed, dds_strretcode(result), failed);
-  }
+  writes_.write(diagnostics_, &*sample);
 }
 
 }  // namespace clearance

@@ -21,12 +21,13 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/cell_diagnostics.hpp"
 #include "monitor/ros/monitored_scene.hpp"
+#include "monitor/ros/ros_writes.hpp"
 #include "monitor/visual/ros_types.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
 
-// True when the cell writes anything for ROS 2.
+// True when the cell writes anything for ROS 2, except its messages (RosMessages).
 [[nodiscard]] bool writes_ros(const Cell& cell) noexcept;
 
 class RosWriter final : public ReportSink {
@@ -58,7 +59,6 @@ class RosWriter final : public ReportSink {
   void write_numbers();
   void write_markers(const QueuedReport& queued);
   void write_diagnostics(const LoopStatistics& statistics);
-  void write(dds_entity_t writer, const void* sample);
 
   const Scene& scene_;
   const RosSettings& settings_;
@@ -82,7 +82,7 @@ class RosWriter final : public ReportSink {
   std::int64_t bodies_written_ns_ = 0;
   // The present scene, until the first report holds for it.
   std::optional<Sample<moveit_msgs_msg_dds__PlanningScene_>> unwritten_scene_;
-  std::uint64_t failed_writes_ = 0;
+  RosWrites writes_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -4,16 +4,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <thread>
 
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/cyclone_private.hpp"
+#include "monitor/wire/ros_messages.hpp"
 #include "tests/shared/base64.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -30,6 +33,7 @@ class RawTopic {
  public:
   RawTopic(Participant& participant, const RosType& type, const std::string& topic)
       : reader_(participant.ros_reader(type, topic)) {}
+  explicit RawTopic(dds_entity_t reader) : reader_(reader) {}
 
   const std::vector<Bytes>& take() {
     for (;;) {
@@ -55,8 +59,9 @@ std::vector<json> read_officially(const std::string& type, const std::vector<Byt
   std::string lines;
   for (const Bytes& message : messages) lines += type + " " + base64(message) + "\n";
   write_text(folder / "messages.txt", lines);
-  const std::string command =
-      "node " + test::places::mcap_js() + "/read_ros.mjs < " + (folder / "messages.txt").string();
+  const std::string command = "node " + test::places::mcap_js() + "/read_ros.mjs " +
+                              test::places::programs() + "/../idl/clearance_msgs/msg < " +
+                              (folder / "messages.txt").string();
   std::FILE* const pipe = popen(command.c_str(), "r");
   std::string output;
   for (int c = std::getc(pipe); c != EOF; c = std::getc(pipe)) output += static_cast<char>(c);
@@ -167,6 +172,85 @@ TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
   EXPECT_LT(numbers.back()["data"], 3.0);
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+}
+
+// The daemon writes its own topics and the messages from the same samples: their bytes are equal,
+// and the packages read in the messages what our decoder reads on the daemon's own topics.
+TEST_F(OfficialRosReader, DecodesTheDaemonsReportsAsMessagesByTheGeneratedDefinitions) {
+  const CellFile cell(small_cell("messages") + "gradients: true\n");
+  const Cell read = cell.cell();
+  std::map<TopicKind, RawTopic> messages;
+  for (const auto& [kind, type] : kRosMessageTypes) {
+    const std::string name = "rt/clearance/" + std::string(topic(kind).key);
+    messages.try_emplace(kind, client, type, name);
+  }
+  RawTopic distances(client.reader(TopicKind::kDistances, read.topics.distances));
+  RawTopic catalogue(client.reader(TopicKind::kCatalogue, read.topics.catalogue));
+  Poses poses(client, read);
+  ChildProcess daemon(kDaemon, with({cell.path(), "--ros2", "messages"}, dds_arguments(dds)));
+  double t = 0.0;
+  ASSERT_TRUE(eventually([&] {
+    poses.send(t += 1e-3, false);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    const auto come = [&](TopicKind kind) { return messages.at(kind).take().size(); };
+    return std::min(come(TopicKind::kDistances), distances.take().size()) > 50 &&
+           std::min(come(TopicKind::kHealth), come(TopicKind::kZones)) > 0 &&
+           std::min(come(TopicKind::kCatalogue), come(TopicKind::kGradients)) > 0 &&
+           !catalogue.take().empty();
+  })) << daemon.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+
+  const std::vector<Bytes>&told = messages.at(TopicKind::kDistances).take(),
+        &own = distances.take();
+  const std::set<Bytes> reports(own.begin(), own.end());
+  const auto same =
+      std::ranges::count_if(told, [&](const Bytes& each) { return reports.contains(each); });
+  EXPECT_GT(same, 40) << told.size() << " messages, " << own.size() << " reports";
+  const std::vector<json> values = read_officially("clearance_msgs/Distances", told);
+  for (std::size_t i = 0; i < told.size(); ++i) {
+    const auto ours = decoded<clearance_msg_Distances>(told[i]);
+    EXPECT_EQ(ours->cycle, values[i]["cycle"]);
+    EXPECT_EQ(ours->queries, values[i]["queries"]);
+    ASSERT_EQ(ours->pairs._length, values[i]["pairs"].size());
+    for (std::uint32_t k = 0; k < ours->pairs._length; ++k) {
+      const json& pair = values[i]["pairs"][k];
+      EXPECT_EQ(ours->pairs._buffer[k].pair, pair["pair"]);
+      if (std::isfinite(ours->pairs._buffer[k].lower)) {
+        EXPECT_EQ(ours->pairs._buffer[k].lower, pair["lower"]);
+        EXPECT_EQ(ours->pairs._buffer[k].normal.z, pair["normal"]["z"]);
+        EXPECT_EQ(ours->pairs._buffer[k].refresh_age_cycles, pair["refresh_age_cycles"]);
+      }
+    }
+  }
+  EXPECT_TRUE(std::ranges::any_of(values, [](const json& each) {
+    return !each["sources"].empty() && each["sources"][0]["source"] == "test";
+  })) << "some ticks took a batch";
+
+  const std::vector<Bytes>& names = messages.at(TopicKind::kCatalogue).take();
+  ASSERT_EQ(names.size(), 1u);
+  EXPECT_EQ(names, catalogue.take());
+  const json objects = read_officially("clearance_msgs/Catalogue", names)[0]["objects"];
+  ASSERT_EQ(objects.size(), 3u);
+  EXPECT_EQ(objects[2]["name"], "floor");
+  EXPECT_EQ(objects[2]["is_fixed"], true);
+  const std::vector<Bytes>& zones = messages.at(TopicKind::kZones).take();
+  const auto states = decoded<clearance_msgs_msg_dds__ZoneStates_>(zones.back());
+  const json zone = read_officially("clearance_msgs/ZoneStates", zones).back()["zones"][0];
+  EXPECT_EQ(zone["name"], "near");
+  EXPECT_EQ(zone["active"], states->zones._buffer[0].active);
+  EXPECT_EQ(zone["since_cycle"], states->zones._buffer[0].since_cycle);
+  const json health =
+      read_officially("clearance_msgs/Health", messages.at(TopicKind::kHealth).take()).back();
+  EXPECT_EQ(health["inputs"][0]["name"], "left");
+  EXPECT_GT(health["cycle"], 0);
+  EXPECT_FALSE(messages.at(TopicKind::kGradients).take().empty());
+  EXPECT_TRUE(messages.at(TopicKind::kSeparation).take().empty()) << "no zone has 'separation'";
+  EXPECT_EQ(read_officially("clearance_msgs/Gradients",
+                            messages.at(TopicKind::kGradients).take())[0]["pairs"]
+                .size(),
+            0u)
+      << "no joint moves these pairs";
 }
 
 TEST_F(OfficialRosReader, DecodesJointStatesOfTheSimulatedRobot) {

@@ -32,6 +32,9 @@ TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
   }
   EXPECT_THAT(errors_of(cell_text("ros2: {markers: /a, diagnostics: /a}\n" + kBoxes)),
               mistake_at("cell.yaml:4:7", "'/a'", "'markers'", "'diagnostics'"));
+  EXPECT_THAT(
+      errors_of(cell_text("ros2: {messages: /a, minimum_distance: /a/distances}\n" + kBoxes)),
+      mistake_at("cell.yaml:4:7", "'/a/distances'", "'minimum_distance'", "'messages'"));
   EXPECT_THAT(errors_of(cell_text("ros2: {marker: true}\n" + kBoxes)),
               mistake_at("cell.yaml:4:8", "'marker'", "'markers'"));
   EXPECT_THAT(errors_of(cell_text("ros2: {stamps: never}\n" + kBoxes)),

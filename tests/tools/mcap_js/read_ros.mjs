@@ -1,15 +1,24 @@
 // Decodes messages of ROS 2 by the definitions that ROS 2 publishes, with the public packages: node read_ros.mjs,
-// on stdin a line a message, "TYPE BASE64"; on stdout their values, a JSON line each.
-import { readFileSync } from "node:fs";
+// on stdin a line a message, "TYPE BASE64"; on stdout their values, a JSON line each. With a folder of .msg files as
+// argument, it knows those of the package clearance_msgs, too.
+import { readdirSync, readFileSync } from "node:fs";
 
+import { parse } from "@foxglove/rosmsg";
 import { ros2humble } from "@foxglove/rosmsg-msgs-common";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
+
+const known = { ...ros2humble };
+const folder = process.argv[2];
+for (const file of folder ? readdirSync(folder) : []) {
+  const name = `clearance_msgs/${file.replace(/\.msg$/, "")}`;
+  known[name] = { ...parse(readFileSync(`${folder}/${file}`, "utf8"), { ros2: true, skipTypeFixup: true })[0], name };
+}
 
 const readers = new Map();
 function readerOf(type) {
   if (!readers.has(type)) {
-    const others = Object.values(ros2humble).filter(({ name }) => name !== type);
-    readers.set(type, new MessageReader([ros2humble[type], ...others]));
+    const others = Object.values(known).filter(({ name }) => name !== type);
+    readers.set(type, new MessageReader([known[type], ...others]));
   }
   return readers.get(type);
 }

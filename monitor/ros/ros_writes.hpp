@@ -1,0 +1,27 @@
+// Writes for ROS 2 that may fail: failures are counted and logged at powers of two, which is often
+// enough.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <cstdint>
+
+#include "monitor/app/log_lines.hpp"
+
+namespace clearance {
+
+class RosWrites {
+ public:
+  void write(dds_entity_t writer, const void* sample) {
+    const dds_return_t result = dds_write(writer, sample);
+    if (result == DDS_RETCODE_OK) return;
+    const std::uint64_t failed = ++failed_;
+    if ((failed & (failed - 1)) == 0)
+      log_line(lines::kRosWriteFailed, dds_strretcode(result), failed);
+  }
+
+ private:
+  std::uint64_t failed_ = 0;
+};
+
+}  // namespace clearance
