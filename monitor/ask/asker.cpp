@@ -231,7 +231,8 @@ void Asker::Search::minimise(const Stretch& stretch, std::size_t count, double k
     };
     const StretchBounds bounds = examine(stretch, middle, enough(), pair);
     if (bounds.queried) note_upper(bounds, middle, pair);
-    if (bounds.lower >= enough() || !divides) {
+    // No distance is negative, so a pair in contact is decided as well.
+    if (std::max(0.0, bounds.lower) >= enough() || !divides) {
       closed_lower_ = std::min(closed_lower_, bounds.lower);
       continue;
     }
