@@ -149,7 +149,7 @@ def type_hash(name, types):
 def all_types(folder):
     """The types of all IDL files, with the lists for keyed topics."""
     types = {}
-    for name in ("ros2", "moveit", "clearance"):
+    for name in ("ros2", "moveit", "camera", "clearance"):
         types.update(read_types((folder / f"{name}.idl").read_text()))
     for message in TOPICS.values():
         if f"{OURS}/msg/{message}" not in types:

@@ -26,7 +26,7 @@ std::string libraries_of(const std::string& program) {
 }
 
 TEST(LinkedLibraries, ProgramsThatTalkToNoDaemonDoWithoutDds) {
-  for (const char* program : {"clearance-distance"}) {
+  for (const char* program : {"clearance-ask", "clearance-distance"}) {
     const std::string libraries = libraries_of(program);
     EXPECT_THAT(libraries, HasSubstr("libgmp")) << program;
     EXPECT_THAT(libraries, Not(HasSubstr("libddsc"))) << program;

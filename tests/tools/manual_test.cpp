@@ -130,7 +130,7 @@ TEST(ManualOfTheDaemon, CompletionOffersTheValuesOfAnOptionThatHasOnlySome) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, Manual,
-                         testing::Values("clearanced", "clearance-distance", "clearance-record",
+                         testing::Values("clearanced", "clearance-ask", "clearance-distance", "clearance-record",
                                          "clearance-replay", "clearance-robot", "clearance-scene",
                                          "clearance-view", "clearance-watch"),
                          [](const auto& program) {

@@ -1,0 +1,170 @@
+// Oracles: closed forms of the distances of spheres, and questions about single postures.
+#include "monitor/ask/asker.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <variant>
+
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/allocation_count.hpp"
+
+namespace clearance {
+namespace {
+
+Scene scara_beside(const std::string& object) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  return test::scene_of(
+      "name: test\nunits: {length: m, angle: rad}\n"
+      "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n  - {name: post, " +
+          object + "}\npairs: [{between: [arm, post]}]\n",
+      folder / "cell.yaml");
+}
+
+// The finger is a sphere of 0.05 m that circles at 2 m around the origin.
+constexpr const char* kPin = "fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}";
+constexpr const char* kSheet =
+    "fixed: true, box: {size: [0.6, 0.002, 0.4]}, pose: {xyz: [1.9, 0, 0]}";
+
+Question swing(double from, double to) {
+  Question question;
+  question.motion = {.joints = {"shoulder"}, .times = {0.0, 2.0}, .positions = {from, to}};
+  question.held = {{"elbow", 0.0}, {"push", 0.0}};
+  return question;
+}
+
+Answer answered(const Scene& scene, const Question& question) {
+  const std::variant<Answer, std::string> answer = ask(scene, question);
+  EXPECT_TRUE(std::holds_alternative<Answer>(answer)) << std::get<std::string>(answer);
+  return std::get<Answer>(answer);
+}
+
+TEST(Asker, FindsTheClosestInstantBetweenWaypoints) {
+  const Scene scene = scara_beside(kPin);
+  Question question = swing(-1.0, 0.6);
+  question.tolerance = 1e-9;
+  const Answer answer = answered(scene, question);
+  EXPECT_LE(answer.lower, 0.15 + 1e-12);
+  EXPECT_GE(answer.lower, 0.15 - 1e-9);
+  EXPECT_NEAR(answer.upper, 0.15, 1e-9);
+  EXPECT_NEAR(answer.time, 1.25, 1e-3);
+  EXPECT_EQ(scene.objects[answer.first].name + scene.objects[answer.second].name, "postfinger");
+  EXPECT_EQ(answer.margins[0].verdict, Verdict::kFree);
+}
+
+TEST(Asker, TellsAGrazingPassFromAContactByTheMargin) {
+  const Scene scene = scara_beside(kPin);
+  Question question = swing(-1.0, 0.6);
+  question.margins = {0.15 - 1e-8, 0.15 + 1e-8};
+  const Answer answer = answered(scene, question);
+  EXPECT_EQ(answer.margins[0].verdict, Verdict::kFree);
+  ASSERT_EQ(answer.margins[1].verdict, Verdict::kBelow);
+  EXPECT_NEAR(answer.margins[1].below_at, 1.25, 1e-3);
+}
+
+// The centre is 2.3 - 2 cos(a) and 2 sin(a) from the pin's; 0.5 m less the radii is the margin.
+TEST(Asker, LocatesTheFirstInstantBelowAMargin) {
+  Question question = swing(-1.0, 0.6);
+  question.margins = {0.35};
+  const Answer answer = answered(scara_beside(kPin), question);
+  const double cosine = (2.3 * 2.3 + 2.0 * 2.0 - 0.5 * 0.5) / (2.0 * 2.3 * 2.0);
+  const double truth = 2.0 * (1.0 - std::acos(cosine)) / 1.6;
+  ASSERT_EQ(answer.margins[0].verdict, Verdict::kBelow);
+  EXPECT_LE(answer.margins[0].above_until, truth + 1e-12);
+  EXPECT_GE(answer.margins[0].above_until, truth - 1e-6);
+  EXPECT_GE(answer.margins[0].below_at, truth - 1e-12);
+  EXPECT_LE(answer.margins[0].below_at, truth + 1e-6);
+}
+
+TEST(Asker, SeesAThinSheetThatNoWaypointTouches) {
+  const Scene scene = scara_beside(kSheet);
+  const Answer answer = answered(scene, swing(-1.0, 1.0));
+  EXPECT_EQ(answer.upper, 0.0);
+  ASSERT_EQ(answer.margins[0].verdict, Verdict::kBelow);
+  EXPECT_EQ(answered(scene, swing(-1.0, -1.0)).margins[0].verdict, Verdict::kFree);
+  EXPECT_EQ(answered(scene, swing(1.0, 1.0)).margins[0].verdict, Verdict::kFree);
+}
+
+// All joints move, along cubic polynomials, and every posture is asked for by itself.
+TEST(Asker, NoPostureOfTheMotionIsNearerThanTheLowerBound) {
+  const Scene scene = scara_beside(kPin);
+  Question question;
+  question.motion = {.joints = {"shoulder", "elbow", "push"},
+                     .times = {0.0, 0.7, 2.0},
+                     .positions = {-1.0, 0.9, 0.0, 0.1, -0.4, 0.1, 0.8, 0.5, 0.05},
+                     .velocities = {0.0, 0.0, 0.0, 1.2, -0.8, 0.05, 0.0, 0.0, 0.0}};
+  question.tolerance = 1e-6;
+  const Answer answer = answered(scene, question);
+  double least = 1e300;
+  for (int i = 0; i <= 2000; ++i) {
+    const double t = 0.001 * i;
+    const int row = t < 0.7 ? 0 : 1;
+    const double begin = question.motion.times[row];
+    const double length = question.motion.times[row + 1] - begin, u = (t - begin) / length;
+    Question posture;
+    posture.motion = {.joints = question.motion.joints, .times = {0.0}, .positions = {}};
+    for (int joint = 0; joint < 3; ++joint) {  // in the basis of Hermite
+      const auto at = [&](const std::vector<double>& rows, int r) { return rows[3 * r + joint]; };
+      posture.motion.positions.push_back(
+          at(question.motion.positions, row) * (1 - u) * (1 - u) * (1 + 2 * u) +
+          at(question.motion.positions, row + 1) * u * u * (3 - 2 * u) +
+          length * at(question.motion.velocities, row) * u * (1 - u) * (1 - u) -
+          length * at(question.motion.velocities, row + 1) * u * u * (1 - u));
+    }
+    least = std::min(least, answered(scene, posture).upper);
+  }
+  EXPECT_LE(answer.lower, least + 1e-12);
+  EXPECT_GE(answer.lower, least - 1e-4);
+  EXPECT_LE(answer.upper, least + 1e-6);
+}
+
+TEST(Asker, AMovingObjectComesNearerByItsLargestSpeed) {
+  const Scene scene = scara_beside("max_speed: 0.05, sphere: {radius: 0.1}");
+  Question question = swing(0.0, 0.0);
+  question.poses = {{"post", {.position = {2.3, 0.0, 0.0}}}};
+  EXPECT_NEAR(answered(scene, question).lower, 0.15 - 0.05 * 2.0, 1e-3);
+  question.others = OthersMove::kNot;
+  EXPECT_NEAR(answered(scene, question).lower, 0.15, 1e-12);
+}
+
+TEST(Asker, GivesTheSameBitsWhateverWasAskedBeforeAndAllocatesNothing) {
+  const Scene scene = scara_beside(kPin);
+  Asker asker(scene);
+  Answer first, second, other;
+  const Question question = swing(-1.0, 0.6), another = swing(-0.2, 0.9);
+  ASSERT_FALSE(asker.ask(question, first));
+  ASSERT_FALSE(asker.ask(another, other));
+  ASSERT_FALSE(asker.ask(question, second));
+  EXPECT_EQ(first.lower, second.lower);
+  EXPECT_EQ(first.upper, second.upper);
+  EXPECT_EQ(first.time, second.time);
+  const std::uint64_t before = allocations();
+  ASSERT_FALSE(asker.ask(another, second));
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST(Asker, RefusesAQuestionThatLeavesAJointOpen) {
+  const Scene scene = scara_beside(kPin);
+  Question question = swing(0.0, 1.0);
+  question.held.pop_back();
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+  question = swing(0.0, 1.0);
+  question.motion.times = {1.0, 1.0};
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
+TEST(Asker, KeepsItsBoundsWhenTheWorkEndsEarly) {
+  Question question = swing(-1.0, 0.6);
+  question.work_limit = 1;
+  const Answer answer = answered(scara_beside(kPin), question);
+  EXPECT_FALSE(answer.within_work_limit);
+  EXPECT_LE(answer.lower, 0.15);
+  EXPECT_GE(answer.upper, 0.15 - 1e-12);
+  EXPECT_NE(answer.margins[0].verdict, Verdict::kBelow);
+}
+
+}  // namespace
+}  // namespace clearance

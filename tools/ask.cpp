@@ -1,0 +1,255 @@
+// clearance-ask: certified distances of whole motions, one JSON object a line in and out.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/ask/asker.hpp"
+#include "monitor/files/file_error.hpp"
+#include "tools/ask/motion_json.hpp"
+
+namespace clearance {
+namespace {
+
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr const char* kDescription =
+    R"(Says of a motion before it is made how near it comes to anything: at all instants, not at samples.
+
+CELL is a cell file. If it is a folder, the key "scene" of each motion names a cell in it: SCENE.yaml.
+MOTIONS has one motion a line, a JSON object:
+  id          a name, repeated in the answer
+  joints      names of joints of the cell
+  times_s     of the waypoints, s, increasing
+  positions   a row a waypoint, a number a joint; rad or m. Between waypoints joints move linearly in time,
+  velocities  or with rows of these along cubic polynomials, as trajectory_msgs/JointTrajectory says
+  held        {"JOINT": position} of all other joints of the cell; joints that mimic others follow
+  poses       {"OBJECT": [x, y, z, qw, qx, qy, qz]} of objects that are neither fixed nor part of a robot;
+              such an object comes nearer by its max_speed x time, or with "others": "still" not at all
+  margins     m, instead of --margin
+An answer has id; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
+t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
+undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin
+at all instants before `from`, and below it at `to`. An undecided margin has "above_until" instead of [from, to].
+A line that cannot be answered gets {"line": n, "error": "..."}, and the other lines are answered.)";
+
+constexpr const char* kExample =
+    R"(Exit status: 0 every line answered and no expectation failed, 1 some are not, 2 wrong usage or unreadable files,
+3 a cell has errors.
+
+Example: is this motion 2 cm away from everything?
+  echo '{"id": "lift", "joints": ["shoulder", "elbow"], "times_s": [0, 1.5], "positions": [[0, 0], [0.4, -0.8]]}' |
+    clearance-ask cell.yaml - --out - --expect-min-distance 0.02)";
+
+struct Options {
+  std::string cell, motions, out;
+  std::vector<double> margins{0.0, 0.01, 0.05};
+  double tolerance = 1e-3;
+  std::optional<double> expected;
+  std::uint64_t work_limit = 1'000'000;
+  bool others_still = false;
+  int repeat = 1;
+};
+
+// A cell, and the memory for questions about it.
+struct Place {
+  explicit Place(Cell&& read) : cell(std::move(read)), asker(cell.scene) {}
+  Cell cell;
+  Asker asker;
+};
+
+double percentile(std::vector<double>& sorted, double share) {
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(sorted.size()));
+  return sorted[std::min(at, sorted.size() - 1)];
+}
+
+class Program {
+ public:
+  explicit Program(const Options& options) : options_(options) {
+    defaults_.margins = options.margins;
+    defaults_.tolerance = options.tolerance;
+    defaults_.work_limit = options.work_limit;
+    if (options.others_still) defaults_.others = OthersMove::kNot;
+    if (options.expected) defaults_.margins.push_back(*options.expected);
+  }
+
+  // Reads the cell of all motions; a folder is read as motions name its cells.
+  [[nodiscard]] bool read() {
+    if (std::filesystem::is_directory(options_.cell)) return true;
+    return add("", options_.cell);
+  }
+
+  int answer_all(std::istream& in, std::ostream& out) {
+    std::size_t number = 0;
+    for (std::string text; std::getline(in, text);) {
+      ++number;
+      if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
+      ++lines_;
+      OrderedJson line;
+      try {
+        line = answer(nlohmann::json::parse(text));
+      } catch (const BadMotion& error) {
+        line = {{"line", number}, {"error", error.what()}};
+      } catch (const nlohmann::json::exception& error) {
+        line = {{"line", number}, {"error", std::string("not a motion: ") + error.what()}};
+      }
+      if (line.contains("error") && bad_++ == 0) {
+        print(stderr, "{}:{}: {}\n", options_.motions, number, line["error"].get<std::string>());
+      }
+      out << line.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) << '\n';
+    }
+    out.flush();
+    if (in.bad() || lines_ == 0 || !out) {
+      print(stderr, "clearance-ask: {}\n",
+            in.bad()      ? "cannot read " + options_.motions
+            : lines_ == 0 ? options_.motions + " has no motion; expected a JSON object a line"
+                          : "could not write all answers to " + options_.out);
+      return kUsage;
+    }
+    summarise();
+    if (bad_cells_ > 0) return kBadCell;
+    return bad_ + failed_ > 0 ? kFailed : kOk;
+  }
+
+ private:
+  bool add(const std::string& scene, const std::filesystem::path& file) {
+    std::optional<Cell> cell = cell_or_errors(read_cell(file, told_on_stderr()));
+    if (cell) places_[scene] = std::make_unique<Place>(std::move(*cell));
+    return cell.has_value();
+  }
+
+  Place& place_of(const nlohmann::json& motion) {
+    if (!std::filesystem::is_directory(options_.cell)) return *places_.at("");
+    const std::string scene = motion.at("scene").get<std::string>();
+    const auto found = places_.find(scene);
+    if (found != places_.end()) return *found->second;
+    const std::filesystem::path file = std::filesystem::path(options_.cell) / (scene + ".yaml");
+    if (!add(scene, file)) {
+      ++bad_cells_;
+      throw BadMotion("the cell " + file.string() + " cannot be read");
+    }
+    return *places_.at(scene);
+  }
+
+  OrderedJson answer(const nlohmann::json& motion) {
+    const Question question = read_question(motion, defaults_);
+    Place& place = place_of(motion);
+    double least_us = 1e300;
+    for (int i = 0; i < options_.repeat; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      if (auto text = place.asker.ask(question, answer_)) throw BadMotion(*text);
+      const std::chrono::duration<double, std::micro> taken =
+          std::chrono::steady_clock::now() - start;
+      least_us = std::min(least_us, taken.count());
+    }
+    times_us_.push_back(least_us);
+    OrderedJson line;
+    if (motion.contains("id")) line["id"] = motion["id"];
+    line.update(answer_line(answer_, place.cell.scene));
+    for (const MarginAnswer& margin : answer_.margins) {
+      undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
+    }
+    expect(line, place.cell.scene);
+    return line;
+  }
+
+  // The expected distance is the last margin.
+  void expect(const OrderedJson& line, const Scene& scene) {
+    if (!options_.expected || answer_.margins.empty()) return;
+    const MarginAnswer& margin = answer_.margins.back();
+    if (margin.verdict == Verdict::kFree) return;
+    ++failed_;
+    print(stderr, "{}: {} - {} {} {} m from {} s on; the least distance is in [{:.6f}, {:.6f}] m\n",
+          line.contains("id") ? line["id"].dump() : "motion " + std::to_string(lines_),
+          scene.objects[margin.first].name, scene.objects[margin.second].name,
+          margin.verdict == Verdict::kBelow ? "comes below" : "may come below", margin.margin,
+          margin.above_until, answer_.lower, answer_.upper);
+  }
+
+  void summarise() {
+    std::sort(times_us_.begin(), times_us_.end());
+    print(stderr, "{} motions, {} with errors, {} verdicts undecided", lines_, bad_, undecided_);
+    if (options_.expected) print(stderr, ", {} not as expected", failed_);
+    if (!times_us_.empty()) {
+      print(stderr, "; p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us a motion",
+            percentile(times_us_, 0.5), percentile(times_us_, 0.99), times_us_.back());
+    }
+    print(stderr, "\n");
+  }
+
+  const Options& options_;
+  Question defaults_;
+  Answer answer_;
+  std::map<std::string, std::unique_ptr<Place>> places_;
+  std::vector<double> times_us_;
+  std::size_t lines_ = 0, bad_ = 0, undecided_ = 0, failed_ = 0, bad_cells_ = 0;
+};
+
+int run(const Options& options) {
+  if (!output_is_not_an_input("clearance-ask", options.out, {options.cell, options.motions})) {
+    return kUsage;
+  }
+  std::ifstream file_in;
+  if (options.motions != "-") {
+    file_in.open(options.motions);
+    if (!file_in || std::filesystem::is_directory(options.motions)) {
+      print(stderr, "clearance-ask: {}\n", cannot_read(options.motions));
+      return kUsage;
+    }
+  }
+  Program program(options);
+  if (!program.read()) return kBadCell;
+  std::ofstream file_out;
+  if (options.out != "-") {
+    file_out.open(options.out);
+    if (!file_out) {
+      print(stderr, "clearance-ask: {}\n", cannot_write(options.out));
+      return kUsage;
+    }
+  }
+  return program.answer_all(options.motions == "-" ? std::cin : file_in,
+                            options.out == "-" ? std::cout : file_out);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  CLI::App app(clearance::kDescription, "clearance-ask");
+  app.footer(clearance::kExample);
+  clearance::Options options;
+  app.add_option("CELL", options.cell, "Cell file, or a folder of cells")->required();
+  app.add_option("MOTIONS", options.motions, "File of motions, one a line; - is standard input")
+      ->required();
+  app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
+  app.add_option("--margin", options.margins, "Margins, m; 0 asks for contact; repeatable")
+      ->check(clearance::number_from_zero())
+      ->capture_default_str();
+  app.add_option("--tolerance", options.tolerance, "Largest gap between lower and upper, m")
+      ->check(clearance::positive_number())
+      ->capture_default_str();
+  app.add_option("--expect-min-distance", options.expected,
+                 "A motion that is not certainly this far from everything, m, fails")
+      ->check(clearance::number_from_zero());
+  app.add_option("--work-limit", options.work_limit, "Most distance queries for a motion")
+      ->check(CLI::Range(1, 1000000000))
+      ->capture_default_str();
+  app.add_flag("--others-still", options.others_still,
+               "Objects that are neither fixed nor part of a robot do not move");
+  app.add_option("--repeat", options.repeat, "Ask N times, for the times on stderr")
+      ->check(CLI::Range(1, 1000000));
+  if (const auto done = clearance::parse(app, argc, argv)) return *done;
+  return clearance::run_program("clearance-ask",
+                                [&](clearance::StopSignal&) { return clearance::run(options); });
+}

@@ -1,0 +1,24 @@
+// A question as a line of JSON, and its answer as another. `clearance-ask --help` has the keys.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+
+#include "config/scene/scene.hpp"
+#include "monitor/ask/question.hpp"
+
+namespace clearance {
+
+// The text says what is wrong with the line.
+struct BadMotion : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// Reads the keys of a motion into `defaults`. Throws BadMotion, or nlohmann::json::exception for a
+// value of another type.
+[[nodiscard]] Question read_question(const nlohmann::json& line, const Question& defaults);
+
+[[nodiscard]] nlohmann::ordered_json answer_line(const Answer& answer, const Scene& scene);
+
+}  // namespace clearance
