@@ -11,19 +11,6 @@ std::string millimetres(double metres) {
   return text;
 }
 
-std::string end_text(const ContactEnd& end) {
-  std::string text;
-  const auto add = [&](const std::string& condition) {
-    text += (text.empty() ? "until " : " or ") + condition;
-  };
-  if (end.distance < kInfinity) add("the distance is " + millimetres(end.distance) + " mm");
-  if (end.duration_ns != ContactEnd::kNoTime)
-    add("it has lasted " + std::to_string(end.duration_ns / 1'000'000) + " ms");
-  if (end.time_ns != ContactEnd::kNoTime) add("time " + std::to_string(end.time_ns) + " ns");
-  if (end.last_cycle != ContactEnd::kNoCycle) add("cycle " + std::to_string(end.last_cycle));
-  return text.empty() ? "until it is withdrawn" : text;
-}
-
 std::string ended_text(const ContactReport& state) {
   const std::string cycle = " at cycle " + std::to_string(state.ended_cycle);
   switch (state.ended) {
@@ -44,6 +31,19 @@ std::string depth_text(const AllowedContact& contact, const ContactReport& state
 }
 
 }  // namespace
+
+std::string end_text(const ContactEnd& end) {
+  std::string text;
+  const auto add = [&](const std::string& condition) {
+    text += (text.empty() ? "until " : " or ") + condition;
+  };
+  if (end.distance < kInfinity) add("the distance is " + millimetres(end.distance) + " mm");
+  if (end.duration_ns != ContactEnd::kNoTime)
+    add("it has lasted " + std::to_string(end.duration_ns / 1'000'000) + " ms");
+  if (end.time_ns != ContactEnd::kNoTime) add("time " + std::to_string(end.time_ns) + " ns");
+  if (end.last_cycle != ContactEnd::kNoCycle) add("cycle " + std::to_string(end.last_cycle));
+  return text.empty() ? "until it is withdrawn" : text;
+}
 
 std::string contact_text(const AllowedContact& contact, const ContactReport& state) {
   const std::string subject = "contact '" + contact.name + "' ";

@@ -12,4 +12,7 @@ namespace clearance {
 // until the distance is 10.0 mm". A contact that is not as allowed says so.
 [[nodiscard]] std::string contact_text(const AllowedContact& contact, const ContactReport& state);
 
+// Returns when the allowance ends, for example "until the distance is 10.0 mm or cycle 900".
+[[nodiscard]] std::string end_text(const ContactEnd& end);
+
 }  // namespace clearance

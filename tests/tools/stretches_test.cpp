@@ -67,5 +67,21 @@ TEST(Stretches, KeepApartWhatTheyHaveRoomFor) {
   EXPECT_EQ(run.heads().size(), 51u);
 }
 
+TEST(Stretches, KeepTheirValuesWhenTheyAreWidened) {
+  Stretches<Head, Least> run(1, 8, 3);
+  for (std::int64_t ns = 0; ns < 24; ns += 3)
+    run.add({.begin_ns = ns})[0].least = static_cast<double>(ns);
+  run.widen(2, 4);
+  EXPECT_EQ(run.heads().size(), 4u);
+  run.add({.begin_ns = 23})[1].least = -1.0;
+  for (std::size_t i = 0; i < run.heads().size(); ++i) {
+    SCOPED_TRACE(i);
+    ASSERT_EQ(run.cells(i).size(), 2u);
+    EXPECT_EQ(run.cells(i)[0].least, 6.0 * static_cast<double>(i));
+    const bool is_last = i + 1 == run.heads().size();
+    EXPECT_EQ(run.cells(i)[1].least, is_last ? -1.0 : Least{}.least) << "no value before";
+  }
+}
+
 }  // namespace
 }  // namespace clearance

@@ -1,4 +1,5 @@
 // clearance-view's page follows a daemon that changes its cell, live and in a recording of it.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -16,10 +17,30 @@ namespace clearance::test {
 namespace {
 
 using nlohmann::json;
+using testing::HasSubstr;
+using testing::MatchesRegex;
 
 bool has(const json& facts, const std::string& object) {
   const auto objects = facts.at("objects").get<std::vector<std::string>>();
   return std::ranges::find(objects, object) != objects.end();
+}
+
+// The rows of the contact that the changed cell allows, and of what it attaches.
+void expect_grasp(const json& facts) {
+  SCOPED_TRACE(facts.dump());
+  const json contacts = facts.at("contacts"), attached = facts.at("attached");
+  ASSERT_EQ(contacts.size(), 1u);
+  ASSERT_EQ(contacts[0].size(), 6u);
+  EXPECT_THAT(contacts[0][0], HasSubstr("grasp: "));
+  EXPECT_EQ(contacts[0][1], "allowed");
+  EXPECT_THAT(contacts[0][2], HasSubstr(" of 2.0"));
+  EXPECT_EQ(contacts[0][3], "planner");
+  EXPECT_THAT(contacts[0][4], MatchesRegex("cycle [1-9][0-9]*, .* s"));
+  EXPECT_EQ(contacts[0][5], "until the distance is 5000.0 mm");
+  ASSERT_EQ(attached.size(), 1u);
+  EXPECT_EQ(attached[0][0], "part");
+  EXPECT_EQ(attached[0][1], "left");
+  EXPECT_THAT(attached[0][2], MatchesRegex("(.* s, )?cycle [1-9][0-9]*")) << "after the start";
 }
 
 TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) {
@@ -41,6 +62,13 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
   changed.insert(changed.find(floor),
                  "  - {name: wall, groups: [still], fixed: true, pose: {xyz: [0, 5, 0]}, box: "
                  "{size: [9, 1, 9]}}\n");
+  changed.insert(changed.find(floor),
+                 "  - {name: part, attached: {to: left, pose: {xyz: [0, 0, 0.15]}}, box: {size: "
+                 "[0.1, 0.1, 0.1]}}\n");
+  changed.insert(changed.find("simulation:"),
+                 "contacts:\n  - {name: grasp, between: [part, right], depth: 0.002, by: planner, "
+                 "reason: a test, "
+                 "until: {distance: 5}}\n");
   std::ofstream(cell.path()) << changed;
   daemon.signal(SIGHUP);
   EXPECT_EQ(page.wait(std::chrono::seconds(100)), 0) << page.output();
@@ -52,6 +80,10 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
   EXPECT_EQ(live[1].at("of_this_cell"), true);
   EXPECT_EQ(live[1].at("unnamed"), 0);
   EXPECT_EQ(live[1].at("errors"), json::array());
+  EXPECT_EQ(live[0].at("contacts"), json::array());
+  EXPECT_EQ(live[0].at("attached"), json::array());
+  EXPECT_EQ(live[1].at("kept"), true) << "curves of the page before it was loaded again";
+  expect_grasp(live[1]);
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 
@@ -67,9 +99,18 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
     EXPECT_EQ(shown[i].at("of_this_cell"), true);
     EXPECT_EQ(shown[i].at("errors"), json::array());
   }
-  EXPECT_TRUE(std::ranges::any_of(shown[0].at("moments"), [](const json& moment) {
-    return moment.at("kind") == "cell";
-  })) << "a mark on the time line";
+  EXPECT_EQ(shown[0].at("attached"), json::array()) << "before the change";
+  expect_grasp(shown[1]);
+  EXPECT_GT(shown[1].at("curve"), 1) << "of a pair that the later cell brings";
+  EXPECT_TRUE(std::ranges::any_of(shown[0].at("moments"),
+                                  [](const json& moment) {
+                                    const std::string said = moment.at("text");
+                                    return moment.at("kind") == "cell" &&
+                                           said.ends_with(
+                                               ": part is attached to left, contact grasp "
+                                               "is allowed, part is added, wall is added");
+                                  }))
+      << "a mark on the time line: " << shown[0].at("moments");
 }
 
 }  // namespace

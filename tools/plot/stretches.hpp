@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace clearance {
@@ -34,6 +35,18 @@ class Stretches {
       }
     }
     return cells_of(heads_.size() - 1);
+  }
+
+  // From now on a stretch has `columns` cells, no fewer than before, and there are at most `most`
+  // (at least 2) stretches. The new cells of present stretches are Cell{}.
+  void widen(std::size_t columns, std::size_t most) {
+    most_ = most;
+    while (heads_.size() > most_) halve();
+    std::vector<Cell> cells(heads_.size() * columns);
+    for (std::size_t i = 0; i < cells_.size(); ++i)
+      cells[i / columns_ * columns + i % columns_] = cells_[i];
+    cells_ = std::move(cells);
+    columns_ = columns;
   }
 
   [[nodiscard]] const std::vector<Head>& heads() const noexcept { return heads_; }

@@ -63,6 +63,7 @@ void LiveSource::advance(Server& server) {
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
   follow_the_catalogue(server);
+  note_what_is_attached(server);
   tell_of_the_daemon(server, now_ns);
   server.set_time(now_ns);
   frame_->publish(server);
@@ -131,6 +132,25 @@ void LiveSource::follow_the_catalogue(Server& server) {
   cell_ = std::make_shared<const Cell>(std::move(*cell));
   frame_ = std::make_unique<Frame>(cell_->scene);
   intake_.change(*cell_);
+  server.parameters_changed();
+}
+
+nlohmann::json LiveSource::parameters() const {
+  return {{{"name", "scene.attached"}, {"value", attached_json(attached_)}}};
+}
+
+// A scene that has been in force since the daemon's start has followed no other one.
+void LiveSource::note_what_is_attached(Server& server) {
+  const clearance_msg_Catalogue& catalogue = frame_->catalogue();
+  const std::uint64_t revision = catalogue.scene_revision;
+  if (revision == 0 || revision != cell_->scene.revision) return;
+  if (revision == attached_of_ && catalogue.daemon == daemon_) return;
+  if (catalogue.daemon != daemon_) attached_.clear();
+  const bool is_first = catalogue.in_force_from != 0 && catalogue.daemon != daemon_;
+  attached_ = attached_in(cell_->scene, attached_,
+                          {.cycle = catalogue.in_force_from, .is_first = is_first});
+  attached_of_ = revision;
+  daemon_ = catalogue.daemon;
   server.parameters_changed();
 }
 

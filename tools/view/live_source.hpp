@@ -11,6 +11,7 @@
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
+#include "tools/view/cell_changes.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
 
@@ -24,6 +25,9 @@ class LiveSource final : public Source {
 
   [[nodiscard]] std::shared_ptr<const Cell> cell() const override { return cell_; }
 
+  // What is attached is known with the first catalogue.
+  [[nodiscard]] nlohmann::json parameters() const override;
+
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.
   void advance(Server& server) override;
@@ -34,6 +38,7 @@ class LiveSource final : public Source {
   void take(TopicKind kind);
   void take_from_ros(const Now& now);
   void follow_the_catalogue(Server& server);
+  void note_what_is_attached(Server& server);
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
   std::shared_ptr<const Cell> cell_;
@@ -45,6 +50,9 @@ class LiveSource final : public Source {
   Intake intake_;                    // of ROS 2's topics
   std::future<CellResult> reading_;  // not valid: no cell is being read
   std::uint64_t read_ = 0;           // the revision that was read last, or is being read
+  std::vector<Attached> attached_;
+  std::uint64_t attached_of_ = 0;  // the revision that these are of; 0: none yet
+  std::uint64_t daemon_ = 0;       // of that catalogue
   RosReaders ros_;
   bool heard_ = false;           // a report has come since there is a viewer
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC

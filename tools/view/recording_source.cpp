@@ -29,26 +29,21 @@ RecordingSource::RecordingSource(std::shared_ptr<const Cell> cell,
       frame_(std::make_unique<Frame>(cell_->scene)),
       time_ns_(timeline_.begin_ns) {}
 
-// Curves are kept by the pairs of the first cell.
 std::string RecordingSource::history(double end_s, std::span<const std::uint32_t> pairs) const {
-  if (cell_ == first_) return timeline_.history.window(at(end_s), pairs);
-  const std::vector<std::uint32_t> of_first = same_pairs(cell_->scene, first_->scene);
-  nlohmann::json all = nlohmann::json::parse(timeline_.history.window(at(end_s), {}));
-  for (const std::uint32_t pair : pairs) {
-    const std::uint32_t same = pair < of_first.size() ? of_first[pair] : kNoPair;
-    if (same == kNoPair) continue;
-    const auto curve = nlohmann::json::parse(timeline_.history.window(at(end_s), {&same, 1}));
-    all["pairs"][std::to_string(pair)] = curve["pairs"][std::to_string(same)];
-  }
-  return all.dump();
+  return timeline_.history.window(at(end_s), cell_->scene, pairs);
+}
+
+const SceneSince* RecordingSource::scene_now() const {
+  const auto after = std::ranges::upper_bound(timeline_.scenes, time_ns_, {}, &SceneSince::log_ns);
+  return after == timeline_.scenes.begin() ? nullptr : &*std::prev(after);
 }
 
 // The cell that was in force at this time, if the recording has it.
 void RecordingSource::follow_the_time() {
-  const auto after = std::ranges::upper_bound(timeline_.scenes, time_ns_, {}, &SceneSince::log_ns);
+  const SceneSince* const now = scene_now();
   const bool is_recorded = timeline_.scenes.front().revision == first_->scene.revision;
-  if (after == timeline_.scenes.begin() || !is_recorded) return;
-  const std::uint64_t revision = std::prev(after)->revision;
+  if (now == nullptr || !is_recorded) return;
+  const std::uint64_t revision = now->revision;
   if (revision == cell_->scene.revision) return;
   const Cell* const cell = scenes_->cell(revision);
   if (cell == nullptr) return;
@@ -72,7 +67,10 @@ std::int64_t RecordingSource::at(double seconds) const {
 
 nlohmann::json RecordingSource::parameters() const {
   const double seconds = 1e-9 * static_cast<double>(time_ns_ - timeline_.begin_ns);
-  return {{{"name", "playback.playing"}, {"value", playing_}},
+  const SceneSince* const now = scene_now();
+  return {{{"name", "scene.attached"},
+           {"value", now == nullptr ? nlohmann::json::array() : attached_json(now->attached)}},
+          {{"name", "playback.playing"}, {"value", playing_}},
           {{"name", "playback.time"}, {"value", seconds}},
           {{"name", "playback.rate"}, {"value", rate_}}};
 }

@@ -41,6 +41,7 @@ class RecordingSource final : public Source {
   void follow_the_time();
   void begin_reading_at(std::int64_t time_ns);
   [[nodiscard]] std::int64_t at(double seconds) const;
+  [[nodiscard]] const SceneSince* scene_now() const;  // null: before the first report
 
   std::shared_ptr<const Cell> first_, cell_;  // of the recording; at this time
   std::unique_ptr<SceneHistory> scenes_;

@@ -24,7 +24,6 @@ Piece piece_of(const clearance_msg_Distances& report, std::int64_t log_ns) {
   if (report.minimum_known && is_known(report.minimum)) {
     piece.distance = report.minimum.distance;
     piece.lower = report.minimum.lower;
-    piece.pair = report.minimum.pair;
   }
   if (report.publish_ns != 0) {
     piece.tick_us =
@@ -37,8 +36,9 @@ nlohmann::json number(double value) {
   return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
-std::size_t published(const Scene& scene) {
-  return static_cast<std::size_t>(std::ranges::count_if(scene.pairs, &ObjectPair::publish));
+// The stretches that fit into memory with so many columns.
+std::size_t most_stretches(std::size_t columns) {
+  return std::max<std::size_t>(kMostDistances / std::max<std::size_t>(columns, 8), 2);
 }
 
 }  // namespace
@@ -49,20 +49,27 @@ void merge(const RunHistory::Piece& later, RunHistory::Piece& piece) {
   piece.time_ns = std::isnan(later.distance) ? piece.time_ns : later.time_ns;
   piece.distance = later.distance;
   piece.lower = later.lower;
-  piece.pair = later.pair;
 }
 
 void merge(const RunHistory::Least& later, RunHistory::Least& least) {
   least.distance = std::fmin(least.distance, later.distance);
 }
 
-RunHistory::RunHistory(const Scene& scene)
-    : run_(published(scene), kMostDistances / std::max<std::size_t>(published(scene), 8),
-           kShortestNs) {
-  std::uint32_t columns = 0;
-  for (const ObjectPair& pair : scene.pairs) {
-    column_of_.push_back(pair.publish ? columns++ : kNotPublished);
+RunHistory::RunHistory() : run_(0, most_stretches(0), kShortestNs) {}
+
+RunHistory::Names RunHistory::names_of(const Scene& scene, const ObjectPair& pair) {
+  return std::minmax(scene.objects[pair.first].name, scene.objects[pair.second].name);
+}
+
+void RunHistory::change_scene(const Scene& scene) {
+  const std::size_t before = columns_.size();
+  column_of_.assign(scene.pairs.size(), kNotPublished);
+  for (std::size_t i = 0; i < scene.pairs.size(); ++i) {
+    if (!scene.pairs[i].publish) continue;
+    const auto next = static_cast<std::uint32_t>(columns_.size());
+    column_of_[i] = columns_.try_emplace(names_of(scene, scene.pairs[i]), next).first->second;
   }
+  if (columns_.size() > before) run_.widen(columns_.size(), most_stretches(columns_.size()));
 }
 
 void RunHistory::take(const clearance_msg_Distances& report, std::int64_t log_ns) {
@@ -100,15 +107,22 @@ std::vector<Piece> RunHistory::pieces(std::size_t most) const {
   return merged;
 }
 
-double RunHistory::least_of(std::uint32_t pair, std::size_t first, std::size_t last) const {
+double RunHistory::least_of(std::uint32_t column, std::size_t first, std::size_t last) const {
   Least least;
-  const std::uint32_t column = pair < column_of_.size() ? column_of_[pair] : kNotPublished;
   if (column == kNotPublished) return least.distance;
   for (std::size_t i = first; i < last; ++i) merge(run_.cells(i)[column], least);
   return least.distance;
 }
 
-std::string RunHistory::window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const {
+std::string RunHistory::window(std::int64_t end_ns, const Scene& scene,
+                               std::span<const std::uint32_t> pairs) const {
+  std::vector<std::pair<std::string, std::uint32_t>> columns;  // by the pair's id, as text
+  for (const std::uint32_t pair : pairs) {
+    if (pair >= scene.pairs.size()) continue;
+    const auto known = columns_.find(names_of(scene, scene.pairs[pair]));
+    columns.emplace_back(std::to_string(pair),
+                         known == columns_.end() ? kNotPublished : known->second);
+  }
   nlohmann::json all = {{"s", nlohmann::json::array()},
                         {"distance", nlohmann::json::array()},
                         {"lower", nlohmann::json::array()},
@@ -128,8 +142,8 @@ std::string RunHistory::window(std::int64_t end_ns, std::span<const std::uint32_
     all["distance"].push_back(number(piece.distance));
     all["lower"].push_back(number(piece.lower));
     all["tick"].push_back(number(piece.tick_us));
-    for (const std::uint32_t pair : pairs) {
-      all["pairs"][std::to_string(pair)].push_back(number(least_of(pair, i, end)));
+    for (const auto& [pair, column] : columns) {
+      all["pairs"][pair].push_back(number(least_of(column, i, end)));
     }
   }
   return all.dump();

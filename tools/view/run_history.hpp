@@ -4,8 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clearance.h"
@@ -25,7 +27,6 @@ class RunHistory {
     std::int64_t time_ns = 0;   // log time of the least minimum; without one, `begin_ns`
     double distance = std::numeric_limits<double>::quiet_NaN();  // m
     double lower = distance;
-    std::uint32_t pair = 0;     // the pair with the least minimum
     double tick_us = distance;  // the longest time from the begin of a tick to its report
   };
 
@@ -34,8 +35,10 @@ class RunHistory {
     float distance = std::numeric_limits<float>::quiet_NaN();
   };
 
-  explicit RunHistory(const Scene& scene);
+  RunHistory();
 
+  // The reports that follow are of this scene. A pair of the same objects goes on.
+  void change_scene(const Scene& scene);
   // Takes reports in the order of their log times.
   void take(const clearance_msg_Distances& report, std::int64_t log_ns);
 
@@ -45,17 +48,22 @@ class RunHistory {
   [[nodiscard]] std::vector<Piece> pieces(std::size_t most) const;
   // The last kWindowNs up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
   // "tick": [...], "pairs": {"ID": [...]}}. Units are s after the first report, m and us. null: not
-  // known. Distances of pairs that are not published are null.
-  [[nodiscard]] std::string window(std::int64_t end_ns, std::span<const std::uint32_t> pairs) const;
+  // known. The pairs are those of `scene`, also where another scene was in force; distances of
+  // pairs that are not published are null.
+  [[nodiscard]] std::string window(std::int64_t end_ns, const Scene& scene,
+                                   std::span<const std::uint32_t> pairs) const;
 
  private:
+  using Names = std::pair<std::string, std::string>;  // of two objects, in ascending order
+  [[nodiscard]] static Names names_of(const Scene& scene, const ObjectPair& pair);
   // The least distance of the stretches from `first` up to, but not including, `last`, m. NaN: the
-  // pair is not published, or was never known.
-  [[nodiscard]] double least_of(std::uint32_t pair, std::size_t first, std::size_t last) const;
+  // pair was not published, or never known.
+  [[nodiscard]] double least_of(std::uint32_t column, std::size_t first, std::size_t last) const;
 
   static constexpr std::uint32_t kNotPublished = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> column_of_;  // by pair
-  Stretches<Piece, Least> run_;           // a column per published pair
+  std::map<Names, std::uint32_t> columns_;
+  std::vector<std::uint32_t> column_of_;  // by pair of the present scene
+  Stretches<Piece, Least> run_;           // a column per pair that any scene publishes
 };
 
 // Join two neighbouring stretches of time, or a pair's values in them; Stretches calls these.

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "monitor/contact_text.hpp"
 #include "monitor/visual/body_mesh.hpp"
 #include "monitor/zone_cause.hpp"
 
@@ -160,6 +161,18 @@ json zones_json(const Scene& scene, Meshes& meshes) {
   return list;
 }
 
+json contacts_json(const Scene& scene) {
+  json list = json::array();
+  for (const AllowedContact& contact : scene.contacts) {
+    list.push_back({{"name", contact.name},
+                    {"depth", contact.depth},
+                    {"end", end_text(contact.end)},
+                    {"by", contact.by},
+                    {"reason", contact.reason}});
+  }
+  return list;
+}
+
 // The text of every ZoneCause, in the order of their numbers, with {} for the object's name.
 json causes_json(PlacedBy placed_by) {
   json list = json::array();
@@ -187,6 +200,7 @@ std::string scene_json(const Cell& cell) {
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},
               {"zones", zones_json(scene, meshes)},
+              {"contacts", contacts_json(scene)},
               {"zone_causes",
                {{"by_poses", causes_json(PlacedBy::kPoses)},
                 {"by_joints", causes_json(PlacedBy::kJointStates)}}}};

@@ -20,8 +20,7 @@ namespace {
 
 class Scan {
  public:
-  explicit Scan(SceneHistory& scenes)
-      : scenes_(scenes), scene_(&scenes.first().scene), found_(*scene_) {}
+  explicit Scan(SceneHistory& scenes) : scenes_(scenes), scene_(&scenes.first().scene) {}
 
   void take(const RecordedMessage& message) {
     if (message.kind == TopicKind::kDistances && decoder_.decode(message.cdr, report_)) {
@@ -49,8 +48,7 @@ class Scan {
   void add_least();
 
   SceneHistory& scenes_;
-  const Scene* scene_;                      // of the last report
-  std::vector<std::uint32_t> first_pairs_;  // by its pairs: same_pairs(); empty: the first scene
+  const Scene* scene_;  // of the last report
   std::string least_pair_;
   double least_ = std::numeric_limits<double>::infinity();
   CdrDecoder decoder_;
@@ -74,26 +72,31 @@ void Scan::take_report(std::int64_t log_ns) {
     least_ = report_->minimum.distance;
     least_pair_ = pair_name(*scene_, report_->minimum.pair);
   }
-  if (!first_pairs_.empty()) {
-    for (auto& pair : std::span(report_->pairs._buffer, report_->pairs._length))
-      pair.pair = pair.pair < first_pairs_.size() ? first_pairs_[pair.pair] : kNoPair;
-  }
   found_.history.take(*report_, log_ns);
 }
 
 // The state of every zone is recorded again after a change.
 void Scan::change_scene(std::int64_t log_ns) {
-  const bool is_first = found_.scenes.empty();
-  found_.scenes.push_back({log_ns, report_->scene_revision});
+  auto& scenes = found_.scenes;
+  const bool is_first = scenes.empty();
+  const Scene& before = *scene_;
   const Cell* const cell = scenes_.cell(report_->scene_revision);
   if (cell != nullptr) scene_ = &cell->scene;
-  const bool of_first = scene_ == &scenes_.first().scene;
-  first_pairs_ =
-      of_first ? std::vector<std::uint32_t>() : same_pairs(*scene_, scenes_.first().scene);
+  found_.history.change_scene(*scene_);
+  const SceneBegin begin{
+      .cycle = report_->cycle,
+      .seconds = is_first ? 0.0 : 1e-9 * static_cast<double>(log_ns - scenes.front().log_ns),
+      .is_first = is_first};
+  auto attached =
+      attached_in(*scene_, is_first ? std::vector<Attached>() : scenes.back().attached, begin);
+  scenes.push_back({log_ns, report_->scene_revision, std::move(attached)});
   if (is_first) return;
   for (const auto& [zone, since] : active_) found_.zones.push_back({zone, since, log_ns});
   active_.clear();
-  add(log_ns, "cell", fmt::format("the cell changes to {:016x}", report_->scene_revision));
+  const std::string changes = changes_text(before, *scene_);
+  add(log_ns, "cell",
+      fmt::format("the cell changes to {:016x}{}{}", report_->scene_revision,
+                  changes.empty() ? "" : ": ", changes));
 }
 
 void Scan::take_zone(std::int64_t log_ns) {
@@ -141,20 +144,6 @@ Timeline Scan::result() {
 }
 
 }  // namespace
-
-std::vector<std::uint32_t> same_pairs(const Scene& from, const Scene& to) {
-  const auto names = [](const Scene& scene, const ObjectPair& pair) {
-    return std::minmax(scene.objects[pair.first].name, scene.objects[pair.second].name);
-  };
-  std::map<std::pair<std::string, std::string>, std::uint32_t> ids;
-  for (std::uint32_t i = 0; i < to.pairs.size(); ++i) ids.emplace(names(to, to.pairs[i]), i);
-  std::vector<std::uint32_t> found;
-  for (const ObjectPair& pair : from.pairs) {
-    const auto same = ids.find(names(from, pair));
-    found.push_back(same == ids.end() ? kNoPair : same->second);
-  }
-  return found;
-}
 
 Timeline read_timeline(SceneHistory& scenes, const std::filesystem::path& file,
                        const std::function<void(double)>& progress) {

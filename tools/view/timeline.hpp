@@ -5,12 +5,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <limits>
 #include <string>
 #include <vector>
 
 #include "config/scene/scene.hpp"
 #include "monitor/replay/scene_history.hpp"
+#include "tools/view/cell_changes.hpp"
 #include "tools/view/run_history.hpp"
 
 namespace clearance::view {
@@ -37,21 +37,15 @@ struct ZoneMessage {
 struct SceneSince {
   std::int64_t log_ns = 0;
   std::uint64_t revision = 0;
+  std::vector<Attached> attached = {};
 };
 
-// Returns, by pair of the scene `from`, the pair of the same objects in the scene `to`; kNoPair:
-// there is none.
-inline constexpr std::uint32_t kNoPair = std::numeric_limits<std::uint32_t>::max();
-[[nodiscard]] std::vector<std::uint32_t> same_pairs(const Scene& from, const Scene& to);
-
 struct Timeline {
-  explicit Timeline(const Scene& scene) : history(scene) {}
-
   std::string error;  // empty, or why the file cannot be shown
   std::int64_t begin_ns = 0, end_ns = 0;
   std::vector<std::int64_t> reports;  // log times
-  RunHistory history;                 // of pairs that the first scene has
-  std::vector<SceneSince> scenes;     // in order of time, the first one first
+  RunHistory history;
+  std::vector<SceneSince> scenes;  // in order of time, the first one first
   std::vector<ZoneSpan> zones;
   std::vector<ZoneMessage> zone_messages;  // in order of time
   std::vector<Moment> moments;             // in order of time; "closest" is the least of all

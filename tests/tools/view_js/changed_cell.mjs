@@ -7,9 +7,12 @@ import { openBrowser, say } from "./browser.mjs";
 const [url, object, ...times] = process.argv.slice(2);
 const { browser, page, errors } = await openBrowser();
 const facts = () => page.evaluate(() => {
-  const { scene, report, pairs } = window.clearance.state;
+  const { scene, report, pairs, history } = window.clearance.state;
+  const rows = (id) => [...document.querySelectorAll(`#${id} tbody tr`)].map(({ cells }) => [...cells].map(({ textContent }) => textContent));
+  const oldest = history.points?.[0];
   return {
     revision: scene.revision, of_this_cell: Number(report?.scene_revision) === Number(scene.revision), objects: scene.objects.map(({ name }) => name),
+    contacts: rows("contacts"), attached: rows("attached"), kept: oldest?.kept !== undefined,
     unnamed: report?.pairs.filter(({ pair }) => !pairs[pair]).length,
   };
 });
@@ -20,12 +23,19 @@ await hasReport();
 if (times.length === 0) {
   say({ ready: true, ...(await facts()) });
   await page.waitForFunction((name) => window.clearance?.state.report && window.clearance.state.scene.objects.some((each) => each.name === name), object, { timeout: 60_000 });
+  await page.waitForFunction(() => document.querySelector("#attached tbody tr") && document.querySelector("#contacts tbody tr"));
   say({ errors, ...(await facts()) });
 }
 for (const time of times.map(Number)) {
   await page.evaluate((to) => window.clearance.connection.set("playback.time", to), time);
   await page.waitForTimeout(2500); // the page may be loaded anew
   await hasReport();
-  say({ time, errors, moments: await page.evaluate(async () => (await (await fetch("/timeline.json")).json()).moments), ...(await facts()) });
+  const curve = await page.evaluate(async ([name, to]) => {
+    const { pairs, scene } = window.clearance.state, pair = pairs.find(({ a, b }) => [a, b].some((id) => scene.objects[id].name === name));
+    if (!pair) return null;
+    const { pairs: curves } = await (await fetch(`/history.json?end=${to}&pairs=${pair.id}`)).json();
+    return curves[pair.id]?.filter((value) => value !== null).length ?? 0;
+  }, [object, time]);
+  say({ time, errors, curve, moments: await page.evaluate(async () => (await (await fetch("/timeline.json")).json()).moments), ...(await facts()) });
 }
 await browser.close();

@@ -2,6 +2,7 @@
 import { counted, isKnown } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
+const ALLOWED = 1; // ContactStatus of monitor/report.hpp
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
 const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
@@ -14,7 +15,7 @@ export class CellState {
     this.statuses = new Map();
     this.connected = false;
     this.timeNs = 0;
-    this.history = timeline ? new RecordedHistory(timeline) : new LiveHistory();
+    this.history = timeline ? new RecordedHistory(timeline) : new LiveHistory((id) => this.pairs[id].name);
     this.pairs = scene.pairs.map(([a, b], id) => ({
       id, a, b, name: `${scene.objects[a].name} – ${scene.objects[b].name}`,
       margins: scene.objects[a].margin + scene.objects[b].margin, zones: [],
@@ -26,6 +27,7 @@ export class CellState {
     this.report = report;
     this.reportNs = timeNs;
     this.lateObjects = new Map();
+    this.meant = new Set((report.contacts ?? []).filter(({ status }) => status === ALLOWED).map(({ pair }) => pair));
     for (const pair of report.pairs) if (!isKnown(pair)) this.noteLate(pair);
     this.history.take(report, this.minimum(), timeNs);
   }
@@ -55,9 +57,10 @@ export class CellState {
     return report && report.minimum_known && isKnown(report.minimum) ? report.minimum : undefined;
   }
 
-  // "inside", "leaving" or "outside" its zones, "free" of any, or "lost".
+  // "inside", "leaving" or "outside" its zones, "free" of any, "meant" as an allowed contact, or "lost".
   levelOf(pair) {
     if (!isKnown(pair)) return "lost";
+    if (this.meant.has(pair.pair)) return "meant";
     const { zones, margins } = this.pairs[pair.pair];
     const clearance = pair.lower - margins;
     if (zones.some(({ enter_below }) => clearance < enter_below)) return "inside";

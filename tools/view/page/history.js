@@ -7,9 +7,21 @@ export const HISTORY_S = 30;
 const TRIMMED_AT = 200; // points that are too old when they are removed
 const FETCHED_AGAIN_S = 0.1; // time of the recording
 
+// A page that is loaded again, because the cell has changed, goes on with the curves that it kept.
+const KEPT = "clearance history";
+
 export class LiveHistory {
-  constructor() {
-    this.points = [];
+  // `nameOf(id)`: the name of a pair, which is the same in every cell.
+  constructor(nameOf) {
+    this.nameOf = nameOf;
+    this.points = JSON.parse(sessionStorage.getItem(KEPT) ?? "[]");
+    sessionStorage.removeItem(KEPT);
+  }
+  // Keeps the least distance, the ticks and these pairs for the page that is loaded next.
+  keep(chosen) {
+    const curves = [...chosen].map((id) => [this.nameOf(id), this.pairAt(id)]);
+    sessionStorage.setItem(KEPT, JSON.stringify(this.points.map((point) => ({ ...point, pairs: [],
+      kept: Object.fromEntries(curves.map(([name, value]) => [name, value(point)])) }))));
   }
 
   // `minimum` is undefined while it is unknown.
@@ -30,7 +42,8 @@ export class LiveHistory {
   // The published pairs have the same order in every report.
   pairAt(id) {
     const place = this.points.at(-1)?.pairs.findIndex(({ pair }) => pair === id);
-    return ({ pairs }) => (pairs[place] && isKnown(pairs[place]) ? pairs[place].distance : undefined);
+    const name = this.nameOf(id);
+    return ({ pairs, kept }) => (kept ? kept[name] : pairs[place] && isKnown(pairs[place]) ? pairs[place].distance : undefined);
   }
 }
 

@@ -8,6 +8,7 @@ import { PairTable } from "./pair_table.js";
 import { savePicture } from "./picture.js";
 import { Plots } from "./plots.js";
 import { drawLegend, drawReadouts } from "./readouts.js";
+import { ContactRows } from "./contact_rows.js";
 import { SeparationRows } from "./separation_rows.js";
 import { SceneView } from "./scene_view.js";
 import { Timeline } from "./timeline.js";
@@ -35,6 +36,7 @@ applyTheme();
 const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), pairLookedAt: look, objectChosen: chooseObject });
 const table = new PairTable(choose, look, changed);
 const separations = new SeparationRows(choose);
+const contacts = new ContactRows(choose, chooseObject);
 const plots = new Plots();
 const topics = scene.topics;
 const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf"], {
@@ -48,6 +50,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
   parameters: (values) => {
     const revision = values["scene.revision"];
     if (revision !== undefined && revision !== scene.revision) return changeCell();
+    contacts.attached = values["scene.attached"] ?? contacts.attached;
     track?.parameters(values);
   },
   message: (topic, value, ns) => {
@@ -123,6 +126,7 @@ function address(withCamera) {
 function changeCell() {
   const link = new URL(address(true), location.href);
   link.searchParams.delete("t");
+  state.history.keep?.(chosen);
   history.replaceState(null, "", link);
   location.reload();
 }
@@ -209,6 +213,7 @@ function frame(nowMs) {
   const frozen = drawReadouts(state, track?.playing, nowMs);
   view.draw(state, chosen, frozen, nowMs);
   table.draw(state, chosen, nowMs);
+  contacts.draw(state, frozen, nowMs);
   separations.draw(state, frozen, nowMs);
   plots.draw(state, chosen, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());

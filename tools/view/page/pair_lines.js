@@ -8,7 +8,7 @@ const MOST_LINES = 64, MOST_LABELS = 4;
 const MOST_RECTANGLES = 48; // of bodies that labels avoid
 const AGAIN_MS = 100; // between texts; their places follow every frame
 const WIDTH = 0.0016, POINT = 0.0042; // share of the distance to the camera
-export const COLOUR = { inside: "--alarm", leaving: "--near", outside: "--good", free: "--accent", lost: "--lost" };
+export const COLOUR = { inside: "--alarm", leaving: "--near", outside: "--good", free: "--accent", meant: "--quiet", lost: "--lost" };
 
 const vector = ({ x, y, z }) => new THREE.Vector3(x, y, z);
 

@@ -78,7 +78,7 @@ function drawHealth(state) {
 }
 
 export function drawLegend() {
-  const meanings = { inside: "in a zone", leaving: "leaving it", outside: "outside its zones", free: "in no zone", lost: "late or unknown" };
+  const meanings = { inside: "in a zone", leaving: "leaving it", outside: "outside its zones", free: "in no zone", meant: "allowed contact", lost: "late or unknown" };
   element("legend").replaceChildren(...Object.entries(meanings).map(([level, text]) => {
     const entry = document.createElement("span"), mark = document.createElement("i");
     mark.style.background = `var(${COLOUR[level]})`;
