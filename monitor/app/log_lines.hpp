@@ -67,6 +67,7 @@ inline constexpr LogLine<Text> kRecordingWithoutFiles{
     "the recording lacks files that the cell names: {}. A replay needs --cell"};
 inline constexpr LogLine<Text> kRecordingContinues{"recording-continues", kInfo,
                                                    "the recording continues in {}"};
+inline constexpr LogLine<Text> kEventRecorded{"event-recorded", kInfo, "recording an event to {}"};
 inline constexpr LogLine<Text> kRecordingStopped{"recording-stopped", kError,
                                                  "the recording stopped: {}"};
 inline constexpr LogLine<Text, Text> kDiskTooSlow{
@@ -236,6 +237,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kRecordingRenamed,
                                  kRecordingWithoutFiles,
                                  kRecordingContinues,
+                                 kEventRecorded,
                                  kRecordingStopped,
                                  kDiskTooSlow,
                                  kDiskHangs,

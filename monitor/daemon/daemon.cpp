@@ -184,6 +184,7 @@ void Daemon::end_commands() {
 bool Daemon::put(QueuedCommand command) {
   command.answer = [this, answer = std::move(command.answer)](const CommandResult& result) {
     note_change(result);
+    if (recording_) recording_->note_command();
     if (answer) answer(result);
   };
   return scene_thread_->put(std::move(command));

@@ -38,6 +38,7 @@ constexpr const char* kFooter = R"(Exit status:
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
+  clearanced config/cells/two_arms.yaml --record run.mcap --record-around 10 --record-keep-mb 2000
   clearanced config/cells/two_arms.yaml --commands planner --keep-scene scene.yaml
   clearanced --urdf panda.urdf --srdf panda.srdf --interface default --ros2 markers)";
 
@@ -91,6 +92,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "on");
   add_force(app, arguments.record_over);
   arguments.recording.add_to(app, "--record-");
+  arguments.recording.add_events_to(app, "--record-");
   app.add_flag("--gradients", arguments.gradients,
                "Publish how the distances of published pairs change with joint positions, as "
                "'gradients: true' in the cell does");
@@ -260,8 +262,11 @@ int run(int argc, char** argv, StopSignal& signal) {
   for (const std::filesystem::path& file : arguments.cell.files()) {
     if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {file})) return kUsage;
   }
+  // The names of files by event have their time.
   const auto record_file =
-      free_name("clearanced", arguments.daemon.record_file, arguments.record_over);
+      arguments.recording.by_event()
+          ? arguments.daemon.record_file
+          : free_name("clearanced", arguments.daemon.record_file, arguments.record_over);
   if (!record_file) return kIncomplete;
   if (*record_file != arguments.daemon.record_file) {
     log_line(lines::kRecordingRenamed, arguments.daemon.record_file.string(),

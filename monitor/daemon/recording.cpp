@@ -51,6 +51,8 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
                      std::shared_ptr<const Cell> cell, const PoseReader& poses,
                      RecordingHealth& health)
     : file_(file.string()),
+      by_event_(options.events.any()),
+      files_(by_event_ ? 0 : 1),
       poses_(poses),
       health_(health),
       recorder_(file, *cell, SystemClock().realtime_ns(), options) {
@@ -163,6 +165,8 @@ void Recording::record_all(Part& part) {
       queue.inputs().pop();
       count(1);
     }
+    if (command_came_.exchange(false))
+      recorder_.ask_for_file({RecordedEvent::Cause::kCommand, "a command was answered"});
     recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
     queue.reports().pop();
     count(1);
@@ -184,7 +188,8 @@ void Recording::tell_of_missing_files() const {
 void Recording::tell_of_new_files() {
   if (recorder_.files() == files_) return;
   files_ = recorder_.files();
-  log_line(lines::kRecordingContinues, recorder_.file().string());
+  log_line(by_event_ ? lines::kEventRecorded : lines::kRecordingContinues,
+           recorder_.file().string());
 }
 
 // Called after the recorder was given so many reports or batches. If it has failed by then, they
@@ -232,16 +237,22 @@ void Recording::watch() {
   logged_ns_ = now_ns;
 }
 
+std::string Recording::files_text() const {
+  const std::string last = recorder_.file().string();
+  if (by_event_) {
+    return files_ == 0
+               ? fmt::format("no file: there was no event for {}", file_)
+               : fmt::format("{} of events, the last one {}", counted(files_, "file"), last);
+  }
+  return files_ == 1 ? file_ : fmt::format("{} and {} more, to {}", file_, files_ - 1, last);
+}
+
 // Returns the lines for stdout at the end of a run. If the thread still waits for the disk, the
 // recorder's state is not known.
 std::string Recording::summary() const {
   if (complete_) {
-    const std::string last =
-        recorder_.files() > 1
-            ? fmt::format(" and {} more, to {}", recorder_.files() - 1, recorder_.file().string())
-            : "";
-    return fmt::format("recorded {} messages, {:.1f} MB, in {}{}\n", recorder_.messages(),
-                       1e-6 * static_cast<double>(recorder_.bytes()), file_, last);
+    return fmt::format("recorded {} messages, {:.1f} MB, in {}\n", recorder_.messages(),
+                       1e-6 * static_cast<double>(recorder_.bytes()), files_text());
   }
   const std::string why = hangs_             ? "the disk takes nothing"
                           : health_.failed() ? health_.state()

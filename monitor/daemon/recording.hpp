@@ -50,6 +50,8 @@ class Recording {
   void follow(const SceneInForce& since);
   // It has not.
   void abandon() { prepared_ = nullptr; }
+  // A command was answered, which is an event for a recording by event. Any thread.
+  void note_command() noexcept { command_came_ = true; }
   // Updates log and health with the faults since the last call. It is called regularly, by a thread
   // that may not wait.
   void watch();
@@ -84,10 +86,12 @@ class Recording {
   void wait_for_the_disk() const;
   void count(std::uint64_t messages);
   void tell_of_new_files();
+  [[nodiscard]] std::string files_text() const;
   [[nodiscard]] std::uint64_t missing() const;
 
-  std::string file_;         // the first one
-  std::uint64_t files_ = 1;  // files that the log has named
+  std::string file_;  // the first one
+  bool by_event_;
+  std::uint64_t files_;  // files that the log has named
   const PoseReader& poses_;
   RecordingHealth& health_;
   mutable std::mutex mutex_;  // guards the next two
@@ -95,6 +99,7 @@ class Recording {
   std::deque<std::unique_ptr<Part>> parts_;
   std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;  // by queues that are gone
   std::unique_ptr<Part> prepared_;
+  std::atomic<bool> command_came_{false};
   std::atomic<bool> failing_{false};  // the first one to set it says why
   Recorder recorder_;
   std::atomic<std::uint64_t> steps_{0};      // messages given to the recorder

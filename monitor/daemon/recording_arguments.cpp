@@ -60,6 +60,44 @@ void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
   app.add_flag(prefix + "uncompressed", uncompressed, "Do not compress (zstd)")->group(kRecording);
 }
 
+void RecordingArguments::add_events_to(CLI::App& app, const std::string& prefix) {
+  const char* const kRecording = "Recording";
+  CLI::Option* const around =
+      app.add_option(prefix + "around", around_s,
+                     "Record by event: only from this time before to this time after a zone is "
+                     "entered, a fault or "
+                     "a command, s, in files NAME-TIME.mcap; 0: record all");
+  around->check(number_from_zero())->capture_default_str()->group(kRecording);
+  app.add_option(prefix + "ring-mb", ring_mb,
+                 "Memory for the time before an event, MB; it limits that time")
+      ->check(CLI::Range(1.0, 1e6))
+      ->capture_default_str()
+      ->needs(around)
+      ->group(kRecording);
+  app.add_option(prefix + "keep-mb", keep_mb,
+                 "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: "
+                 "never")
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->needs(around)
+      ->group(kRecording);
+  app.add_option(prefix + "keep-h", keep_h,
+                 "Delete each NAME-TIME.mcap that is older than this, h; 0: never")
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->needs(around)
+      ->group(kRecording);
+  app.add_option(prefix + "ticks", ticks_every,
+                 "Keep one tick of N, with the newest poses and joints of each source, and every "
+                 "change of a zone: a small recording that shows a run, and cannot be compared")
+      ->check(whole_number(1, 1'000'000'000))
+      ->capture_default_str()
+      ->excludes(around)
+      ->group(kRecording);
+  for (const char* const name : {"roll-mb", "roll-s"})
+    around->excludes(app.get_option(prefix + name));
+}
+
 RecordingOptions RecordingArguments::options(bool overwrite) const {
   constexpr double kMost = 9e18;  // fits into 63 bits
   RecordingOptions options{
@@ -69,7 +107,13 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .left_out = {},
       .pairs_every = pairs_every,
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),
-      .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost)))};
+      .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost))),
+      .ticks_every = ticks_every,
+      .events = {
+          .around_ns = static_cast<std::int64_t>(std::ceil(std::min(around_s * 1e9, kMost))),
+          .ring_bytes = static_cast<std::size_t>(ring_mb * 1e6),
+          .keep_bytes = static_cast<std::uint64_t>(std::ceil(std::min(keep_mb * 1e6, kMost))),
+          .keep_ns = static_cast<std::int64_t>(std::ceil(std::min(keep_h * 3.6e12, kMost)))}};
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }

@@ -1,12 +1,28 @@
 // The content of a recording, and the number of its files.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <set>
 
 #include "monitor/wire/topics.hpp"
 
 namespace clearance {
+
+// Recording by event: only what was just before and after something that matters goes to the disk.
+struct EventOptions {
+  // The time before an event and after it that a file holds, ns. 0: everything is recorded.
+  std::int64_t around_ns = 0;
+  // Memory for the time before an event, taken once. If it holds less than that time, files begin
+  // later.
+  std::size_t ring_bytes = std::size_t{256} << 20;
+  // Files of former events are deleted, the oldest first, while all of them have more bytes than
+  // this, or when they were written longer ago than this, ns; 0: never.
+  std::uint64_t keep_bytes = 0;
+  std::int64_t keep_ns = 0;
+
+  [[nodiscard]] bool any() const noexcept { return around_ns > 0; }
+};
 
 struct RecordingOptions {
   bool overwrite = true;  // false: an existing file is an error
@@ -24,6 +40,12 @@ struct RecordingOptions {
   // can be read by itself.
   std::uint64_t roll_bytes = 0;
   std::int64_t roll_ns = 0;
+  // One tick in so many is kept: its report, and for each source and set of objects the newest
+  // batch since the tick kept before. The ticks between leave only changes of zones. Such a
+  // recording shows a run and can be replayed at its lower rate. The reports cannot be made again
+  // to the bit.
+  std::uint64_t ticks_every = 1;
+  EventOptions events = {};
 };
 
 // Returns true when the report of this cycle keeps its pairs.

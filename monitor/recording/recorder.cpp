@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "monitor/files/build_info.hpp"
 #include "monitor/inputs/scene_ids.hpp"
+#include "monitor/recording/event_files.hpp"
 #include "monitor/wire/convert.hpp"
 
 namespace clearance {
@@ -22,6 +22,21 @@ std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
   return newest == batch.samples.end() ? otherwise : newest->stamp_ns;
 }
 
+std::unique_ptr<RecordingSink> sink_of(const std::filesystem::path& file, const Topics& topics,
+                                       const RecordingOptions& options) {
+  if (options.events.any()) return std::make_unique<EventFiles>(file, topics, options);
+  return std::make_unique<ContinuousFiles>(file, topics, options);
+}
+
+// Equal for batches with the same objects or joints.
+std::uint64_t content_of(const PoseBatch& batch) {
+  std::uint64_t hash = 14695981039346656037U;  // FNV-1a
+  const auto add = [&hash](std::uint32_t id) { hash = (hash ^ id) * 1099511628211U; };
+  for (const PoseSample& sample : batch.samples) add(sample.object);
+  for (const JointSample& sample : batch.joints) add(sample.variable);
+  return hash;
+}
+
 }  // namespace
 
 Recorder::OfScene::OfScene(const Scene& the_scene)
@@ -35,19 +50,22 @@ Recorder::OfScene::OfScene(const Scene& the_scene)
 Recorder::Recorder(const std::filesystem::path& file, const Cell& cell, std::int64_t now_ns,
                    const RecordingOptions& options)
     : options_(options),
-      writer_(file, cell.topics, options),
-      without_files_(writer_.attach(cell)),
+      sink_(sink_of(file, cell.topics, options)),
       batch_(make_batch(clearance_msg_kMaxPoses)),
-      now_(std::make_unique<OfScene>(cell.scene)),
-      last_ns_(now_ns) {
-  note_joint_names(cell.scene);
-  writer_.catalogue(*make_catalogue(cell), now_ns, kBuild);
+      last_ns_(now_ns),
+      watch_(options.events.around_ns) {
+  begin_scene(cell, *make_catalogue(cell));
 }
 
 // The state of every zone follows with the next report, since its id may be another one.
 void Recorder::change(const Cell& cell, const SceneInForce& since) {
-  without_files_ = writer_.attach(cell);
-  writer_.catalogue(*make_catalogue(cell, since), last_ns_, kBuild);
+  begin_scene(cell, *make_catalogue(cell, since));
+  watch_.change();
+  asked_ = {RecordedEvent::Cause::kCommand, "the cell has changed"};
+}
+
+void Recorder::begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue) {
+  without_files_ = sink_->begin_scene(cell, catalogue, last_ns_);
   now_ = std::make_unique<OfScene>(cell.scene);
   note_joint_names(cell.scene);
 }
@@ -75,7 +93,8 @@ void Recorder::poses(const PoseBatch& batch) {
                 : encoder_.encode(*batch_);
   waiting_.push_back({of_joints ? TopicKind::kJointStates : TopicKind::kPoses, batch.source,
                       batch.sequence_number, stamp_of(batch, last_ns_),
-                      std::vector<std::byte>(cdr.begin(), cdr.end())});
+                      std::vector<std::byte>(cdr.begin(), cdr.end()),
+                      options_.ticks_every > 1 ? content_of(batch) : 0});
 }
 
 // Inputs stand in front of the report that they led to, in the order of use. A file ends behind the
@@ -83,19 +102,61 @@ void Recorder::poses(const PoseBatch& batch) {
 void Recorder::report(const Report& report, std::span<const SourceUse> sources,
                       std::int64_t publish_ns) {
   last_ns_ = report.now_ns;
+  const bool is_kept = options_.ticks_every <= 1 || report.cycle % options_.ticks_every == 0;
+  if (options_.ticks_every > 1) sources = thin_out(sources, is_kept);
+  if (is_kept) write_report(report, sources, publish_ns);
+  write_zones(report);
+  if (is_kept) thin_uses_.clear();
+  states_all_zones_ = sink_->end_tick(report.now_ns, event_of(report));
+}
+
+void Recorder::write_report(const Report& report, std::span<const SourceUse> sources,
+                            std::int64_t publish_ns) {
   write_used(sources, report.now_ns);
   if (!report.separated_zones.empty()) write_separation(report, publish_ns);
-  if (writer_.holds(TopicKind::kDistances)) {
+  if (holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *now_->distances);
     if (!keeps_pairs(options_, report.cycle)) now_->distances->pairs._length = 0;
-    writer_.write(TopicKind::kDistances, report.now_ns, report.now_ns, *now_->distances);
+    write(TopicKind::kDistances, report.now_ns, report.now_ns, *now_->distances);
   }
   if (now_->scene.gradients && keeps_pairs(options_, report.cycle)) {
-    writer_.write(TopicKind::kGradients, report.now_ns, report.now_ns,
-                  now_->gradients.of(report, publish_ns));
+    write(TopicKind::kGradients, report.now_ns, report.now_ns,
+          now_->gradients.of(report, publish_ns));
   }
-  write_zones(report);
-  if (writer_.roll(report.now_ns)) now_->zones = WrittenZones(now_->scene.zones.size());
+}
+
+std::optional<RecordedEvent> Recorder::event_of(const Report& report) {
+  std::optional<RecordedEvent> event = watch_.look(report, now_->scene);
+  if (asked_) event = std::exchange(asked_, std::nullopt);
+  return event;
+}
+
+// Notes the last batch of each source since the last tick that was kept, and forgets those that a
+// newer one of the same content replaces. Returns the noted ones.
+std::span<const SourceUse> Recorder::thin_out(std::span<const SourceUse> sources, bool is_kept) {
+  for (const SourceUse& use : sources) {
+    const auto same = std::ranges::find(thin_uses_, use.source, &SourceUse::source);
+    if (same == thin_uses_.end()) {
+      thin_uses_.push_back(use);
+    } else {
+      same->sequence_number = use.sequence_number;
+    }
+  }
+  const auto is_used = [this](const Waiting& batch) {
+    return std::ranges::any_of(thin_uses_, [&batch](const SourceUse& use) {
+      return use.source == batch.source && batch.sequence_number <= use.sequence_number;
+    });
+  };
+  for (std::size_t i = waiting_.size(); i-- > 0;) {
+    if (!is_used(waiting_[i])) continue;
+    const auto replaces = [&](const Waiting& later) {
+      return later.source == waiting_[i].source && later.kind == waiting_[i].kind &&
+             later.of == waiting_[i].of && is_used(later);
+    };
+    const auto next = waiting_.begin() + static_cast<std::ptrdiff_t>(i);
+    if (std::any_of(next + 1, waiting_.end(), replaces)) waiting_.erase(next);
+  }
+  return is_kept ? std::span<const SourceUse>(thin_uses_) : std::span<const SourceUse>();
 }
 
 // Batches may already wait that belong to later ticks: all up to the last one that this tick names.
@@ -113,8 +174,7 @@ void Recorder::write_used(std::span<const SourceUse> sources, std::int64_t log_n
 // The first `count` batches, stamped with the log time of the report that used them.
 void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
   for (std::size_t i = 0; i < count; ++i) {
-    writer_.write(waiting_[i].kind, log_ns, waiting_[i].stamp_ns,
-                  std::span<const std::byte>(waiting_[i].cdr));
+    sink_->write(waiting_[i].kind, log_ns, waiting_[i].stamp_ns, waiting_[i].cdr, false);
   }
   waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -122,33 +182,34 @@ void Recorder::write_waiting(std::size_t count, std::int64_t log_ns) {
 // The message stands in front of the distances, so that a reader of these has it already. It is
 // thinned out like them.
 void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
-  if (!writer_.holds(TopicKind::kSeparation)) return;
+  if (!holds(TopicKind::kSeparation)) return;
   to_wire(report, publish_ns, *now_->separation);
   if (!keeps_pairs(options_, report.cycle)) now_->separation->pairs._length = 0;
-  writer_.write(TopicKind::kSeparation, report.now_ns, report.now_ns, *now_->separation);
+  write(TopicKind::kSeparation, report.now_ns, report.now_ns, *now_->separation);
 }
 
 // Writes each zone at the start, then its changes, as the daemon does on DDS.
 void Recorder::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < now_->scene.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
-    if (now_->zones.is(zone, active)) continue;
+    const bool repeated = now_->zones.is(zone, active);
+    if (repeated && !states_all_zones_) continue;
     now_->zones.set(zone, active);
     clearance_msg_ZoneState state{};
     to_wire(now_->scene, report, zone, state);
-    writer_.write(TopicKind::kZones, report.now_ns, report.now_ns, state);
+    write(TopicKind::kZones, report.now_ns, report.now_ns, state, repeated);
   }
 }
 
 // Stamped no earlier than the last report, so that log times do not go back.
 void Recorder::health(const clearance_msg_Health& health) {
-  writer_.write(TopicKind::kHealth, std::max(last_ns_, health.now_ns), health.now_ns, health);
+  write(TopicKind::kHealth, std::max(last_ns_, health.now_ns), health.now_ns, health);
 }
 
 // Batches that no report has named yet are written as well: they did arrive.
 bool Recorder::close() {
   write_waiting(waiting_.size(), last_ns_);
-  return writer_.close();
+  return sink_->close();
 }
 
 }  // namespace clearance

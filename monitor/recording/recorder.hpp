@@ -7,13 +7,16 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
-#include "monitor/recording/writer.hpp"
+#include "monitor/recording/recorded_event.hpp"
+#include "monitor/recording/sink.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
@@ -44,21 +47,25 @@ class Recorder {
 
   void health(const clearance_msg_Health& health);
 
+  // With RecordingOptions::events: the next report is one to write a file around, for a reason
+  // outside of its tick.
+  void ask_for_file(RecordedEvent event) { asked_ = std::move(event); }
+
   // McapWriter::check, to be called now and then while nothing is written.
-  bool check() { return writer_.check(); }
+  bool check() { return sink_->check(); }
 
   // True when everything is in the file.
   bool close();
-  [[nodiscard]] bool ok() const noexcept { return writer_.ok(); }
-  [[nodiscard]] const std::string& error() const noexcept { return writer_.error(); }
-  [[nodiscard]] std::uint64_t messages() const noexcept { return writer_.messages(); }
-  [[nodiscard]] std::uint64_t bytes() const noexcept { return writer_.bytes(); }
+  [[nodiscard]] bool ok() const noexcept { return sink_->ok(); }
+  [[nodiscard]] const std::string& error() const noexcept { return sink_->error(); }
+  [[nodiscard]] std::uint64_t messages() const noexcept { return sink_->messages(); }
+  [[nodiscard]] std::uint64_t bytes() const noexcept { return sink_->bytes(); }
   // The reason why the recording does not hold the files that the last cell names. Empty: it holds
   // them, or there are none.
   [[nodiscard]] const std::string& without_files() const noexcept { return without_files_; }
-  // The file that is written, and how many there are by now.
-  [[nodiscard]] const std::filesystem::path& file() const noexcept { return writer_.file(); }
-  [[nodiscard]] std::uint64_t files() const noexcept { return writer_.part(); }
+  // The file that is written, or was last, and how many there are by now.
+  [[nodiscard]] const std::filesystem::path& file() const noexcept { return sink_->file(); }
+  [[nodiscard]] std::uint64_t files() const noexcept { return sink_->files(); }
 
  private:
   // State that follows from the scene.
@@ -81,17 +88,30 @@ class Recorder {
     std::uint64_t sequence_number;
     std::int64_t stamp_ns;
     std::vector<std::byte> cdr;
+    std::uint64_t of = 0;  // which objects or joints it is of
   };
 
   void note_joint_names(const Scene& scene);
   [[nodiscard]] std::span<const std::string> joint_names(std::uint64_t revision) const;
+  [[nodiscard]] bool holds(TopicKind kind) const { return !options_.left_out.contains(kind); }
+  template <class T>
+  void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns, const T& sample,
+             bool repeated = false) {
+    if (holds(kind)) sink_->write(kind, log_ns, publish_ns, encoder_.encode(sample), repeated);
+  }
+  void begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue);
+  [[nodiscard]] std::optional<RecordedEvent> event_of(const Report& report);
+  void write_report(const Report& report, std::span<const SourceUse> sources,
+                    std::int64_t publish_ns);
+  [[nodiscard]] std::span<const SourceUse> thin_out(std::span<const SourceUse> sources,
+                                                    bool is_kept);
   void write_used(std::span<const SourceUse> sources, std::int64_t log_ns);
   void write_waiting(std::size_t count, std::int64_t log_ns);
   void write_separation(const Report& report, std::int64_t publish_ns);
   void write_zones(const Report& report);
 
   RecordingOptions options_;
-  RecordingWriter writer_;
+  std::unique_ptr<RecordingSink> sink_;
   std::string without_files_;
   std::vector<Waiting> waiting_;
   Sample<clearance_msg_PoseBatch> batch_;
@@ -99,6 +119,10 @@ class Recorder {
   std::deque<JointNamesOf> joint_names_;  // of the last scenes, the present one last
   CdrEncoder encoder_;
   std::int64_t last_ns_;
+  EventWatch watch_;
+  std::optional<RecordedEvent> asked_;
+  bool states_all_zones_ = true;      // the next tick does
+  std::vector<SourceUse> thin_uses_;  // since the last tick that was kept
 };
 
 }  // namespace clearance

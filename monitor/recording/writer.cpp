@@ -8,7 +8,6 @@
 #include <charconv>
 #include <utility>
 
-#include "config/scene/revision.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 
@@ -40,55 +39,19 @@ std::uint16_t RecordingWriter::add_channel(const McapSchema& schema, const std::
   return mcap_->add_channel(schema, topic, kCdrEncoding);
 }
 
-// Files go by their absolute paths, and are compressed where that makes them smaller. A file that
-// was kept for the cell before is not compressed again.
-std::string RecordingWriter::attach(const Cell& cell) {
-  const std::vector<Attached> before = std::exchange(attached_, {});
-  cell_file_.clear();
-  if (cell.files.empty() || options_.attach_bytes == 0) return {};
-  std::vector<Attached> all;
-  std::vector<bool> is_new;
-  std::uint64_t total = 0;
-  for (const std::filesystem::path& file : cell.files) {
-    const auto read = read_bytes(file.string());
-    if (const auto* fault = std::get_if<FileFault>(&read)) return fault->reason;
-    const std::string& text = std::get<std::string>(read);
-    Revision revision;
-    revision.add(text);
-    const auto same = std::ranges::find_if(before, [&](const Attached& one) {
-      return one.name == file.string() && one.revision == revision.value();
+// Files that this file has already are not repeated.
+std::string RecordingWriter::attach(AttachedFiles files) {
+  const AttachedFiles before = std::exchange(attached_, std::move(files));
+  for (const AttachedFile& file : attached_.files) {
+    const bool is_new = std::ranges::none_of(before.files, [&file](const AttachedFile& one) {
+      return one.name == file.name && one.revision == file.revision;
     });
-    is_new.push_back(same == before.end());
-    all.push_back(is_new.back() ? attached(file.string(), text, revision.value()) : *same);
-    total += all.back().bytes.size();
-    if (total > options_.attach_bytes) {
-      return fmt::format("they are more than {:.1f} MB",
-                         1e-6 * static_cast<double>(options_.attach_bytes));
-    }
+    if (is_new) write_attachment(file);
   }
-  attached_ = std::move(all);
-  cell_file_ = cell.file.string();
-  for (std::size_t i = 0; i < attached_.size(); ++i) {
-    if (is_new[i]) write_attachment(attached_[i]);
-  }
-  return {};
+  return attached_.missing;
 }
 
-RecordingWriter::Attached RecordingWriter::attached(const std::string& name,
-                                                    const std::string& text,
-                                                    std::uint64_t revision) const {
-  Attached one{name, "application/octet-stream", {}, revision};
-  const auto bytes = std::as_bytes(std::span(text));
-  if (options_.compress) compress_zstd(bytes, one.bytes);
-  if (one.bytes.empty()) {
-    one.bytes.assign(bytes.begin(), bytes.end());
-  } else {
-    one.media_type = kZstdMediaType;
-  }
-  return one;
-}
-
-void RecordingWriter::write_attachment(const Attached& file) {
+void RecordingWriter::write_attachment(const AttachedFile& file) {
   end_chunk();
   const std::uint64_t before = mcap_->bytes();
   mcap_->attachment(file.name, file.media_type, file.bytes);
@@ -134,8 +97,9 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
             {"scene_revision", std::to_string(catalogue.scene_revision)},
             {"cell", catalogue.cell_yaml}};
   if (!build.empty()) about_["build"] = build;
-  if (!cell_file_.empty()) about_["cell_file"] = cell_file_;
+  if (!attached_.cell_file.empty()) about_["cell_file"] = attached_.cell_file;
   if (options_.pairs_every > 1) about_["pairs_every"] = std::to_string(options_.pairs_every);
+  if (options_.ticks_every > 1) about_["ticks_every"] = std::to_string(options_.ticks_every);
   if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
   if (catalogue.daemon != 0) about_["daemon"] = std::to_string(catalogue.daemon);
   if (catalogue.in_force_from != 0) {
@@ -185,7 +149,7 @@ bool RecordingWriter::roll(std::int64_t log_ns) {
   open();
   attached_bytes_ = 0;
   write_former();
-  for (const Attached& file : attached_) write_attachment(file);
+  for (const AttachedFile& file : attached_.files) write_attachment(file);
   if (!about_.empty()) {
     about_["part"] = std::to_string(part_);
     mcap_->metadata(kRecordingMetadata, about_);

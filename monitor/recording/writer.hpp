@@ -14,6 +14,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/former_scenes.hpp"
 #include "monitor/mcap/writer.hpp"
+#include "monitor/recording/attached_files.hpp"
 #include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/wire/cdr.hpp"
@@ -44,7 +45,11 @@ class RecordingWriter {
   // its description. Those that this file has already are not repeated. If they are not kept,
   // returns the reason: they are too large (attach_bytes), or one cannot be read. A recording
   // without them is whole, but replays need the files.
-  [[nodiscard]] std::string attach(const Cell& cell);
+  [[nodiscard]] std::string attach(const Cell& cell) {
+    return attach(attached_files(cell, options_, attached_));
+  }
+  // The same with files that were read before.
+  [[nodiscard]] std::string attach(AttachedFiles files);
 
   // The catalogue maps ids to names and is also kept as metadata. It belongs in front of all
   // messages that use the ids. `build`: the build of the daemon that makes the reports; empty if
@@ -67,6 +72,12 @@ class RecordingWriter {
   // called where a file may end: after a report and the messages that belong to it. Returns true
   // when it began a file.
   bool roll(std::int64_t log_ns);
+
+  // Metadata beside the description, in this file, at this place between its messages.
+  void note(std::string_view name, const McapMap& values) {
+    end_chunk();
+    mcap_->metadata(name, values);
+  }
 
   // A channel beside those of our topics, in this file and every one after it, with CDR messages;
   // returns its id.
@@ -93,16 +104,8 @@ class RecordingWriter {
   [[nodiscard]] std::uint64_t part() const noexcept { return part_; }
 
  private:
-  struct Attached {
-    std::string name, media_type;
-    std::vector<std::byte> bytes;
-    std::uint64_t revision = 0;  // of what it holds, not compressed
-  };
-
   void open();
-  [[nodiscard]] Attached attached(const std::string& name, const std::string& text,
-                                  std::uint64_t revision) const;
-  void write_attachment(const Attached& file);
+  void write_attachment(const AttachedFile& file);
   void end_chunk();
   void note_former(const clearance_msg_Catalogue& next);
   void write_former();
@@ -118,9 +121,8 @@ class RecordingWriter {
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file
   std::uint64_t messages_before_ = 0, bytes_before_ = 0;
-  std::vector<Attached> attached_;                   // the files of the last cell
+  AttachedFiles attached_;                           // the files of the last cell
   std::uint64_t attached_bytes_ = 0;                 // in this file
-  std::string cell_file_;                            // where the cell stood; empty: not known
   McapMap about_;                                    // the last description
   std::optional<std::vector<std::byte>> catalogue_;  // the last one, as CDR
   // By id, with commas: of the last description, and of those before in the same run of the daemon.

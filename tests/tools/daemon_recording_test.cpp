@@ -233,6 +233,95 @@ TEST_F(FastRecordingDaemon, CountsWhatADiskIsTooSlowFor) {
   EXPECT_EQ(0, replay("run.mcap", output)) << output;
 }
 
+// Records by event. A robot that falls silent is the event.
+class EventRecordingDaemon : public RecordingDaemon {
+ protected:
+  void start_by_event(const std::string& seconds, const ChildOptions& options = {}) {
+    daemon.emplace(kDaemon,
+                   with({cell.path(), "--record", path("run.mcap"), "--record-around", seconds,
+                         "--record-uncompressed"},
+                        dds_arguments(dds)),
+                   options);
+    distances.settle();
+  }
+  // The robot moves until a report knows all pairs, and is then ended.
+  void let_a_robot_fall_silent() {
+    ChildProcess robot(kRobot, with({cell.path(), "--rate", "300"}, dds_arguments(dds)));
+    ASSERT_TRUE(eventually([&] {
+      const auto report = distances.next();
+      return report != nullptr && (*report)->unknown == 0 && (*report)->stale == 0;
+    })) << daemon->output();
+    robot.signal(SIGTERM);
+    robot.wait();
+  }
+  std::vector<std::string> files() const {
+    std::vector<std::string> found;
+    for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
+      const std::string name = entry.path().filename();
+      if (name.starts_with("run-")) found.push_back(name);
+    }
+    std::ranges::sort(found);
+    return found;
+  }
+  int replay_of_event(const std::string& name, std::string& output) const {
+    ChildProcess child(kReplay, {"check", path(name), "--compare-bounds"});
+    const int status = child.wait();
+    output = child.output();
+    return status;
+  }
+};
+
+TEST_F(EventRecordingDaemon, WritesAFileForARobotThatFallsSilent) {
+  start_by_event("0.5");
+  let_a_robot_fall_silent();
+  ASSERT_TRUE(eventually([&] { return daemon->told("event-recorded"); })) << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(0, daemon->wait()) << daemon->output();
+  EXPECT_FALSE(std::filesystem::exists(folder / "run.mcap"));
+  ASSERT_FALSE(files().empty());
+  for (const std::string& file : files()) {
+    std::string output;
+    EXPECT_EQ(0, replay_of_event(file, output)) << output;
+  }
+}
+
+// A killed daemon leaves the file of its event, which is read up to the last chunk, and the next
+// run leaves that file alone.
+TEST_F(EventRecordingDaemon, LeavesWhatWasRecordedWhenItIsKilledInBetween) {
+  start_by_event("30");
+  let_a_robot_fall_silent();
+  ASSERT_TRUE(eventually([&] { return daemon->told("event-recorded"); })) << daemon->output();
+  ASSERT_TRUE(eventually([&] { return !files().empty() && size(files()[0]) > 50'000; }));
+  daemon->signal(SIGKILL);
+  daemon->wait();
+  const std::vector<std::string> before = files();
+  const std::uintmax_t bytes = size(before[0]);
+  std::string output;
+  EXPECT_EQ(5, replay_of_event(before[0], output)) << output;
+  EXPECT_THAT(output, HasSubstr("cut off"));
+  EXPECT_THAT(output, testing::ContainsRegex("[1-9][0-9]+ ticks, "));
+  start_by_event("0.5");
+  let_a_robot_fall_silent();
+  EXPECT_TRUE(eventually([&] { return files().size() > before.size(); })) << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(0, daemon->wait()) << daemon->output();
+  EXPECT_EQ(bytes, size(before[0]));
+}
+
+TEST_F(EventRecordingDaemon, TellsThatTheDiskIsFullWhenItWritesAnEvent) {
+  start_by_event("30", {.most_file_bytes = 100'000});
+  let_a_robot_fall_silent();
+  expect_told("cannot write to " + path("run-"));
+}
+
+TEST_F(EventRecordingDaemon, RefusesAFolderThatIsMissing) {
+  ChildProcess refused(
+      kDaemon, with({cell.path(), "--record", path("none/run.mcap"), "--record-around", "1"},
+                    dds_arguments(dds)));
+  EXPECT_EQ(5, refused.wait()) << refused.output();
+  EXPECT_THAT(refused.output(), HasSubstr(path("none")));
+}
+
 TEST_F(RecordingDaemon, NeverRecordsOverItsCell) {
   ChildProcess over(kDaemon,
                     with({cell.path(), "--record", cell.path(), "--force"}, dds_arguments(dds)));

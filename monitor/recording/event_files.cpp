@@ -1,0 +1,209 @@
+#include "monitor/recording/event_files.hpp"
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "monitor/files/build_info.hpp"
+#include "monitor/files/numbered_file.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance {
+namespace {
+
+// A file may begin so often.
+constexpr std::int64_t kStartEveryNs = 50'000'000;
+// Ages are looked at every so many calls of check(), which come once a second.
+constexpr int kChecksALook = 60;
+
+constexpr std::size_t kStampLength = 20;  // 20261124T104512.003Z
+
+std::string stamp_of(std::int64_t now_ns) {
+  const std::time_t seconds = now_ns / 1'000'000'000;
+  return fmt::format("{:%Y%m%dT%H%M%S}.{:03}Z", fmt::gmtime(seconds), now_ns / 1'000'000 % 1000);
+}
+
+bool is_stamp(std::string_view text) {
+  constexpr std::string_view kLike = "00000000T000000.000Z";
+  static_assert(kLike.size() == kStampLength);
+  return text.size() == kStampLength &&
+         std::equal(text.begin(), text.end(), kLike.begin(), [](char c, char like) {
+           return like == '0' ? c >= '0' && c <= '9' : c == like;
+         });
+}
+
+struct OldFile {
+  std::filesystem::path path;
+  std::uint64_t bytes;
+  std::filesystem::file_time_type written;
+};
+
+// The files of former events, the oldest first. Links and files of other names are not among them.
+std::vector<OldFile> old_files(const std::filesystem::path& pattern) {
+  const std::string prefix = pattern.stem().string() + "-", suffix = pattern.extension().string();
+  const auto folder = pattern.parent_path().empty() ? "." : pattern.parent_path();
+  std::vector<OldFile> found;
+  std::error_code fault;
+  for (std::filesystem::directory_iterator file(folder, fault), end; !fault && file != end;
+       file.increment(fault)) {
+    const std::string name = file->path().filename().string();
+    std::error_code gone;
+    const bool is_ours = name.size() == prefix.size() + kStampLength + suffix.size() &&
+                         name.starts_with(prefix) && name.ends_with(suffix) &&
+                         is_stamp(std::string_view(name).substr(prefix.size(), kStampLength)) &&
+                         file->symlink_status(gone).type() == std::filesystem::file_type::regular;
+    if (!is_ours) continue;
+    const auto bytes = file->file_size(gone);
+    if (gone) continue;
+    const auto written = file->last_write_time(gone);
+    if (!gone) found.push_back({file->path(), bytes, written});
+  }
+  std::ranges::sort(found, {}, [](const OldFile& one) { return one.path.filename(); });
+  return found;
+}
+
+}  // namespace
+
+EventFiles::EventFiles(const std::filesystem::path& file, const Topics& topics,
+                       const RecordingOptions& options)
+    : pattern_(file),
+      file_(file),
+      topics_(topics),
+      options_(options),
+      ring_(options.events.ring_bytes) {
+  options_.overwrite = false;
+  options_.roll_bytes = 0;
+  options_.roll_ns = 0;
+  const auto folder = file.parent_path().empty() ? "." : file.parent_path();
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    error_ = fmt::format("no file can be made in {}: {}; expected a folder that can be written",
+                         folder.string(), std::strerror(errno));
+  delete_oldest();
+}
+
+std::string EventFiles::begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue,
+                                    std::int64_t log_ns) {
+  const std::uint32_t number = scenes_.empty() ? 1 : scenes_.back().number + 1;
+  KeptScene scene{
+      number,
+      attached_files(cell, options_, scenes_.empty() ? AttachedFiles{} : scenes_.back().files),
+      {}};
+  CdrEncoder encoder;
+  static_cast<void>(CdrDecoder().decode(encoder.encode(catalogue), scene.catalogue));
+  scenes_.push_back(std::move(scene));
+  if (writer_) follow(number, log_ns);
+  return scenes_.back().files.missing;
+}
+
+// A file goes on with another scene.
+void EventFiles::follow(std::uint32_t scene, std::int64_t log_ns) {
+  if (written_scene_ == scene) return;
+  written_scene_ = scene;
+  const auto found = std::ranges::find(scenes_, scene, &KeptScene::number);
+  static_cast<void>(writer_->attach(found->files));
+  writer_->catalogue(*found->catalogue, log_ns, kBuild);
+}
+
+void EventFiles::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
+                       std::span<const std::byte> cdr, bool repeated) {
+  if (options_.left_out.contains(kind) || !ok()) return;
+  const bool is_start = std::exchange(next_is_start_, false);
+  if (is_start) started_ns_ = log_ns;
+  ring_.put({kind, is_start, repeated, scenes_.back().number, log_ns, publish_ns, cdr});
+  if (writer_ && !repeated) writer_->write(kind, log_ns, publish_ns, cdr);
+}
+
+bool EventFiles::end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) {
+  if (event && ok()) {
+    if (!writer_) begin(now_ns);
+    if (writer_)
+      writer_->note(
+          kEventMetadata,
+          {{"cause", name(event->cause)}, {"what", event->what}, {"t_ns", std::to_string(now_ns)}});
+    until_ns_ = now_ns + options_.events.around_ns;
+  } else if (writer_ && now_ns >= until_ns_) {
+    end();
+  }
+  keep_error();
+  ring_.drop_before(now_ns - options_.events.around_ns);
+  forget_scenes();
+  next_is_start_ = next_is_start_ || now_ns - started_ns_ >= kStartEveryNs;
+  return next_is_start_;
+}
+
+// The scene of the first message comes first. Only the first tick of a file states every zone.
+void EventFiles::begin(std::int64_t now_ns) {
+  delete_oldest();
+  file_ = pattern_.parent_path() / fmt::format("{}-{}{}", pattern_.stem().string(),
+                                               stamp_of(now_ns), pattern_.extension().string());
+  file_ = first_free(file_);
+  writer_.emplace(file_, topics_, options_);
+  ++files_;
+  written_scene_ = 0;
+  std::optional<std::int64_t> first_tick_ns;
+  ring_.for_each([&](const RingMessage& message) {
+    follow(message.scene, message.log_ns);
+    if (message.kind == TopicKind::kDistances && !first_tick_ns) first_tick_ns = message.log_ns;
+    if (message.repeated && first_tick_ns && message.log_ns > *first_tick_ns) return;
+    writer_->write(message.kind, message.log_ns, message.publish_ns, message.cdr);
+  });
+}
+
+void EventFiles::end() {
+  writer_->close();
+  keep_error();
+  messages_ += writer_->messages();
+  bytes_ += writer_->bytes();
+  writer_.reset();
+  delete_oldest();
+}
+
+// Scenes that neither the ring nor the file needs any more.
+void EventFiles::forget_scenes() {
+  const std::uint32_t oldest = ring_.empty() ? scenes_.back().number : ring_.front().scene;
+  while (scenes_.size() > 1 && scenes_.front().number < oldest) scenes_.pop_front();
+}
+
+// The file that is being written counts and stays.
+void EventFiles::delete_oldest() {
+  const EventOptions& events = options_.events;
+  if (events.keep_bytes == 0 && events.keep_ns == 0) return;
+  const std::vector<OldFile> files = old_files(pattern_);
+  std::uint64_t total = 0;
+  for (const OldFile& file : files) total += file.bytes;
+  const auto now = std::filesystem::file_time_type::clock::now();
+  for (const OldFile& file : files) {
+    if (writer_ && file.path.filename() == file_.filename()) continue;
+    const bool too_many = events.keep_bytes > 0 && total > events.keep_bytes;
+    const bool too_old =
+        events.keep_ns > 0 && now - file.written > std::chrono::nanoseconds(events.keep_ns);
+    std::error_code fault;
+    if ((too_many || too_old) && std::filesystem::remove(file.path, fault)) total -= file.bytes;
+  }
+}
+
+bool EventFiles::keep_error() {
+  if (error_.empty() && writer_ && !writer_->ok()) error_ = writer_->error();
+  return ok();
+}
+
+bool EventFiles::check() {
+  if (++checks_ % kChecksALook == 0) delete_oldest();
+  if (writer_) writer_->check();
+  return keep_error();
+}
+
+bool EventFiles::close() {
+  if (writer_) end();
+  return ok();
+}
+
+}  // namespace clearance
