@@ -68,6 +68,124 @@ def test_a_robot_and_an_object_are_told_and_their_distances_come_back(daemon):
         assert later.revision == report.revision and not later.other_daemon
 
 
+def test_gradients_and_zones_and_health_come_beside_the_reports(run_daemon, planar_file):
+    daemon = run_daemon(planar_file, "--gradients")
+    connection = daemon.connection()
+    with clearance.Reports(connection, gradients=True, separation=True) as reports, clearance.JointWriter(
+        "python joints", ARM, connection
+    ) as arm, clearance.PoseWriter("python poses", ["ball"], connection) as ball:
+        assert arm.wait_heard(LIMIT_S) and ball.wait_heard(LIMIT_S)
+        q1, q2 = 0.3, 0.9
+
+        def sent_and_heard():
+            arm.write([q1, q2], [0.0, 0.0])
+            ball.write([[1.0, 1.0, 5.0, 0, 0, 0, 1]], [[0] * 6])
+            return reports.next(0.05)
+
+        report = eventually(
+            sent_and_heard, lambda r: r.unknown == 0 and r.gradients is not None and None not in r.pair_names
+        )
+        assert report.joints == ARM and report.zone_names == ["stop"]
+        assert report.gradients.shape == (len(report.pairs), 2) and report.drifts.shape == (4,)
+        rows = {frozenset(names): row for names, row in zip(report.pair_names, report.gradients)}
+        # The wall is at x = 3, the tip at x = cos(q1) + cos(q1 + q2), the elbow at cos(q1).
+        elbow, tip = np.sin(q1), np.sin(q1 + q2)
+        truths = {("lower", "wall"): [elbow + tip, tip], ("upper", "wall"): [elbow, 0.0]}
+        for pair, truth in truths.items():
+            # A pair whose bounds were carried in this tick has no gradient.
+            np.testing.assert_allclose(rows[frozenset(pair)], truth, atol=1e-9)
+        assert np.isnan(rows[frozenset(("ball", "wall"))]).all()  # no joint moves it
+        assert report.separated_zones is None and report.separated_pairs is None
+
+        def told():
+            sent_and_heard()
+            return reports.zones.get("stop")
+
+        stop = eventually(told, lambda zone: not zone["active"])
+        assert stop["cause"] == 0 and stop["clearance"] > 0.25 and stop["cycle"] > 0
+
+        def near():
+            arm.write([0.0, 0.0], [0.0, 0.0])
+            reports.next(0.05)
+            return reports.zones["stop"]
+
+        # The tip is at x = 2 and the wall 0.9 m from it, so a nearer wall makes the zone active.
+        with clearance.Commands("python tests", connection) as commands:
+            assert commands.send("- place: {object: wall, pose: {xyz: [2.25, 0, 0]}}", LIMIT_S).done
+        stop = eventually(near, lambda zone: zone["active"] and zone["cause"] == 1)
+        assert stop["clearance"] < 0.2
+
+        def healthy():
+            sent_and_heard()
+            return reports.health
+
+        health = eventually(healthy, lambda h: any(s["source"] == "python joints" for s in h["sources"]))
+        assert health["cycle"] > 0 and health["recording"] == "" and health["tick_p50_us"] > 0
+        assert {joint["name"] for joint in health["joints"]} == set(ARM)
+        assert "ball" in {one["name"] for one in health["inputs"]}
+
+
+PERSON_AND_ROBOT = """name: hall
+units: {length: m, angle: deg}
+rate_hz: 200
+defaults: {age_limit_ms: 10000}
+objects:
+  - {name: person, sphere: {radius: 0.2}}
+  - {name: robot, sphere: {radius: 0.1}}
+pairs: [{between: [person, robot]}]
+zones:
+  - name: people
+    between: [person, robot]
+    enter_below: 0.3
+    leave_above: 0.4
+    separation: {human: person, reaction_time_ms: 100, stopping_time_ms: 250,
+                 stopping_distance: 0.125, stopping_speed: 1, intrusion_distance: 0.1}
+"""
+
+
+def test_separations_belong_to_the_tick_of_their_report(run_daemon, tmp_path):
+    (tmp_path / "hall.yaml").write_text(PERSON_AND_ROBOT)
+    connection = run_daemon(tmp_path / "hall.yaml").connection()
+    with clearance.Reports(connection, separation=True) as reports, clearance.PoseWriter(
+        "python poses", ["person", "robot"], connection
+    ) as poses:
+        assert poses.wait_heard(LIMIT_S)
+
+        def sent_and_heard():
+            poses.write([[2, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 1]], [[0] * 6] * 2)
+            return reports.next(0.05)
+
+        report = eventually(
+            sent_and_heard,
+            lambda r: r.separated_zones is not None and r.separated_zones[0]["validity"] == 2,
+        )
+        [zone], [pair] = report.separated_zones, report.separated_pairs
+        assert zone["scaling"] == 1.0 and report.zone_names == ["people"]
+        # 2 m from centre to centre less both radii. S_p: C, and 1.6 m/s for the reaction time and the
+        # age of the person's pose.
+        assert pair["clearance"] == pytest.approx(1.7, abs=1e-9)
+        age_s = 1e-9 * pair["age_human_ns"]
+        assert pair["protective_distance"] == pytest.approx(0.1 + 1.6 * (0.1 + age_s), abs=1e-9)
+        assert pair["remaining"] == pytest.approx(pair["clearance"] - pair["protective_distance"], abs=1e-9)
+
+
+def test_ctrl_c_ends_a_program_that_waits():
+    program = """
+import sys, clearance
+connection = clearance.Connection(domain=7, partition="python-tests-without-a-daemon")
+print("waiting", flush=True)
+try:
+    clearance.Reports(connection).next()
+except KeyboardInterrupt:
+    sys.exit(3)
+"""
+    running = subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+    assert running.stdout.readline() == "waiting\n"
+    running.send_signal(signal.SIGINT)
+    assert running.wait(LIMIT_S) == 3
+    running.stdout.close()
+
+
 def test_commands_change_the_scene_and_refusals_say_why(daemon):
     connection = daemon.connection()
     with clearance.Commands("python tests", connection) as commands, clearance.Reports(
@@ -199,7 +317,10 @@ def test_a_second_thread_is_refused_and_so_is_closing_under_a_wait(nobody):
 @pytest.mark.parametrize(
     "make, calls",
     [
-        (lambda c: clearance.Reports(c), [lambda r: r.next(0), lambda r: r.daemons, next]),
+        (
+            lambda c: clearance.Reports(c),
+            [lambda r: r.next(0), lambda r: r.daemons, next, lambda r: r.zones, lambda r: r.health],
+        ),
         (
             lambda c: clearance.JointWriter("a", ARM, c),
             [lambda w: w.write([0, 0]), lambda w: w.is_heard, lambda w: w.wait_heard(0)],

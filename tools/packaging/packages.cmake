@@ -3,7 +3,7 @@
 #   programs     clearance            daemon, tools, unit, example cells, pages
 #   view         clearance-view       the page, with its JavaScript
 #   Unspecified  libclearance-dev     libraries, headers, IDL, CMake's files
-#   python       python3-clearance    if something is installed in this component
+#   python       python3-clearance    the Python package, where pybind11 was found
 set(CLEARANCE_MAINTAINER "Clearance" CACHE STRING "Name and address that the packages name as their maintainer")
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME clearance)
@@ -53,7 +53,7 @@ debian_package(view clearance-view science "view of a robot cell and its distanc
 debian_package(development libclearance-dev libdevel "certified distances of convex bodies, and client of clearanced"
                "${about}\n.\nThis package has the libraries, headers, message types and CMake files\nfor clients of the daemon, for replays in tests and for distances of\nbodies without DDS.")
 debian_package(python python3-clearance python "certified distances in robot cells, from Python"
-               "${about}\n.\nThis package has the Python module.")
+               "${about}\n.\nThis package has the Python module: distances of bodies and of cells,\nreplay of recordings, and the client of the daemon.")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "clearance-view")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "gnuplot-nox, chromium")
 set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS "clearance")
@@ -62,7 +62,14 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF) # static libraries
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "cyclonedds-dev, libassimp-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libhwy-dev, liblz4-dev, libspdlog-dev, libsqlite3-dev, libtinyxml2-dev, libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "clearance")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3, python3-numpy")
+# An extension belongs to one version of Python.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3-numpy")
+if(Python3_VERSION_MINOR)
+  math(EXPR next "${Python3_VERSION_MINOR} + 1")
+  string(APPEND CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
+         ", python3 (>= 3.${Python3_VERSION_MINOR}~), python3 (<< 3.${next})")
+endif()
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "clearance, python3-matplotlib")
 set(scripts ${CMAKE_CURRENT_LIST_DIR}/scripts)
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_CONTROL_EXTRA "${scripts}/postinst;${scripts}/prerm;${scripts}/postrm")
 set(CPACK_CLEARANCE_SOURCE ${CMAKE_CURRENT_LIST_DIR})

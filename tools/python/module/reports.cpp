@@ -1,4 +1,4 @@
-// clearance.Connection, Reports and Report: monitor/client/client.hpp.
+// clearance.Reports and Report: monitor/client/client.hpp.
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
@@ -10,6 +10,7 @@
 #include "tools/python/module/cell.hpp"
 #include "tools/python/module/connection.hpp"
 #include "tools/python/module/module.hpp"
+#include "tools/python/module/tick_messages.hpp"
 
 namespace clearance::python {
 namespace {
@@ -42,8 +43,9 @@ const py::dtype& pair_dtype() {
 
 // The names of a scene's objects and pairs, made once for each revision.
 struct Names {
-  py::list pairs;  // all, two names each, by id
-  py::dict id_of;  // of a pair of names, in both orders
+  py::list pairs;          // all, two names each, by id
+  py::list joints, zones;  // by id
+  py::dict id_of;          // of a pair of names, in both orders
 };
 
 // A report, apart from the stream: it does not change.
@@ -57,7 +59,13 @@ struct Report {
   bool minimum_known, minimum_certified;
   std::uint32_t pairs_total, evaluated, carried, stale, unknown;
   std::shared_ptr<const Names> names;  // null: the catalogue of its scene has not come
+  py::object gradients = py::none(), drifts = py::none();  // arrays, or None
+  py::object separated_zones = py::none(), separated_pairs = py::none();
 
+  // The names of all zones or joints by id, or None.
+  [[nodiscard]] py::object all_names(const py::list Names::*list) const {
+    return names ? py::object((*names).*list) : py::none();
+  }
   // The names of the pair, or None.
   [[nodiscard]] py::object names_of(std::uint32_t pair) const {
     if (!names || pair >= names->pairs.size()) return py::none();
@@ -88,13 +96,31 @@ struct Report {
 };
 
 struct ReportParts {
-  ReportParts(SharedConnection joined, const client::StreamOptions& options)
-      : connection(std::move(joined)), stream(*connection, options), catalogue(*connection) {}
+  ReportParts(SharedConnection joined, const client::StreamOptions& options, bool with_gradients,
+              bool with_separation)
+      : connection(std::move(joined)),
+        stream(*connection, options),
+        catalogue(*connection),
+        zones(*connection),
+        health(*connection) {
+    if (with_gradients) gradients.emplace(*connection, options);
+    if (with_separation) separations.emplace(*connection, options);
+  }
 
   SharedConnection connection;
   client::Reports stream;
   client::Catalogue catalogue;
+  client::Zones zones;
+  client::Health health;
+  std::optional<TickMessages<clearance_msg_Gradients>> gradients;
+  std::optional<TickMessages<clearance_msg_Separation>> separations;
   std::map<std::uint64_t, std::shared_ptr<const Names>> names;  // by revision
+};
+
+// The messages that belong to a report; null: not asked for, or they did not come.
+struct Beside {
+  const clearance_msg_Gradients* gradients = nullptr;
+  const clearance_msg_Separation* separation = nullptr;
 };
 
 std::shared_ptr<const Names> names_of(ReportParts& parts, std::uint64_t revision) {
@@ -116,48 +142,91 @@ std::shared_ptr<const Names> names_of(ReportParts& parts, std::uint64_t revision
     names->id_of[py::make_tuple(a, b)] = pair.id;
     names->id_of[py::make_tuple(b, a)] = pair.id;
   }
+  for (std::uint32_t i = 0; i < catalogue->joints._length; ++i)
+    names->joints.append(py::str(catalogue->joints._buffer[i].name));
+  for (std::uint32_t i = 0; i < catalogue->zones._length; ++i)
+    names->zones.append(py::str(catalogue->zones._buffer[i].name));
   parts.names[revision] = names;
   return names;
 }
 
-Report report_of(ReportParts& parts) {
+// Gradients need the number of joints, which comes with the names.
+void add_beside(const Beside& beside, const clearance_msg_Distances& message, Report& report) {
+  if (beside.gradients != nullptr && report.names) {
+    std::vector<std::uint32_t> pairs;
+    for (std::uint32_t i = 0; i < message.pairs._length; ++i)
+      pairs.push_back(message.pairs._buffer[i].pair);
+    GradientArrays arrays = gradient_arrays(*beside.gradients, pairs, report.names->joints.size());
+    report.gradients = std::move(arrays.rates);
+    report.drifts = std::move(arrays.drifts);
+  }
+  if (beside.separation != nullptr) {
+    SeparationArrays arrays = separation_arrays(*beside.separation);
+    report.separated_zones = std::move(arrays.zones);
+    report.separated_pairs = std::move(arrays.pairs);
+  }
+}
+
+Report report_of(ReportParts& parts, const Beside& beside) {
   const clearance_msg_Distances& message = *parts.stream;
-  return {.pairs = records_of(pair_dtype(), message.pairs._buffer, message.pairs._length),
-          .minimum = message.minimum,
-          .check = parts.stream.check(),
-          .daemon = message.daemon,
-          .cycle = message.cycle,
-          .revision = message.scene_revision,
-          .now_ns = message.now_ns,
-          .publish_ns = message.publish_ns,
-          .lower_all = message.lower_all,
-          .swept_lower_all = message.swept_lower_all,
-          .minimum_known = message.minimum_known,
-          .minimum_certified = message.minimum_certified,
-          .pairs_total = message.pairs_total,
-          .evaluated = message.evaluated,
-          .carried = message.carried,
-          .stale = message.stale,
-          .unknown = message.unknown,
-          .names = names_of(parts, message.scene_revision)};
+  Report report = {.pairs = records_of(pair_dtype(), message.pairs._buffer, message.pairs._length),
+                   .minimum = message.minimum,
+                   .check = parts.stream.check(),
+                   .daemon = message.daemon,
+                   .cycle = message.cycle,
+                   .revision = message.scene_revision,
+                   .now_ns = message.now_ns,
+                   .publish_ns = message.publish_ns,
+                   .lower_all = message.lower_all,
+                   .swept_lower_all = message.swept_lower_all,
+                   .minimum_known = message.minimum_known,
+                   .minimum_certified = message.minimum_certified,
+                   .pairs_total = message.pairs_total,
+                   .evaluated = message.evaluated,
+                   .carried = message.carried,
+                   .stale = message.stale,
+                   .unknown = message.unknown,
+                   .names = names_of(parts, message.scene_revision)};
+  add_beside(beside, message, report);
+  return report;
 }
 
 class Reports : public Live<ReportParts> {
  public:
-  Reports(const SharedConnection& connection, double old_after_s, std::int32_t depth)
-      : Live("Reports", connection_of(connection), options(old_after_s, depth)) {}
+  Reports(const SharedConnection& connection, double old_after_s, std::int32_t depth,
+          bool gradients, bool separation)
+      : Live("Reports", connection_of(connection), options(old_after_s, depth), gradients,
+             separation) {}
 
   // None when the time is over.
   py::object wait(bool newest, const std::optional<double>& timeout_s) {
     const Use parts = use();
     bool came = false;
+    Beside beside;
     {
       const Unlocked unlock;
       came = wait_in_slices(timeout_s, [&](std::chrono::nanoseconds slice) {
         return newest ? parts->stream.newest(slice) : parts->stream.next(slice);
       });
+      const std::uint64_t daemon = parts->stream->daemon, cycle = parts->stream->cycle;
+      if (came && parts->gradients) beside.gradients = parts->gradients->of(daemon, cycle);
+      if (came && parts->separations) beside.separation = parts->separations->of(daemon, cycle);
     }
-    return came ? py::cast(report_of(*parts)) : py::none();
+    return came ? py::cast(report_of(*parts, beside)) : py::none();
+  }
+
+  // States of zones of other daemons than that of the last report are left out.
+  py::dict zones() {
+    const Use parts = use();
+    parts->zones.update();
+    if (parts->stream->daemon != 0) parts->zones.keep_only(parts->stream->daemon);
+    return zones_of(parts->zones);
+  }
+  py::object health() {
+    const Use parts = use();
+    parts->health.update();
+    const clearance_msg_Health* const message = parts->health.message();
+    return message == nullptr ? py::object(py::none()) : health_of(*message);
   }
 
  private:
@@ -169,41 +238,6 @@ class Reports : public Live<ReportParts> {
             .depth = depth};
   }
 };
-
-void add_connection(py::module_& module) {
-  py::class_<client::Connection, SharedConnection>(module, "Connection",
-                                                   R"(A daemon's domain, partition and network.)")
-      .def(
-          py::init([](const std::shared_ptr<CellObject>& cell, std::optional<std::uint32_t> domain,
-                      std::optional<std::string> partition, std::optional<std::string> interface,
-                      std::vector<std::string> peers) {
-            DdsOptions options;
-            Topics topics;
-            if (cell) {
-              const Cell& of = cell->cell();
-              options = {of.domain, of.partition, of.interface};
-              topics = of.topics;
-            }
-            options.domain = domain.value_or(options.domain);
-            options.partition = partition.value_or(options.partition);
-            options.interface = interface.value_or(options.interface);
-            options.peers = std::move(peers);
-            if (options.domain > 232) throw py::value_error("domain: expected 0 to 232");
-            if (!is_partition(options.partition))
-              throw py::value_error("partition: expected at most 255 bytes without wildcards");
-            const Unlocked unlock;
-            return std::make_shared<client::Connection>(options, topics);
-          }),
-          py::arg("cell") = py::none(), py::kw_only(), py::arg("domain") = py::none(),
-          py::arg("partition") = py::none(), py::arg("interface") = py::none(),
-          py::arg("peers") = std::vector<std::string>(),
-          R"(cell: a Cell, whose domain, partition, network and topics are used. Without it: domain 0,
-the default partition, this machine's loopback. The other arguments replace these. interface: a network
-card, or "default". peers: addresses of other machines.
-
-Raises DdsError if DDS cannot be joined.)")
-      .def_property_readonly("where", &client::Connection::where, "For messages: domain 7, ...");
-}
 
 void add_report_class(py::module_& module) {
   py::class_<Report>(module, "Report", R"(The distances of one tick. It does not change.)")
@@ -228,6 +262,32 @@ refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)")
           "minimum_names",
           [](const Report& r) { return r.minimum_known ? r.names_of(r.minimum.pair) : py::none(); },
           "Its two names, or None.")
+      .def_readonly(
+          "gradients", &Report::gradients,
+          R"((pairs, joints): how each distance of `pairs` changes with each of `joints`, m/rad or m/m.
+
+0: the joint does not move the pair. NaN: not known, or no joint moves the pair. None: not asked for
+(Reports(gradients=True)), not published (`gradients: true` in the cell), or names have not come.)")
+      .def_readonly(
+          "drifts", &Report::drifts,
+          R"((pairs,): the rate of change if all joints stood still, m/s; None like `gradients`.)")
+      .def_readonly(
+          "separated_zones", &Report::separated_zones,
+          R"(Records of the zones with `separation`: zone (id), validity, pair, remaining (m),
+speed_limit (m/s), scaling (0 to 1).
+
+None: not asked for (Reports(separation=True)), or the cell has no such zone.)")
+      .def_readonly(
+          "separated_pairs", &Report::separated_pairs,
+          R"(Records of their pairs: zone, pair, validity, clearance, human_speed, robot_speed,
+human_term, robot_term, stopping_term, protective_distance, remaining, speed_limit, scaling,
+age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated_zones`.)")
+      .def_property_readonly(
+          "joints", [](const Report& r) { return r.all_names(&Names::joints); },
+          "Names of the columns of `gradients`; None while names have not come.")
+      .def_property_readonly(
+          "zone_names", [](const Report& r) { return r.all_names(&Names::zones); },
+          "Names of all zones by id; None while names have not come.")
       .def_readonly("minimum_known", &Report::minimum_known, "False: no pair is known.")
       .def_readonly("minimum_certified", &Report::minimum_certified, "No other pair can be closer.")
       .def_readonly("lower_all", &Report::lower_all, "Certified: no pair is closer, m.")
@@ -266,12 +326,6 @@ refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)")
 
 }  // namespace
 
-SharedConnection connection_of(const SharedConnection& given) {
-  if (given) return given;
-  const Unlocked unlock;
-  return std::make_shared<client::Connection>();
-}
-
 void add_reports(py::module_& module) {
   py::register_exception<DdsError>(module, "DdsError", PyExc_RuntimeError).doc() =
       "DDS refused something: the text says what was attempted, where, and the reason.";
@@ -285,11 +339,12 @@ Iterating waits for each in order, without an end. One thread uses it at a time.
 interpreter's lock, and Ctrl-C ends them.)");
   reports
       .def(
-          py::init<const SharedConnection&, double, std::int32_t>(),
+          py::init<const SharedConnection&, double, std::int32_t, bool, bool>(),
           py::arg("connection") = py::none(), py::kw_only(), py::arg("old_after_s") = 0.1,
-          py::arg("depth") = 64,
+          py::arg("depth") = 64, py::arg("gradients") = false, py::arg("separation") = false,
           R"(connection: None: loopback, domain 0, the default partition. old_after_s: an older report
-is not fresh. depth: messages that may wait. Raises DdsError.)")
+is not fresh, s. depth: messages that may wait. gradients, separation: reports have these of their tick,
+where the cell asks for them. Raises ValueError and DdsError.)")
       .def(
           "next",
           [](Reports& self, const std::optional<double>& timeout) {
@@ -314,7 +369,18 @@ is not fresh. depth: messages that may wait. Raises DdsError.)")
           "There is no daemon any longer.")
       .def_property_readonly(
           "refusal", [](Reports& self) { return self.use()->stream.refusal(); },
-          "Why an existing daemon cannot be heard, for a person; or empty.");
+          "Why an existing daemon cannot be heard, for a person; or empty.")
+      .def_property_readonly("zones", &Reports::zones,
+                             R"(The last known state of each zone: a dict of records by name.
+
+Fields: zone (id), active, certified, cause, cause_object, pair, clearance, swept_clearance (m),
+since_cycle, cycle, now_ns. Empty while none has come.)")
+      .def_property_readonly(
+          "health", &Reports::health,
+          R"(The daemon's health, which comes once a second: a dict; None while none has come.
+
+Keys are the fields of Health in idl/FIELDS.md, times in us and ns. rejected, inputs, joints, sources
+and notes are lists of dicts.)");
   add_closing(reports);
 }
 

@@ -1,0 +1,181 @@
+#include "tools/python/module/tick_messages.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+
+#include "tools/python/module/arrays.hpp"
+
+namespace clearance::python {
+namespace {
+
+using ZoneMessage = clearance_msg_ZoneState;
+using ZoneSeparationMessage = clearance_msg_ZoneSeparation;
+using PairSeparationMessage = clearance_msg_PairSeparation;
+
+// The types are never destroyed: the interpreter may be gone by then.
+const py::dtype& zone_dtype() {
+  static const auto* const dtype =
+      new py::dtype(record_dtype({{"zone", "u4", offsetof(ZoneMessage, zone)},
+                                  {"active", "?", offsetof(ZoneMessage, active)},
+                                  {"certified", "?", offsetof(ZoneMessage, certified)},
+                                  {"cause", "u1", offsetof(ZoneMessage, cause)},
+                                  {"cause_object", "u4", offsetof(ZoneMessage, cause_object)},
+                                  {"pair", "u4", offsetof(ZoneMessage, pair)},
+                                  {"clearance", "f8", offsetof(ZoneMessage, clearance)},
+                                  {"swept_clearance", "f8", offsetof(ZoneMessage, swept_clearance)},
+                                  {"since_cycle", "u8", offsetof(ZoneMessage, since_cycle)},
+                                  {"cycle", "u8", offsetof(ZoneMessage, cycle)},
+                                  {"now_ns", "i8", offsetof(ZoneMessage, now_ns)}},
+                                 sizeof(ZoneMessage)));
+  return *dtype;
+}
+
+const py::dtype& zone_separation_dtype() {
+  static const auto* const dtype = new py::dtype(
+      record_dtype({{"zone", "u4", offsetof(ZoneSeparationMessage, zone)},
+                    {"validity", "u1", offsetof(ZoneSeparationMessage, validity)},
+                    {"pair", "u4", offsetof(ZoneSeparationMessage, pair)},
+                    {"remaining", "f8", offsetof(ZoneSeparationMessage, remaining)},
+                    {"speed_limit", "f8", offsetof(ZoneSeparationMessage, speed_limit)},
+                    {"scaling", "f8", offsetof(ZoneSeparationMessage, scaling)}},
+                   sizeof(ZoneSeparationMessage)));
+  return *dtype;
+}
+
+const py::dtype& pair_separation_dtype() {
+  static const auto* const dtype = new py::dtype(record_dtype(
+      {{"zone", "u4", offsetof(PairSeparationMessage, zone)},
+       {"pair", "u4", offsetof(PairSeparationMessage, pair)},
+       {"validity", "u1", offsetof(PairSeparationMessage, validity)},
+       {"clearance", "f8", offsetof(PairSeparationMessage, clearance)},
+       {"human_speed", "f8", offsetof(PairSeparationMessage, human_speed)},
+       {"robot_speed", "f8", offsetof(PairSeparationMessage, robot_speed)},
+       {"human_term", "f8", offsetof(PairSeparationMessage, human_term)},
+       {"robot_term", "f8", offsetof(PairSeparationMessage, robot_term)},
+       {"stopping_term", "f8", offsetof(PairSeparationMessage, stopping_term)},
+       {"protective_distance", "f8", offsetof(PairSeparationMessage, protective_distance)},
+       {"remaining", "f8", offsetof(PairSeparationMessage, remaining)},
+       {"speed_limit", "f8", offsetof(PairSeparationMessage, speed_limit)},
+       {"scaling", "f8", offsetof(PairSeparationMessage, scaling)},
+       {"age_human_ns", "i8", offsetof(PairSeparationMessage, age_human_ns)},
+       {"age_robot_ns", "i8", offsetof(PairSeparationMessage, age_robot_ns)}},
+      sizeof(PairSeparationMessage)));
+  return *dtype;
+}
+
+// The items of a sequence, each as a dict that `fill` fills.
+template <class Sequence, class Fill>
+py::list dicts_of(const Sequence& sequence, const Fill& fill) {
+  py::list list;
+  for (std::uint32_t i = 0; i < sequence._length; ++i) {
+    py::dict item;
+    fill(item, sequence._buffer[i]);
+    list.append(item);
+  }
+  return list;
+}
+
+template <class Age>
+void put_age(py::dict& item, const Age& age) {
+  item["name"] = py::str(age.name);
+  item["age_ns"] = age.age_ns;
+  item["stale"] = age.stale;
+  item["contradicted"] = age.contradicted;
+  item["source"] = py::str(age.source);
+  item["other_source"] = py::str(age.other_source);
+}
+
+}  // namespace
+
+GradientArrays gradient_arrays(const clearance_msg_Gradients& message,
+                               const std::vector<std::uint32_t>& pairs, std::size_t joints) {
+  const auto rows = static_cast<py::ssize_t>(pairs.size());
+  Doubles rates({rows, static_cast<py::ssize_t>(joints)});
+  Doubles drifts(rows);
+  double* const rate = rates.mutable_data();
+  std::fill_n(rate, pairs.size() * joints, std::numeric_limits<double>::quiet_NaN());
+  std::fill_n(drifts.mutable_data(), pairs.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::uint32_t i = 0; i < message.pairs._length; ++i) {
+    const clearance_msg_PairGradient& pair = message.pairs._buffer[i];
+    const auto found = std::ranges::find(pairs, pair.pair);
+    if (found == pairs.end()) continue;
+    const auto row = static_cast<std::size_t>(found - pairs.begin());
+    drifts.mutable_data()[row] = pair.drift;
+    std::fill_n(rate + row * joints, joints, 0.0);  // joints that do not move the pair
+    for (std::uint32_t j = 0; j < pair.joints._length; ++j) {
+      const clearance_msg_JointGradient& one = pair.joints._buffer[j];
+      if (one.joint < joints) rate[row * joints + one.joint] = one.rate;
+    }
+  }
+  return {rates, drifts};
+}
+
+SeparationArrays separation_arrays(const clearance_msg_Separation& message) {
+  return {records_of(zone_separation_dtype(), message.zones._buffer, message.zones._length),
+          records_of(pair_separation_dtype(), message.pairs._buffer, message.pairs._length)};
+}
+
+py::dict zones_of(const client::Zones& zones) {
+  py::dict all;
+  for (const auto& [id, state] : zones.states()) {
+    const py::array record = records_of(zone_dtype(), &state, 1);
+    all[py::str(state.name)] = record[py::int_(0)];
+  }
+  return all;
+}
+
+py::dict health_of(const clearance_msg_Health& m) {
+  py::dict all;
+  all["daemon"] = m.daemon;
+  all["cycle"] = m.cycle;
+  all["now_ns"] = m.now_ns;
+  all["scene_revision"] = m.scene_revision;
+  all["clock_steps"] = m.clock_steps;
+  all["clock_offset_ns"] = m.clock_offset_ns;
+  all["tick_p50_us"] = m.tick_p50_us;
+  all["tick_p999_us"] = m.tick_p999_us;
+  all["tick_max_us"] = m.tick_max_us;
+  all["wakeup_p50_us"] = m.wakeup_p50_us;
+  all["wakeup_p999_us"] = m.wakeup_p999_us;
+  all["wakeup_max_us"] = m.wakeup_max_us;
+  all["tick_second_max_us"] = m.tick_second_max_us;
+  all["wakeup_second_max_us"] = m.wakeup_second_max_us;
+  all["overruns"] = m.overruns;
+  all["skipped_cycles"] = m.skipped_cycles;
+  all["batches"] = m.batches;
+  all["lost_batches"] = m.lost_batches;
+  all["undecodable_samples"] = m.undecodable_samples;
+  all["dropped_reports"] = m.dropped_reports;
+  all["other_writers"] = m.other_writers;
+  all["foreign_reports"] = m.foreign_reports;
+  all["rejected"] = dicts_of(m.rejected, [](py::dict& item, const auto& one) {
+    item["object"] = py::str(one.object);
+    item["cause"] = py::str(one.cause);
+    item["count"] = one.count;
+  });
+  all["inputs"] = dicts_of(m.inputs, [](py::dict& item, const auto& one) {
+    put_age(item, one);
+    item["follows_joints"] = one.follows_joints;
+  });
+  all["joints"] = dicts_of(m.joints, [](py::dict& item, const auto& one) { put_age(item, one); });
+  all["sources"] = dicts_of(m.sources, [](py::dict& item, const auto& one) {
+    item["source"] = py::str(one.source);
+    item["batches"] = one.batches;
+    item["lost_batches"] = one.lost_batches;
+    item["cut_poses"] = one.cut_poses;
+    item["age_ns"] = one.age_ns;
+  });
+  all["recording"] = py::str(m.recording);
+  all["recording_missing"] = m.recording_missing;
+  all["notes"] = dicts_of(m.notes, [](py::dict& item, const auto& one) {
+    item["input"] = py::str(one.input);
+    item["takeovers"] = one.takeovers;
+    item["source"] = py::str(one.source);
+    item["former_source"] = py::str(one.former_source);
+    item["velocities_contradict"] = one.velocities_contradict;
+  });
+  return all;
+}
+
+}  // namespace clearance::python
