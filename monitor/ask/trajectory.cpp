@@ -116,10 +116,16 @@ double Trajectory::bulge(std::size_t segment, std::size_t joint) const noexcept 
   return 0.125 * length * length * largest_acceleration(segment, joint);
 }
 
-double Trajectory::bulge_beside(std::size_t row, std::size_t joint) const noexcept {
-  double largest = row > 0 ? bulge(row - 1, joint) : 0.0;
-  if (row + 1 < motion_->times.size()) largest = std::max(largest, bulge(row, joint));
-  return largest;
+std::array<double, 3> Trajectory::controls_beside(std::size_t row,
+                                                  std::size_t joint) const noexcept {
+  const double at = position(row, joint);
+  std::array<double, 3> controls{at, at, at};
+  if (motion_->velocities.empty()) return controls;
+  const std::vector<double>& times = motion_->times;
+  const double third = velocity(row, joint) / 3.0;
+  if (row > 0) controls[1] -= third * (times[row] - times[row - 1]);
+  if (row + 1 < times.size()) controls[2] += third * (times[row + 1] - times[row]);
+  return controls;
 }
 
 void Trajectory::place(const Stretch& stretch, double at, std::span<TrackedVariable> variables,

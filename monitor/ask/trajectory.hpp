@@ -1,6 +1,7 @@
 // A joint trajectory over time: positions, and bounds of what happens in an interval of time.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -40,15 +41,16 @@ class Trajectory {
   [[nodiscard]] double begin() const noexcept { return motion_->times.front(); }
   [[nodiscard]] double end() const noexcept { return motion_->times.back(); }
   // Tells whether a variable has a position for which `is_outside` is true. `held` is its position
-  // if it has no waypoints. Between waypoints a cubic counts with the largest bulge it can have.
+  // if it has no waypoints. A cubic counts with its control points, between which it stays.
   template <class IsOutside>
   [[nodiscard]] bool leaves(std::uint32_t variable, const IsOutside& is_outside,
                             double held) const {
     for (std::size_t joint = 0; joint < moved_.size(); ++joint) {
       if (moved_[joint] != variable) continue;
       for (std::size_t row = 0; row < motion_->times.size(); ++row) {
-        const double bulge = bulge_beside(row, joint), at = position(row, joint);
-        if (is_outside(at - bulge) || is_outside(at + bulge)) return true;
+        for (const double control : controls_beside(row, joint)) {
+          if (is_outside(control)) return true;
+        }
       }
       return false;
     }
@@ -86,7 +88,9 @@ class Trajectory {
   [[nodiscard]] double largest_acceleration(std::size_t segment, std::size_t joint) const noexcept;
   // The largest distance of a cubic beside a waypoint from its chord; linear: 0.
   [[nodiscard]] double bulge(std::size_t segment, std::size_t joint) const noexcept;
-  [[nodiscard]] double bulge_beside(std::size_t row, std::size_t joint) const noexcept;
+  // The position of a waypoint, and the control points before and after it.
+  [[nodiscard]] std::array<double, 3> controls_beside(std::size_t row,
+                                                      std::size_t joint) const noexcept;
   [[nodiscard]] std::optional<std::string> fault(const JointTrajectory& motion) const;
 
   const JointTrajectory* motion_ = nullptr;

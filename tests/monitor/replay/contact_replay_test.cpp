@@ -17,7 +17,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr int kTicks = 400;
+constexpr int kContactTicks = 400;
 
 // A part above a table: a contact is allowed, withdrawn, allowed anew until 30 mm, and goes on in a
 // cell that has another margin.
@@ -81,7 +81,7 @@ class ContactRun : public RecordedChanges {
       contacts.emplace_back(report.contacts.begin(), report.contacts.end());
       zones.push_back(report.zones[0].active);
     };
-    RecordedChanges::record(part, kTicks, {120, 160, 200}, options, 5);
+    RecordedChanges::record(part, kContactTicks, {120, 160, 200}, options, 5);
   }
   // The status in a tick; nothing where no contact is allowed.
   [[nodiscard]] std::optional<ContactStatus> status(int tick) const {
@@ -95,7 +95,7 @@ class ContactRun : public RecordedChanges {
 
 TEST_F(ContactRun, GoesThroughEveryStatusOfAContact) {
   record();
-  ASSERT_EQ(contacts.size(), static_cast<std::size_t>(kTicks));
+  ASSERT_EQ(contacts.size(), static_cast<std::size_t>(kContactTicks));
   using enum ContactStatus;
   EXPECT_EQ(status(15), kAllowed);
   EXPECT_FALSE(zones[14]);
@@ -123,7 +123,7 @@ TEST_F(ContactRun, ReplaysBitForBit) {
         replayed.emplace_back(tick.report.contacts.begin(), tick.report.contacts.end());
       });
   EXPECT_TRUE(replay.ok()) << replay.text();
-  EXPECT_EQ(replay.compared, static_cast<std::uint64_t>(kTicks));
+  EXPECT_EQ(replay.compared, static_cast<std::uint64_t>(kContactTicks));
   ASSERT_EQ(replayed.size(), contacts.size());
   for (std::size_t i = 0; i < contacts.size(); ++i) {
     ASSERT_EQ(replayed[i].size(), contacts[i].size()) << i;
@@ -189,7 +189,7 @@ TEST_F(ContactRun, InSeveralFilesReplaysAsOneAndEachFileByItself) {
   const OfflineReplay whole =
       replay_offline(cells.front(), run, {.compare = Comparison::kBits, .continued_in = files});
   EXPECT_TRUE(whole.ok()) << whole.text();
-  EXPECT_EQ(whole.compared, static_cast<std::uint64_t>(kTicks));
+  EXPECT_EQ(whole.compared, static_cast<std::uint64_t>(kContactTicks));
   for (const std::filesystem::path& file : files) {
     const auto first = recorded_cell(file, outline(file));
     ASSERT_TRUE(first);
