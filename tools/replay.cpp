@@ -1,5 +1,5 @@
-// clearance-replay: publishes a recording over DDS again, or runs it through the monitor and checks
-// the result.
+// clearance-replay: publishes a recording over DDS again, runs it through the monitor and checks
+// the result, or compares two recordings.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
@@ -18,7 +18,8 @@ constexpr const char* kProgram = "clearance-replay";
 constexpr const char* kExamples = R"(Examples:
   clearance-replay publish run.mcap --rate 2 --start 10 --end 20
   clearance-replay check run.mcap --compare
-  clearance-replay check run.mcap --cell cell.yaml --expect-min-distance 0.05 --expect-no-zone stop)";
+  clearance-replay check run.mcap --cell cell.yaml --expect-min-distance 0.05 --expect-no-zone stop
+  clearance-replay compare left.mcap right.mcap)";
 
 constexpr const char* kPublishFooter = R"(Exit status:
   0  every message was published, or SIGINT, SIGTERM or SIGHUP stopped the replay
@@ -48,6 +49,15 @@ Examples:
   clearance-replay check run.mcap --cell cell.yaml --plot run.svg --plot-pair hand table
   clearance-replay check run.mcap --cell cell.yaml --report run.html --expect-no-zone stop
   clearance-replay check run.mcap --cell cell.yaml --reference distances.csv.gz --tolerance 1e-6)";
+
+constexpr const char* kCompareFooter = R"(Exit status:
+  0  every cycle that both recordings have is the same, to the bit
+  1  a cycle differs, a file cannot be read, or the recordings have no cycle in common
+  2  wrong usage
+  5  a recording is damaged, or SIGINT, SIGTERM or SIGHUP stopped the comparison; there was no difference before
+
+Example:
+  clearance-replay compare left.mcap right.mcap)";
 
 void add_span(CLI::App& app, RecordedSpan& span, const char* files) {
   app.add_option("FILE", span.recordings, files)->required();
@@ -197,9 +207,25 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   return check;
 }
 
+CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
+  CLI::App* const compare =
+      app.add_subcommand("compare",
+                         "Name the first difference of two recordings, such as those of two "
+                         "daemons, and whether it is "
+                         "one of their inputs or of their results. 'clearance-replay --compare "
+                         "FILE FILE' is the same");
+  compare->add_option("FIRST", arguments.first, "A recording (MCAP)")->required();
+  compare->add_option("SECOND", arguments.second, "The other recording (MCAP)")->required();
+  compare->footer(kCompareFooter);
+  return compare;
+}
+
 // Before there were subcommands, --offline chose `check`, and `publish` had no name.
 Words present_spelling(Words words) {
-  const bool has_none = words.empty() || words[0] == "publish" || words[0] == "check";
+  const bool is_check = has_option(words, "--offline");
+  if (!words.empty() && words[0] == "--compare" && !is_check) words[0] = "compare";
+  const bool has_none =
+      words.empty() || words[0] == "publish" || words[0] == "check" || words[0] == "compare";
   if (has_none || has_option({words[0]}, "--help") || words[0] == "-h" || words[0] == "--version") {
     return words;
   }
@@ -217,11 +243,13 @@ bool is_forwards(const RecordedSpan& span) {
 }
 
 int run(int argc, char** argv, StopSignal& stop) {
-  CLI::App app("Publishes a recording again, or checks a robot program against one.");
+  CLI::App app("Publishes a recording again, checks a robot program against one, or compares two.");
   PublishArguments publish;
   CheckArguments check;
+  CompareArguments compare;
   const CLI::App* const publishing = add_publish(app, publish);
   add_check(app, check);
+  const CLI::App* const comparing = add_compare(app, compare);
   app.require_subcommand(1);
   app.footer(kExamples);
   Words words = present_spelling(words_of(argc, argv));
@@ -229,6 +257,7 @@ int run(int argc, char** argv, StopSignal& stop) {
   if (const auto done = parse(app, static_cast<int>(arguments.size()), arguments.data())) {
     return *done;
   }
+  if (comparing->parsed()) return compare_two_recordings(compare, stop);
   if (!is_forwards(publishing->parsed() ? publish.span : check.span)) return kUsage;
   return publishing->parsed() ? publish_recording(publish, stop) : check_recording(check, stop);
 }

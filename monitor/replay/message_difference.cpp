@@ -182,7 +182,8 @@ class Comparer {
         options_.not_recorded == nullptr ||
         !options_.not_recorded->contains(fmt::format("{}.{}", type_name_, field_.name));
     if (!is_recorded) return;
-    difference_ = fmt::format("{}{}: recorded {}, replayed {}", path(), axis_, recorded, replayed);
+    difference_ = fmt::format("{}{}: {} {}, {} {}", path(), axis_, options_.first, recorded,
+                              options_.second, replayed);
   }
 
   const Scene& scene_;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "config/scene/scene.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -16,6 +17,8 @@ struct DifferenceOptions {
   std::uint64_t cycle_offset = 0;  // recorded cycle numbers are ahead of replayed ones by this
   // Fields that the recording's build did not have, "Distances.queries": they are not compared.
   const std::set<std::string>* not_recorded = nullptr;
+  // What the text calls the two messages.
+  std::string_view first = "recorded", second = "replayed";
 };
 
 // The first field that differs, with both values: "pairs[2] (hand - box).lower: recorded 0.5,

@@ -59,8 +59,13 @@ struct CheckArguments {
   [[nodiscard]] const std::string& recording() const { return span.recording(); }
 };
 
-// Both return the exit code.
+struct CompareArguments {
+  std::string first, second;
+};
+
+// All return the exit code.
 [[nodiscard]] int publish_recording(const PublishArguments& arguments, StopSignal& stop);
 [[nodiscard]] int check_recording(const CheckArguments& arguments, StopSignal& stop);
+[[nodiscard]] int compare_two_recordings(const CompareArguments& arguments, StopSignal& stop);
 
 }  // namespace clearance

@@ -1,0 +1,43 @@
+// The first difference of two recordings of the same cycles, such as those of two daemons that run
+// one cell. No monitor runs: the recorded reports themselves are compared.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace clearance {
+
+struct RecordingsDifference {
+  // In this order they are looked for in a cycle, since each may be the reason of the next.
+  enum class Kind : std::uint8_t {
+    kNone,
+    kMissing,  // a cycle between two that are in both recordings is in only one
+    kScene,    // another scene revision
+    kInputs,   // another batch of a source, or the same one with other content
+    kTime,     // the tick was given another time
+    kResult,   // the same inputs led to another report, separation, gradient or zone state
+  };
+
+  std::string error;   // not empty: a file cannot be compared at all
+  std::string damage;  // not empty: a file ends early; what is before the damage was compared
+  bool stopped = false;
+  std::uint64_t compared = 0;                     // cycles
+  std::uint64_t first_cycle = 0, last_cycle = 0;  // of those
+  Kind kind = Kind::kNone;
+  std::uint64_t cycle = 0;  // of the difference
+  std::int64_t now_ns = 0;  // the tick's time in the first recording that has the cycle
+  std::string what;         // the field or the batch, with both values
+
+  [[nodiscard]] bool is_same() const noexcept { return error.empty() && kind == Kind::kNone; }
+};
+
+// Cycles with the same number are compared, from the first to the last number that both files have.
+// Batches whose source does not count (sequence number 0) are not compared. `stop` is asked between
+// cycles and may be empty.
+[[nodiscard]] RecordingsDifference compare_recordings(const std::filesystem::path& first,
+                                                      const std::filesystem::path& second,
+                                                      const std::function<bool()>& stop = {});
+
+}  // namespace clearance
