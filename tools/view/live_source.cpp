@@ -62,6 +62,7 @@ void LiveSource::advance(Server& server) {
   for (const Topic& topic : kRecordedTopics) take(topic.kind);
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
+  note_the_catalogue();
   follow_the_catalogue(server);
   note_what_is_attached(server);
   tell_of_the_daemon(server, now_ns);
@@ -139,18 +140,23 @@ nlohmann::json LiveSource::parameters() const {
   return {{{"name", "scene.attached"}, {"value", attached_json(attached_)}}};
 }
 
+// The frame of a changed cell does not get the catalogue again.
+void LiveSource::note_the_catalogue() {
+  const clearance_msg_Catalogue& catalogue = frame_->catalogue();
+  if (catalogue.scene_revision == 0) return;
+  told_ = {catalogue.scene_revision, catalogue.in_force_from, catalogue.daemon};
+}
+
 // A scene that has been in force since the daemon's start has followed no other one.
 void LiveSource::note_what_is_attached(Server& server) {
-  const clearance_msg_Catalogue& catalogue = frame_->catalogue();
-  const std::uint64_t revision = catalogue.scene_revision;
-  if (revision == 0 || revision != cell_->scene.revision) return;
-  if (revision == attached_of_ && catalogue.daemon == daemon_) return;
-  if (catalogue.daemon != daemon_) attached_.clear();
-  const bool is_first = catalogue.in_force_from != 0 && catalogue.daemon != daemon_;
-  attached_ = attached_in(cell_->scene, attached_,
-                          {.cycle = catalogue.in_force_from, .is_first = is_first});
-  attached_of_ = revision;
-  daemon_ = catalogue.daemon;
+  if (told_.revision == 0 || told_.revision != cell_->scene.revision) return;
+  if (told_.revision == attached_of_ && told_.daemon == daemon_) return;
+  if (told_.daemon != daemon_) attached_.clear();
+  const bool is_first = told_.in_force_from != 0 && told_.daemon != daemon_;
+  attached_ =
+      attached_in(cell_->scene, attached_, {.cycle = told_.in_force_from, .is_first = is_first});
+  attached_of_ = told_.revision;
+  daemon_ = told_.daemon;
   server.parameters_changed();
 }
 

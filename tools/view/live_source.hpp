@@ -38,6 +38,7 @@ class LiveSource final : public Source {
   void take(TopicKind kind);
   void take_from_ros(const Now& now);
   void follow_the_catalogue(Server& server);
+  void note_the_catalogue();
   void note_what_is_attached(Server& server);
   void tell_of_the_daemon(Server& server, std::int64_t now_ns);
 
@@ -51,6 +52,10 @@ class LiveSource final : public Source {
   std::future<CellResult> reading_;  // not valid: no cell is being read
   std::uint64_t read_ = 0;           // the revision that was read last, or is being read
   std::vector<Attached> attached_;
+  struct Told {
+    std::uint64_t revision = 0, in_force_from = 0, daemon = 0;
+  };
+  Told told_;                      // by the last catalogue
   std::uint64_t attached_of_ = 0;  // the revision that these are of; 0: none yet
   std::uint64_t daemon_ = 0;       // of that catalogue
   RosReaders ros_;

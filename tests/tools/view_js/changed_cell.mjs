@@ -30,6 +30,8 @@ for (const time of times.map(Number)) {
   await page.evaluate((to) => window.clearance.connection.set("playback.time", to), time);
   await page.waitForTimeout(2500); // the page may be loaded anew
   await hasReport();
+  await page.waitForFunction(() => document.querySelectorAll("#contacts tbody tr").length === (window.clearance.state.report.contacts ?? []).length);
+  await page.waitForTimeout(500); // what is attached is drawn with the next frame
   const curve = await page.evaluate(async ([name, to]) => {
     const { pairs, scene } = window.clearance.state, pair = pairs.find(({ a, b }) => [a, b].some((id) => scene.objects[id].name === name));
     if (!pair) return null;
