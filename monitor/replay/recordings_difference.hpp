@@ -12,7 +12,7 @@ namespace clearance {
 struct RecordingsDifference {
   // In this order they are looked for in a cycle, since each may be the reason of the next.
   enum class Kind : std::uint8_t {
-    kNone,
+    kSame,
     kMissing,  // a cycle between two that are in both recordings is in only one
     kScene,    // another scene revision
     kInputs,   // another batch of a source, or the same one with other content
@@ -25,12 +25,12 @@ struct RecordingsDifference {
   bool stopped = false;
   std::uint64_t compared = 0;                     // cycles
   std::uint64_t first_cycle = 0, last_cycle = 0;  // of those
-  Kind kind = Kind::kNone;
+  Kind kind = Kind::kSame;
   std::uint64_t cycle = 0;  // of the difference
   std::int64_t now_ns = 0;  // the tick's time in the first recording that has the cycle
   std::string what;         // the field or the batch, with both values
 
-  [[nodiscard]] bool is_same() const noexcept { return error.empty() && kind == Kind::kNone; }
+  [[nodiscard]] bool is_same() const noexcept { return error.empty() && kind == Kind::kSame; }
 };
 
 // Cycles with the same number are compared, from the first to the last number that both files have.

@@ -12,7 +12,7 @@ namespace {
 std::string_view meaning_of(RecordingsDifference::Kind kind) {
   using Kind = RecordingsDifference::Kind;
   switch (kind) {
-    case Kind::kNone:
+    case Kind::kSame:
       break;
     case Kind::kMissing:
       return "a report is missing";
