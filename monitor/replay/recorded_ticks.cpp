@@ -1,6 +1,8 @@
 // Reads ahead of a tick, since topics that were recorded over DDS overtake each other.
 #include "monitor/replay/recorded_ticks.hpp"
 
+#include <algorithm>
+
 namespace clearance {
 namespace {
 
@@ -35,10 +37,12 @@ Scene scene_of(const clearance_msg_Catalogue& catalogue) {
 
 const RecordedTick* RecordedTicks::front() {
   for (;;) {
-    // Latched zone states of a recording that began later precede its first report.
-    while (!ticks_.empty() && !ticks_.begin()->second.report &&
-           (ended_ || (ticks_.size() > 1 && std::next(ticks_.begin())->second.report))) {
-      pop();
+    // Latched zone states of a recording that began later precede its first report. Reports come in
+    // order, so a tick before one with a report gets none.
+    const auto reported = std::ranges::find_if(
+        ticks_, [](const auto& tick) { return tick.second.report.has_value(); });
+    if (reported != ticks_.end() || ended_) {
+      while (ticks_.begin() != reported) pop();
     }
     if (!ticks_.empty() && ticks_.begin()->second.report) {
       const RecordedTick& tick = ticks_.begin()->second;

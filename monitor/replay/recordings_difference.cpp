@@ -207,7 +207,8 @@ class TwoRecordings {
         result_.damage = fmt::format("{}: {}", names_[i], damage);
     }
     if (result_.error.empty() && result_.compared == 0 && !result_.stopped)
-      result_.error = fmt::format("no cycle has a report in both {} and {}", names_[0], names_[1]);
+      result_.error = fmt::format("no cycle has a report in both {} and {}{}{}", names_[0],
+                                  names_[1], result_.damage.empty() ? "" : "; ", result_.damage);
   }
 
   std::string names_[2];
