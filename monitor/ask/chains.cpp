@@ -99,7 +99,7 @@ Chain Chains::between(std::uint32_t base, std::uint32_t tip) {
                        .largest_reach = reach + node.largest_slide});
     reach += node.largest_slide;
   };
-  // From the tip inwards; turned round at the end.
+  // The chain is found from the tip inwards, and reversed at the end.
   for (const std::uint32_t n : down) add(n, Vec3::Zero(), nodes_[n].place_in_parent);
   std::reverse(up.begin(), up.end());
   for (const std::uint32_t n : up) add(n, nodes_[n].place_in_parent, Vec3::Zero());

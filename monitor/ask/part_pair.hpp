@@ -20,7 +20,7 @@ struct PartPair {
   TrackingState tracking;
 };
 
-// What a stretch is known to have after its middle was examined.
+// The facts about a stretch once its middle was examined.
 struct StretchBounds {
   double lower = 0.0;        // at all instants of the stretch, m
   bool queried = false;      // false: `lower` is that of two spheres
@@ -29,7 +29,7 @@ struct StretchBounds {
   Vec3 on_base = Vec3::Zero(), on_tip = Vec3::Zero();  // closest points at the middle, world
 };
 
-// Bounds the distance of a pair over `stretch`, of which `posture` has the instant `middle`.
+// Bounds the distance of a pair over `stretch`. `posture` is that at the instant `middle` of it.
 // It makes no query if the spheres around the parts prove that the distance is at least `enough`.
 // `begin` is the first instant of the motion, s.
 [[nodiscard]] StretchBounds bounds_over(const Stretch& stretch, double middle, double enough,

@@ -60,7 +60,7 @@ enum class DepthBuild : std::uint8_t {
 };
 
 inline constexpr double kGreatestDepth = 1e4;  // m
-// Of the sine between a side ray and the optical axis. Up to it no corner of a slab is sharp.
+// The largest sine between a side ray and the optical axis. No corner of a slab is sharp up to it.
 inline constexpr double kWidestSine = 7.0 / 9.0;
 
 class DepthCloud {

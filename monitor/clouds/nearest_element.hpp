@@ -17,9 +17,9 @@ struct PartPlane {
   double offset = 0.0;         // m, rounding included
 };
 
-// What a part keeps between queries, also from one frame to the next, and for any cloud. The block
-// and the features are hints. The planes are facts about `part`: they stay true wherever it moves.
-// A query of another body drops them.
+// The state of a part between queries, also from one frame to the next, and for any cloud. The
+// block and the features are hints. The planes are facts about `part`: they stay true wherever it
+// moves. A query of another body drops them.
 struct CloudTracking {
   static constexpr std::size_t kPlanes = 12;
 

@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// What shelving has made blind. Everything else within `thickness` of the part may be hidden too: a
+// The shell that shelving has made blind. Anything within `thickness` of the part may be hidden: a
 // hand there is shelved with the part.
 struct BlindShell {
   std::size_t elements = 0;

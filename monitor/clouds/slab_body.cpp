@@ -122,7 +122,7 @@ void SlabBody::set_edge(const DepthCloud::Slab& s, Edge& edge) noexcept {
   }
 }
 
-// As add_query_tables() does, without its allocations. Bodies of eight vertices need no table of
+// Does the work of add_query_tables() without allocating. Bodies of eight vertices need no table of
 // starts: they are scanned.
 void SlabBody::fill_tables() noexcept {
   body_.error_bound_as_a =

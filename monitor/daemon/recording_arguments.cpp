@@ -25,10 +25,20 @@ std::string is_topic(const std::string& text) {
   return fmt::format("found '{}'; expected {}", text, one_of(keys));
 }
 
+constexpr const char* kRecording = "Recording";
+
+// An option with a number that may be 0.
+CLI::Option* add_amount(CLI::App& app, const std::string& name, double& amount,
+                        const std::string& help) {
+  return app.add_option(name, amount, help)
+      ->check(number_from_zero())
+      ->capture_default_str()
+      ->group(kRecording);
+}
+
 }  // namespace
 
 void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
-  const char* const kRecording = "Recording";
   app.add_option(prefix + "without", without,
                  "Leave this topic out: poses, joint_states, distances, zones, health, separation "
                  "or gradients; repeatable. "
@@ -42,51 +52,33 @@ void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
       ->check(whole_number(1, 1'000'000'000))
       ->capture_default_str()
       ->group(kRecording);
-  app.add_option(prefix + "roll-mb", roll_mb,
-                 "Continue in NAME-2.mcap and so on when a file has this size, MB; 0: never")
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->group(kRecording);
-  app.add_option(prefix + "roll-s", roll_s, "The same when a file spans this time, s; 0: never")
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->group(kRecording);
-  app.add_option(prefix + "attach-mb", attach_mb,
-                 "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size "
-                 "is at most this, MB; 0: never. With them a replay needs no cell")
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->group(kRecording);
+  add_amount(app, prefix + "roll-mb", roll_mb,
+             "Continue in NAME-2.mcap and so on when a file has this size, MB; 0: never");
+  add_amount(app, prefix + "roll-s", roll_s, "The same when a file spans this time, s; 0: never");
+  add_amount(app, prefix + "attach-mb", attach_mb,
+             "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size "
+             "is at most this, MB; 0: never. With them a replay needs no cell");
   app.add_flag(prefix + "uncompressed", uncompressed, "Do not compress (zstd)")->group(kRecording);
 }
 
 void RecordingArguments::add_events_to(CLI::App& app, const std::string& prefix) {
-  const char* const kRecording = "Recording";
   CLI::Option* const around =
-      app.add_option(prefix + "around", around_s,
-                     "Record by event: only from this time before to this time after a zone is "
-                     "entered, a fault or "
-                     "a command, s, in files NAME-TIME.mcap; 0: record all");
-  around->check(number_from_zero())->capture_default_str()->group(kRecording);
+      add_amount(app, prefix + "around", around_s,
+                 "Record by event: only from this time before to this time after a zone is "
+                 "entered, a fault or "
+                 "a command, s, in files NAME-TIME.mcap; 0: record all");
   app.add_option(prefix + "ring-mb", ring_mb,
                  "Memory for the time before an event, MB; it limits that time")
       ->check(CLI::Range(1.0, 1e6))
       ->capture_default_str()
       ->needs(around)
       ->group(kRecording);
-  app.add_option(prefix + "keep-mb", keep_mb,
-                 "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: "
-                 "never")
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->needs(around)
-      ->group(kRecording);
-  app.add_option(prefix + "keep-h", keep_h,
-                 "Delete each NAME-TIME.mcap that is older than this, h; 0: never")
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->needs(around)
-      ->group(kRecording);
+  add_amount(app, prefix + "keep-mb", keep_mb,
+             "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never")
+      ->needs(around);
+  add_amount(app, prefix + "keep-h", keep_h,
+             "Delete each NAME-TIME.mcap that is older than this, h; 0: never")
+      ->needs(around);
   app.add_option(prefix + "ticks", ticks_every,
                  "Keep one tick of N, with the newest poses and joints of each source, and every "
                  "change of a zone: a small recording that shows a run, and cannot be compared")

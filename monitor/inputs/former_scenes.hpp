@@ -1,4 +1,4 @@
-// What is kept of the last scenes before the one in force, by revision.
+// Facts about the last scenes before the one in force, by revision.
 #pragma once
 
 #include <algorithm>

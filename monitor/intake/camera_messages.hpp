@@ -17,7 +17,7 @@ namespace clearance {
 
 enum class FrameFault : std::uint8_t {
   kNoFault,
-  // Of one message.
+  // Faults that one message shows by itself.
   kUndecodable,    // the bytes are not a message of the type: cut, or with lengths that lie
   kEncoding,       // neither 16UC1 nor 32FC1
   kByteOrder,      // not that of this machine
@@ -28,7 +28,7 @@ enum class FrameFault : std::uint8_t {
   kFields,         // x, y or z is missing, twice there, no single float32, or outside of the point
   kIntrinsics,  // focal lengths that are not positive, numbers that are not finite, or P unlike K
   kDistorted,   // a distortion, rotation, binning or region: the image is not a plain pinhole's
-  // Of the stream of messages.
+  // Faults that the messages before it show.
   kNoCameraInfo,       // no image can be used before the first CameraInfo
   kCameraInfoChanged,  // images are refused until the first CameraInfo comes again
   kSizeChanged,        // the image has another size than its CameraInfo

@@ -66,7 +66,7 @@ class EventRing {
   }
 
   std::vector<std::byte> memory_;
-  // Places count on without end; modulo the size of the memory they are offsets.
+  // Places count all bytes so far. Their remainder by the size of the memory is the offset.
   std::uint64_t tail_ = 0, head_ = 0;
   // A message stands in one piece. Where the end of the memory is too small for it, the next one
   // begins at offset 0, and this is the place that was left.

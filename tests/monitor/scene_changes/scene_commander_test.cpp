@@ -225,7 +225,7 @@ TEST_F(SceneCommands, KeepSentFilesAsLongAsACellOfTheLastEightNamesThem) {
   EXPECT_EQ(kept(), 1u);
   EXPECT_FALSE(add("n").done());
   EXPECT_EQ(kept(), 1u);
-  // A client that adds and removes meshes for ever.
+  // A client may add and remove meshes all day.
   ASSERT_TRUE(execute({RemoveObject{"n"}}).done());
   for (int i = 0; i < 3 * static_cast<int>(SentFiles::kScenes); ++i) {
     const std::string name = "m" + std::to_string(i);
