@@ -173,8 +173,8 @@ def test_ctrl_c_ends_a_program_that_waits():
     program = """
 import sys, clearance
 connection = clearance.Connection(domain=7, partition="python-tests-without-a-daemon")
-print("waiting", flush=True)
 try:
+    print("waiting", flush=True)
     clearance.Reports(connection).next()
 except KeyboardInterrupt:
     sys.exit(3)

@@ -94,11 +94,13 @@ async function look() {
   });
 }
 
-// Whether labels cover the bodies that they name, or each other, and how many lines lead from them.
+// Whether labels cover the bodies that they name, or each other, and how many lines lead from them: in the frame in
+// which their places were chosen, since a label follows its moving pair until the next choice.
 async function labels() {
   await frames(5);
-  return page.evaluate(() => {
-    const { view } = window.clearance, { lines, size } = view;
+  return page.evaluate(async () => {
+    const { view } = window.clearance, { lines, size } = view, before = lines.places.chosenMs;
+    while (lines.places.chosenMs === before) await new Promise(requestAnimationFrame);
     const boxes = [...document.querySelectorAll(".label")].filter(({ hidden }) => !hidden).map((label) => {
       const { left, top, right, bottom } = label.getBoundingClientRect(), origin = document.getElementById("view").getBoundingClientRect();
       return { pair: Number(label.dataset.pair), left: left - origin.left, top: top - origin.top, right: right - origin.left, bottom: bottom - origin.top };

@@ -2,7 +2,7 @@
 
 const ANGLES = 12, RADII = [46, 90, 140, 200, 280]; // pixels from the pair to the label's nearest edge
 const AGAIN_MS = 100; // between searches for places; labels follow their pairs in every frame
-const STAYS = 0.5; // a label moves only for a place that is better by this cost
+const STAYS = 0.5; // a label that covers none of its bodies moves only for a place that is better by this cost
 const MARGIN = 4; // pixels between labels
 
 // Costs of a place, by what the label would cover there.
@@ -34,6 +34,9 @@ function boxAt({ x, y, width, height }, { angle, radius }) {
 }
 // The point of a rectangle that is nearest to a point.
 export const nearestIn = ({ left, top, right, bottom }, { x, y }) => ({ x: Math.min(right, Math.max(left, x)), y: Math.min(bottom, Math.max(top, y)) });
+
+// Tells whether the label would cover a body that it names.
+const covers = (label, place, objects) => objects.some(({ object, rectangle }) => label.objects.includes(object) && overlap(boxAt(label, place), rectangle) > 0);
 
 const PLACES = RADII.flatMap((radius) => Array.from({ length: ANGLES }, (_, i) => ({ radius, angle: (2 * Math.PI * (i + 0.5)) / ANGLES })));
 
@@ -70,7 +73,7 @@ export class LabelPlaces {
       let place = known;
       if (!known || isDue) {
         const best = PLACES.map((each) => [cost(each), each]).reduce((one, other) => (other[0] < one[0] ? other : one));
-        place = known && cost(known) < best[0] + STAYS ? known : best[1];
+        place = known && cost(known) < best[0] + (covers(label, known, objects) ? 0 : STAYS) ? known : best[1];
       }
       this.places.set(label.key, place);
       const box = boxAt(label, place);
