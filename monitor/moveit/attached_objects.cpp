@@ -128,13 +128,13 @@ void MessageTranslator::detach(const AttachedCollisionObject& message, const std
   for (auto& [id, object] : scene_.objects) {
     if (object.is_moveits && !object.is_gone && object.where == Where::kAttached &&
         (link.empty() || link == object.carrier)) {
-      guarded([&] { detach(id, object, path); });
+      guarded(id, [&] { detach(id, object, path); });
     }
   }
 }
 
 void MessageTranslator::translate(const AttachedCollisionObject& message, const std::string& path) {
-  guarded([&] {
+  guarded(message.object.id, [&] {
     switch (message.object.operation) {
       case static_cast<std::uint8_t>(Operation::kAdd):
         return message.object.shapes() == 0 ? attach_as_it_is(message, path)

@@ -143,13 +143,15 @@ void MessageTranslator::keep_subframes(const CollisionObject& message, const std
          fmt::format("found {} poses for {} names; expected one each",
                      message.subframe_poses.size(), message.subframe_names.size()));
   }
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < message.subframe_names.size(); ++i) {
+    poses.push_back(value_of(
+        checked_pose(message.subframe_poses[i], fmt::format("subframe_poses[{}]", i)), path));
+  }
   std::erase_if(kept_.subframes_,
                 [&](const auto& each) { return each.second.object == message.id; });
-  for (std::size_t i = 0; i < message.subframe_names.size(); ++i) {
-    const Pose pose = value_of(
-        checked_pose(message.subframe_poses[i], fmt::format("subframe_poses[{}]", i)), path);
-    kept_.subframes_[message.id + "/" + message.subframe_names[i]] = {message.id, pose};
-  }
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    kept_.subframes_[message.id + "/" + message.subframe_names[i]] = {message.id, poses[i]};
 }
 
 void MessageTranslator::add_parts(KnownObject& object, Body body, const Pose& object_from_frame,

@@ -51,7 +51,7 @@ class MessageTranslator {
 
  private:
   template <class Translate>
-  void guarded(const Translate& translate);
+  void guarded(const std::string& id, const Translate& translate);
   void add(const CollisionObject& message, const std::string& path);
   void append(const CollisionObject& message, KnownObject& object, const std::string& path);
   void add_parts(KnownObject& object, Body body, const Pose& object_from_frame,
@@ -85,9 +85,11 @@ class MessageTranslator {
   Translation result_;
 };
 
-// A fault leaves out what `translate` does, and the rest goes on.
+// A fault leaves out what `translate` does with this object, and the rest goes on. `translate` may
+// edit what is known only after its last check. A known object stays as it was: without its new
+// body, the former one is the safer obstacle. `id`: empty, or what is about no object.
 template <class Translate>
-void MessageTranslator::guarded(const Translate& translate) {
+void MessageTranslator::guarded(const std::string& id, const Translate& translate) {
   const std::size_t changes = result_.changes.size(), files = result_.files.size();
   try {
     translate();
@@ -95,6 +97,8 @@ void MessageTranslator::guarded(const Translate& translate) {
     result_.changes.resize(changes, RemoveObject{});
     result_.files.resize(files);
     result_.refused.push_back(std::move(fault.fault));
+    if (const auto known = scene_.objects.find(id); known != scene_.objects.end())
+      known->second.is_gone = false;
   }
 }
 

@@ -15,7 +15,7 @@ void MessageTranslator::set_frames(const PlanningScene& message) {
   for (std::size_t i = 0; i < message.fixed_frame_transforms.size(); ++i) {
     const FixedFrame& frame = message.fixed_frame_transforms[i];
     if (frame.frame_id == frame.child_frame_id) continue;
-    guarded([&] {
+    guarded({}, [&] {
       const std::string path = fmt::format("fixed_frame_transforms[{}].", i);
       const auto world = world_from(frame.child_frame_id);
       if (!world) {
@@ -34,7 +34,7 @@ void MessageTranslator::set_frames(const PlanningScene& message) {
 void MessageTranslator::set_margins(const PlanningScene& message) {
   for (std::size_t i = 0; i < message.link_padding.size(); ++i) {
     const auto& [name, padding] = message.link_padding[i];
-    guarded([&, &name = name, &padding = padding] {
+    guarded(name, [&, &name = name, &padding = padding] {
       if (!(std::isfinite(padding) && padding >= 0.0)) {
         fail(fmt::format("link_padding[{}].padding", i),
              fmt::format("found {}; expected metres, 0 or more", padding));

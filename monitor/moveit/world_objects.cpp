@@ -71,7 +71,7 @@ void MessageTranslator::move(const CollisionObject& message, const std::string& 
 }
 
 void MessageTranslator::translate(const CollisionObject& message, const std::string& path) {
-  guarded([&] {
+  guarded(message.id, [&] {
     switch (message.operation) {
       case static_cast<std::uint8_t>(Operation::kAdd):
       case static_cast<std::uint8_t>(Operation::kAppend):

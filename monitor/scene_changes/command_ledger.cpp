@@ -34,7 +34,11 @@ std::optional<CommandResult> CommandLedger::refuse_sender(const Request& request
   std::vector<std::uint64_t>& writers = client->second.writers;
   if (std::ranges::find(writers, writer) == writers.end() && writers.size() < kWriters)
     writers.push_back(writer);
-  if (writers.size() == 1) return std::nullopt;
+  if (writers.size() == 1) {
+    if (client->second.writer != writer) client->second.last = 0;
+    client->second.writer = writer;
+    return std::nullopt;
+  }
   return refusal(request, CommandStatus::kTwoWriters,
                  fmt::format("found {} programs that send as '{}'; expected one. A program that "
                              "was killed counts until its lease ends",
@@ -51,22 +55,20 @@ CommandLedger::Verdict CommandLedger::admit(const Request& request) {
               refusal(request, CommandStatus::kOtherContent,
                       fmt::format("found request {} with another content than before; expected "
                                   "numbers from {}",
-                                  request.number, client.last() + 1))};
+                                  request.number, client.last + 1))};
     }
     if (!known->result) return {Next::kWait};
     return {Next::kAnswer, *known->result};
   }
-  if (request.number <= client.last()) {
+  if (request.number <= client.last) {
     return {Next::kAnswer,
             refusal(request, CommandStatus::kOutOfOrder,
                     fmt::format("found request {} after request {}; expected a later number",
-                                request.number, client.last()))};
+                                request.number, client.last))};
   }
-  client.known.push_back({request.number, request.content});
-  if (client.known.size() > kKnown && client.known.front().result) {
-    client.forgotten = client.known.front().number;
-    client.known.pop_front();
-  }
+  client.known.push_back({request.number, request.content, client.last});
+  client.last = request.number;
+  if (client.known.size() > kKnown && client.known.front().result) client.known.pop_front();
   return {Next::kDo};
 }
 
@@ -79,8 +81,11 @@ void CommandLedger::answer(const CommandResult& result) {
 
 void CommandLedger::withdraw(const Request& request) {
   const std::lock_guard lock(mutex_);
-  std::erase_if(clients_[request.client].known, [&](const Known& known) {
-    return known.number == request.number && !known.result;
+  Client& client = clients_[request.client];
+  std::erase_if(client.known, [&](const Known& known) {
+    if (known.number != request.number || known.result) return false;
+    if (client.last == request.number) client.last = known.before;
+    return true;
   });
 }
 

@@ -42,7 +42,9 @@ class CommandLedger {
   };
 
   // Tells whether this client may command, and whether this writer is the only one under its name.
-  // Returns the refusal. To be called for every message, also for one that is malformed.
+  // Returns the refusal. The numbers of a new writer need not be above those of the one before: a
+  // clock that was stepped back between two runs bars no client. To be called for every message,
+  // also for one that is malformed.
   [[nodiscard]] std::optional<CommandResult> refuse_sender(const Request& request,
                                                            std::uint64_t writer);
   // Judges a request that refuse_sender() lets pass. kDo must be followed by answer() or
@@ -58,15 +60,14 @@ class CommandLedger {
  private:
   struct Known {
     std::uint64_t number = 0, content = 0;
+    std::uint64_t before = 0;                  // the last number then
     std::optional<CommandResult> result = {};  // none: pending
   };
   struct Client {
     std::vector<std::uint64_t> writers = {};
-    std::deque<Known> known = {};  // ascending by number
-    std::uint64_t forgotten = 0;   // the largest number whose result is not known any more
-    [[nodiscard]] std::uint64_t last() const noexcept {
-      return known.empty() ? forgotten : known.back().number;
-    }
+    std::deque<Known> known = {};  // the last requests, in the order in which they came
+    std::uint64_t writer = 0;      // the last that sent alone: a program that runs
+    std::uint64_t last = 0;        // the largest number of this writer
   };
   std::mutex mutex_;
   std::map<std::string, Client> clients_;

@@ -100,6 +100,40 @@ TEST_F(MoveItCell, TheRestOfAMessageCountsWhereOneObjectIsRefused) {
   EXPECT_NE(object("c"), nullptr);
 }
 
+TEST_F(MoveItCell, AWholeSceneKeepsTheObjectsWhoseNewBodiesAreRefused) {
+  AttachedCollisionObject attached;
+  attached.link_name = "hand";
+  attached.object = box_object("held", kSomewhere);
+  send(attached);
+  send(box_object("shelf", kSomewhere));
+  send(box_object("old", kSomewhere));
+  PlanningScene scene;
+  scene.collision_objects = {box_object("shelf", kSomewhere)};
+  scene.collision_objects[0].primitives[0].dimensions[2] = 0.0;
+  scene.attached = {attached};
+  scene.attached[0].object.frame_id = "moon";
+  EXPECT_EQ(send(scene).refused.size(), 2u);
+  EXPECT_NE(object("shelf"), nullptr);
+  EXPECT_NE(object("held"), nullptr);
+  EXPECT_EQ(object("old"), nullptr);
+}
+
+TEST_F(MoveItCell, ARefusedObjectKeepsItsFormerSubframes) {
+  CollisionObject shelf = box_object("shelf", kSomewhere);
+  shelf.subframe_names = {"tip"};
+  shelf.subframe_poses = {kSomewhere};
+  send(shelf);
+  shelf.subframe_names = {"foot", "tip"};
+  shelf.subframe_poses = {kSomewhere, kSomewhere};
+  shelf.subframe_poses[1].orientation.coeffs() *= 2.0;
+  EXPECT_EQ(refused(shelf), "subframe_poses[1].orientation");
+  CollisionObject on_tip = box_object("on_tip", Pose{});
+  on_tip.frame_id = "shelf/foot";
+  EXPECT_EQ(refused(on_tip), "header.frame_id");
+  on_tip.frame_id = "shelf/tip";
+  EXPECT_TRUE(send(on_tip).refused.empty());
+}
+
 TEST_F(MoveItCell, WhatIsNotUnderstoodIsNamed) {
   PlanningScene scene;
   scene.is_diff = scene.robot_state_is_diff = true;

@@ -1,6 +1,8 @@
 // The ledger decides which clients may command, in which order, and which results are repeated.
 #include <gtest/gtest.h>
 
+#include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "monitor/scene_changes/command_ledger.hpp"
@@ -103,6 +105,38 @@ TEST(CommandLedger, KnowsTheLastResultsAndNoMore) {
   for (std::uint64_t i = 1; i <= CommandLedger::kKnown + 5; ++i) do_request(ledger, i);
   EXPECT_EQ(ledger.admit({"planner", 6, 0}).result.status, CommandStatus::kDone);
   EXPECT_EQ(ledger.admit({"planner", 5, 0}).result.status, CommandStatus::kOutOfOrder);
+}
+
+TEST(CommandLedger, TakesLowerNumbersOfAProgramThatStartedAgainAndStillKnowsTheFormerResults) {
+  CommandLedger ledger({"planner"});
+  const std::uint64_t largest = std::numeric_limits<std::uint64_t>::max();
+  ASSERT_EQ(ledger.refuse_sender({"planner", largest}, 7), std::nullopt);
+  do_request(ledger, largest);
+  EXPECT_EQ(ledger.admit({"planner", 40, 0}).result.status, CommandStatus::kOutOfOrder);
+  ledger.keep_writers({});
+  ASSERT_EQ(ledger.refuse_sender({"planner", 40}, 8), std::nullopt);
+  do_request(ledger, 40);
+  EXPECT_EQ(ledger.admit({"planner", 39, 0}).result.status, CommandStatus::kOutOfOrder);
+  EXPECT_EQ(ledger.admit({"planner", largest, 0}).next, Next::kAnswer);
+  EXPECT_EQ(ledger.admit({"planner", largest, 0}).result.status, CommandStatus::kDone);
+}
+
+TEST(CommandLedger, TakesNoLowerNumbersWhileTheSameProgramRuns) {
+  CommandLedger ledger({"planner"});
+  const std::vector<std::uint64_t> left = {7};
+  ASSERT_EQ(ledger.refuse_sender({"planner", 10}, 7), std::nullopt);
+  do_request(ledger, 10);
+  ledger.keep_writers(left);
+  ASSERT_EQ(ledger.refuse_sender({"planner", 9}, 7), std::nullopt);
+  EXPECT_EQ(ledger.admit({"planner", 9, 0}).result.status, CommandStatus::kOutOfOrder);
+}
+
+TEST(CommandLedger, CountsAWithdrawnRequestAsNotSentForTheOrderToo) {
+  CommandLedger ledger({"planner"});
+  do_request(ledger, 10);
+  ASSERT_EQ(ledger.admit({"planner", 20, 0}).next, Next::kDo);
+  ledger.withdraw({"planner", 20, 0});
+  EXPECT_EQ(ledger.admit({"planner", 15, 0}).next, Next::kDo);
 }
 
 TEST(CommandLedger, CountsAWithdrawnRequestAsNotSent) {
