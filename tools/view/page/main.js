@@ -225,12 +225,12 @@ function frame(nowMs) {
 }
 requestAnimationFrame(frame);
 
-// Since when the recording has stood still for a caller of isAt().
+// Since when the recording has stood at a time, with a report, for a caller of isAt().
 let stood;
 // Tables and plots are drawn a few times a second. The scene is drawn beside the page, and is finished when a pixel can
 // be read.
-function isDrawn() {
-  stood ??= { frame: frames, ms: performance.now() };
+function isDrawn(time) {
+  stood ??= { frame: frames, ms: performance.now(), time, report: drawnReport };
   if (stood.finished) return frames > stood.finished + 1;
   if (frames > stood.frame + 2 && performance.now() > stood.ms + 300) {
     view.finish();
@@ -248,8 +248,8 @@ window.clearance = {
   isAt: (time) => {
     const there = drawnReport !== undefined && Math.abs(secondsIn() - Math.min(time, timeline.duration)) < 1e-3 &&
       Math.abs(drawnReport - state.timeNs) < 1e9 && view.isReady && !state.history.isAsking;
-    if (!there) stood = undefined;
-    return there && isDrawn();
+    if (!there || stood?.time !== time || stood.report !== drawnReport) stood = undefined;
+    return there && isDrawn(time);
   },
   framesPerSecond: () => (times.length < 2 ? 0 : (1000 * (times.length - 1)) / (times.at(-1) - times[0])),
 };
