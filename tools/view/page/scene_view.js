@@ -15,7 +15,8 @@ const ROUNDING = 1e-7; // m
 // When frames take longer than this, ms, they are drawn with fewer pixels, down to this share.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 const FADE_AGAIN_MS = 250; // between searches for bodies that hide moving ones
-const STAYS_AGAIN_MS = 100, GROWTH = 1.15; // the first view is checked, and grows by this factor
+// The first view is checked, and grows by this factor before bodies pass this share of it on their way out.
+const STAYS_AGAIN_MS = 100, GROWTH = 1.15, INSIDE = 0.95;
 // A pair fills this share of the view, or less where its gap is small beside its objects or this length, m.
 const GAP_SHARE = 0.45, OBJECT_SHARE = 0.6, LEAST_LOOK = 0.03;
 const ALONG = 0.6; // cosine between view and gap, above which the gap would be seen from its end
@@ -111,7 +112,7 @@ export class SceneView {
     const { min, max } = moving, corner = new THREE.Vector3();
     for (let i = 0; i < 8; ++i) {
       corner.set(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z).project(this.camera);
-      if (Math.abs(corner.x) < 1 && Math.abs(corner.y) < 1 && Math.abs(corner.z) < 1) continue;
+      if (Math.abs(corner.x) < INSIDE && Math.abs(corner.y) < INSIDE && Math.abs(corner.z) < 1) continue;
       const grown = this.reached.getSize(new THREE.Vector3()).multiplyScalar(0.5 * (GROWTH - 1));
       this.reached.expandByVector(grown);
       return this.fit(this.follows.side, this.follows.moving);
