@@ -135,6 +135,10 @@ void Asker::Search::prepare() noexcept {
 }
 
 std::optional<std::string> Asker::Search::ask(const Question& question, Answer& answer) {
+  if (!question.beside.empty() || !question.moving.empty() || !question.payloads.empty() ||
+      question.profile || question.time_scaling) {
+    return "this version does not answer `beside`, `moving`, `payloads`, `profile`, `time_scaling`";
+  }
   if (auto text = posture_.take(question)) return text;
   if (!(question.tolerance > 0.0) || !(question.margin_tolerance > 0.0)) {
     return "a tolerance is not above 0";

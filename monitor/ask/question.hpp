@@ -1,12 +1,15 @@
 // A question about a motion before it is made, and its answer.
 //
-// SI units: m, rad, s. Distances here are not negative: bodies that overlap have distance 0.
+// SI units: m, rad, s. Distances here are not negative: bodies that overlap have distance 0. All
+// times count on the clock of the motion's waypoints; its first one is "now".
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/convex_body.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -31,16 +34,48 @@ struct StatedPose {
   Pose world_from_object;
 };
 
-// The motion of objects that are neither fixed nor part of a robot.
+// The motion of an object that is neither fixed nor part of a robot. Between two times its origin
+// moves at constant velocity, and it rotates at constant speed about one axis, by less than a half
+// turn. Before the first time and after the last one it rests.
+struct ObjectMotion {
+  std::string object;
+  std::vector<double> times;  // s, increasing
+  std::vector<Pose> world_from_object;
+};
+
+// An object that a link carries in this question. It is watched against all objects that are
+// watched against its link, and against the links of the same robot, but not against its link or
+// `touch`.
+struct Payload {
+  std::string name;                 // an object of the cell that is not fixed; or a new name
+  std::optional<ConvexBody> shape;  // of a new object
+  std::string link;                 // an object that is a link of a robot
+  Pose link_from_object;
+  std::vector<std::string> touch;  // names of objects that it may touch
+};
+
+// The motion of objects that are neither fixed nor part of a robot, and for which the question
+// states no motion.
 enum class OthersMove : std::uint8_t {
   kWithinMaxSpeed,  // within max_speed x time since the first waypoint
   kNot,
 };
 
+// Asks for bounds of the distance over time.
+struct ProfileRequest {
+  // The names of a pair of objects; empty: the least distance of all pairs.
+  std::string first, second;
+  double tolerance = 5e-3;           // m: `upper` - `lower` of a point
+  std::uint32_t most_points = 1000;  // fewer if that is enough for the tolerance
+};
+
 struct Question {
   JointTrajectory motion;
-  std::vector<HeldJoint> held;    // every other joint of the cell
-  std::vector<StatedPose> poses;  // of objects that are neither fixed nor part of a robot
+  std::vector<JointTrajectory> beside;  // of other robots, which rest before and after it
+  std::vector<HeldJoint> held;          // every other joint of the cell
+  std::vector<StatedPose> poses;        // of objects that are neither fixed nor part of a robot
+  std::vector<ObjectMotion> moving;     // instead of a pose
+  std::vector<Payload> payloads;        // beside what the scene has attached
   OthersMove others = OthersMove::kWithinMaxSpeed;
   std::vector<double> margins = {0.0};  // m, from 0 on
   double tolerance = 1e-3;              // m: `upper` - `lower` at the end
@@ -48,6 +83,13 @@ struct Question {
   double margin_tolerance = 1e-10;
   // m: a motion that is certainly farther away than this is not examined more closely.
   double far_enough = 1e300;
+  // Only the margins are asked for. `lower` and `upper` are then as good as these needed.
+  bool only_margins = false;
+  // The first instant below a margin is not searched for: a verdict and any instant are enough.
+  bool only_verdicts = false;
+  std::optional<ProfileRequest> profile;
+  bool time_scaling = false;
+  double scaling_tolerance = 0.01;       // relative, of TimeScaling::factor
   std::uint64_t work_limit = 1'000'000;  // distance queries
 };
 
@@ -66,6 +108,30 @@ struct MarginAnswer {
   std::uint32_t first = 0, second = 0;  // the pair that is below it, or may be; Scene::objects
 };
 
+// A part of the motion, from one instant to another, s. The distance is at least `lower` and at
+// most `upper` at all instants of it, m. One pair may have `upper`, the other `lower`.
+struct ProfilePoint {
+  double from = 0.0, to = 0.0;
+  double lower = 0.0, upper = 0.0;
+  std::uint32_t first = 0, second = 0;  // the pair that is closest in its middle
+};
+
+// The speed that zones with `separation` admit. README.md, "Time scaling", has the assumptions.
+struct TimeScaling {
+  bool is_limited = false;  // such a zone has a pair with a robot of the question
+  // The motion may be timed faster by this, above 1, or has to be timed slower, below 1: at it and
+  // at all factors below, S_p holds at all instants. 0: a zone's S_p exceeds the distance even for
+  // robots that stand. Infinity: no speed of these robots is too large.
+  double factor = kInfinity;
+  // At a larger factor than this, S_p does not hold at the instant `time`, s.
+  double factor_above = kInfinity;
+  double time = 0.0;
+  std::uint32_t first = 0, second = 0;  // the pair that limits it; Scene::objects
+  std::uint32_t zone = 0;               // Scene::zones
+};
+
+// Objects are indices into Scene::objects. New objects of Question::payloads follow these, in the
+// order of the question.
 struct Answer {
   // The least distance over all instants of the motion is in [lower, upper], m.
   double lower = 0.0, upper = 0.0;
@@ -76,9 +142,13 @@ struct Answer {
   Vec3 point_on_first = Vec3::Zero(), point_on_second = Vec3::Zero();
   bool has_pair = false;              // false: no watched pair has a link of the cell's robots
   std::vector<MarginAnswer> margins;  // in the order of the question
-  bool within_work_limit = true;      // false: the bounds hold, but may be wider than asked for
-  std::uint64_t queries = 0;          // distance queries
-  std::uint64_t placements = 0;       // of all links
+  // In the order of time. Each point begins where the last one ends; together they are the whole
+  // motion. Empty if it was not asked for, or no pair is watched.
+  std::vector<ProfilePoint> profile;
+  TimeScaling scaling;            // if asked for
+  bool within_work_limit = true;  // false: the bounds hold, but may be wider than asked for
+  std::uint64_t queries = 0;      // distance queries
+  std::uint64_t placements = 0;   // of all links
 };
 
 }  // namespace clearance
