@@ -131,6 +131,7 @@ void Asker::Search::prepare() noexcept {
     const bool is_free = !base.fixed && !posture_.chains().is_link(pair.object_base);
     const bool moves = is_free && question_->others == OthersMove::kWithinMaxSpeed;
     pair.unstated_speed = moves ? base.max_speed : 0.0;
+    pair.age = posture_.age(pair.object_base);
   }
 }
 

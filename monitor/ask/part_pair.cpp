@@ -77,7 +77,8 @@ StretchBounds bounds_over(const Stretch& stretch, double middle, double enough, 
   const PosedPart& tip = posture.part(pair.tip);
   const double moved =
       posture.chains().displacement(pair.chain, tip.sphere_in_world, posture.bounds());
-  const double loss = rounded_up(pair.rounding + swept(pair.unstated_speed, stretch.to - begin));
+  const double loss =
+      rounded_up(pair.rounding + swept(pair.unstated_speed, stretch.to - begin + pair.age));
   StretchBounds bounds;
   bounds.lower =
       rounded_down(least_between(base.sphere_in_world, tip.sphere_in_world) - moved - loss);
@@ -91,7 +92,7 @@ StretchBounds bounds_over(const Stretch& stretch, double middle, double enough, 
     found = distance(*base.shape, *tip.shape, pose, pair.tracking);
   }
   const DistanceBounds exact = for_exact_poses(found, base, tip);
-  const double now = swept(pair.unstated_speed, middle - begin);
+  const double now = swept(pair.unstated_speed, middle - begin + pair.age);
   bounds.upper = std::max(0.0, rounded_up(exact.upper + pair.rounding - now));
   bounds.lower = std::max(bounds.lower, rounded_down(exact.lower - moved - loss));
   const Mat3& turn = base.world_from_part_rotation;

@@ -16,6 +16,7 @@ struct PartPair {
   Chain chain;
   // m/s: the speed at which the base may come nearer, beside all that the question states.
   double unstated_speed = 0.0;
+  double age = 0.0;       // s: it may have done so for this long before the first instant
   double rounding = 0.0;  // m: the error of the distance from the rounding of positions of joints
   TrackingState tracking;
 };

@@ -35,7 +35,8 @@ Posture::Posture(const Scene& scene)
       robot_of_object_(scene.objects.size(), kNoLink),
       link_of_object_(scene.objects.size(), kNoLink),
       pose_(scene.objects.size()),
-      present_(scene.objects.size(), 0) {
+      present_(scene.objects.size(), 0),
+      age_(scene.objects.size(), 0.0) {
   for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
     for (std::uint32_t i = 0; i < scene.robots[r].links.size(); ++i) {
       const std::uint32_t object = scene.robots[r].links[i].object;
@@ -119,6 +120,7 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
     const Object& object = scene_.objects[i];
     present_[i] = object.fixed || robot_of_object_[i] != kNoLink;
     if (object.fixed) pose_[i] = object.world_from_object;
+    age_[i] = 0.0;
   }
   for (const StatedPose& stated : question.poses) {
     const auto at =
@@ -134,7 +136,10 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
       return "the pose of object \"" + stated.object +
              "\" is not finite, or its quaternion has not length 1";
     }
+    if (!(stated.age >= 0.0) || !std::isfinite(stated.age))
+      return "the age of the pose of object \"" + stated.object + "\" is not a number from 0 on";
     pose_[i] = stated.world_from_object;
+    age_[i] = stated.age;
     present_[i] = 1;
   }
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {

@@ -32,6 +32,8 @@ class Posture {
   [[nodiscard]] bool is_present(std::uint32_t object) const noexcept {
     return present_[object] != 0;
   }
+  // StatedPose::age; 0 for all other objects.
+  [[nodiscard]] double age(std::uint32_t object) const noexcept { return age_[object]; }
 
   // Moves all joints to an instant of a stretch.
   void place(const Stretch& stretch, double at) noexcept;
@@ -61,6 +63,7 @@ class Posture {
   std::vector<std::uint32_t> robot_of_object_, link_of_object_;  // kNoLink: not a link
   std::vector<Pose> pose_;                                       // of objects that are not links
   std::vector<std::uint8_t> present_;                            // by object
+  std::vector<double> age_;                                      // by object
 };
 
 }  // namespace clearance

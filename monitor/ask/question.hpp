@@ -32,6 +32,7 @@ struct HeldJoint {
 struct StatedPose {
   std::string object;
   Pose world_from_object;
+  double age = 0.0;  // s, from 0 on: it was there this long before the first waypoint
 };
 
 // The motion of an object that is neither fixed nor part of a robot. Between two times its origin

@@ -126,8 +126,14 @@ TEST(Asker, NoPostureOfTheMotionIsNearerThanTheLowerBound) {
 TEST(Asker, AMovingObjectComesNearerByItsLargestSpeed) {
   const Scene scene = scara_beside("max_speed: 0.05, sphere: {radius: 0.1}");
   Question question = swing(0.0, 0.0);
-  question.poses = {{"post", {.position = {2.3, 0.0, 0.0}}}};
+  question.poses = {{.object = "post", .world_from_object = {.position = {2.3, 0.0, 0.0}}}};
   EXPECT_NEAR(answered(scene, question).lower, 0.15 - 0.05 * 2.0, 1e-3);
+  question.poses[0].age = 0.5;
+  EXPECT_NEAR(answered(scene, question).lower, 0.15 - 0.05 * 2.5, 1e-3);
+  EXPECT_NEAR(answered(scene, question).upper, 0.15 - 0.05 * 2.5, 1e-3);
+  question.poses[0].age = -0.5;
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+  question.poses[0].age = 0.5;
   question.others = OthersMove::kNot;
   EXPECT_NEAR(answered(scene, question).lower, 0.15, 1e-9);
 }
