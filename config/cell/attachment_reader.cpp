@@ -29,8 +29,9 @@ class AttachmentReader {
       for (std::uint32_t link = 0; link < links.size(); ++link)
         links_.emplace(links[link].name, std::pair(robot, link));
     }
-    for (std::uint32_t i = 0; i < list.objects.size(); ++i)
-      objects_.emplace(list.objects[i].name, i);
+    for (std::uint32_t i = 0; i < list.objects.size(); ++i) {
+      if (!list.objects[i].is_seen()) objects_.emplace(list.objects[i].name, i);
+    }
     for (std::size_t i = 0; i < list.stated.size(); ++i)
       stated_.emplace(list.stated[i].object.name, i);
     progress_.resize(list.stated.size());

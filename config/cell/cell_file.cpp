@@ -19,6 +19,7 @@
 #include "config/cell/planning_scene_reader.hpp"
 #include "config/cell/robot_reader.hpp"
 #include "config/cell/ros_reader.hpp"
+#include "config/cell/sensor_reader.hpp"
 #include "config/cell/shape_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
 #include "config/cell/zone_reader.hpp"
@@ -188,6 +189,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* templates_node = map.optional("templates");
   const YamlNode* robots_node = map.optional("robots");
   const YamlNode* scenes_node = map.optional("scenes");
+  const YamlNode* sensors_node = map.optional("sensors");
   const YamlNode* margins_node = map.optional("margins");
   const YamlNode* objects_node = robots_node == nullptr && scenes_node == nullptr
                                      ? map.required("objects")
@@ -207,6 +209,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (scenes_node != nullptr)
     read_planning_scenes(*scenes_node, file_.parent_path(), defaults, quantities, shapes, revision_,
                          list);
+  SensorList sensors;
+  if (sensors_node != nullptr) sensors = read_sensors(*sensors_node, defaults, quantities, list);
   RobotList robots;
   if (robots_node != nullptr) {
     robots = read_robots(*robots_node, file_, defaults, quantities, shapes, revision_, list);
@@ -215,6 +219,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   }
   if (margins_node != nullptr) read_link_margins(*margins_node, robots, quantities, list);
   attach_objects(quantities, robots, list);
+  mount_sensors(robots, list, quantities, sensors);
   allow_by_matrices(list, robots.may_touch);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
@@ -238,6 +243,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     cell.simulation = read_simulation(*simulation_node, list, quantities);
   cell.scene.pairs = std::move(pairs.pairs);
   cell.scene.objects = std::move(list.objects);
+  cell.scene.sensors = std::move(sensors.sensors);
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
 }

@@ -10,6 +10,19 @@
 #include "config/text/spelling.hpp"
 
 namespace clearance {
+namespace {
+
+bool is_unbounded(const Object& object) {
+  return !std::ranges::all_of(object.parts, [](const Part& part) { return part.shape.bounded(); });
+}
+
+bool never_meet(const Object& a, const Object& b) {
+  if (a.is_seen() || b.is_seen())
+    return (a.is_seen() && b.is_seen()) || is_unbounded(a) || is_unbounded(b);
+  return a.fixed && b.fixed;
+}
+
+}  // namespace
 
 // Objects are added first: a group with an object's name is then the one that is reported.
 GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
@@ -111,7 +124,7 @@ std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   std::vector<PairKey> keys;
   for (const std::uint32_t a : *between.objects[0]) {
     for (const std::uint32_t b : *between.objects[1]) {
-      if (a == b || (list_.objects[a].fixed && list_.objects[b].fixed)) continue;
+      if (a == b || never_meet(list_.objects[a], list_.objects[b])) continue;
       keys.push_back(pair_key(a, b));
     }
   }

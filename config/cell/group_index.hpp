@@ -40,7 +40,9 @@ class GroupIndex {
                                                     Attached attached = Attached::kCount);
 
   // Returns every two objects, one of each side, ascending, each once. An object has no distance
-  // from itself, two fixed objects need no watching, and ObjectList::left_out is left out.
+  // from itself, two fixed objects need no watching, and ObjectList::left_out is left out. What a
+  // sensor sees has pairs with bounded objects only, fixed ones too, and none with what another
+  // sensor sees.
   [[nodiscard]] std::vector<PairKey> pairs(const Between& between) const;
 
   // Reports groups that no `between` names: a misspelt group would leave its objects

@@ -27,7 +27,6 @@ class BaseReader {
 
  private:
   void read_limits(MapReader& map, StatedBase& stated);
-  void stand_on(const YamlNode& node, RobotBase& base);
 
   const std::vector<Robot>& robots_;
   const PosesAtRest& at_rest_;
@@ -35,53 +34,6 @@ class BaseReader {
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
 };
-
-// Reads the base: a link of an earlier robot, or an object. If nothing moves it, the base becomes a
-// pose in the world.
-void BaseReader::stand_on(const YamlNode& node, RobotBase& base) {
-  const auto name = read_name(node, "an object, or a link of a robot", diagnostics_);
-  if (!name) return;
-  std::vector<std::string> names;
-  for (std::uint32_t robot = 0; robot < robots_.size(); ++robot) {
-    const std::vector<RobotLink>& links = robots_[robot].links;
-    for (std::uint32_t link = 0; link < links.size(); ++link) {
-      names.push_back(links[link].name);
-      if (links[link].name != *name) continue;
-      const auto place = at_rest_.find(*name);
-      if (place != at_rest_.end())
-        base.base_from_root = compose(place->second, base.base_from_root);
-      if (place == at_rest_.end()) base.kind = RobotBase::Kind::kLink;
-      base.robot = robot;
-      base.link = link;
-      return;
-    }
-  }
-  for (std::uint32_t i = 0; i < objects_.objects.size(); ++i) {
-    const Object& object = objects_.objects[i];
-    names.push_back(object.name);
-    if (object.name != *name) continue;
-    if (object.fixed) {
-      base.base_from_root = compose(object.world_from_object, base.base_from_root);
-    } else {
-      base.kind = RobotBase::Kind::kObject;
-      base.object = i;
-    }
-    return;
-  }
-  if (std::ranges::any_of(objects_.stated, [&](const StatedAttachment& stated) {
-        return stated.object.name == *name;
-      })) {
-    diagnostics_.add(node, fmt::format("found the attached object '{}'; expected an object that is "
-                                       "not attached, or the carrier of this one",
-                                       *name));
-    return;
-  }
-  if (!objects_.names_known) return;
-  diagnostics_.add(node,
-                   fmt::format("found the unknown name '{}'; expected an object, or a link of "
-                               "a robot that stands before this one{}",
-                               *name, did_you_mean(*name, names)));
-}
 
 StatedBase BaseReader::read(const YamlNode& node) {
   StatedBase stated;
@@ -101,7 +53,11 @@ StatedBase BaseReader::read(const YamlNode& node) {
     read_limits(map, stated);
   } else {
     base.base_from_root = pose;
-    if (on != nullptr) stand_on(*on, base);
+    if (on != nullptr) {
+      read_what_carries(*on, robots_, at_rest_, objects_,
+                        "an object, or a link of a robot that stands before this one", diagnostics_,
+                        base);
+    }
   }
   map.refuse_unknown_keys();
   return stated;
@@ -131,6 +87,51 @@ void BaseReader::read_limits(MapReader& map, StatedBase& stated) {
 }
 
 }  // namespace
+
+void read_what_carries(const YamlNode& node, const std::vector<Robot>& robots,
+                       const PosesAtRest& at_rest, const ObjectList& objects,
+                       const std::string& expected, Diagnostics& diagnostics, RobotBase& base) {
+  const auto name = read_name(node, "an object, or a link of a robot", diagnostics);
+  if (!name) return;
+  std::vector<std::string> names;
+  for (std::uint32_t robot = 0; robot < robots.size(); ++robot) {
+    const std::vector<RobotLink>& links = robots[robot].links;
+    for (std::uint32_t link = 0; link < links.size(); ++link) {
+      names.push_back(links[link].name);
+      if (links[link].name != *name) continue;
+      const auto place = at_rest.find(*name);
+      if (place != at_rest.end()) base.base_from_root = compose(place->second, base.base_from_root);
+      if (place == at_rest.end()) base.kind = RobotBase::Kind::kLink;
+      base.robot = robot;
+      base.link = link;
+      return;
+    }
+  }
+  for (std::uint32_t i = 0; i < objects.objects.size(); ++i) {
+    const Object& object = objects.objects[i];
+    if (object.is_seen()) continue;  // it has no place
+    names.push_back(object.name);
+    if (object.name != *name) continue;
+    if (object.fixed) {
+      base.base_from_root = compose(object.world_from_object, base.base_from_root);
+    } else {
+      base.kind = RobotBase::Kind::kObject;
+      base.object = i;
+    }
+    return;
+  }
+  if (std::ranges::any_of(objects.stated, [&](const StatedAttachment& stated) {
+        return stated.object.name == *name;
+      })) {
+    diagnostics.add(node, fmt::format("found the attached object '{}'; expected an object that is "
+                                      "not attached, or the carrier of this one",
+                                      *name));
+    return;
+  }
+  if (!objects.names_known) return;
+  diagnostics.add(node, fmt::format("found the unknown name '{}'; expected {}{}", *name, expected,
+                                    did_you_mean(*name, names)));
+}
 
 StatedBase read_robot_base(const YamlNode& node, const std::vector<Robot>& robots,
                            const PosesAtRest& at_rest, const ObjectList& objects,

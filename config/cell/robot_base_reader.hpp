@@ -28,6 +28,13 @@ struct StatedBase {
                                          const PosesAtRest& at_rest, const ObjectList& objects,
                                          const Quantities& quantities);
 
+// Reads the name of what something stands on: a link of one of `robots`, or an object. If nothing
+// moves that, `base` becomes a pose in the world. `expected` ends the message about an unknown
+// name.
+void read_what_carries(const YamlNode& node, const std::vector<Robot>& robots,
+                       const PosesAtRest& at_rest, const ObjectList& objects,
+                       const std::string& expected, Diagnostics& diagnostics, RobotBase& base);
+
 // Sets the limits of a base that follows a frame. The first seven variables are those of the
 // floating joint that carries the base. An entry of a quaternion changes at most at half the rate
 // of the rotation.

@@ -80,7 +80,11 @@ std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node)
                                        *name));
     return std::nullopt;
   }
-  if (list_.objects[index].fixed) {
+  if (list_.objects[index].is_seen()) {
+    diagnostics_.add(node, fmt::format("found the sensor '{}'; expected a moving object: what a "
+                                       "sensor sees is not moved by itself",
+                                       *name));
+  } else if (list_.objects[index].fixed) {
     diagnostics_.add(node,
                      fmt::format("found the fixed object '{}'; expected a moving one", *name));
   } else if (const auto [same, is_new] = moved_in_line_.emplace(index, node.line); !is_new) {

@@ -5,12 +5,14 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/scene/contact.hpp"
 #include "config/scene/robot.hpp"
+#include "config/scene/sensor.hpp"
 #include "config/scene/separation.hpp"
 #include "core/convex_body.hpp"
 #include "core/pose.hpp"
@@ -52,11 +54,16 @@ struct Object {
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none
+  // Index into Scene::sensors. It is what that sensor sees: its only part is a ball around all that
+  // the sensor can see, in the frame of the sensor, and its pose and content come with each frame.
+  static constexpr std::uint32_t kNoSensor = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t sensor = kNoSensor;
 
   // Poses that need a higher speed contradict it, m/s.
   [[nodiscard]] double plausible_speed() const noexcept {
     return max_speed < kInfinity ? max_speed : kFastestUnstated;
   }
+  [[nodiscard]] bool is_seen() const noexcept { return sensor != kNoSensor; }
 };
 
 // Two objects that are watched. first < second; every pair stands once.
@@ -90,6 +97,7 @@ struct Scene {
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
   bool gradients = false;  // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;
+  std::vector<Sensor> sensors;  // in the order of their objects, which come before all links
   // Each stands on the world, an object, or an earlier robot. Their links come after all other
   // objects, and attached objects (Robot::is_attached) after all others.
   std::vector<Robot> robots;

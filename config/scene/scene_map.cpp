@@ -77,7 +77,9 @@ bool same_input(const JointVariable& a, const JointVariable& b) {
   return a.source == b.source && a.wraps == b.wraps;
 }
 bool same_input(const Object& a, const Object& b) {
-  return !a.fixed && !b.fixed && a.source == b.source && a.frame == b.frame && a.absent == b.absent;
+  // What a sensor sees begins anew with its next frame.
+  return !a.fixed && !b.fixed && !a.is_seen() && !b.is_seen() && a.source == b.source &&
+         a.frame == b.frame && a.absent == b.absent;
 }
 
 // Whether the robots' variables are the same, one by one.

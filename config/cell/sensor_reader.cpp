@@ -1,0 +1,317 @@
+#include "config/cell/sensor_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "config/cell/robot_base_reader.hpp"
+#include "config/cell/ros_reader.hpp"
+#include "config/yaml/map_reader.hpp"
+#include "config/yaml/scalar.hpp"
+#include "core/shapes.hpp"
+
+namespace clearance {
+namespace {
+
+// A frame of 30 Hz may be lost, and the next one late, before its pairs are stale.
+constexpr std::int64_t kAgeLimitNs = 100'000'000;
+constexpr std::int64_t kMostColumns = 65535;                              // monitor/clouds
+constexpr std::int64_t kMostPoints = 4'000'000;                           // 200 MB of memory
+constexpr Range kDepths{.least = 0.0, .most = 1e4, .above_least = true};  // m, monitor/clouds
+constexpr Range kSpacings{.least = 0.0, .most = 0.1};
+
+class SensorReader {
+ public:
+  SensorReader(const ObjectDefaults& defaults, const Quantities& quantities)
+      : defaults_(defaults), quantities_(quantities), diagnostics_(quantities.diagnostics()) {}
+
+  void read(const YamlNode& node, SensorList& list, ObjectList& objects);
+
+ private:
+  void read_topics(const YamlNode& node, MapReader& map, Sensor& sensor);
+  [[nodiscard]] std::string read_topic(const YamlNode& node) const;
+  void read_error(MapReader& map, Sensor& sensor) const;
+  void read_range(const YamlNode& node, Sensor& sensor) const;
+  void read_capacity(MapReader& map, Sensor& sensor) const;
+  void read_points(MapReader& map, Sensor& sensor) const;
+  void refuse_large_error(const YamlNode& node, const Sensor& sensor) const;
+  void read_object(MapReader& map, Object& object, bool& groups_known) const;
+
+  const ObjectDefaults& defaults_;
+  const Quantities& quantities_;
+  Diagnostics& diagnostics_;
+  std::map<std::string, int> lines_;  // of the topics of images and points
+};
+
+std::string SensorReader::read_topic(const YamlNode& node) const {
+  const auto topic = read_text(node, "a topic of ROS 2", diagnostics_);
+  if (!topic || is_ros_topic(*topic)) return topic.value_or("");
+  diagnostics_.add(node, fmt::format("found '{}'; expected a topic of ROS 2 with its namespace: "
+                                     "/camera/depth/image_rect_raw",
+                                     *topic));
+  return "";
+}
+
+// Drivers publish CameraInfo beside their images.
+void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sensor) {
+  const YamlNode* image = map.optional("depth_image");
+  const YamlNode* points = map.optional("points");
+  const YamlNode* info = map.optional("camera_info");
+  if ((image == nullptr) == (points == nullptr)) {
+    diagnostics_.add(node, fmt::format("found {} of 'depth_image' and 'points'; expected one of "
+                                       "the two, with a topic of ROS 2",
+                                       image == nullptr ? "none" : "both"));
+    return;
+  }
+  const YamlNode& topic = image != nullptr ? *image : *points;
+  sensor.kind = image != nullptr ? SensorKind::kDepthImage : SensorKind::kPoints;
+  sensor.topic = read_topic(topic);
+  if (const auto [same, is_new] = lines_.emplace(sensor.topic, topic.line);
+      !is_new && !sensor.topic.empty()) {
+    diagnostics_.add(topic, fmt::format("found the topic '{}' again; expected it once (first in "
+                                        "line {})",
+                                        sensor.topic, same->second));
+  }
+  if (image == nullptr) {
+    if (info != nullptr)
+      diagnostics_.add(*info, "found 'camera_info' of points; expected it of depth images only");
+    return;
+  }
+  sensor.camera_info = info != nullptr
+                           ? read_topic(*info)
+                           : sensor.topic.substr(0, sensor.topic.rfind('/') + 1) + "camera_info";
+}
+
+// In the unit u of the cell, the error is constant + quadratic z^2; `quadratic` is then 1/u.
+void SensorReader::read_error(MapReader& map, Sensor& sensor) const {
+  const YamlNode* node = map.required("depth_error");
+  if (node == nullptr) return;
+  MapReader error(*node, "the error of the depth", diagnostics_);
+  if (const YamlNode* constant = error.required("constant")) {
+    sensor.error_constant =
+        quantities_.length(*constant, "the part of the error that is constant", kNotNegative)
+            .value_or(0.0);
+  }
+  if (const YamlNode* quadratic = error.optional("quadratic")) {
+    const auto number =
+        read_number(*quadratic, kNotNegative,
+                    "the part of the error that grows with the square of the depth", diagnostics_);
+    sensor.error_quadratic = number.value_or(0.0) / to_metres(1.0, quantities_.units().length);
+  }
+  error.refuse_unknown_keys();
+}
+
+void SensorReader::read_range(const YamlNode& node, Sensor& sensor) const {
+  const bool is_pair = node.kind == YamlNode::Kind::kSequence && node.items.size() == 2;
+  if (!is_pair) {
+    diagnostics_.add(node, fmt::format("found {}; expected the least and the greatest depth: "
+                                       "[0.3, 4]",
+                                       describe(node)));
+    return;
+  }
+  const auto depth = [&](const YamlNode& item, const char* what) {
+    const double metres = quantities_.length(item, what, kPositive).value_or(1.0);
+    if (metres <= kDepths.most) return metres;
+    diagnostics_.add(
+        item, fmt::format("found {} m; expected {} of at most {} m", metres, what, kDepths.most));
+    return 1.0;
+  };
+  sensor.least_depth = depth(node.items[0], "the least depth");
+  sensor.greatest_depth = depth(node.items[1], "the greatest depth");
+  if (sensor.least_depth > sensor.greatest_depth) {
+    diagnostics_.add(node, "found a least depth above the greatest; expected [least, greatest]");
+  }
+}
+
+// The error is a convex function of the depth, so it is below the depth if it is so at both ends.
+void SensorReader::refuse_large_error(const YamlNode& node, const Sensor& sensor) const {
+  for (const double depth : {sensor.least_depth, sensor.greatest_depth}) {
+    if (depth <= 0.0 || sensor.error_at(depth) < depth) continue;
+    diagnostics_.add(node, fmt::format("found a depth_error of {} m at a depth of {} m; expected "
+                                       "less than the depth",
+                                       sensor.error_at(depth), depth));
+    return;
+  }
+}
+
+void SensorReader::read_capacity(MapReader& map, Sensor& sensor) const {
+  const YamlNode* size = map.optional("size");
+  const YamlNode* most = map.optional("most_points");
+  sensor.columns = 640;
+  sensor.rows = 480;
+  sensor.most_points = sensor.columns * sensor.rows;
+  const bool is_image = sensor.kind == SensorKind::kDepthImage;
+  if (const YamlNode* other = is_image ? most : size) {
+    diagnostics_.add(*other,
+                     fmt::format("found '{}'; expected it of {}", is_image ? "most_points" : "size",
+                                 is_image ? "points only" : "depth images only"));
+  }
+  if (is_image && size != nullptr) {
+    if (size->kind != YamlNode::Kind::kSequence || size->items.size() != 2) {
+      diagnostics_.add(*size, fmt::format("found {}; expected the columns and rows of the largest "
+                                          "image: [640, 480]",
+                                          describe(*size)));
+      return;
+    }
+    const auto count = [&](const YamlNode& item, const char* what) {
+      return static_cast<std::uint32_t>(
+          read_integer(item, 1, kMostColumns, what, diagnostics_).value_or(1));
+    };
+    sensor.columns = count(size->items[0], "columns");
+    sensor.rows = count(size->items[1], "rows");
+    const std::int64_t pixels = std::int64_t{sensor.columns} * sensor.rows;
+    if (pixels > kMostPoints) {
+      diagnostics_.add(*size,
+                       fmt::format("found {} pixels; expected at most {}", pixels, kMostPoints));
+      sensor.columns = sensor.rows = 1;
+    }
+    sensor.most_points = sensor.columns * sensor.rows;
+  }
+  if (!is_image && most != nullptr) {
+    sensor.most_points = static_cast<std::uint32_t>(
+        read_integer(*most, 1, kMostPoints, "points", diagnostics_).value_or(1));
+  }
+}
+
+void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
+  const YamlNode* spacing = map.optional("spacing");
+  const YamlNode* along = map.optional("depth_along");
+  if (sensor.kind == SensorKind::kDepthImage) {
+    for (const YamlNode* of_points : {spacing, along}) {
+      if (of_points == nullptr) continue;
+      diagnostics_.add(*of_points,
+                       fmt::format("found '{}' of a depth image; expected it of points only",
+                                   of_points == spacing ? "spacing" : "depth_along"));
+    }
+    return;
+  }
+  if (spacing != nullptr) {
+    sensor.spacing = read_number(*spacing, kSpacings,
+                                 "the distance of neighbouring rays at a depth of 1", diagnostics_)
+                         .value_or(0.0);
+  }
+  if (along == nullptr) return;
+  const auto axis = read_text(*along, "z or ray", diagnostics_);
+  if (axis && *axis != "z" && *axis != "ray") {
+    diagnostics_.add(*along, fmt::format("found '{}'; expected z (a depth camera) or ray (the "
+                                         "distance from the sensor)",
+                                         *axis));
+  }
+  sensor.along_ray = axis == "ray";
+}
+
+// What the sensor sees has the limits of an object.
+void SensorReader::read_object(MapReader& map, Object& object, bool& groups_known) const {
+  object.margin = defaults_.margin;
+  object.age_limit_ns = kAgeLimitNs;
+  object.may_jump = true;
+  if (const YamlNode* groups = map.optional("groups"))
+    groups_known = read_groups(*groups, object.groups, diagnostics_);
+  if (const YamlNode* margin = map.optional("margin"))
+    object.margin = quantities_.length(*margin, "the margin", kNotNegative).value_or(0.0);
+  if (const YamlNode* age = map.optional("age_limit_ms")) {
+    object.age_limit_ns =
+        quantities_.milliseconds(*age, "the age limit", kPositive).value_or(kAgeLimitNs);
+  }
+  if (const YamlNode* speed = map.optional("max_speed")) {
+    object.max_speed =
+        quantities_.speed(*speed, "the largest speed of what the sensor sees").value_or(kInfinity);
+  }
+}
+
+void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& objects) {
+  Sensor sensor;
+  Object object;
+  MapReader map(node, "a sensor", diagnostics_);
+  const YamlNode* name_node = map.required("name");
+  const auto name =
+      name_node == nullptr ? std::nullopt : read_name(*name_node, "a sensor's name", diagnostics_);
+  bool groups_known = true;
+  read_topics(node, map, sensor);
+  read_error(map, sensor);
+  if (const YamlNode* range = map.required("range")) read_range(*range, sensor);
+  refuse_large_error(node, sensor);
+  read_capacity(map, sensor);
+  read_points(map, sensor);
+  if (const YamlNode* shell = map.optional("own_shell")) {
+    sensor.own_shell =
+        quantities_.length(*shell, "the shell around the robot", kNotNegative).value_or(0.0);
+  }
+  read_object(map, object, groups_known);
+  list.mounts.push_back(map.optional("mount"));
+  map.refuse_unknown_keys();
+  sensor.name = object.name = name.value_or("");
+  sensor.object = static_cast<std::uint32_t>(objects.objects.size());
+  object.sensor = static_cast<std::uint32_t>(list.sensors.size());
+  // Any ball would do for a sensor with a mistake.
+  const double radius = std::max(sensor.extent(), 1.0);
+  object.parts.push_back({.name = "view",
+                          .shape = std::get<ConvexBody>(point(Vec3::Zero(), radius)),
+                          .object_from_part = {}});
+  objects.names_known = objects.names_known && name.has_value() && groups_known;
+  objects.objects.push_back(std::move(object));
+  objects.places.push_back(name_node == nullptr ? &node : name_node);
+  list.sensors.push_back(std::move(sensor));
+}
+
+void mount(const YamlNode& node, const RobotList& robots, const ObjectList& objects,
+           const Quantities& quantities, Sensor& sensor) {
+  Diagnostics& diagnostics = quantities.diagnostics();
+  RobotBase& base = sensor.mount;
+  MapReader map(node, "a sensor's mount", diagnostics);
+  const YamlNode* given = map.optional("pose");
+  const Pose pose = given == nullptr ? Pose{} : quantities.pose(*given).value_or(Pose{});
+  const YamlNode* on = map.optional("on");
+  const YamlNode* frame = map.optional("frame");
+  map.refuse_unknown_keys();
+  sensor.frames_by_message = false;
+  if (frame != nullptr) {
+    base.frame = read_frame(*frame, diagnostics).value_or("");
+    base.frame_from_root = pose;
+    if (on != nullptr)
+      diagnostics.add(*on, "found 'on' of a sensor in a frame of tf; expected one of the two");
+    return;
+  }
+  base.base_from_root = pose;
+  if (on != nullptr) {
+    read_what_carries(*on, robots.robots, robots.at_rest, objects,
+                      "an object, or a link of a robot", diagnostics, base);
+  } else if (given == nullptr) {
+    diagnostics.add(node,
+                    "found a mount without 'pose', 'on' and 'frame'; expected one of these, "
+                    "or no mount: the frame of tf that each message names");
+  }
+}
+
+}  // namespace
+
+SensorList read_sensors(const YamlNode& node, const ObjectDefaults& defaults,
+                        const Quantities& quantities, ObjectList& objects) {
+  Diagnostics& diagnostics = quantities.diagnostics();
+  SensorList list;
+  const std::vector<YamlNode>& items = read_list(node, "sensors", diagnostics);
+  if (items.size() > kMaxSensors) {
+    diagnostics.add(items[kMaxSensors], fmt::format("found {} sensors; expected at most {}",
+                                                    items.size(), kMaxSensors));
+    objects.names_known = false;
+    return list;
+  }
+  SensorReader reader(defaults, quantities);
+  for (const YamlNode& item : items) reader.read(item, list, objects);
+  if (node.kind != YamlNode::Kind::kSequence) objects.names_known = false;
+  return list;
+}
+
+void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
+                   SensorList& list) {
+  for (std::size_t i = 0; i < list.sensors.size(); ++i) {
+    if (list.mounts[i] != nullptr)
+      mount(*list.mounts[i], robots, objects, quantities, list.sensors[i]);
+  }
+}
+
+}  // namespace clearance

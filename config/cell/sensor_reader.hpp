@@ -1,0 +1,30 @@
+// Reads the sensors of a cell file: cameras that measure depth, and others that measure points.
+#pragma once
+
+#include <vector>
+
+#include "config/cell/object_reader.hpp"
+#include "config/cell/robot_reader.hpp"
+#include "config/scene/sensor.hpp"
+#include "config/yaml/quantities.hpp"
+
+namespace clearance {
+
+inline constexpr std::size_t kMaxSensors = 16;
+
+// The sensors, and where each of them says that it is mounted: null if it does not.
+struct SensorList {
+  std::vector<Sensor> sensors;
+  std::vector<const YamlNode*> mounts;
+};
+
+// Reads `sensors:`. What each of them sees becomes an object of the list, so this comes before the
+// links of robots.
+[[nodiscard]] SensorList read_sensors(const YamlNode& node, const ObjectDefaults& defaults,
+                                      const Quantities& quantities, ObjectList& objects);
+
+// Reads where the sensors are mounted, once all robots and attached objects are known.
+void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
+                   SensorList& list);
+
+}  // namespace clearance

@@ -1,0 +1,66 @@
+// A camera that measures depth, or another sensor that measures points. What it sees is the body of
+// an object of the scene: pairs, groups and zones name that object like any other.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "config/scene/robot.hpp"
+
+namespace clearance {
+
+enum class SensorKind : std::uint8_t {
+  kDepthImage,  // sensor_msgs/Image with CameraInfo: each pixel is a slab of its cone
+  kPoints,      // sensor_msgs/PointCloud2: each point is a ball
+};
+
+// A depth camera sees at most this far to each side of its axis, per metre of depth: the tangent of
+// the side rays, whose largest sine is 7/9. A corner ray of a picture is longer than its depth by
+// kLongestRay at most: sqrt(1 + 2 kWidestTangent^2), rounded up.
+inline constexpr double kWidestTangent = 1.2374368670764582;
+inline constexpr double kLongestRay = 2.0156;
+
+struct Sensor {
+  std::string name;  // also of its object
+  SensorKind kind = SensorKind::kDepthImage;
+  std::uint32_t object = 0;  // index into Scene::objects
+  std::string topic;         // of the images or points, in ROS 2's spelling
+  std::string camera_info;   // of CameraInfo; empty for points
+
+  // Where its frame is: z forward, x right, y down for a camera. With `frames_by_message`, the
+  // frame of tf that each message names; else `mount` states a frame of tf, and the sensor's pose
+  // in it (frame_from_root); or a pose on the world, an object or a link (base_from_root).
+  bool frames_by_message = true;
+  RobotBase mount;
+
+  // The stated bound of its error: |measured - true depth| <= constant + quadratic z^2, m. Depth is
+  // z, or for points with `along_ray` the distance from the sensor.
+  double error_constant = 0.0, error_quadratic = 0.0;
+  bool along_ray = false;
+  double least_depth = 0.0, greatest_depth = 0.0;  // m; others count as missing
+  // Of points: the distance between neighbouring rays at a depth of 1 m, m. A ball of half of it
+  // times the depth, and of the error, contains the surface around a point. 0: the points alone.
+  double spacing = 0.0;
+
+  // The memory that is fixed: the largest image, or the most points that are kept.
+  std::uint32_t columns = 0, rows = 0;
+  std::uint32_t most_points = 0;
+
+  // Elements that come within this of a part of a robot, at the stamp of the frame, are left out,
+  // m. The error of the part's pose is added.
+  double own_shell = 0.0;
+
+  [[nodiscard]] double error_at(double depth) const noexcept {
+    return error_constant + error_quadratic * depth * depth;
+  }
+  // No element is farther from the sensor than this, m: the body of its object is that ball.
+  [[nodiscard]] double extent() const noexcept {
+    const double error = error_at(greatest_depth);
+    const double farthest = kLongestRay * (greatest_depth + error);
+    return kind == SensorKind::kDepthImage
+               ? 1.001 * farthest
+               : 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,139 @@
+// The sensors of a cell: what each sees is an object, and each of its keys is checked.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/config/cells.hpp"
+#include "tests/shared/mistake_at.hpp"
+
+namespace clearance {
+namespace {
+
+using test::mistake_at;
+
+// A mistake in this line, at any column, whose message has the words.
+template <class... Words>
+auto in_line(int line, const Words&... words) {
+  return testing::AllOf(testing::HasSubstr("cell.yaml:" + std::to_string(line) + ":"),
+                        testing::HasSubstr(words)...);
+}
+
+std::string with_sensor(const std::string& keys, const std::string& rules = "") {
+  return cell_text("sensors:\n  - {name: eye, " + keys + "}\n" + kBoxes +
+                   (rules.empty() ? "  - {between: [arm, eye]}\n" : rules));
+}
+const std::string kDepth =
+    "depth_image: /cam/depth/image, depth_error: {constant: 0.001, quadratic: 0.002}, range: "
+    "[0.25, 4]";
+const std::string kPoints = "points: /cam/points, depth_error: {constant: 0.001}, range: [0.25, 4]";
+
+TEST(SensorsOfACell, AreObjectsThatPairsName) {
+  const Scene scene = scene_of(
+      with_sensor(kDepth + ", groups: [eyes], margin: 0.1", "  - {between: [arm, eyes]}\n"));
+  ASSERT_EQ(scene.sensors.size(), 1u);
+  const Sensor& sensor = scene.sensors[0];
+  const Object& seen = scene.objects.at(sensor.object);
+  EXPECT_EQ(sensor.object, 3u);
+  EXPECT_EQ(seen.name, "eye");
+  EXPECT_EQ(seen.sensor, 0u);
+  EXPECT_EQ(seen.margin, 0.1);
+  EXPECT_EQ(seen.age_limit_ns, 100'000'000);
+  EXPECT_EQ(seen.max_speed, kInfinity);
+  EXPECT_FALSE(seen.fixed);
+  EXPECT_FALSE(scene.objects[0].is_seen());
+  EXPECT_EQ(sensor.topic, "/cam/depth/image");
+  EXPECT_EQ(sensor.camera_info, "/cam/depth/camera_info");
+  EXPECT_TRUE(sensor.frames_by_message);
+  EXPECT_EQ(sensor.error_at(2.0), 0.001 + 0.002 * 4.0);
+  EXPECT_EQ(sensor.columns, 640u);
+  EXPECT_EQ(sensor.rows, 480u);
+  EXPECT_EQ(scene.pairs.size(), 4u);  // two boxes against floor and sensor
+}
+
+TEST(SensorsOfACell, ContainAllThatTheySeeInABall) {
+  for (const std::string& keys : {kDepth, kPoints + ", spacing: 0.01"}) {
+    const Scene scene = scene_of(with_sensor(keys));
+    const Sensor& sensor = scene.sensors[0];
+    ASSERT_EQ(scene.objects[3].parts.size(), 1u);
+    const double radius = scene.objects[3].parts[0].shape.radius;
+    // The corner of the farthest slab that a picture can have, and half of the ball at it.
+    const double z = 4.0 + sensor.error_at(4.0);
+    const Vec3 corner(kWidestTangent * z, kWidestTangent * z, z);
+    EXPECT_GE(radius, corner.norm() + z * sensor.spacing * std::sqrt(0.5));
+    EXPECT_LE(radius, 1.2 * corner.norm());
+  }
+}
+
+TEST(SensorsOfACell, HavePairsWithFixedObjectsButNotWithUnboundedOnesOrEachOther) {
+  const std::string two =
+      "sensors:\n  - {name: eye, " + kDepth + "}\n  - {name: ear, " + kPoints + "}\n" + kBoxes;
+  EXPECT_EQ(scene_of(cell_text(two + "  - {between: [arm, eye]}\n  - {between: [left, ear]}\n"))
+                .pairs.size(),
+            5u);
+  EXPECT_THAT(errors_of(cell_text(two + "  - {between: [arm, eye]}\n  - {between: [eye, ear]}\n")),
+              mistake_at("cell.yaml:14:5", "'eye'", "'ear'"));
+  EXPECT_THAT(
+      errors_of(cell_text(two + "  - {between: [arm, ear]}\n  - {between: [eye, still]}\n")),
+      mistake_at("cell.yaml:14:5", "'eye'", "'still'"));
+}
+
+TEST(SensorsOfACell, StandWhereTheirMountSays) {
+  const auto mount = [](const std::string& text) {
+    return scene_of(with_sensor(kDepth + ", mount: {" + text + "}")).sensors[0];
+  };
+  const Sensor on_world = mount("pose: {xyz: [1, 2, 3]}");
+  EXPECT_FALSE(on_world.frames_by_message);
+  EXPECT_EQ(on_world.mount.kind, RobotBase::Kind::kWorld);
+  EXPECT_EQ(on_world.mount.base_from_root.position, Vec3(1, 2, 3));
+  const Sensor on_object = mount("on: right, pose: {xyz: [0, 0, 1]}");
+  EXPECT_EQ(on_object.mount.kind, RobotBase::Kind::kObject);
+  EXPECT_EQ(on_object.mount.object, 1u);
+  const Sensor in_frame = mount("frame: /head, pose: {xyz: [0, 0, 1]}");
+  EXPECT_EQ(in_frame.mount.frame, "head");
+  EXPECT_EQ(in_frame.mount.frame_from_root.position, Vec3(0, 0, 1));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: rigth}")),
+              in_line(5, "'rigth'", "'right'"));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: eye}")), in_line(5, "'eye'"));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: right, frame: a}")),
+              in_line(5, "'on'"));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {}")),
+              in_line(5, "'pose'", "'on'", "'frame'"));
+}
+
+TEST(SensorsOfACell, ConvertTheirErrorFromTheUnitOfTheCell) {
+  const std::string cell =
+      "name: test\nunits: {length: mm, angle: deg}\n"
+      "sensors:\n  - {name: eye, depth_image: /d/i, depth_error: {constant: 1, quadratic: 2.5e-6}, "
+      "range: [250, 4000]}\n" +
+      kBoxes + "  - {between: [arm, eye]}\n";
+  const Sensor sensor = scene_of(cell).sensors[0];
+  EXPECT_DOUBLE_EQ(sensor.error_constant, 0.001);
+  EXPECT_DOUBLE_EQ(sensor.error_quadratic, 0.0025);
+  EXPECT_DOUBLE_EQ(sensor.greatest_depth, 4.0);
+}
+
+TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
+  const auto refuses = [](const std::string& keys, const std::string& word) {
+    EXPECT_THAT(errors_of(with_sensor(keys)), in_line(5, word)) << keys;
+  };
+  const std::string rest = ", depth_error: {constant: 0.001}, range: [0.25, 4]";
+  refuses("depth_image: cam" + rest, "'cam'");
+  refuses("depth_error: {constant: 0.001}, range: [0.25, 4]", "none");
+  refuses("depth_image: /a, points: /b" + rest, "both");
+  refuses("points: /b, camera_info: /a" + rest, "'camera_info'");
+  refuses("points: /b, size: [2, 2]" + rest, "'size'");
+  refuses("depth_image: /b, most_points: 7" + rest, "'most_points'");
+  refuses("depth_image: /b, spacing: 0.1" + rest, "'spacing'");
+  refuses("depth_image: /b, size: [4000, 4000]" + rest, "16000000 pixels");
+  refuses("points: /b, depth_along: x" + rest, "'x'");
+  refuses("depth_image: /b, depth_error: {constant: 0.3}, range: [0.25, 4]", "depth_error");
+  refuses("depth_image: /b, depth_error: {quadratic: 0.3}, range: [0.25, 1]", "'constant'");
+  refuses("depth_image: /b, depth_error: {constant: 0.1}, range: [4, 2]", "least");
+  refuses("depth_image: /b, depth_error: {constant: 0.1}, range: 4", "[0.3, 4]");
+  refuses(kDepth + ", shell: 1", "'shell'");
+  EXPECT_THAT(errors_of(cell_text("sensors:\n  - {name: a, " + kDepth + "}\n  - {name: b, " +
+                                  kDepth + "}\n" + kBoxes)),
+              in_line(6, "'/cam/depth/image'", "line 5"));
+}
+
+}  // namespace
+}  // namespace clearance
