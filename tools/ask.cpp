@@ -38,10 +38,18 @@ MOTIONS has one motion a line, a JSON object:
   poses       {"OBJECT": [x, y, z, qw, qx, qy, qz]} of objects that are neither fixed nor part of a robot;
               such an object comes nearer by its max_speed x time, or with "others": "still" not at all
   margins     m, instead of --margin
+  beside      [{joints, times_s, positions, velocities}] of other robots, which rest before and after
+  moving      {"OBJECT": {"times_s": [...], "poses": [[x, y, z, qw, qx, qy, qz], ...]}}: stated motions of objects
+  payloads    [{"name", "link", "pose", "touch": [...]}]: what links carry, an object of the cell or a new one with
+              "box": [x, y, z], "sphere": radius, "cylinder": [radius, length] or "vertices": [[x, y, z], ...]
+  profile     true, or {"pair": ["A", "B"], "tolerance": m, "points": N}: the distance over time
+  time_scaling  true: the largest factor by which the motion may be timed faster so that S_p of zones holds
 An answer has id; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
 t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
 undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin
 at all instants before `from`, and below it at `to`. An undecided margin has "above_until" instead of [from, to].
+profile is a list of {"t": [from, to], "lower", "upper", "pair"} that covers the motion; time_scaling has factor,
+factor_above (no larger one is admissible; null: no limit), t, pair, zone.
 A line that cannot be answered gets {"line": n, "error": "..."}, and the other lines are answered.)";
 
 constexpr const char* kExample =
@@ -58,7 +66,7 @@ struct Options {
   double tolerance = 1e-3;
   std::optional<double> expected;
   std::uint64_t work_limit = 1'000'000;
-  bool others_still = false;
+  bool others_still = false, only_verdicts = false;
   int repeat = 1;
 };
 
@@ -80,6 +88,7 @@ class Program {
     defaults_.margins = options.margins;
     defaults_.tolerance = options.tolerance;
     defaults_.work_limit = options.work_limit;
+    defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
     if (options.others_still) defaults_.others = OthersMove::kNot;
     if (options.expected) defaults_.margins.push_back(*options.expected);
   }
@@ -156,23 +165,23 @@ class Program {
     times_us_.push_back(least_us);
     OrderedJson line;
     if (motion.contains("id")) line["id"] = motion["id"];
-    line.update(answer_line(answer_, place.cell.scene));
+    line.update(answer_line(answer_, place.cell.scene, question));
     for (const MarginAnswer& margin : answer_.margins) {
       undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
     }
-    expect(line, place.cell.scene);
+    expect(line, place.cell.scene, question);
     return line;
   }
 
   // The expected distance is the last margin.
-  void expect(const OrderedJson& line, const Scene& scene) {
+  void expect(const OrderedJson& line, const Scene& scene, const Question& question) {
     if (!options_.expected || answer_.margins.empty()) return;
     const MarginAnswer& margin = answer_.margins.back();
     if (margin.verdict == Verdict::kFree) return;
     ++failed_;
     print(stderr, "{}: {} - {} {} {} m from {} s on; the least distance is in [{:.6f}, {:.6f}] m\n",
           line.contains("id") ? line["id"].dump() : "motion " + std::to_string(lines_),
-          scene.objects[margin.first].name, scene.objects[margin.second].name,
+          object_name(scene, question, margin.first), object_name(scene, question, margin.second),
           margin.verdict == Verdict::kBelow ? "comes below" : "may come below", margin.margin,
           margin.above_until, answer_.lower, answer_.upper);
   }
@@ -247,6 +256,9 @@ int main(int argc, char** argv) {
       ->capture_default_str();
   app.add_flag("--others-still", options.others_still,
                "Objects that are neither fixed nor part of a robot do not move");
+  app.add_flag(
+      "--verdicts", options.only_verdicts,
+      "Only the verdicts of margins; lower and first_below are then as good as these needed");
   app.add_option("--repeat", options.repeat, "Ask N times, for the times on stderr")
       ->check(CLI::Range(1, 1000000));
   if (const auto done = clearance::parse(app, argc, argv)) return *done;

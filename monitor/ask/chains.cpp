@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "config/scene/chain_rounding.hpp"
+#include "monitor/ask/vectors.hpp"
 #include "monitor/kinematics/fixed_order.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -11,8 +12,6 @@ namespace clearance {
 namespace {
 
 constexpr double kChainRounding = 0x1p-44;  // of sums over a chain, relative
-
-double length(const Vec3& v) noexcept { return std::sqrt(dot(v, v)); }
 
 double largest_slide(const RobotJoint& joint, const Scene& scene) noexcept {
   switch (joint.type) {

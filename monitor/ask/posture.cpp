@@ -5,11 +5,13 @@
 
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/inputs/joint_batch.hpp"
+#include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint32_t kNoLink = ~0u;
+// A joint that mimics another may be stated, if it is where the other one moves it. Rad or m.
+constexpr double kMimicTolerance = 1e-6;
 
 std::vector<double> radii_of(const Scene& scene, const std::vector<PosedPart>& parts) {
   std::vector<double> radii(scene.objects.size(), 0.0);
@@ -17,6 +19,15 @@ std::vector<double> radii_of(const Scene& scene, const std::vector<PosedPart>& p
     radii[part.object] = std::max(radii[part.object], part.bounding_radius);
   }
   return radii;
+}
+
+const RobotJoint* mimic_named(const Scene& scene, const std::string& name) noexcept {
+  for (const Robot& robot : scene.robots) {
+    for (const RobotJoint& joint : robot.joints) {
+      if (joint.name == name && variables_of(joint.type) == 1) return &joint;
+    }
+  }
+  return nullptr;
 }
 
 }  // namespace
@@ -34,24 +45,41 @@ Posture::Posture(const Scene& scene)
       bases_(scene.robots.size()),
       robot_of_object_(scene.objects.size(), kNoLink),
       link_of_object_(scene.objects.size(), kNoLink),
+      carries_(scene.objects.size(), 0),
+      radii_(radii_of(scene, parts_)),
       pose_(scene.objects.size()),
       present_(scene.objects.size(), 0),
-      age_(scene.objects.size(), 0.0) {
+      speed_(scene.objects.size(), 0.0),
+      age_(scene.objects.size(), 0.0),
+      approaches_(scene.objects.size()) {
   for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
-    for (std::uint32_t i = 0; i < scene.robots[r].links.size(); ++i) {
-      const std::uint32_t object = scene.robots[r].links[i].object;
+    const Robot& robot = scene.robots[r];
+    if (robot.base.kind == RobotBase::Kind::kObject) carries_[robot.base.object] = 1;
+    for (std::uint32_t i = 0; i < robot.links.size(); ++i) {
+      const std::uint32_t object = robot.links[i].object;
       if (object == RobotLink::kNoObject) continue;
       robot_of_object_[object] = r;
       link_of_object_[object] = i;
     }
   }
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    present_[i] = scene.objects[i].fixed || is_link(i);
+    if (scene.objects[i].fixed) {
+      pose_[i] = scene.objects[i].world_from_object;
+      place_resting(i);
+    } else if (!is_link(i)) {
+      free_.push_back(i);
+    }
+  }
 }
 
 std::optional<std::string> Posture::take(const Question& question) {
-  if (auto text = trajectory_.take(question.motion, scene_)) return text;
+  if (auto text = trajectory_.take(question, scene_)) return text;
   if (auto text = take_joints(question)) return text;
   if (auto text = take_poses(question)) return text;
-  place_resting();
+  if (auto text = take_motions(question)) return text;
+  if (auto text = open_object(question)) return text;
+  place_bases();
   return std::nullopt;
 }
 
@@ -64,17 +92,42 @@ std::optional<std::string> Posture::take_joints(const Question& question) {
   std::fill(bounds_.begin(), bounds_.end(), VariableBounds());
   for (const std::uint32_t moved : trajectory_.moved()) variables_[moved].input.has_value = true;
   for (const HeldJoint& held : question.held) {
-    const auto variable = variable_named(scene_, held.name);
-    if (!variable) return "the cell has no joint \"" + held.name + "\"";
-    if (variables_[*variable].input.has_value) {
-      return "joint \"" + held.name + "\" is held, and has a position already";
-    }
-    if (!(std::abs(held.position) <= kLargestJoint)) {
-      return "the position of joint \"" + held.name + "\" is not finite, or larger than 1e6";
-    }
-    variables_[*variable].input.has_value = true;
-    variables_[*variable].position = held.position;
+    if (auto text = hold(held)) return text;
   }
+  // Joints that mimic others, once these have positions.
+  for (const HeldJoint& held : question.held) {
+    if (variable_named(scene_, held.name)) continue;
+    const RobotJoint& joint = *mimic_named(scene_, held.name);
+    const TrackedVariable& leader = variables_[joint.variable];
+    const auto moved = trajectory_.moved();
+    const bool moves = std::find(moved.begin(), moved.end(), joint.variable) != moved.end();
+    const double follows = joint.multiplier * leader.position + joint.offset;
+    if (!leader.input.has_value || moves || std::abs(follows - held.position) > kMimicTolerance)
+      return "joint \"" + held.name + "\" mimics joint \"" + scene_.variables[joint.variable].name +
+             "\" and is not held where that one moves it";
+  }
+  if (auto text = open_joint()) return text;
+  return slide_out_of_limits();
+}
+
+std::optional<std::string> Posture::hold(const HeldJoint& held) {
+  if (!(std::abs(held.position) <= kLargestJoint)) {
+    return "the position of joint \"" + held.name + "\" is not finite, or larger than 1e6";
+  }
+  const auto variable = variable_named(scene_, held.name);
+  if (!variable) {
+    if (mimic_named(scene_, held.name) != nullptr) return std::nullopt;
+    return "the cell has no joint \"" + held.name + "\"";
+  }
+  if (variables_[*variable].input.has_value) {
+    return "joint \"" + held.name + "\" is held, and has a position already";
+  }
+  variables_[*variable].input.has_value = true;
+  variables_[*variable].position = held.position;
+  return std::nullopt;
+}
+
+std::optional<std::string> Posture::open_joint() const {
   for (const Robot& robot : scene_.robots) {
     for (const RobotJoint& joint : robot.joints) {
       const std::uint32_t count = variables_of(joint.type);
@@ -84,14 +137,13 @@ std::optional<std::string> Posture::take_joints(const Question& question) {
                  "\" has no position: the motion moves it, or it is held";
         }
         const auto moved = trajectory_.moved();
-        const bool moves = std::find(moved.begin(), moved.end(), v) != moved.end();
-        if (moves && count > 1) {
+        if (count > 1 && std::find(moved.begin(), moved.end(), v) != moved.end()) {
           return "joint \"" + joint.name + "\" is planar or floating: it can only be held";
         }
       }
     }
   }
-  return slide_out_of_limits();
+  return std::nullopt;
 }
 
 // The reaches of chains include the limits of sliding joints.
@@ -115,22 +167,30 @@ std::optional<std::string> Posture::slide_out_of_limits() const {
   return std::nullopt;
 }
 
+std::optional<std::string> Posture::find_free(const std::string& name,
+                                              std::uint32_t& object) const {
+  const auto at = std::find_if(scene_.objects.begin(), scene_.objects.end(),
+                               [&](const Object& other) { return other.name == name; });
+  if (at == scene_.objects.end()) return "the cell has no object \"" + name + "\"";
+  object = static_cast<std::uint32_t>(at - scene_.objects.begin());
+  if (at->fixed || is_link(object)) {
+    return "object \"" + name + "\" is fixed or part of a robot: its pose is known";
+  }
+  if (present_[object] != 0) return "the pose of object \"" + name + "\" is stated twice";
+  return std::nullopt;
+}
+
 std::optional<std::string> Posture::take_poses(const Question& question) {
-  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
-    const Object& object = scene_.objects[i];
-    present_[i] = object.fixed || robot_of_object_[i] != kNoLink;
-    if (object.fixed) pose_[i] = object.world_from_object;
+  const bool within_speed = question.others == OthersMove::kWithinMaxSpeed;
+  for (const std::uint32_t i : free_) {
+    present_[i] = 0;
     age_[i] = 0.0;
+    speed_[i] = within_speed ? scene_.objects[i].max_speed : 0.0;
+    approaches_[i] = {};
   }
   for (const StatedPose& stated : question.poses) {
-    const auto at =
-        std::find_if(scene_.objects.begin(), scene_.objects.end(),
-                     [&](const Object& object) { return object.name == stated.object; });
-    if (at == scene_.objects.end()) return "the cell has no object \"" + stated.object + "\"";
-    const std::size_t i = static_cast<std::size_t>(at - scene_.objects.begin());
-    if (at->fixed || robot_of_object_[i] != kNoLink) {
-      return "object \"" + stated.object + "\" is fixed or part of a robot: its pose is known";
-    }
+    std::uint32_t i = 0;
+    if (auto text = find_free(stated.object, i)) return text;
     if (!is_unit(stated.world_from_object.orientation) ||
         !stated.world_from_object.position.allFinite()) {
       return "the pose of object \"" + stated.object +
@@ -141,15 +201,38 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
     pose_[i] = stated.world_from_object;
     age_[i] = stated.age;
     present_[i] = 1;
+    place_resting(i);
   }
-  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
+  return std::nullopt;
+}
+
+std::optional<std::string> Posture::take_motions(const Question& question) {
+  moving_objects_.clear();
+  for (const ObjectMotion& motion : question.moving) {
+    std::uint32_t i = 0;
+    if (auto text = find_free(motion.object, i)) return text;
+    if (carries_[i] != 0)
+      return "object \"" + motion.object +
+             "\" carries a robot or an object: only its pose can be "
+             "stated";
+    moving_objects_.push_back(i);
+    present_[i] = 1;
+    speed_[i] = 0.0;
+  }
+  return moving_.take(question, moving_objects_, trajectory_.times());
+}
+
+std::optional<std::string> Posture::open_object(const Question& question) {
+  all_present_ = true;
+  for (const std::uint32_t i : free_) {
     const Object& object = scene_.objects[i];
+    all_present_ = all_present_ && present_[i] != 0;
     if (present_[i] == 0 && !object.absent) {
       return "object \"" + object.name +
              "\" has no pose: it is not fixed, so the question states it";
     }
-    if (present_[i] != 0 && robot_of_object_[i] == kNoLink && !object.fixed &&
-        question.others == OthersMove::kWithinMaxSpeed && !std::isfinite(object.max_speed)) {
+    if (present_[i] != 0 && question.others == OthersMove::kWithinMaxSpeed &&
+        !std::isfinite(speed_[i])) {
       return "object \"" + object.name +
              "\" has no max_speed in the cell: state one, or that other objects do not move";
     }
@@ -157,7 +240,14 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
   return std::nullopt;
 }
 
-void Posture::place_resting() noexcept {
+void Posture::place_resting(std::uint32_t object) noexcept {
+  for (std::uint32_t i = first_part_[object]; i < first_part_[object + 1]; ++i) {
+    place_at(pose_[object], parts_[i]);
+    placed_at_[i] = ~std::uint64_t{0};
+  }
+}
+
+void Posture::place_bases() noexcept {
   for (std::size_t r = 0; r < bases_.size(); ++r) {
     const RobotBase& base = scene_.robots[r].base;
     if (base.kind != RobotBase::Kind::kObject) continue;
@@ -165,40 +255,50 @@ void Posture::place_resting() noexcept {
     bases_[r].known = bases_[r].velocity_known = true;
     bases_[r].pose = pose_[base.object];
   }
-  for (std::uint32_t i = 0; i < parts_.size(); ++i) {
-    placed_at_[i] = 0;
-    const std::uint32_t object = parts_[i].object;
-    const bool rests = robot_of_object_[object] == kNoLink || scene_.objects[object].fixed;
-    if (!rests || present_[object] == 0) continue;
-    place_at(pose_[object], parts_[i]);
-    placed_at_[i] = ~std::uint64_t{0};
-  }
-  instant_ = 0;
 }
 
 void Posture::place(const Stretch& stretch, double at) noexcept {
   trajectory_.place(stretch, at, variables_, bounds_);
   kinematics_.place(variables_, bases_);
   chains_.place(kinematics_);
+  if (!free_.empty()) place_free_objects(stretch, at);
   ++instant_;
+}
+
+void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
+  const double begin = trajectory_.begin();
+  for (const std::uint32_t i : free_) {
+    if (speed_[i] == 0.0) continue;
+    ObjectApproach& approach = approaches_[i];
+    approach.until_end = rounded_up(swept(speed_[i], stretch.to - begin + age_[i]));
+    approach.until_middle = rounded_down(swept(speed_[i], at - begin + age_[i]));
+    approach.until_begin = rounded_down(swept(speed_[i], stretch.from - begin + age_[i]));
+  }
+  moving_.place(stretch, at);
+  for (const ObjectState& state : moving_.states()) {
+    pose_[state.object] = state.pose;
+    place_resting(state.object);
+    ObjectApproach& approach = approaches_[state.object];
+    const double turning = swept(std::min(state.turn, 2.0), radii_[state.object]);
+    approach.moved = rounded_up(state.shift + turning);
+    approach.turned = rounded_up(turning + kPlacingError * state.pose.position.norm());
+    approach.velocity = state.velocity;
+  }
 }
 
 const LinkState& Posture::link_state(std::uint32_t object) const noexcept {
   return kinematics_.links(robot_of_object_[object])[link_of_object_[object]];
 }
 
-const PosedPart& Posture::part(std::uint32_t index) noexcept {
+void Posture::place_link_part(std::uint32_t index) noexcept {
   PosedPart& part = parts_[index];
-  if (placed_at_[index] < instant_) {
-    place_at(link_state(part.object).pose, part);
-    placed_at_[index] = instant_;
-  }
-  return part;
+  place_at(link_state(part.object).pose, part);
+  placed_at_[index] = instant_;
 }
 
 Twist Posture::twist(std::uint32_t object, Vec3& origin) const noexcept {
   origin = Vec3::Zero();
-  if (robot_of_object_[object] == kNoLink || scene_.objects[object].fixed) return {};
+  if (!is_link(object) || scene_.objects[object].fixed) return {};
   const LinkState& link = link_state(object);
   origin = link.pose.position;
   return link.twist;

@@ -1,4 +1,5 @@
-// All bodies of a scene at one instant of a motion. Parts are placed when they are first asked for.
+// All bodies of a scene at one instant of a motion. Parts of links are placed when they are first
+// asked for.
 #pragma once
 
 #include <cstdint>
@@ -9,18 +10,30 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/ask/chains.hpp"
+#include "monitor/ask/moving_objects.hpp"
 #include "monitor/ask/trajectory.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 
 namespace clearance {
 
+// The motion of an object that is no link, in a stretch.
+struct ObjectApproach {
+  // Of its stated motion, m: no point leaves its place at the middle by more, and by more than its
+  // velocity says. The velocity is constant, m/s.
+  double moved = 0.0, turned = 0.0;
+  Vec3 velocity = Vec3::Zero();
+  // By its assumed speed it comes nearer by this, m: until the end of the stretch, its middle, and
+  // its begin.
+  double until_end = 0.0, until_middle = 0.0, until_begin = 0.0;
+};
+
 class Posture {
  public:
-  // The scene must outlive it. Allocates all memory that it ever needs.
+  // The scene must outlive it. Allocates all memory for questions that state no motions of objects.
   explicit Posture(const Scene& scene);
 
-  // Takes a question's trajectory, held joints and poses, or returns what is wrong with them.
+  // Takes a question's trajectories, held joints and poses, or returns what is wrong with them.
   [[nodiscard]] std::optional<std::string> take(const Question& question);
 
   [[nodiscard]] const Trajectory& trajectory() const noexcept { return trajectory_; }
@@ -32,21 +45,43 @@ class Posture {
   [[nodiscard]] bool is_present(std::uint32_t object) const noexcept {
     return present_[object] != 0;
   }
-  // StatedPose::age; 0 for all other objects.
-  [[nodiscard]] double age(std::uint32_t object) const noexcept { return age_[object]; }
+  [[nodiscard]] bool all_present() const noexcept { return all_present_; }
+  [[nodiscard]] bool is_link(std::uint32_t object) const noexcept {
+    return robot_of_object_[object] != kNoLink;
+  }
 
-  // Moves all joints to an instant of a stretch.
+  // Moves all joints and objects to an instant of a stretch.
   void place(const Stretch& stretch, double at) noexcept;
   // The part at this instant.
-  const PosedPart& part(std::uint32_t index) noexcept;
-  // The velocity of the part's object, m/s and rad/s, and the origin that it refers to.
+  const PosedPart& part(std::uint32_t index) noexcept {
+    if (placed_at_[index] < instant_) place_link_part(index);
+    return parts_[index];
+  }
+  // Zero for fixed objects and links.
+  [[nodiscard]] const ObjectApproach& approach(std::uint32_t object) const noexcept {
+    return approaches_[object];
+  }
+  // The velocity of the part's object, m/s and rad/s, and the origin that it refers to. Zero for
+  // objects that are no links.
   [[nodiscard]] Twist twist(std::uint32_t object, Vec3& origin) const noexcept;
 
  private:
+  static constexpr std::uint32_t kNoLink = ~0u;
+
   [[nodiscard]] std::optional<std::string> take_joints(const Question& question);
-  [[nodiscard]] std::optional<std::string> take_poses(const Question& question);
+  [[nodiscard]] std::optional<std::string> hold(const HeldJoint& held);
+  [[nodiscard]] std::optional<std::string> open_joint() const;
   [[nodiscard]] std::optional<std::string> slide_out_of_limits() const;
-  void place_resting() noexcept;
+  [[nodiscard]] std::optional<std::string> take_poses(const Question& question);
+  [[nodiscard]] std::optional<std::string> take_motions(const Question& question);
+  [[nodiscard]] std::optional<std::string> open_object(const Question& question);
+  // Finds an object whose pose the question may state.
+  [[nodiscard]] std::optional<std::string> find_free(const std::string& name,
+                                                     std::uint32_t& object) const;
+  void place_resting(std::uint32_t object) noexcept;
+  void place_bases() noexcept;
+  void place_link_part(std::uint32_t index) noexcept;
+  void place_free_objects(const Stretch& stretch, double at) noexcept;
   [[nodiscard]] const LinkState& link_state(std::uint32_t object) const noexcept;
 
   const Scene& scene_;
@@ -61,9 +96,16 @@ class Posture {
   ForwardKinematics kinematics_;
   std::vector<LinkState> bases_;
   std::vector<std::uint32_t> robot_of_object_, link_of_object_;  // kNoLink: not a link
-  std::vector<Pose> pose_;                                       // of objects that are not links
-  std::vector<std::uint8_t> present_;                            // by object
-  std::vector<double> age_;                                      // by object
+  std::vector<std::uint32_t> free_;    // objects that are neither fixed nor links
+  std::vector<std::uint8_t> carries_;  // by object: a robot stands on it
+  std::vector<double> radii_;          // by object: about its origin, m
+  std::vector<Pose> pose_;             // of objects that are not links
+  std::vector<std::uint8_t> present_;  // by object
+  bool all_present_ = true;
+  std::vector<double> speed_, age_;  // by object: that are assumed, m/s; of a stated pose, s
+  std::vector<ObjectApproach> approaches_;
+  MovingObjects moving_;
+  std::vector<std::uint32_t> moving_objects_;
 };
 
 }  // namespace clearance

@@ -17,18 +17,14 @@ bool all_within(const std::vector<double>& numbers, double limit) noexcept {
                      [limit](double x) { return std::abs(x) <= limit; });
 }
 
-}  // namespace
-
-std::optional<std::uint32_t> variable_named(const Scene& scene, const std::string& name) noexcept {
-  for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
-    if (scene.variables[i].name == name) return i;
-  }
-  return std::nullopt;
+// A robot cannot be at two places at one time. A waypoint may be stated twice.
+bool jumps(const JointTrajectory& motion, std::size_t row) noexcept {
+  const std::size_t joints = motion.joints.size();
+  const double* here = motion.positions.data() + row * joints;
+  return !std::equal(here, here + joints, here - joints);
 }
 
-Trajectory::Trajectory(std::size_t variables) { moved_.reserve(variables); }
-
-std::optional<std::string> Trajectory::fault(const JointTrajectory& motion) const {
+std::optional<std::string> fault(const JointTrajectory& motion) {
   const std::size_t rows = motion.times.size(), joints = motion.joints.size();
   if (rows == 0 || joints == 0) return "the motion has no waypoint or no joint";
   if (motion.positions.size() != rows * joints) {
@@ -39,128 +35,230 @@ std::optional<std::string> Trajectory::fault(const JointTrajectory& motion) cons
     return "the motion needs as many velocities as positions, or none";
   }
   if (!all_within(motion.times, 1e9)) return "a time is not a finite number of at most 1e9 s";
-  for (std::size_t i = 1; i < rows; ++i) {
-    if (!(motion.times[i] > motion.times[i - 1])) {
-      return "the time of waypoint " + std::to_string(i) + " is not after that of the one before";
-    }
-  }
   if (!all_within(motion.positions, kLargestJoint) ||
       !all_within(motion.velocities, kLargestJoint)) {
     return "a position or velocity is not finite, or larger than 1e6";
   }
+  for (std::size_t i = 1; i < rows; ++i) {
+    if (motion.times[i] > motion.times[i - 1]) continue;
+    if (motion.times[i] == motion.times[i - 1] && !jumps(motion, i)) continue;
+    return "the time of waypoint " + std::to_string(i) +
+           " is not after that of the one before, and its positions are others";
+  }
   return std::nullopt;
 }
 
-std::optional<std::string> Trajectory::take(const JointTrajectory& motion, const Scene& scene) {
-  moved_.clear();
+}  // namespace
+
+std::optional<std::uint32_t> variable_named(const Scene& scene, const std::string& name) noexcept {
+  for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
+    if (scene.variables[i].name == name) return i;
+  }
+  return std::nullopt;
+}
+
+void find_rows(std::span<const double> timeline, std::span<const double> own,
+               std::vector<std::int32_t>& rows) {
+  rows.clear();
+  std::int32_t row = kBeforeFirstRow;
+  const std::size_t segments = timeline.size() < 2 ? 1 : timeline.size() - 1;
+  for (std::size_t segment = 0; segment < segments; ++segment) {
+    while (static_cast<std::size_t>(row + 1) < own.size() &&
+           own[static_cast<std::size_t>(row + 1)] <= timeline[segment]) {
+      ++row;
+    }
+    rows.push_back(row);
+  }
+}
+
+Trajectory::Trajectory(std::size_t variables) { moved_.reserve(variables); }
+
+std::optional<std::string> Trajectory::add_track(const JointTrajectory& motion,
+                                                 const Scene& scene) {
   if (std::optional<std::string> text = fault(motion)) return text;
+  Track track{.motion = &motion,
+              .first_joint = static_cast<std::uint32_t>(moved_.size()),
+              .joints = static_cast<std::uint32_t>(motion.joints.size()),
+              .rows_of = static_cast<std::uint32_t>(tracks_.size())};
   for (const std::string& joint : motion.joints) {
     const std::optional<std::uint32_t> variable = variable_named(scene, joint);
     if (!variable) return "the cell has no joint \"" + joint + "\"";
     if (std::find(moved_.begin(), moved_.end(), *variable) != moved_.end()) {
       return "joint \"" + joint + "\" is named twice";
     }
-    if (moved_.size() == moved_.capacity()) return "the motion names more joints than the cell has";
     moved_.push_back(*variable);
   }
-  motion_ = &motion;
+  tracks_.push_back(track);
   return std::nullopt;
 }
 
-Stretch Trajectory::whole() const noexcept {
-  const std::size_t rows = motion_->times.size();
-  return {0, static_cast<std::uint32_t>(rows < 2 ? 0 : rows - 2), begin(), end()};
+std::optional<std::string> Trajectory::take(const Question& question, const Scene& scene) {
+  moved_.clear();
+  tracks_.clear();
+  if (std::optional<std::string> text = add_track(question.motion, scene)) return text;
+  for (const JointTrajectory& motion : question.beside) {
+    if (std::optional<std::string> text = add_track(motion, scene)) {
+      return *text + " (in a motion beside the one in question)";
+    }
+  }
+  make_timeline(question);
+  largest_position_ = 0.0;
+  for (const Track& track : tracks_) {
+    for (const double p : track.motion->positions) {
+      largest_position_ = std::max(largest_position_, std::abs(p));
+    }
+    const double length = track.motion->times.back() - track.motion->times.front();
+    for (const double v : track.motion->velocities) {
+      largest_position_ = std::max(largest_position_, std::abs(v) * length);
+    }
+  }
+  return std::nullopt;
 }
 
-double Trajectory::middle(const Stretch& stretch, std::span<const double> times) noexcept {
-  if (!stretch.is_in_one_segment()) return times[(stretch.first + stretch.last + 1) / 2];
+void Trajectory::make_timeline(const Question& question) {
+  const std::vector<double>& own = question.motion.times;
+  times_.assign(own.begin(), own.end());
+  const auto add = [&](const std::vector<double>& times) {
+    for (const double t : times) {
+      if (own.front() < t && t < own.back()) times_.push_back(t);
+    }
+  };
+  for (const JointTrajectory& motion : question.beside) add(motion.times);
+  for (const ObjectMotion& motion : question.moving) add(motion.times);
+  if (times_.size() > own.size()) std::sort(times_.begin(), times_.end());
+  times_.erase(std::unique(times_.begin(), times_.end()), times_.end());
+  if (rows_.size() < tracks_.size()) rows_.resize(tracks_.size());
+  for (const Track& track : tracks_) find_rows(times_, track.motion->times, rows_[track.rows_of]);
+}
+
+Stretch Trajectory::whole() const noexcept { return {0, segments() - 1, begin(), end()}; }
+
+double Trajectory::middle(const Stretch& stretch) const noexcept {
+  if (!stretch.is_in_one_segment()) return times_[segment_at_middle(stretch)];
   return stretch.from + 0.5 * (stretch.to - stretch.from);
 }
 
-Stretch Trajectory::before(const Stretch& stretch, double middle) const noexcept {
+Stretch Trajectory::before(const Stretch& stretch, double middle) noexcept {
   if (stretch.is_in_one_segment()) return {stretch.first, stretch.first, stretch.from, middle};
-  return {stretch.first, (stretch.first + stretch.last + 1) / 2 - 1, stretch.from, middle};
+  return {stretch.first, segment_at_middle(stretch) - 1, stretch.from, middle};
 }
 
-Stretch Trajectory::after(const Stretch& stretch, double middle) const noexcept {
+Stretch Trajectory::after(const Stretch& stretch, double middle) noexcept {
   if (stretch.is_in_one_segment()) return {stretch.first, stretch.first, middle, stretch.to};
-  return {(stretch.first + stretch.last + 1) / 2, stretch.last, middle, stretch.to};
+  return {segment_at_middle(stretch), stretch.last, middle, stretch.to};
 }
 
 // The cubic p0 + v0 t + ... of Hermite. Its acceleration is linear in time.
-Trajectory::State Trajectory::state(std::size_t segment, std::size_t joint,
-                                    double at) const noexcept {
-  const double p0 = position(segment, joint);
-  if (motion_->times.size() < 2) return {p0, 0.0, 0.0};
-  const double begins = motion_->times[segment];
-  const double length = motion_->times[segment + 1] - begins;
-  const double t = std::clamp(at - begins, 0.0, length), u = t / length;
-  const double step = position(segment + 1, joint) - p0, rate = step / length;
-  if (motion_->velocities.empty()) return {p0 + u * step, rate, 0.0};
-  const double v0 = velocity(segment, joint), v1 = velocity(segment + 1, joint);
+Trajectory::State Trajectory::state(const Track& track, std::int32_t row, std::size_t joint,
+                                    double at) noexcept {
+  const std::vector<double>& times = track.motion->times;
+  if (row < 0) return {track.position(0, joint), 0.0, 0.0, 0.0};
+  const auto r = static_cast<std::size_t>(row);
+  const double p0 = track.position(r, joint);
+  if (r + 1 >= times.size()) return {p0, 0.0, 0.0, 0.0};
+  const double length = times[r + 1] - times[r];
+  const double t = std::clamp(at - times[r], 0.0, length), u = t / length;
+  const double step = track.position(r + 1, joint) - p0, rate = step / length;
+  if (track.motion->velocities.empty()) return {p0 + u * step, rate, 0.0, 0.0};
+  const double v0 = track.velocity(r, joint), v1 = track.velocity(r + 1, joint);
   const double a = (6.0 * rate - 4.0 * v0 - 2.0 * v1) / length;  // at the start
   const double jerk = (6.0 * v0 + 6.0 * v1 - 12.0 * rate) / (length * length);
   return {p0 + t * (v0 + t * (0.5 * a + t * (jerk / 6.0))), v0 + t * (a + 0.5 * t * jerk),
-          a + t * jerk};
+          a + t * jerk, jerk};
 }
 
-double Trajectory::largest_acceleration(std::size_t segment, std::size_t joint) const noexcept {
-  return std::max(std::abs(state(segment, joint, motion_->times[segment]).acceleration),
-                  std::abs(state(segment, joint, motion_->times[segment + 1]).acceleration));
+double Trajectory::largest_acceleration(const Track& track, std::int32_t row,
+                                        std::size_t joint) noexcept {
+  const std::vector<double>& times = track.motion->times;
+  const auto r = static_cast<std::size_t>(row);
+  return std::max(std::abs(state(track, row, joint, times[r]).acceleration),
+                  std::abs(state(track, row, joint, times[r + 1]).acceleration));
 }
 
 // A function whose second derivative is at most a leaves its chord by at most a length^2 / 8.
-double Trajectory::bulge(std::size_t segment, std::size_t joint) const noexcept {
-  if (motion_->velocities.empty() || motion_->times.size() < 2) return 0.0;
-  const double length = motion_->times[segment + 1] - motion_->times[segment];
-  return 0.125 * length * length * largest_acceleration(segment, joint);
+double Trajectory::bulge(const Track& track, std::int32_t row, std::size_t joint) noexcept {
+  if (!track.is_cubic()) return 0.0;
+  const auto r = static_cast<std::size_t>(row);
+  const double length = track.motion->times[r + 1] - track.motion->times[r];
+  if (length == 0.0) return 0.0;
+  return 0.125 * length * length * largest_acceleration(track, row, joint);
 }
 
-std::array<double, 3> Trajectory::controls_beside(std::size_t row,
-                                                  std::size_t joint) const noexcept {
-  const double at = position(row, joint);
+std::array<double, 3> Trajectory::controls_beside(const Track& track, std::size_t row,
+                                                  std::size_t joint) noexcept {
+  const double at = track.position(row, joint);
   std::array<double, 3> controls{at, at, at};
-  if (motion_->velocities.empty()) return controls;
-  const std::vector<double>& times = motion_->times;
-  const double third = velocity(row, joint) / 3.0;
+  if (!track.is_cubic()) return controls;
+  const std::vector<double>& times = track.motion->times;
+  const double third = track.velocity(row, joint) / 3.0;
   if (row > 0) controls[1] -= third * (times[row] - times[row - 1]);
   if (row + 1 < times.size()) controls[2] += third * (times[row + 1] - times[row]);
   return controls;
 }
 
+void Trajectory::place_in_segment(const Track& track, const Stretch& stretch, double at,
+                                  std::span<TrackedVariable> variables,
+                                  std::span<VariableBounds> bounds) const noexcept {
+  const std::int32_t row = rows_[track.rows_of][stretch.first];
+  const double half = rounded_up(std::max(stretch.to - at, at - stretch.from));
+  for (std::size_t joint = 0; joint < track.joints; ++joint) {
+    const std::uint32_t moved = moved_[track.first_joint + joint];
+    const State now = state(track, row, joint, at);
+    variables[moved].position = now.position;
+    variables[moved].velocity = now.speed;
+    VariableBounds& bound = bounds[moved];
+    bound.speed = std::abs(now.speed);
+    bound.acceleration = 0.0;
+    if (now.jerk != 0.0 || now.acceleration != 0.0) {
+      // The acceleration is linear in time, so it is largest at an end. Its terms may cancel.
+      const double length = track.motion->times[static_cast<std::size_t>(row) + 1] -
+                            track.motion->times[static_cast<std::size_t>(row)];
+      bound.acceleration = std::abs(now.acceleration) + half * std::abs(now.jerk) +
+                           kTrajectoryRounding * length * std::abs(now.jerk);
+      bound.acceleration *= 1.0 + kTrajectoryRounding;
+    }
+    bound.deviation = half * (bound.speed + 0.5 * half * bound.acceleration);
+    bound.speed += half * bound.acceleration;
+    bound.deviation *= 1.0 + kTrajectoryRounding;
+    bound.speed *= 1.0 + kTrajectoryRounding;
+  }
+}
+
+void Trajectory::place_at_waypoint(const Track& track, const Stretch& stretch, double at,
+                                   std::span<TrackedVariable> variables,
+                                   std::span<VariableBounds> bounds) const noexcept {
+  const std::vector<std::int32_t>& rows = rows_[track.rows_of];
+  const auto rows_of_motion = static_cast<std::int32_t>(track.motion->times.size());
+  const std::int32_t now_row = rows[segment_at_middle(stretch)];
+  const std::int32_t from = std::max(0, rows[stretch.first]);
+  const std::int32_t to = std::min(rows_of_motion - 1, rows[stretch.last] + 1);
+  for (std::size_t joint = 0; joint < track.joints; ++joint) {
+    const std::uint32_t moved = moved_[track.first_joint + joint];
+    const State now = state(track, now_row, joint, at);
+    variables[moved].position = now.position;
+    variables[moved].velocity = now.speed;
+    VariableBounds& bound = bounds[moved];
+    bound = {};
+    double last = std::abs(track.position(static_cast<std::size_t>(from), joint) - now.position);
+    bound.deviation = last;
+    for (std::int32_t row = from; row < to; ++row) {
+      const double next =
+          std::abs(track.position(static_cast<std::size_t>(row) + 1, joint) - now.position);
+      bound.deviation = std::max(bound.deviation, std::max(last, next) + bulge(track, row, joint));
+      last = next;
+    }
+    bound.deviation *= 1.0 + kTrajectoryRounding;
+  }
+}
+
 void Trajectory::place(const Stretch& stretch, double at, std::span<TrackedVariable> variables,
                        std::span<VariableBounds> bounds) const noexcept {
-  const bool one = stretch.is_in_one_segment();
-  const std::size_t segment = one ? stretch.first : (stretch.first + stretch.last + 1) / 2;
-  const bool cubic = !motion_->velocities.empty() && motion_->times.size() > 1;
-  for (std::size_t joint = 0; joint < moved_.size(); ++joint) {
-    const State now = state(segment, joint, at);
-    TrackedVariable& variable = variables[moved_[joint]];
-    variable.position = now.position;
-    variable.velocity = now.speed;
-    VariableBounds& bound = bounds[moved_[joint]];
-    bound = {};
-    if (one) {
-      const double half = rounded_up(std::max(stretch.to - at, at - stretch.from));
-      bound.speed = std::abs(now.speed);
-      bound.deviation = half * bound.speed;
-      if (cubic) {
-        bound.acceleration = (1.0 + kTrajectoryRounding) * largest_acceleration(segment, joint);
-        bound.deviation += 0.5 * half * half * bound.acceleration;
-        bound.speed += half * bound.acceleration;
-      }
+  for (const Track& track : tracks_) {
+    if (stretch.is_in_one_segment()) {
+      place_in_segment(track, stretch, at, variables, bounds);
     } else {
-      for (std::size_t row = stretch.first; row <= stretch.last + 1; ++row) {
-        bound.deviation = std::max(bound.deviation, std::abs(position(row, joint) - now.position));
-      }
-      for (std::size_t i = stretch.first; cubic && i <= stretch.last; ++i) {
-        const double ends = std::max(std::abs(position(i, joint) - now.position),
-                                     std::abs(position(i + 1, joint) - now.position));
-        bound.deviation = std::max(bound.deviation, ends + bulge(i, joint));
-      }
+      place_at_waypoint(track, stretch, at, variables, bounds);
     }
-    bound.deviation = (1.0 + kTrajectoryRounding) * bound.deviation;
-    bound.speed = (1.0 + kTrajectoryRounding) * bound.speed;
   }
 }
 

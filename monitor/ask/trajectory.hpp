@@ -1,4 +1,7 @@
-// A joint trajectory over time: positions, and bounds of what happens in an interval of time.
+// Joint trajectories over time: positions, and bounds of what happens in an interval of time.
+//
+// The motion in question and those beside it, which have times of their own, share one timeline. A
+// new segment of it begins wherever one of them, or an object's motion, has a waypoint.
 #pragma once
 
 #include <array>
@@ -14,7 +17,7 @@
 
 namespace clearance {
 
-// Some whole segments, or a part of one. Segment i is between waypoints i and i + 1.
+// Some whole segments, or a part of one. Segment i is between the times i and i + 1.
 struct Stretch {
   std::uint32_t first = 0, last = 0;  // segments, both included
   double from = 0.0, to = 0.0;        // s
@@ -29,45 +32,65 @@ struct VariableBounds {
   double acceleration = 0.0;  // at most, per second squared; only in one segment
 };
 
+// The row of a track's waypoints that begins in or before a segment of the timeline.
+inline constexpr std::int32_t kBeforeFirstRow = -1;
+
+// Writes, for each segment of the timeline, the last of `own` times that is not after its begin.
+void find_rows(std::span<const double> timeline, std::span<const double> own,
+               std::vector<std::int32_t>& rows);
+
 class Trajectory {
  public:
   // Allocates for `variables` variables of a scene.
   explicit Trajectory(std::size_t variables);
 
-  // Takes a trajectory, or returns what is wrong with it. `motion` must stay until the next call.
-  [[nodiscard]] std::optional<std::string> take(const JointTrajectory& motion, const Scene& scene);
+  // Takes the trajectories of a question, or returns what is wrong with them. The question must
+  // stay until the next call. Allocates only for more waypoints than in any question before.
+  [[nodiscard]] std::optional<std::string> take(const Question& question, const Scene& scene);
 
+  [[nodiscard]] std::span<const double> times() const noexcept { return times_; }
   [[nodiscard]] Stretch whole() const noexcept;
-  [[nodiscard]] double begin() const noexcept { return motion_->times.front(); }
-  [[nodiscard]] double end() const noexcept { return motion_->times.back(); }
+  [[nodiscard]] double begin() const noexcept { return times_.front(); }
+  [[nodiscard]] double end() const noexcept { return times_.back(); }
+  // The number of segments: at least one.
+  [[nodiscard]] std::uint32_t segments() const noexcept {
+    return static_cast<std::uint32_t>(times_.size() < 2 ? 1 : times_.size() - 1);
+  }
+  [[nodiscard]] Stretch segment(std::uint32_t i) const noexcept {
+    return {i, i, times_[i], times_.size() < 2 ? times_[i] : times_[i + 1]};
+  }
   // Tells whether a variable has a position for which `is_outside` is true. `held` is its position
   // if it has no waypoints. A cubic counts with its control points, between which it stays.
   template <class IsOutside>
   [[nodiscard]] bool leaves(std::uint32_t variable, const IsOutside& is_outside,
                             double held) const {
-    for (std::size_t joint = 0; joint < moved_.size(); ++joint) {
-      if (moved_[joint] != variable) continue;
-      for (std::size_t row = 0; row < motion_->times.size(); ++row) {
-        for (const double control : controls_beside(row, joint)) {
-          if (is_outside(control)) return true;
+    for (const Track& track : tracks_) {
+      for (std::size_t joint = 0; joint < track.joints; ++joint) {
+        if (moved_[track.first_joint + joint] != variable) continue;
+        for (std::size_t row = 0; row < track.motion->times.size(); ++row) {
+          for (const double control : controls_beside(track, row, joint)) {
+            if (is_outside(control)) return true;
+          }
         }
+        return false;
       }
-      return false;
     }
     return is_outside(held);
   }
   // Indices into Scene::variables of the joints that have waypoints.
   [[nodiscard]] std::span<const std::uint32_t> moved() const noexcept { return moved_; }
+  // The largest magnitude of a position, or of a velocity times the length of the motion.
+  [[nodiscard]] double largest_position() const noexcept { return largest_position_; }
 
   // Returns the instant at which a stretch is examined and divided: a waypoint, or the middle.
-  [[nodiscard]] static double middle(const Stretch& stretch,
-                                     std::span<const double> times) noexcept;
-  [[nodiscard]] double middle(const Stretch& stretch) const noexcept {
-    return middle(stretch, motion_->times);
-  }
+  [[nodiscard]] double middle(const Stretch& stretch) const noexcept;
   // The two parts of a stretch before and after its middle.
-  [[nodiscard]] Stretch before(const Stretch& stretch, double middle) const noexcept;
-  [[nodiscard]] Stretch after(const Stretch& stretch, double middle) const noexcept;
+  [[nodiscard]] static Stretch before(const Stretch& stretch, double middle) noexcept;
+  [[nodiscard]] static Stretch after(const Stretch& stretch, double middle) noexcept;
+  // The segment of the timeline that places bodies at the middle of a stretch.
+  [[nodiscard]] static std::uint32_t segment_at_middle(const Stretch& stretch) noexcept {
+    return stretch.is_in_one_segment() ? stretch.first : (stretch.first + stretch.last + 1) / 2;
+  }
 
   // Sets positions and velocities at an instant of the segment, and the bounds in the stretch
   // around it. Entries of other variables stay as they are.
@@ -75,26 +98,48 @@ class Trajectory {
              std::span<VariableBounds> bounds) const noexcept;
 
  private:
-  struct State {
-    double position, speed, acceleration;
+  struct Track {
+    const JointTrajectory* motion = nullptr;
+    std::uint32_t first_joint = 0, joints = 0;  // into moved_
+    std::uint32_t rows_of = 0;                  // into rows_
+    [[nodiscard]] bool is_cubic() const noexcept {
+      return !motion->velocities.empty() && motion->times.size() > 1;
+    }
+    [[nodiscard]] double position(std::size_t row, std::size_t joint) const noexcept {
+      return motion->positions[row * joints + joint];
+    }
+    [[nodiscard]] double velocity(std::size_t row, std::size_t joint) const noexcept {
+      return motion->velocities[row * joints + joint];
+    }
   };
-  [[nodiscard]] double position(std::size_t row, std::size_t joint) const noexcept {
-    return motion_->positions[row * moved_.size() + joint];
-  }
-  [[nodiscard]] double velocity(std::size_t row, std::size_t joint) const noexcept {
-    return motion_->velocities[row * moved_.size() + joint];
-  }
-  [[nodiscard]] State state(std::size_t segment, std::size_t joint, double at) const noexcept;
-  [[nodiscard]] double largest_acceleration(std::size_t segment, std::size_t joint) const noexcept;
+  struct State {
+    double position, speed, acceleration, jerk;
+  };
+  [[nodiscard]] std::optional<std::string> add_track(const JointTrajectory& motion,
+                                                     const Scene& scene);
+  void make_timeline(const Question& question);
+  [[nodiscard]] static State state(const Track& track, std::int32_t row, std::size_t joint,
+                                   double at) noexcept;
+  [[nodiscard]] static double largest_acceleration(const Track& track, std::int32_t row,
+                                                   std::size_t joint) noexcept;
   // The largest distance of a cubic beside a waypoint from its chord; linear: 0.
-  [[nodiscard]] double bulge(std::size_t segment, std::size_t joint) const noexcept;
+  [[nodiscard]] static double bulge(const Track& track, std::int32_t row,
+                                    std::size_t joint) noexcept;
   // The position of a waypoint, and the control points before and after it.
-  [[nodiscard]] std::array<double, 3> controls_beside(std::size_t row,
-                                                      std::size_t joint) const noexcept;
-  [[nodiscard]] std::optional<std::string> fault(const JointTrajectory& motion) const;
+  [[nodiscard]] static std::array<double, 3> controls_beside(const Track& track, std::size_t row,
+                                                             std::size_t joint) noexcept;
+  void place_in_segment(const Track& track, const Stretch& stretch, double at,
+                        std::span<TrackedVariable> variables,
+                        std::span<VariableBounds> bounds) const noexcept;
+  void place_at_waypoint(const Track& track, const Stretch& stretch, double at,
+                         std::span<TrackedVariable> variables,
+                         std::span<VariableBounds> bounds) const noexcept;
 
-  const JointTrajectory* motion_ = nullptr;
-  std::vector<std::uint32_t> moved_;
+  std::vector<Track> tracks_;
+  std::vector<std::uint32_t> moved_;             // track by track
+  std::vector<double> times_;                    // of the timeline: all different, rising
+  std::vector<std::vector<std::int32_t>> rows_;  // by track, by segment
+  double largest_position_ = 0.0;
 };
 
 // Returns the index of a variable by its name; nothing if there is none.

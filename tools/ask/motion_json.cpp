@@ -4,7 +4,13 @@
 
 #include <array>
 #include <limits>
+#include <optional>
+#include <utility>
+#include <variant>
 #include <vector>
+
+#include "core/shapes.hpp"
+#include "monitor/ask/asker.hpp"
 
 namespace clearance {
 namespace {
@@ -32,17 +38,93 @@ Pose pose_of(const Json& numbers) {
   return pose;
 }
 
+JointTrajectory trajectory_of(const Json& line) {
+  JointTrajectory motion;
+  motion.joints = line.at("joints").get<std::vector<std::string>>();
+  motion.times = line.at("times_s").get<std::vector<double>>();
+  motion.positions = rows_of(line, "positions", motion.joints.size());
+  if (line.contains("velocities")) {
+    motion.velocities = rows_of(line, "velocities", motion.joints.size());
+  }
+  return motion;
+}
+
+ObjectMotion object_motion_of(const std::string& object, const Json& entry) {
+  ObjectMotion motion{.object = object,
+                      .times = entry.at("times_s").get<std::vector<double>>(),
+                      .world_from_object = {}};
+  for (const Json& pose : entry.at("poses")) motion.world_from_object.push_back(pose_of(pose));
+  return motion;
+}
+
+std::optional<ConvexBody> shape_of(const Json& entry) {
+  ShapeResult made = ShapeError{};
+  if (entry.contains("box")) {
+    const auto size = entry["box"].get<std::array<double, 3>>();
+    made = box({0.5 * size[0], 0.5 * size[1], 0.5 * size[2]});
+  } else if (entry.contains("sphere")) {
+    made = point(Vec3::Zero(), entry["sphere"].get<double>());
+  } else if (entry.contains("cylinder")) {
+    const auto size = entry["cylinder"].get<std::array<double, 2>>();
+    made = cylinder(size[0], 0.5 * size[1]);
+  } else if (entry.contains("vertices")) {
+    std::vector<Vec3> vertices;
+    for (const Json& vertex : entry["vertices"]) {
+      const auto v = vertex.get<std::array<double, 3>>();
+      vertices.push_back({v[0], v[1], v[2]});
+    }
+    made = polyhedron_from_vertices(vertices);
+  } else {
+    return std::nullopt;
+  }
+  if (const auto* error = std::get_if<ShapeError>(&made)) {
+    throw BadMotion("the shape of a payload: " + error->reason);
+  }
+  return std::get<ConvexBody>(std::move(made));
+}
+
+Payload payload_of(const Json& entry) {
+  Payload payload;
+  payload.name = entry.at("name").get<std::string>();
+  payload.link = entry.at("link").get<std::string>();
+  payload.shape = shape_of(entry);
+  if (entry.contains("pose")) payload.link_from_object = pose_of(entry["pose"]);
+  if (entry.contains("touch")) payload.touch = entry["touch"].get<std::vector<std::string>>();
+  return payload;
+}
+
+std::optional<ProfileRequest> profile_of(const Json& entry) {
+  if (entry.is_boolean()) {
+    return entry.get<bool>() ? std::optional(ProfileRequest()) : std::nullopt;
+  }
+  ProfileRequest profile;
+  if (entry.contains("pair")) {
+    const auto pair = entry["pair"].get<std::array<std::string, 2>>();
+    profile.first = pair[0];
+    profile.second = pair[1];
+  }
+  profile.tolerance = entry.value("tolerance", profile.tolerance);
+  profile.most_points = entry.value("points", profile.most_points);
+  return profile;
+}
+
 OthersMove others_of(const std::string& text) {
   if (text == "max_speed") return OthersMove::kWithinMaxSpeed;
   if (text == "still") return OthersMove::kNot;
   throw BadMotion("\"others\" is \"" + text + "\"; expected \"max_speed\" or \"still\"");
 }
 
-OrderedJson names_of(const Scene& scene, std::uint32_t first, std::uint32_t second) {
-  return {scene.objects[first].name, scene.objects[second].name};
-}
+// The names of objects in an answer.
+struct Names {
+  const Scene& scene;
+  const Question& question;
 
-OrderedJson first_below(const MarginAnswer& margin, const Scene& scene) {
+  [[nodiscard]] OrderedJson of(std::uint32_t first, std::uint32_t second) const {
+    return {object_name(scene, question, first), object_name(scene, question, second)};
+  }
+};
+
+OrderedJson first_below(const MarginAnswer& margin, const Names& names) {
   if (margin.verdict == Verdict::kFree) return nullptr;
   OrderedJson entry;
   if (margin.verdict == Verdict::kBelow) {
@@ -51,7 +133,24 @@ OrderedJson first_below(const MarginAnswer& margin, const Scene& scene) {
     entry["t"] = "undecided";
     entry["above_until"] = margin.above_until;
   }
-  entry["pair"] = names_of(scene, margin.first, margin.second);
+  entry["pair"] = names.of(margin.first, margin.second);
+  return entry;
+}
+
+// Factors without limit are null.
+OrderedJson scaling_of(const TimeScaling& scaling, const Names& names) {
+  OrderedJson entry;
+  const auto limited = [](double factor) -> OrderedJson {
+    if (factor == kInfinity) return nullptr;
+    return factor;
+  };
+  entry["factor"] = limited(scaling.factor);
+  entry["factor_above"] = limited(scaling.factor_above);
+  if (scaling.factor_above < kInfinity) {
+    entry["t"] = scaling.time;
+    entry["pair"] = names.of(scaling.first, scaling.second);
+    entry["zone"] = names.scene.zones[scaling.zone].name;
+  }
   return entry;
 }
 
@@ -60,13 +159,7 @@ OrderedJson first_below(const MarginAnswer& margin, const Scene& scene) {
 Question read_question(const Json& line, const Question& defaults) {
   if (!line.is_object()) throw BadMotion("the line is not a JSON object");
   Question question = defaults;
-  JointTrajectory& motion = question.motion;
-  motion.joints = line.at("joints").get<std::vector<std::string>>();
-  motion.times = line.at("times_s").get<std::vector<double>>();
-  motion.positions = rows_of(line, "positions", motion.joints.size());
-  if (line.contains("velocities")) {
-    motion.velocities = rows_of(line, "velocities", motion.joints.size());
-  }
+  question.motion = trajectory_of(line);
   if (line.contains("held")) {
     for (const auto& [name, position] : line["held"].items()) {
       question.held.push_back({name, position.get<double>()});
@@ -77,19 +170,33 @@ Question read_question(const Json& line, const Question& defaults) {
       question.poses.push_back({name, pose_of(pose)});
     }
   }
+  if (line.contains("beside")) {
+    for (const Json& motion : line["beside"]) question.beside.push_back(trajectory_of(motion));
+  }
+  if (line.contains("moving")) {
+    for (const auto& [name, motion] : line["moving"].items()) {
+      question.moving.push_back(object_motion_of(name, motion));
+    }
+  }
+  if (line.contains("payloads")) {
+    for (const Json& payload : line["payloads"]) question.payloads.push_back(payload_of(payload));
+  }
+  if (line.contains("profile")) question.profile = profile_of(line["profile"]);
+  if (line.contains("time_scaling")) question.time_scaling = line["time_scaling"].get<bool>();
   if (line.contains("others")) question.others = others_of(line["others"].get<std::string>());
   if (line.contains("margins")) question.margins = line["margins"].get<std::vector<double>>();
   return question;
 }
 
-OrderedJson answer_line(const Answer& answer, const Scene& scene) {
+OrderedJson answer_line(const Answer& answer, const Scene& scene, const Question& question) {
+  const Names names{scene, question};
   OrderedJson line;
   line["lower"] = answer.lower;
   line["upper"] = nullptr;
   if (answer.has_pair && answer.upper < kInfinity) {
     line["upper"] = answer.upper;
     line["t"] = answer.time;
-    line["pair"] = names_of(scene, answer.first, answer.second);
+    line["pair"] = names.of(answer.first, answer.second);
     if (answer.upper > 0.0) {
       const Vec3 &a = answer.point_on_first, &b = answer.point_on_second;
       line["points"] = {{a.x(), a.y(), a.z()}, {b.x(), b.y(), b.z()}};
@@ -99,9 +206,19 @@ OrderedJson answer_line(const Answer& answer, const Scene& scene) {
   line["verdict"] = OrderedJson::object();
   for (const MarginAnswer& margin : answer.margins) {
     const std::string key = fmt::format("{:g}", margin.margin);
-    line["first_below"][key] = first_below(margin, scene);
+    line["first_below"][key] = first_below(margin, names);
     line["verdict"][key] = name(margin.verdict);
   }
+  if (question.profile) {
+    line["profile"] = OrderedJson::array();
+    for (const ProfilePoint& point : answer.profile) {
+      line["profile"].push_back({{"t", {point.from, point.to}},
+                                 {"lower", point.lower},
+                                 {"upper", point.upper},
+                                 {"pair", names.of(point.first, point.second)}});
+    }
+  }
+  if (question.time_scaling) line["time_scaling"] = scaling_of(answer.scaling, names);
   line["queries"] = answer.queries;
   line["within_work_limit"] = answer.within_work_limit;
   return line;

@@ -19,6 +19,7 @@ struct BadMotion : std::runtime_error {
 // value of another type.
 [[nodiscard]] Question read_question(const nlohmann::json& line, const Question& defaults);
 
-[[nodiscard]] nlohmann::ordered_json answer_line(const Answer& answer, const Scene& scene);
+[[nodiscard]] nlohmann::ordered_json answer_line(const Answer& answer, const Scene& scene,
+                                                 const Question& question);
 
 }  // namespace clearance

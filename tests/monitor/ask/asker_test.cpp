@@ -8,40 +8,16 @@
 #include <string>
 #include <variant>
 
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/ask/scara_questions.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {
 
-Scene scara_beside(const std::string& object) {
-  const test::ScratchFolder folder;
-  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-  return scene_of(
-      "name: test\nunits: {length: m, angle: rad}\n"
-      "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n  - {name: post, " +
-          object + "}\npairs: [{between: [arm, post]}, {between: [arm, arm]}]\n",
-      folder / "cell.yaml");
-}
-
-// The finger is a sphere of 0.05 m that circles at 2 m around the origin.
-constexpr const char* kPin = "fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}";
 constexpr const char* kSheet =
     "fixed: true, box: {size: [0.6, 0.002, 0.4]}, pose: {xyz: [1.9, 0, 0]}";
 
-Question swing(double from, double to) {
-  Question question;
-  question.motion = {
-      .joints = {"shoulder"}, .times = {0.0, 2.0}, .positions = {from, to}, .velocities = {}};
-  question.held = {{"elbow", 0.0}, {"push", 0.0}};
-  return question;
-}
-
-Answer answered(const Scene& scene, const Question& question) {
-  const std::variant<Answer, std::string> answer = ask(scene, question);
-  EXPECT_TRUE(std::holds_alternative<Answer>(answer)) << std::get<std::string>(answer);
-  return std::get<Answer>(answer);
-}
+using test::answered, test::kPin, test::scara_beside, test::swing;
 
 TEST(Asker, FindsTheClosestInstantBetweenWaypoints) {
   const Scene scene = scara_beside(kPin);
@@ -160,8 +136,30 @@ TEST(Asker, RefusesAQuestionThatLeavesAJointOpen) {
   question.held.pop_back();
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
   question = swing(0.0, 1.0);
-  question.motion.times = {1.0, 1.0};
+  question.motion.times = {1.0, 1.0};  // at two places at one time
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
+TEST(Asker, TakesAWaypointThatIsStatedTwice) {
+  const Scene scene = scara_beside(kPin);
+  Question question = swing(-1.0, 0.6);
+  const Answer once = answered(scene, question);
+  question.motion.times = {0.0, 0.0, 2.0, 2.0};
+  question.motion.positions = {-1.0, -1.0, 0.6, 0.6};
+  EXPECT_EQ(answered(scene, question).lower, once.lower);
+}
+
+TEST(Asker, OnlyVerdictsAreThoseOfTheWholeAnswer) {
+  const Scene scene = scara_beside(kPin);
+  for (const double margin : {0.0, 0.1, 0.149, 0.151, 0.3}) {
+    Question question = swing(-1.0, 0.6);
+    question.margins = {margin};
+    const Answer whole = answered(scene, question);
+    question.only_margins = question.only_verdicts = true;
+    const Answer verdict = answered(scene, question);
+    EXPECT_EQ(verdict.margins[0].verdict, whole.margins[0].verdict) << margin;
+    EXPECT_LE(verdict.lower, whole.upper);
+  }
 }
 
 TEST(Asker, KeepsItsBoundsWhenTheWorkEndsEarly) {

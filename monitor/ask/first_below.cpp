@@ -1,0 +1,145 @@
+// Margins: whether a motion is above them at all instants, and else the first instant that is not.
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/ask/motion_search.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// The first instant below a margin is known to this, relative to the duration.
+constexpr double kInstant = 1e-7;
+
+bool proves(double lower, double margin) noexcept {
+  return margin > 0.0 ? lower >= margin : lower > 0.0;
+}
+
+bool is_below(double upper, double margin) noexcept {
+  return margin > 0.0 ? upper < margin : upper <= 0.0;
+}
+
+}  // namespace
+
+// A larger margin is violated no later than a smaller one.
+void MotionSearch::decide_margins() {
+  proven_until_ = posture_.trajectory().begin();
+  const std::vector<double>& margins = question_->margins;
+  double last = kInfinity;
+  for (std::size_t n = 0; n < margins.size(); ++n) {
+    double next = -1.0;
+    for (const double margin : margins) {
+      if (margin < last) next = std::max(next, margin);
+    }
+    if (next < 0.0) break;
+    last = next;
+    MarginAnswer decided{.margin = next};
+    decide(decided);
+    if (decided.verdict == Verdict::kFree && question_->only_margins)
+      answer_->lower = std::max(answer_->lower, next);
+    for (std::size_t i = 0; i < margins.size(); ++i) {
+      if (margins[i] == next) answer_->margins[i] = decided;
+    }
+  }
+}
+
+void MotionSearch::decide(MarginAnswer& answer) noexcept {
+  if (!answer_->has_pair || proves(answer_->lower, answer.margin)) {
+    answer.verdict = Verdict::kFree;
+    return;
+  }
+  const Stretch whole = posture_.trajectory().whole();
+  answer.above_until = whole.from;
+  if (question_->only_verdicts && is_below(answer_->upper, answer.margin)) {
+    answer.verdict = Verdict::kBelow;
+    answer.below_at = answer_->time;
+    answer.first = answer_->first;
+    answer.second = answer_->second;
+    return;
+  }
+  // The first instant by itself: otherwise a motion that begins too near is divided to the end.
+  found_ = uncertain_ = false;
+  if (proven_until_ <= whole.from) {
+    find_first({0, 0, whole.from, whole.from}, all_pairs(), answer);
+  }
+  if (!found_) {
+    uncertain_ = false;
+    find_first(whole, all_pairs(), answer);
+  }
+  answer.verdict = found_ ? Verdict::kBelow : uncertain_ ? Verdict::kUndecided : Verdict::kFree;
+  if (question_->only_verdicts && found_)
+    answer.above_until = whole.from;
+  else if (found_ && !uncertain_)
+    answer.above_until = answer.below_at;
+  if (answer.verdict != Verdict::kFree) proven_until_ = std::max(proven_until_, answer.above_until);
+}
+
+void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
+                              MarginAnswer& answer) noexcept {
+  if (list.is_empty()) return;
+  if (found_ && (stretch.from >= answer.below_at || question_->only_verdicts)) return;
+  if (stretch.to <= proven_until_ && stretch.from < stretch.to) return;
+  const double margin = answer.margin, enough = std::max(margin, 1e-300);
+  const auto note_uncertain = [&](std::uint32_t pair) {
+    if (!uncertain_ || stretch.from < answer.above_until) {
+      answer.above_until = stretch.from;
+      if (!found_) note_pair(pair, answer.first, answer.second);
+    }
+    uncertain_ = true;
+  };
+  if (is_exhausted()) {
+    answer_->within_work_limit = false;
+    note_uncertain(order_[pairs_.bundles()[open_[list.begin].bundle].first]);
+    return;
+  }
+  const double middle = posture_.trajectory().middle(stretch);
+  place(stretch, middle);
+  const bool divides = can_divide(stretch, middle);
+  OpenList left{list.end, list.end};
+  for (std::size_t k = list.begin; k < list.end; ++k) {
+    const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
+    const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
+    std::uint32_t* const order = &order_[bundle.first];
+    std::uint32_t kept = 0;
+    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
+      const std::uint32_t pair = order[i];
+      const Pair at = pair_at(pair, motion);
+      const double apart = gap(at, pair, rounded_up(enough + at.loss));
+      double lower = rounded_down(apart - at.loss);
+      if (proves(lower, margin)) continue;
+      const double size = at.tip.sphere_in_world.radius;
+      const bool may_be_below = apart - at.approach.until_middle < enough;
+      const bool may_decide = apart + size >= enough + kShareAlongNormal * at.loss;
+      bool below = false, near = false;
+      if (may_be_below || may_decide || !divides) {
+        const PairAtMiddle found = query(at, pair);
+        lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
+                                           at.approach, enough));
+        const double now = found.upper + motion.rounding - at.approach.until_middle;
+        const double upper = std::max(0.0, rounded_up(now));
+        note_upper(found, upper, middle, pair);
+        if (proves(lower, margin)) continue;
+        below = is_below(upper, margin);
+        near = !below && lower >= margin - question_->margin_tolerance &&
+               upper <= margin + question_->margin_tolerance;
+      }
+      if (below && (!found_ || middle < answer.below_at)) {
+        found_ = true;
+        answer.below_at = middle;
+        note_pair(pair, answer.first, answer.second);
+      }
+      const bool located = found_ && answer.below_at <= stretch.to &&
+                           answer.below_at - stretch.from <= kInstant * duration_;
+      if (near || located || !divides) {
+        note_uncertain(pair);
+        continue;
+      }
+      std::swap(order[kept++], order[i]);
+    }
+    if (kept > 0) open_[left.end++] = {open_[k].bundle, kept};
+  }
+  find_first(Trajectory::before(stretch, middle), left, answer);
+  find_first(Trajectory::after(stretch, middle), left, answer);
+}
+
+}  // namespace clearance

@@ -1,0 +1,160 @@
+#include "monitor/ask/motion_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// Shorter stretches are not divided, relative to the duration.
+constexpr double kShortest = 0x1p-46;
+// Halves of halves: 32 levels of segments, and 46 in a segment.
+constexpr std::size_t kMostLevels = 84;  // and the list of all pairs
+
+}  // namespace
+
+const char* name(Verdict verdict) noexcept {
+  switch (verdict) {
+    case Verdict::kFree:
+      return "free";
+    case Verdict::kBelow:
+      return "below";
+    case Verdict::kUndecided:
+      return "undecided";
+  }
+  return "";
+}
+
+MotionSearch::MotionSearch(const Scene& scene)
+    : scene_(scene), posture_(scene), pairs_(scene, posture_) {
+  order_.resize(pairs_.pairs().size());
+  gaps_.resize(pairs_.pairs().size());
+  open_.resize(kMostLevels * pairs_.bundles().size());
+  collect_separated();
+}
+
+std::optional<std::string> MotionSearch::fault(const Question& question) const {
+  if (!(question.tolerance > 0.0) || !(question.margin_tolerance > 0.0) ||
+      !(question.scaling_tolerance > 0.0)) {
+    return "a tolerance is not above 0";
+  }
+  for (const double margin : question.margins) {
+    if (!(margin >= 0.0) || !std::isfinite(margin)) return "a margin is not a number from 0 on";
+  }
+  if (!question.profile) return std::nullopt;
+  const ProfileRequest& profile = *question.profile;
+  if (!(profile.tolerance > 0.0) || profile.most_points == 0)
+    return "the tolerance of the profile is not above 0, or it has no point";
+  for (const std::string* name : {&profile.first, &profile.second}) {
+    if (profile.first.empty() && profile.second.empty()) break;
+    const auto at = std::find_if(scene_.objects.begin(), scene_.objects.end(),
+                                 [&](const Object& object) { return object.name == *name; });
+    if (at == scene_.objects.end()) return "the cell has no object \"" + *name + "\"";
+  }
+  for (std::uint32_t i = 0; i < pairs_.pairs().size(); ++i) {
+    if (is_in_profile(profile, i)) return std::nullopt;
+  }
+  if (profile.first.empty()) return std::nullopt;
+  return "the pair of the profile, \"" + profile.first + "\" and \"" + profile.second +
+         "\", is not watched with a link of a robot";
+}
+
+std::optional<std::string> MotionSearch::ask(const Question& question, Answer& answer) {
+  if (auto text = posture_.take(question)) return text;
+  if (auto text = fault(question)) return text;
+  begin(question, answer);
+  if (!question.only_margins) find_least();
+  decide_margins();
+  if (question.profile) make_profile(*question.profile);
+  if (question.time_scaling) scale_time();
+  return std::nullopt;
+}
+
+void MotionSearch::begin(const Question& question, Answer& answer) {
+  question_ = &question;
+  answer_ = &answer;
+  std::vector<MarginAnswer> margins = std::move(answer.margins);
+  std::vector<ProfilePoint> profile = std::move(answer.profile);
+  answer = {};
+  answer.margins = std::move(margins);
+  answer.profile = std::move(profile);
+  answer.profile.clear();
+  answer.margins.assign(question.margins.size(), {});
+  answer.upper = kInfinity;
+  duration_ = posture_.trajectory().end() - posture_.trajectory().begin();
+  pairs_.forget();
+  const OpenList all = all_pairs();
+  answer.has_pair = !all.is_empty();
+}
+
+MotionSearch::OpenList MotionSearch::all_pairs() noexcept {
+  OpenList list;
+  std::iota(order_.begin(), order_.end(), 0u);
+  const auto bundles = pairs_.bundles();
+  for (std::uint32_t b = 0; b < bundles.size(); ++b) {
+    std::uint32_t count = bundles[b].end - bundles[b].first;
+    if (!posture_.all_present()) {
+      count = 0;
+      for (std::uint32_t i = bundles[b].first; i < bundles[b].end; ++i) {
+        const std::uint32_t base = posture_.parts()[pairs_.pairs()[i].base].object;
+        if (posture_.is_present(base)) order_[bundles[b].first + count++] = i;
+      }
+    }
+    if (count > 0) open_[list.end++] = {b, count};
+  }
+  return list;
+}
+
+void MotionSearch::place(const Stretch& stretch, double at) noexcept {
+  posture_.place(stretch, at);
+  ++answer_->placements;
+}
+
+bool MotionSearch::can_divide(const Stretch& stretch, double middle) const noexcept {
+  return stretch.from < middle && middle < stretch.to &&
+         stretch.to - stretch.from > kShortest * duration_;
+}
+
+MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& motion) noexcept {
+  const PartPair& of = pairs_.pairs()[pair];
+  const PosedPart& tip = posture_.part(pairs_.bundles()[of.bundle].tip);
+  const PosedPart& base = posture_.part(of.base);
+  const ObjectApproach& approach = posture_.approach(base.object);
+  return {base, tip, approach,
+          rounded_up(motion.moved + motion.rounding + approach.moved + approach.until_end)};
+}
+
+double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) const noexcept {
+  const PartPair& of = pairs_.pairs()[pair];
+  return gap_at_least(at.base, pairs_.box(of.base), at.tip,
+                      pairs_.box(pairs_.bundles()[of.bundle].tip), enough);
+}
+
+PairAtMiddle MotionSearch::query(const Pair& at, std::uint32_t pair) noexcept {
+  ++answer_->queries;
+  return query_pair(at.base, at.tip, pairs_.tracking(pair));
+}
+
+void MotionSearch::note_pair(std::uint32_t pair, std::uint32_t& first,
+                             std::uint32_t& second) const noexcept {
+  const PartPair& of = pairs_.pairs()[pair];
+  first = posture_.parts()[of.base].object;
+  second = pairs_.bundles()[of.bundle].object_tip;
+  if (of.swapped) std::swap(first, second);
+}
+
+void MotionSearch::note_upper(const PairAtMiddle& found, double upper, double at,
+                              std::uint32_t pair) noexcept {
+  if (!(upper < answer_->upper)) return;
+  answer_->upper = upper;
+  answer_->time = at;
+  note_pair(pair, answer_->first, answer_->second);
+  const bool swapped = pairs_.pairs()[pair].swapped;
+  answer_->point_on_first = swapped ? found.on_tip : found.on_base;
+  answer_->point_on_second = swapped ? found.on_base : found.on_tip;
+}
+
+}  // namespace clearance

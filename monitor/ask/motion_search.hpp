@@ -1,0 +1,122 @@
+// The search for the distance of one motion: over time and over the pairs of parts.
+//
+// A stretch of time keeps a list of the pairs that are not decided in it. Both halves of a stretch
+// get this list. README.md has the method with its proof.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/ask/pair_bounds.hpp"
+#include "monitor/ask/part_pairs.hpp"
+#include "monitor/ask/posture.hpp"
+#include "monitor/ask/question.hpp"
+
+namespace clearance {
+
+class MotionSearch {
+ public:
+  // The scene must outlive it. Allocates all memory for the search.
+  explicit MotionSearch(const Scene& scene);
+
+  // As Asker::ask(), for a question without payloads.
+  [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
+
+ private:
+  // A query is worth its time only if it may decide the pair. The motion that counts, along the
+  // normal, is about this share of all.
+  static constexpr double kShareAlongNormal = 0.25;
+  // The first `count` pairs of a bundle, in the order of order_, are not decided.
+  struct Open {
+    std::uint32_t bundle = 0, count = 0;
+  };
+  // A list of these in open_.
+  struct OpenList {
+    std::size_t begin = 0, end = 0;
+    [[nodiscard]] bool is_empty() const noexcept { return begin == end; }
+  };
+  // A pair of a zone with `separation`.
+  struct SeparatedPair {
+    std::uint32_t zone = 0, pair = 0;  // Scene::zones; PartPairs
+    double margins = 0.0;              // m
+  };
+  // A stretch of the profile.
+  struct Piece {
+    Stretch stretch;
+    ProfilePoint point;
+    bool divides = true;
+    // The widest piece is first in the heap, and among equally wide ones the earliest.
+    friend bool operator<(const Piece& a, const Piece& b) noexcept {
+      const double wide_a = a.divides ? a.point.upper - a.point.lower : -1.0;
+      const double wide_b = b.divides ? b.point.upper - b.point.lower : -1.0;
+      return wide_a != wide_b ? wide_a < wide_b : a.point.from > b.point.from;
+    }
+  };
+  // A part pair at the present instant.
+  struct Pair {
+    const PosedPart& base;
+    const PosedPart& tip;
+    const ObjectApproach& approach;
+    double loss;  // m: the distance over the stretch is at least that at the middle less this
+  };
+
+  [[nodiscard]] std::optional<std::string> fault(const Question& question) const;
+  void begin(const Question& question, Answer& answer);
+  [[nodiscard]] OpenList all_pairs() noexcept;
+  void place(const Stretch& stretch, double at) noexcept;
+  [[nodiscard]] Pair pair_at(std::uint32_t pair, const TipMotion& motion) noexcept;
+  [[nodiscard]] double gap(const Pair& at, std::uint32_t pair, double enough) const noexcept;
+  [[nodiscard]] PairAtMiddle query(const Pair& at, std::uint32_t pair) noexcept;
+  void note_upper(const PairAtMiddle& found, double upper, double at, std::uint32_t pair) noexcept;
+  void note_pair(std::uint32_t pair, std::uint32_t& first, std::uint32_t& second) const noexcept;
+  [[nodiscard]] bool can_divide(const Stretch& stretch, double middle) const noexcept;
+  [[nodiscard]] bool is_exhausted() const noexcept {
+    return answer_->queries + answer_->placements >= question_->work_limit;
+  }
+
+  // The least distance (least_distance.cpp).
+  void find_least();
+  void seed_upper(const OpenList& all) noexcept;
+  void minimise(const Stretch& stretch, const OpenList& list, double known) noexcept;
+
+  // The margins (first_below.cpp).
+  void decide_margins();
+  void decide(MarginAnswer& answer) noexcept;
+  void find_first(const Stretch& stretch, const OpenList& list, MarginAnswer& answer) noexcept;
+
+  // The distance over time (profile.cpp).
+  void make_profile(const ProfileRequest& request);
+  void bound_piece(Piece& piece) noexcept;
+  [[nodiscard]] bool is_in_profile(const ProfileRequest& request,
+                                   std::uint32_t pair) const noexcept;
+
+  // Time scaling (time_scaling.cpp).
+  void collect_separated();
+  void scale_time() noexcept;
+  void scale(const Stretch& stretch, std::size_t count, double known) noexcept;
+
+  const Scene& scene_;
+  Posture posture_;
+  PartPairs pairs_;
+  std::vector<std::uint32_t> order_;  // indices of pairs, bundle by bundle
+  std::vector<Open> open_;            // the lists of all levels, one after the other
+  std::vector<double> gaps_;          // by pair, at the present instant
+  std::vector<Piece> pieces_;         // a heap
+  OpenList profiled_;
+  std::vector<SeparatedPair> separated_;
+  std::vector<std::uint32_t> scaled_;  // indices into separated_
+
+  const Question* question_ = nullptr;
+  Answer* answer_ = nullptr;
+  double duration_ = 0.0;
+  double closed_lower_ = kInfinity;  // of all stretches that are decided
+  bool found_ = false;               // an instant below the margin is known
+  bool uncertain_ = false;           // a stretch is known that is not proven to be above
+  double proven_until_ = 0.0;        // s: before this, a larger margin was proven
+};
+
+}  // namespace clearance

@@ -1,0 +1,98 @@
+#include "monitor/ask/part_pairs.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+#include "core/model/curved_extent.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+PartBox box_around(const ConvexBody& shape) {
+  PartBox box{Vec3::Constant(kInfinity), Vec3::Constant(-kInfinity)};
+  if (shape.is_curved()) {
+    for (int i = 0; i < 3; ++i) {
+      box.high[i] = support_value(shape.curved, Vec3::Unit(i));
+      box.low[i] = -support_value(shape.curved, -Vec3::Unit(i));
+    }
+  }
+  for (const Vec3& anchor : shape.anchors) {
+    box.low = box.low.cwiseMin(anchor);
+    box.high = box.high.cwiseMax(anchor);
+  }
+  const double more = rounded_up(shape.radius + shape.position_error +
+                                 0x1p-46 * (shape.bounding_radius + shape.radius));
+  box.low.array() -= more;
+  box.high.array() += more;
+  for (const Ray& ray : shape.rays) {
+    for (int i = 0; i < 3; ++i) {
+      // A rounded direction may hide a small component.
+      const bool along = !ray.exact || ray.direction[i] != 0.0;
+      if (along && (ray.direction[i] >= 0.0 || ray.is_line || !ray.exact)) box.high[i] = kInfinity;
+      if (along && (ray.direction[i] <= 0.0 || ray.is_line || !ray.exact)) box.low[i] = -kInfinity;
+    }
+  }
+  return box;
+}
+
+// A pair of objects, directed: the tip is a link that moves relative to the base.
+struct Directed {
+  std::uint32_t base, tip;
+  bool swapped, base_is_link;
+};
+
+}  // namespace
+
+PartPairs::PartPairs(const Scene& scene, Posture& posture) {
+  for (const PosedPart& part : posture.parts()) boxes_.push_back(box_around(*part.shape));
+  Chains& chains = posture.chains();
+  std::vector<Directed> directed;
+  for (const ObjectPair& watched : scene.pairs) {
+    std::uint32_t base = watched.first, tip = watched.second;
+    const bool swapped = !chains.is_link(tip) || (chains.is_link(base) && !chains.can_move(tip));
+    if (swapped) std::swap(base, tip);
+    if (chains.is_link(tip)) directed.push_back({base, tip, swapped, chains.is_link(base)});
+  }
+  const auto key = [](const Directed& d) {
+    return std::tuple(d.tip, d.base_is_link, d.base_is_link ? d.base : 0, d.base);
+  };
+  std::sort(directed.begin(), directed.end(),
+            [&](const Directed& a, const Directed& b) { return key(a) < key(b); });
+
+  const auto first = posture.first_part();
+  const auto same = [](const Directed& a, const Directed& b) {
+    return a.tip == b.tip && a.base_is_link == b.base_is_link &&
+           (!a.base_is_link || a.base == b.base);
+  };
+  for (std::size_t from = 0, to = 0; from < directed.size(); from = to) {
+    while (to < directed.size() && same(directed[from], directed[to])) ++to;
+    const Directed& any = directed[from];
+    const Chain chain = chains.between(any.base, any.tip);
+    for (std::uint32_t tip = first[any.tip]; tip < first[any.tip + 1]; ++tip) {
+      const PosedPart& part = posture.parts()[tip];
+      Bundle bundle{.tip = tip,
+                    .object_tip = any.tip,
+                    .object_base = any.base,
+                    .base_is_link = any.base_is_link,
+                    .keeps_direction = part.keeps_direction && part.shape->bounded(),
+                    .chain = chain,
+                    .sum_of_reaches = chains.sum_of_reaches(chain),
+                    .first = static_cast<std::uint32_t>(pairs_.size())};
+      for (std::size_t i = from; i < to; ++i) {
+        for (std::uint32_t base = first[directed[i].base]; base < first[directed[i].base + 1];
+             ++base) {
+          pairs_.push_back(
+              {base, static_cast<std::uint32_t>(bundles_.size()), directed[i].swapped});
+        }
+      }
+      bundle.end = static_cast<std::uint32_t>(pairs_.size());
+      if (bundle.end > bundle.first) bundles_.push_back(bundle);
+    }
+  }
+  chains.finish();
+  tracking_.resize(pairs_.size());
+  tracked_in_.resize(pairs_.size(), 0);
+}
+
+}  // namespace clearance

@@ -1,0 +1,129 @@
+// The largest factor by which a motion may be timed faster so that S_p of zones holds.
+//
+// At an instant, S_p of a pair is a function of the robot's speed: factor x the speed of the
+// fastest point of the sphere around the link's part. The pair admits largest_speed() / that speed.
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/ask/motion_search.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/separation/protective_distance.hpp"
+
+namespace clearance {
+namespace {
+
+// Factors nearer to each other than this are not told apart.
+constexpr double kLeastFactor = 1e-4;
+
+// The largest factor that a pair at `distance`, m, admits, rounded down. `speed`: of the robot as
+// the motion is timed, m/s.
+double factor_of(const Separation& terms, double distance, double speed) noexcept {
+  const Approach approach{.human_speed = terms.human_speed};
+  const double limit = largest_speed(terms, approach, distance);
+  if (limit == kInfinity) return kInfinity;
+  if (limit > 0.0) return speed > 0.0 ? rounded_down(limit / speed) : kInfinity;
+  if (!(protective_distance(terms, approach, 0.0).sum <= distance)) return 0.0;
+  return speed > 0.0 ? 0.0 : kInfinity;
+}
+
+}  // namespace
+
+void MotionSearch::collect_separated() {
+  for (std::uint32_t z = 0; z < scene_.zones.size(); ++z) {
+    const Zone& zone = scene_.zones[z];
+    if (!zone.separation) continue;
+    for (std::size_t i = 0; i < zone.pairs.size(); ++i) {
+      const ObjectPair& objects = scene_.pairs[zone.pairs[i]];
+      const bool human_is_first = zone.separation->human_is_first[i] != 0;
+      const std::uint32_t robot = human_is_first ? objects.second : objects.first;
+      const double margins =
+          rounded_up(scene_.objects[objects.first].margin + scene_.objects[objects.second].margin);
+      for (std::uint32_t p = 0; p < pairs_.pairs().size(); ++p) {
+        std::uint32_t first = 0, second = 0;
+        note_pair(p, first, second);
+        const std::uint32_t tip = pairs_.bundles()[pairs_.pairs()[p].bundle].object_tip;
+        if (first == objects.first && second == objects.second && tip == robot)
+          separated_.push_back({z, p, margins});
+      }
+    }
+  }
+  scaled_.resize(separated_.size());
+}
+
+void MotionSearch::scale_time() noexcept {
+  TimeScaling& scaling = answer_->scaling;
+  std::size_t count = 0;
+  for (std::uint32_t i = 0; i < separated_.size(); ++i) {
+    const PartPair& pair = pairs_.pairs()[separated_[i].pair];
+    if (posture_.is_present(posture_.parts()[pair.base].object)) scaled_[count++] = i;
+  }
+  scaling.is_limited = count > 0;
+  if (count == 0) return;
+  for (std::uint32_t i = 0; i < posture_.trajectory().segments(); ++i) {
+    scale(posture_.trajectory().segment(i), count, 0.0);
+  }
+  scaling.factor = std::min(scaling.factor, scaling.factor_above);
+}
+
+// `known`: a lower bound of the factor in a longer stretch.
+void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known) noexcept {
+  TimeScaling& scaling = answer_->scaling;
+  if (count == 0) return;
+  if (is_exhausted()) {
+    answer_->within_work_limit = false;
+    scaling.factor = std::min(scaling.factor, known);
+    return;
+  }
+  const double middle = posture_.trajectory().middle(stretch);
+  place(stretch, middle);
+  const bool divides = can_divide(stretch, middle);
+  const auto enough = [&] {
+    const double above = scaling.factor_above;
+    if (above == kInfinity) return above;
+    return (1.0 - question_->scaling_tolerance) * above - kLeastFactor;
+  };
+  std::size_t kept = 0;
+  double least = kInfinity;
+  for (std::size_t i = 0; i < count; ++i) {
+    const SeparatedPair& separated = separated_[scaled_[i]];
+    const PartPair& of = pairs_.pairs()[separated.pair];
+    const Bundle& bundle = pairs_.bundles()[of.bundle];
+    const Separation& terms = *scene_.zones[separated.zone].separation;
+    const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
+    Pair at = pair_at(separated.pair, motion);
+    // S_p counts the person's path from the present instant on. So nothing is assumed before.
+    ObjectApproach approach = at.approach;
+    approach.until_end = approach.until_middle = approach.until_begin = 0.0;
+    const double radius = at.tip.sphere_in_world.radius;
+    const double fastest = largest_tip_speed(motion, radius);
+    const double apart = gap(at, separated.pair, kInfinity);
+    const double loss = rounded_up(motion.moved + motion.rounding + approach.moved);
+    double lower = factor_of(terms, rounded_down(apart - loss - separated.margins), fastest);
+    if (lower < enough()) {
+      const PairAtMiddle found = query(at, separated.pair);
+      const double over =
+          lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
+      lower = std::max(lower, factor_of(terms, rounded_down(over - separated.margins), fastest));
+      const double slowest = largest_tip_speed({.twist = motion.twist}, radius);
+      const double now = rounded_up(found.upper + motion.rounding - separated.margins);
+      const double upper = rounded_up(rounded_up(factor_of(terms, now, (1.0 - 0x1p-40) * slowest)));
+      if (upper < scaling.factor_above) {
+        scaling.factor_above = upper;
+        scaling.time = middle;
+        scaling.zone = separated.zone;
+        note_pair(separated.pair, scaling.first, scaling.second);
+      }
+    }
+    if (lower >= enough() || !divides) {
+      scaling.factor = std::min(scaling.factor, lower);
+      continue;
+    }
+    least = std::min(least, lower);
+    std::swap(scaled_[kept++], scaled_[i]);
+  }
+  const double inherited = std::max(known, least);
+  scale(Trajectory::before(stretch, middle), kept, inherited);
+  scale(Trajectory::after(stretch, middle), kept, inherited);
+}
+
+}  // namespace clearance

@@ -1,0 +1,84 @@
+// Oracles: the closed form of a distance over time, and the equations of S_p.
+#include <cmath>
+
+#include "tests/monitor/ask/scara_questions.hpp"
+
+namespace clearance {
+namespace {
+
+using test::answered, test::kPin, test::scara_beside, test::swing;
+
+double to_pin(double angle) {
+  return std::hypot(2.3 - 2.0 * std::cos(angle), 2.0 * std::sin(angle)) - 0.15;
+}
+
+TEST(Profile, CoversTheMotionAndHoldsAtAllInstants) {
+  Question question = swing(-1.0, 0.6);
+  question.profile = {.first = "post", .second = "finger", .tolerance = 0.01};
+  const Answer answer = answered(scara_beside(kPin), question);
+  ASSERT_FALSE(answer.profile.empty());
+  double end = 0.0;
+  for (const ProfilePoint& point : answer.profile) {
+    EXPECT_EQ(point.from, end);
+    end = point.to;
+    EXPECT_LE(point.upper - point.lower, 0.01);
+    for (int i = 0; i <= 8; ++i) {
+      const double t = point.from + 0.125 * i * (point.to - point.from);
+      EXPECT_LE(point.lower, to_pin(0.8 * t - 1.0) + 1e-12);
+      EXPECT_GE(point.upper, to_pin(0.8 * t - 1.0) - 1e-12);
+    }
+  }
+  EXPECT_EQ(end, 2.0);
+}
+
+TEST(Profile, OfAllPairsIsNeverAboveThatOfOne) {
+  const Scene scene = scara_beside(kPin);
+  Question question = swing(-1.0, 0.6);
+  question.profile = {.first = "", .second = "", .most_points = 40};
+  const Answer least = answered(scene, question);
+  EXPECT_EQ(least.profile.size(), 40u);
+  for (const ProfilePoint& point : least.profile) {
+    EXPECT_LE(point.lower, point.upper);
+    EXPECT_LE(point.lower, to_pin(0.4 * (point.from + point.to) - 1.0) + 1e-12);
+  }
+  question.profile = {.first = "post", .second = "nothing"};
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
+// The person walks at 0.1 m/s; the robot reacts in 0.5 s and stops in 0.5 s and 0.1 m.
+constexpr const char* kZone =
+    "zones:\n  - {name: people, between: [post, finger], enter_below: 0.01, leave_above: 0.02, "
+    "separation: {human: post, human_speed: 0.1, reaction_time_ms: 500, stopping_time_ms: 500, "
+    "stopping_distance: 0.1, intrusion_distance: 0}}\n";
+
+// The distance is least at the angle 0. The fastest point of the finger moves at 0.8 x 2.05 m/s.
+TEST(TimeScaling, IsTheLargestFactorThatKeepsTheProtectiveDistance) {
+  const Scene scene = scara_beside("max_speed: 2, sphere: {radius: 0.1}", kZone);
+  Question question = swing(-1.0, 0.6);
+  question.others = OthersMove::kNot;
+  question.poses = {{.object = "post", .world_from_object = {.position = {3.0, 0.0, 0.0}}}};
+  question.time_scaling = true;
+  question.scaling_tolerance = 1e-4;
+  const Answer answer = answered(scene, question);
+  const double admitted = 0.85 - 0.1 * (0.5 + 0.5) - 0.1;  // m, for the path while it reacts
+  const double truth = admitted / 0.5 / (0.8 * 2.05);
+  EXPECT_TRUE(answer.scaling.is_limited);
+  EXPECT_LE(answer.scaling.factor, truth + 1e-9);
+  EXPECT_GE(answer.scaling.factor, truth * (1.0 - 1e-3));
+  EXPECT_GE(answer.scaling.factor_above, truth - 1e-9);
+  EXPECT_NEAR(answer.scaling.time, 1.25, 0.1);
+  // Too near for a robot that stands.
+  question.poses[0].world_from_object.position = {2.3, 0.0, 0.0};
+  EXPECT_EQ(answered(scene, question).scaling.factor, 0.0);
+}
+
+TEST(TimeScaling, HasNoLimitWithoutSuchAZone) {
+  Question question = swing(-1.0, 0.6);
+  question.time_scaling = true;
+  const Answer answer = answered(scara_beside(kPin), question);
+  EXPECT_FALSE(answer.scaling.is_limited);
+  EXPECT_EQ(answer.scaling.factor, kInfinity);
+}
+
+}  // namespace
+}  // namespace clearance
