@@ -5,6 +5,8 @@
 #include <cstring>
 #include <limits>
 
+#include "monitor/clouds/revision.hpp"
+
 namespace clearance {
 namespace {
 
@@ -21,18 +23,24 @@ struct Tiling {
   static std::uint32_t row_bits(std::size_t level) noexcept {
     return static_cast<std::uint32_t>(1 + level / 2 * 3 + level % 2 * 2);
   }
-};
-
-// The place of tile `i` of level 0.
-void place_of(std::size_t i, std::uint32_t& column, std::uint32_t& row) noexcept {
-  column = row = 0;
-  for (std::size_t level = 0; i != 0; ++level, i >>= 3) {
-    const auto place = static_cast<std::uint32_t>(i & 7);
-    const std::uint32_t wide = level % 2 == 0 ? 1 : 2;  // bits for columns among the three
-    column += (place & ((1U << wide) - 1)) << Tiling::column_bits(level);
-    row += (place >> wide) << Tiling::row_bits(level);
+  // The same of a child. Pixels are the children of level 0.
+  static std::uint32_t child_column_bits(std::size_t level) noexcept {
+    return level == 0 ? 0 : column_bits(level - 1);
   }
-}
+  static std::uint32_t child_row_bits(std::size_t level) noexcept {
+    return level == 0 ? 0 : row_bits(level - 1);
+  }
+  // How many of the three bits of a child's place choose its column.
+  static std::uint32_t wide(std::size_t level) noexcept {
+    return column_bits(level) - child_column_bits(level);
+  }
+  static std::size_t columns(std::size_t level, std::uint32_t width) noexcept {
+    return ((width - 1) >> column_bits(level)) + 1;
+  }
+  static std::size_t rows(std::size_t level, std::uint32_t height) noexcept {
+    return ((height - 1) >> row_bits(level)) + 1;
+  }
+};
 
 std::size_t levels_for(std::uint32_t width, std::uint32_t height) noexcept {
   std::size_t level = 0;
@@ -47,10 +55,9 @@ std::size_t levels_for(std::uint32_t width, std::uint32_t height) noexcept {
 std::size_t tiles_for(std::uint32_t width, std::uint32_t height, std::size_t levels) noexcept {
   if (levels == 1) return 1;
   const std::size_t below = levels - 2;
-  const std::uint32_t wide = below % 2 == 0 ? 1 : 2;
   const std::size_t column = (width - 1) >> Tiling::column_bits(below);
   const std::size_t row = (height - 1) >> Tiling::row_bits(below);
-  return ((row << wide | column) + 1) << 3 * below;
+  return ((row << Tiling::wide(levels - 1) | column) + 1) << 3 * below;
 }
 
 float rounded_down(double x) noexcept {
@@ -103,11 +110,22 @@ DepthCloud::DepthCloud(std::uint32_t most_columns, std::uint32_t most_rows)
   column_edges_.resize(most_columns_ + 1);
   row_edges_.resize(most_rows_ + 1);
   const std::size_t levels = levels_for(most_columns_, most_rows_);
-  std::size_t nodes = tiles_for(most_columns_, most_rows_, levels);
+  std::size_t columns = 0, rows = 0;
+  for (std::size_t level = 0; level < levels; ++level) {
+    columns += Tiling::columns(level, most_columns_);
+    rows += Tiling::rows(level, most_rows_);
+  }
+  column_lanes_.resize(columns);
+  row_lanes_.resize(rows);
+  std::size_t nodes = tiles_for(most_columns_, most_rows_, levels), all = 0, groups = 0;
   blocks_.resize(nodes);
-  std::size_t all = 1;  // the last level
-  for (; nodes > 1; nodes = (nodes + kFanOut - 1) / kFanOut) all += nodes;
-  nodes_.resize(all);
+  for (std::size_t level = 0; level < levels; ++level) {
+    all += nodes;
+    nodes = (nodes + kFanOut - 1) / kFanOut;
+    groups += nodes;
+  }
+  places_.resize(all);
+  tiles_.resize(groups);
 }
 
 DepthBuild DepthCloud::judge(const PinholeCamera& camera, const DepthImage& image,
@@ -142,6 +160,74 @@ void DepthCloud::set_camera(const PinholeCamera& camera) noexcept {
   for (std::uint32_t v = 0; v <= camera.height; ++v) {
     row_edges_[v] = (v - 0.5 - camera.cy) / camera.fy;
   }
+  set_tiling();
+  set_edge_lanes();
+}
+
+// The places of all tiles of an image of this size.
+void DepthCloud::set_tiling() noexcept {
+  tree_levels_ = levels_for(camera_.width, camera_.height);
+  std::size_t first = 0, group = 0;
+  std::size_t count = tiles_for(camera_.width, camera_.height, tree_levels_);
+  for (std::size_t level = 0; level < tree_levels_; ++level) {
+    count_[level] = count;
+    first_[level] = first;
+    first_tiles_[level] = group;
+    first += count;
+    count = (count + kFanOut - 1) / kFanOut;
+    group += count;
+  }
+  places_[first_[tree_levels_ - 1]] = {0, 0};
+  for (std::size_t level = tree_levels_ - 1; level > 0; --level) {
+    const std::uint32_t wide = Tiling::wide(level);
+    for (std::size_t i = 0; i < count_[level - 1]; ++i) {
+      const Place& parent = places_[first_[level] + i / kFanOut];
+      const auto lane = static_cast<std::uint32_t>(i % kFanOut);
+      const std::uint32_t column = (lane & ((1U << wide) - 1)) << Tiling::child_column_bits(level);
+      const std::uint32_t row = (lane >> wide) << Tiling::child_row_bits(level);
+      // A tile outside of the image stays at its edge, and is empty.
+      places_[first_[level - 1] + i] = {
+          static_cast<std::uint16_t>(std::min(parent.column + column, camera_.width)),
+          static_cast<std::uint16_t>(std::min(parent.row + row, camera_.height))};
+    }
+  }
+}
+
+void DepthCloud::set_edge_lanes() noexcept {
+  std::size_t columns = 0, rows = 0;
+  for (std::size_t level = 0; level < tree_levels_; ++level) {
+    first_columns_[level] = columns;
+    first_rows_[level] = rows;
+    const std::uint32_t wide = Tiling::wide(level);
+    // Lane `lane` of the parent at `place`: its child's edges, within the image.
+    const auto set = [](EdgeLanes& edges, std::size_t lane, const std::vector<double>& of,
+                        std::size_t place, std::uint32_t bits, std::uint32_t end) {
+      edges.low[lane] = of[std::min<std::size_t>(place << bits, end)];
+      edges.high[lane] = of[std::min<std::size_t>((place + 1) << bits, end)];
+    };
+    for (std::size_t i = 0; i < Tiling::columns(level, camera_.width); ++i, ++columns) {
+      for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+        set(column_lanes_[columns], lane, column_edges_, (i << wide) + (lane & ((1U << wide) - 1)),
+            Tiling::child_column_bits(level), camera_.width);
+      }
+    }
+    for (std::size_t i = 0; i < Tiling::rows(level, camera_.height); ++i, ++rows) {
+      for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+        set(row_lanes_[rows], lane, row_edges_, (i << (3 - wide)) + (lane >> wide),
+            Tiling::child_row_bits(level), camera_.height);
+      }
+    }
+  }
+}
+
+DepthCloud::Lanes DepthCloud::lanes(std::size_t level, std::size_t i) const noexcept {
+  const Place& place = places_[first_[level] + i];
+  const EdgeLanes& x =
+      column_lanes_[first_columns_[level] + (place.column >> Tiling::column_bits(level))];
+  const EdgeLanes& y = row_lanes_[first_rows_[level] + (place.row >> Tiling::row_bits(level))];
+  const Block& depths = level == 0 ? blocks_[i] : tiles_[first_tiles_[level - 1] + i];
+  return {x.low.data(),  x.high.data(),     y.low.data(),
+          y.high.data(), depths.low.data(), depths.high.data()};
 }
 
 DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& image,
@@ -155,7 +241,8 @@ DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& imag
     fill_blocks<Metres>(image, error, range);
   }
   add_levels();
-  const Node& all = nodes_[first_[levels_ - 1]];
+  revision_ = next_revision();
+  const Node all = node(levels_ - 1, 0);
   extent_ = 0.0;
   if (is_empty(all)) {
     levels_ = 0;
@@ -171,21 +258,14 @@ DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& imag
 template <class Pixel>
 void DepthCloud::fill_blocks(const DepthImage& image, const DepthError& error,
                              const DepthRange& range) noexcept {
-  levels_ = levels_for(image.width, image.height);
-  std::size_t first = 0, count = tiles_for(image.width, image.height, levels_);
-  for (std::size_t level = 0; level < levels_; ++level) {
-    count_[level] = count;
-    first_[level] = first;
-    first += count;
-    count = (count + kFanOut - 1) / kFanOut;
-  }
+  levels_ = tree_levels_;
   size_ = 0;
   for (std::size_t b = 0; b < count_[0]; ++b) {
-    Node& node = nodes_[b];
-    std::uint32_t column = 0, row = 0;
-    place_of(b, column, row);
-    node = {kEmptyLow, -kEmptyLow, static_cast<std::uint16_t>(column),
-            static_cast<std::uint16_t>(row)};
+    Block& tile = tiles_[b / kFanOut];
+    float &least = tile.low[b % kFanOut], &greatest = tile.high[b % kFanOut];
+    least = kEmptyLow;
+    greatest = -kEmptyLow;
+    const std::uint32_t column = places_[b].column, row = places_[b].row;
     if (column >= image.width || row >= image.height) continue;
     Block& block = blocks_[b];
     block.low.fill(kEmptyLow);
@@ -203,8 +283,8 @@ void DepthCloud::fill_blocks(const DepthImage& image, const DepthError& error,
         const std::size_t lane = v * 4 + u;
         block.low[lane] = rounded_down(z - e);
         block.high[lane] = rounded_up(z + e);
-        node.low = std::min(node.low, block.low[lane]);
-        node.high = std::max(node.high, block.high[lane]);
+        least = std::min(least, block.low[lane]);
+        greatest = std::max(greatest, block.high[lane]);
         ++size_;
       }
     }
@@ -213,16 +293,20 @@ void DepthCloud::fill_blocks(const DepthImage& image, const DepthError& error,
 }
 
 void DepthCloud::add_levels() noexcept {
-  for (std::size_t level = 1; level < levels_; ++level) {
-    for (std::size_t i = 0; i < count_[level]; ++i) {
-      const Node* const children = &nodes_[first_[level - 1] + i * kFanOut];
-      Node node = children[0];
-      const std::size_t children_here = std::min(kFanOut, count_[level - 1] - i * kFanOut);
-      for (std::size_t k = 1; k < children_here; ++k) {
-        node.low = std::min(node.low, children[k].low);
-        node.high = std::max(node.high, children[k].high);
-      }
-      nodes_[first_[level] + i] = node;
+  for (std::size_t level = 0; level < levels_; ++level) {
+    // Lanes without a tile are empty.
+    Block* const tiles = &tiles_[first_tiles_[level]];
+    const std::size_t groups = (count_[level] + kFanOut - 1) / kFanOut;
+    for (std::size_t lane = count_[level]; lane < groups * kFanOut; ++lane) {
+      tiles[lane / kFanOut].low[lane % kFanOut] = kEmptyLow;
+      tiles[lane / kFanOut].high[lane % kFanOut] = -kEmptyLow;
+    }
+    if (level + 1 == levels_) break;
+    Block* const above = &tiles_[first_tiles_[level + 1]];
+    for (std::size_t i = 0; i < groups; ++i) {
+      const Block& of = tiles[i];
+      above[i / kFanOut].low[i % kFanOut] = *std::min_element(of.low.begin(), of.low.end());
+      above[i / kFanOut].high[i % kFanOut] = *std::max_element(of.high.begin(), of.high.end());
     }
   }
 }
@@ -237,16 +321,17 @@ void DepthCloud::remove(std::size_t block, std::size_t lane) noexcept {
 void DepthCloud::refit() noexcept {
   if (levels_ == 0) return;
   for (std::size_t b = 0; b < count_[0]; ++b) {
-    Node& node = nodes_[b];
-    if (is_empty(node)) continue;
-    node.low = *std::min_element(blocks_[b].low.begin(), blocks_[b].low.end());
-    node.high = *std::max_element(blocks_[b].high.begin(), blocks_[b].high.end());
+    Block& tile = tiles_[b / kFanOut];
+    float &least = tile.low[b % kFanOut], &greatest = tile.high[b % kFanOut];
+    if (least > greatest) continue;
+    least = *std::min_element(blocks_[b].low.begin(), blocks_[b].low.end());
+    greatest = *std::max_element(blocks_[b].high.begin(), blocks_[b].high.end());
   }
   add_levels();
 }
 
 DepthCloud::Slab DepthCloud::slab(std::size_t level, std::size_t i) const noexcept {
-  const Node& n = node(level, i);
+  const Node n = node(level, i);
   const std::uint32_t right =
       std::min(n.column + (1U << Tiling::column_bits(level)), camera_.width);
   const std::uint32_t below = std::min(n.row + (1U << Tiling::row_bits(level)), camera_.height);
@@ -259,14 +344,14 @@ DepthCloud::Slab DepthCloud::slab(std::size_t level, std::size_t i) const noexce
 }
 
 DepthCloud::Slab DepthCloud::pixel_slab(std::size_t block, std::size_t lane) const noexcept {
-  const Node& n = nodes_[block];
+  const Place& n = places_[block];
   const std::size_t u = n.column + lane % 4, v = n.row + lane / 4;
   return {column_edges_[u],  column_edges_[u + 1],     row_edges_[v],
           row_edges_[v + 1], blocks_[block].low[lane], blocks_[block].high[lane]};
 }
 
 std::uint32_t DepthCloud::source(std::size_t block, std::size_t lane) const noexcept {
-  const Node& n = nodes_[block];
+  const Place& n = places_[block];
   return static_cast<std::uint32_t>((n.row + lane / 4) * camera_.width + n.column + lane % 4);
 }
 

@@ -73,9 +73,15 @@ class DepthCloud {
     float low = 0.0F, high = 0.0F;  // m, rounded outward
     std::uint16_t column = 0, row = 0;
   };
-  // The slabs of a tile of four by two pixels, row by row. Missing pixels have low > high.
+  // The depths of the eight pixels of a tile, row by row, or of the eight tiles in a larger one. An
+  // empty lane has low > high.
   struct Block {
     std::array<float, kFanOut> low{}, high{};  // m, rounded outward
+  };
+  // The eight children of a tile as vector lanes: between these rays and depths.
+  struct Lanes {
+    const double *x0, *x1, *y0, *y1;
+    const float *low, *high;
   };
   // A slab between rays: x from x0 z to x1 z, y likewise, z from low to high.
   struct Slab {
@@ -86,6 +92,17 @@ class DepthCloud {
       const double at_unit_depth =
           std::min(n.x() * x0, n.x() * x1) + std::min(n.y() * y0, n.y() * y1) + n.z();
       return std::min(low * at_unit_depth, high * at_unit_depth);
+    }
+    // The vertex with the least n.p, as a corner: bit k is set on the upper side of axis k.
+    [[nodiscard]] unsigned corner_along(const Vec3& n) const noexcept {
+      const unsigned x = n.x() * x1 < n.x() * x0 ? 1U : 0U, y = n.y() * y1 < n.y() * y0 ? 2U : 0U;
+      const double at_unit_depth =
+          std::min(n.x() * x0, n.x() * x1) + std::min(n.y() * y0, n.y() * y1) + n.z();
+      return x | y | (at_unit_depth < 0.0 ? 4U : 0U);
+    }
+    [[nodiscard]] Vec3 vertex(unsigned corner) const noexcept {
+      const double z = (corner & 4U) != 0 ? high : low;
+      return {((corner & 1U) != 0 ? x1 : x0) * z, ((corner & 2U) != 0 ? y1 : y0) * z, z};
     }
     [[nodiscard]] Vec3 middle() const noexcept {
       const double z = 0.5 * (low + high);
@@ -111,15 +128,21 @@ class DepthCloud {
   [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // or out of range
   // No vertex is farther from the origin of the frame, m.
   [[nodiscard]] double extent() const noexcept { return extent_; }
+  // Another number after each build, of any cloud. Copies of a cloud share it.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
   [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : count_[0]; }
   [[nodiscard]] const Block& block(std::size_t i) const noexcept { return blocks_[i]; }
   [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
   [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return count_[level]; }
-  [[nodiscard]] const Node& node(std::size_t level, std::size_t i) const noexcept {
-    return nodes_[first_[level] + i];
+  [[nodiscard]] Node node(std::size_t level, std::size_t i) const noexcept {
+    const Block& group = tiles_[first_tiles_[level] + i / kFanOut];
+    const Place& place = places_[first_[level] + i];
+    return {group.low[i % kFanOut], group.high[i % kFanOut], place.column, place.row};
   }
   [[nodiscard]] static bool is_empty(const Node& node) noexcept { return node.low > node.high; }
+  // The children of a tile: pixels if `level` is 0.
+  [[nodiscard]] Lanes lanes(std::size_t level, std::size_t i) const noexcept;
   // The slabs of a tile and of a pixel. Neither may be empty.
   [[nodiscard]] Slab slab(std::size_t level, std::size_t i) const noexcept;
   [[nodiscard]] Slab pixel_slab(std::size_t block, std::size_t lane) const noexcept;
@@ -129,9 +152,19 @@ class DepthCloud {
  private:
   static constexpr std::size_t kMostLevels = 12;
 
+  struct Place {
+    std::uint16_t column = 0, row = 0;
+  };
+  // The edges of eight children, as vector lanes.
+  struct EdgeLanes {
+    std::array<double, kFanOut> low{}, high{};
+  };
+
   [[nodiscard]] DepthBuild judge(const PinholeCamera& camera, const DepthImage& image,
                                  const DepthError& error, const DepthRange& range) const noexcept;
   void set_camera(const PinholeCamera& camera) noexcept;
+  void set_tiling() noexcept;
+  void set_edge_lanes() noexcept;
   template <class Pixel>
   void fill_blocks(const DepthImage& image, const DepthError& error,
                    const DepthRange& range) noexcept;
@@ -140,10 +173,15 @@ class DepthCloud {
   std::uint32_t most_columns_, most_rows_;
   PinholeCamera camera_;
   std::vector<double> column_edges_, row_edges_;  // (u - 1/2 - cx) / fx for u = 0 .. width
-  std::vector<Block> blocks_;
-  std::vector<Node> nodes_;
-  std::array<std::size_t, kMostLevels> first_{}, count_{};
-  std::size_t levels_ = 0, size_ = 0, missing_ = 0;
+  std::vector<Block> blocks_, tiles_;
+  std::vector<Place> places_;
+  std::vector<EdgeLanes> column_lanes_, row_lanes_;
+  // By level: the first place, the first group of tiles, the first lanes of a column and of a row.
+  std::array<std::size_t, kMostLevels> first_{}, first_tiles_{}, first_columns_{}, first_rows_{};
+  std::array<std::size_t, kMostLevels> count_{};
+  std::size_t tree_levels_ = 0, levels_ = 0;  // of this size of image; 0 if no pixel has a slab
+  std::size_t size_ = 0, missing_ = 0;
+  std::uint64_t revision_ = 0;
   double extent_ = 0.0;
 };
 

@@ -1,9 +1,11 @@
 #include "monitor/clouds/nearest_element.hpp"
 
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <utility>
+
+#include "monitor/clouds/elements.hpp"
 
 namespace clearance {
 namespace {
@@ -14,132 +16,14 @@ constexpr double kGap = 4e-10;
 // The sum of all roundings of a plane's bound, relative to the coordinates in it. The counts are
 // below 2^5 of 2^-53 each.
 constexpr double kPlaneError = 0x1p-46;
-
-double outward(double x, double sign) noexcept { return x + sign * 0x1p-52 * std::abs(x); }
-
-// A query towards the middle of a box costs about as much as the bounds of this many children.
-constexpr std::size_t kFewChildren = 4;
-
-using Lanes = std::array<double, 8>;
-static_assert(PointCloud::kFanOut == 8 && DepthCloud::kFanOut == 8);
-
-// The elements of a PointCloud, as the search reads them. `least_along` is the minimum of n.p over
-// an element, or over a box of them.
-class Balls {
- public:
-  explicit Balls(const PointCloud& cloud) noexcept : cloud_(cloud) {}
-
-  [[nodiscard]] const PointCloud& cloud() const noexcept { return cloud_; }
-  [[nodiscard]] const ConvexBody& origin() const noexcept { return cloud_.origin(); }
-  [[nodiscard]] double least_along(std::size_t level, std::size_t i, const Vec3& n) const noexcept {
-    const PointCloud::Node& node = cloud_.node(level, i);
-    if (PointCloud::is_empty(node)) return kInfinity;
-    double least = -node.radius;
-    for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::size_t>(k);
-      least += std::min(n[k] * node.low[axis], n[k] * node.high[axis]);
-    }
-    return least;
-  }
-  [[nodiscard]] Lanes lanes_along(std::size_t b, const Vec3& n) const noexcept {
-    const PointCloud::Block& block = cloud_.block(b);
-    Lanes least;
-    for (std::size_t k = 0; k < least.size(); ++k) {
-      least[k] = n.x() * block.x[k] + n.y() * block.y[k] + n.z() * block.z[k] - block.radius[k];
-    }
-    return least;
-  }
-  [[nodiscard]] Vec3 middle(std::size_t level, std::size_t i) const noexcept {
-    const PointCloud::Node& node = cloud_.node(level, i);
-    Vec3 middle;
-    for (int k = 0; k < 3; ++k) {
-      const auto axis = static_cast<std::size_t>(k);
-      middle[k] = 0.5 * (double{node.low[axis]} + double{node.high[axis]});
-    }
-    return middle;
-  }
-  [[nodiscard]] std::uint32_t source(std::size_t b, std::size_t lane) const noexcept {
-    return cloud_.block(b).source[lane];
-  }
-  // A ball's signed distance is that of its centre less its radius.
-  // The bound of a lane without a plane: none, or infinite for a point that was left out.
-  [[nodiscard]] Lanes present(std::size_t b) const noexcept {
-    Lanes bound;
-    for (std::size_t k = 0; k < bound.size(); ++k) {
-      bound[k] = cloud_.block(b).is_present(k) ? -kInfinity : kInfinity;
-    }
-    return bound;
-  }
-  template <class Search>
-  [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane,
-                                        Search& search) const noexcept {
-    const PointCloud::Block& block = cloud_.block(b);
-    const double radius = block.radius[lane];
-    DistanceResult r = search.query({block.x[lane], block.y[lane], block.z[lane]});
-    r.lower = outward(r.lower - radius, -1.0);
-    r.upper = outward(r.upper - radius, 1.0);
-    r.point_on_b -= radius * r.normal;
-    return r;
-  }
-
- private:
-  const PointCloud& cloud_;
-};
-
-// The elements of a DepthCloud.
-class Slabs {
- public:
-  Slabs(const DepthCloud& cloud, SlabBody& body) noexcept : cloud_(cloud), body_(body) {}
-
-  [[nodiscard]] const DepthCloud& cloud() const noexcept { return cloud_; }
-  [[nodiscard]] const ConvexBody& origin() const noexcept { return body_.origin(); }
-  [[nodiscard]] double least_along(std::size_t level, std::size_t i, const Vec3& n) const noexcept {
-    if (DepthCloud::is_empty(cloud_.node(level, i))) return kInfinity;
-    return cloud_.slab(level, i).least_along(n);
-  }
-  [[nodiscard]] Lanes lanes_along(std::size_t b, const Vec3& n) const noexcept {
-    const DepthCloud::Block& block = cloud_.block(b);
-    Lanes least;
-    least.fill(kInfinity);
-    for (std::size_t k = 0; k < least.size(); ++k) {
-      if (block.low[k] <= block.high[k]) least[k] = cloud_.pixel_slab(b, k).least_along(n);
-    }
-    return least;
-  }
-  [[nodiscard]] Vec3 middle(std::size_t level, std::size_t i) const noexcept {
-    return cloud_.slab(level, i).middle();
-  }
-  [[nodiscard]] std::uint32_t source(std::size_t b, std::size_t lane) const noexcept {
-    return cloud_.source(b, lane);
-  }
-  // The bound of a lane without a plane: none, or infinite for a pixel that is missing or was left
-  // out.
-  [[nodiscard]] Lanes present(std::size_t b) const noexcept {
-    const DepthCloud::Block& block = cloud_.block(b);
-    Lanes bound;
-    for (std::size_t k = 0; k < bound.size(); ++k) {
-      bound[k] = block.low[k] <= block.high[k] ? -kInfinity : kInfinity;
-    }
-    return bound;
-  }
-  template <class Search>
-  [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane,
-                                        Search& search) const noexcept {
-    const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
-    return search.query(body_.of(slab), slab);
-  }
-
- private:
-  const DepthCloud& cloud_;
-  SlabBody& body_;
-};
-
-// A half-space that contains the part, in the frame of the cloud: n.x <= offset. A point p of the
-// cloud has a signed distance of at least n.p - offset, inside the part as well.
-struct Plane {
-  Vec3 normal = Vec3::Zero();
-  double offset = 0.0;
-};
+// The origin of the part's frame is the pivot of its motion until it is this far away, m.
+constexpr double kPivotMoves = 0.25;
+// Groups are removed if more than this many are stored, and if a plane of their parent leaves them
+// out by this, m.
+constexpr std::uint32_t kManyGroups = CloudCut::kSlots / 2;
+constexpr double kSpareToRemove = 2e-3;
+// Planes towards more children of a group than this cost more queries than they save.
+constexpr int kAsksOfAGroup = 2;
 
 template <class Elements>
 class Search {
@@ -150,191 +34,309 @@ class Search {
         elements_(elements),
         cloud_(elements.cloud()),
         pose_(part_from_cloud),
-        tracking_(tracking) {
-    const auto& cloud = cloud_;
-    const double coordinates = cloud.extent() + pose_.translation.norm() + part.bounding_radius;
-    moved_ = pose_.translation_error + pose_.rotation_error * cloud.extent() +
-             0x1p-49 * (cloud.extent() + pose_.translation.norm());
+        tracking_(tracking),
+        cut_(tracking.cut),
+        bounds_{part_from_cloud} {
+    const double coordinates = cloud_.extent() + pose_.translation.norm() + part.bounding_radius;
+    moved_ = pose_.translation_error + pose_.rotation_error * cloud_.extent() +
+             0x1p-49 * (cloud_.extent() + pose_.translation.norm());
     error_ = kPlaneError * coordinates + 2.0 * moved_;
-    take_planes();
+    bounds_.error = error_;
   }
 
   [[nodiscard]] NearestElement run() noexcept {
     best_.answer = CloudAnswer::kNearest;
     if (!std::isfinite(error_)) return unknown();
-    const std::size_t hint = std::min<std::size_t>(tracking_.block, cloud_.blocks() - 1);
-    features_ = tracking_.features;
-    evaluate_block(hint);
-    visited_ = hint;
-    descend(cloud_.levels() - 1, 0);
-    tracking_.known = static_cast<std::uint32_t>(known_);
+    take_cut();
+    evaluate_hint();
+    witness_ = in_cloud(part_.interior - pose_.translation);
+    if (cut_.count == 0) {
+      Group& root = cut_.groups[take_slot()];
+      root = {0, CloudCut::kNoSlot, static_cast<std::uint8_t>(cloud_.levels() - 1), 0, 0, true};
+      cut_.planes[0].fill({});
+      invalidate(0);
+    }
+    // Slots that are added meanwhile are processed where they are added.
+    const std::uint32_t end = cut_.count;
+    for (std::uint32_t slot = 0; slot < end; ++slot) {
+      const double bound =
+          cut_.carried[slot] - cut_.travelled - cut_.turned * cut_.farthest[slot] - error_;
+      if (!leaves_out(bound)) process(slot);
+    }
+    if (cut_.in_use > kManyGroups) remove_a_group();
     if (bad_pose_) return unknown();
     best_.lower = std::min(best_.lower, left_out_);
+    tracking_.normal = best_.normal;
     return best_;
   }
 
   // The part and the point p of the cloud's frame.
-  DistanceResult query(const Vec3& p, TrackingState& features) noexcept {
+  DistanceResult query(const Vec3& p, const DistanceOptions& options) noexcept {
     RelativePose at;
     at.translation = pose_.rotation * p + pose_.translation;
     at.translation_error = moved_;
     ++best_.queries;
-    const DistanceResult r = distance(part_, elements_.origin(), at, features);
-    keep_plane(r, [&](const Vec3& n) { return n.dot(p); });
+    const DistanceResult r = distance(part_, elements_.origin(), at, tracking_.features, options);
+    keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
   }
-  // The part and an element: a point, or a slab, whose body is in the cloud's frame.
-  DistanceResult query(const Vec3& p) noexcept { return query(p, features_); }
+  // The part and a slab, whose body is in the cloud's frame.
   DistanceResult query(const ConvexBody& body, const DepthCloud::Slab& slab) noexcept {
     ++best_.queries;
-    const DistanceResult r = distance(part_, body, pose_, features_);
-    keep_plane(r, [&](const Vec3& n) { return slab.least_along(n); });
+    const DistanceResult r = distance(part_, body, pose_, tracking_.body_features);
+    keep_plane(r, [&] {
+      return slab.least_along(in_cloud(r.normal)) + r.normal.dot(pose_.translation) + error_;
+    });
     return r;
   }
 
- private:
-  // The planes of former queries, in the frame of the cloud.
-  void take_planes() noexcept {
-    if (tracking_.part != &part_ || tracking_.known > CloudTracking::kPlanes ||
-        tracking_.next >= CloudTracking::kPlanes) {
-      tracking_.part = &part_;
-      tracking_.known = tracking_.next = 0;
-    }
-    known_ = tracking_.known;
-    for (std::size_t k = 0; k < known_; ++k) {
-      const PartPlane& plane = tracking_.planes[k];
-      planes_[k] = {pose_.rotation.transpose() * plane.normal,
-                    plane.offset - plane.normal.dot(pose_.translation) + error_};
-    }
+  [[nodiscard]] Vec3 in_cloud(const Vec3& direction) const noexcept {
+    return pose_.rotation.transpose() * direction;
   }
-  [[nodiscard]] NearestElement unknown() const noexcept {
+  // The bound of a body by the plane of the last query, which had one. `least`: its least n.p.
+  [[nodiscard]] double bound_by_newest(double least) const noexcept {
+    return least - (newest_.offset - newest_.normal.dot(pose_.translation)) - error_;
+  }
+  [[nodiscard]] bool is_left_out(double lower) const noexcept {
+    return lower >= best_.lower - kGap;
+  }
+
+ private:
+  using Group = CloudCut::Group;
+
+  [[nodiscard]] NearestElement unknown() noexcept {
+    tracking_.part = nullptr;
     NearestElement none;
     none.answer = CloudAnswer::kBadPose;
     none.lower = -kInfinity;
     return none;
   }
 
-  // Keeps the plane that separates the part from a body whose least n.p is `least(n)`.
+  // Keeps the plane of a query. The normal proves `lower`, so the part's support value is at most
+  // the body's least n.p, which `least` returns, less `lower`. The gap of the bounds is added,
+  // because the normal of an overlap is known to that only.
   template <class Least>
   void keep_plane(const DistanceResult& r, const Least& least) noexcept {
     if (r.status == DistanceStatus::kBadPose) bad_pose_ = true;
-    if (r.status != DistanceStatus::kConverged && r.status != DistanceStatus::kOverlapping) return;
-    // The normal proves `lower`, so the part's support value is at most the body's least n.p less
-    // `lower`. The gap of the bounds is added, because the normal of an overlap is known to that
-    // only.
-    const Vec3 n = pose_.rotation.transpose() * r.normal;
-    const double offset = least(n) - r.lower + (r.upper - r.lower) + error_;
-    const auto next = tracking_.next;
-    planes_[next] = {n, offset};
-    tracking_.planes[next] = {r.normal, offset + r.normal.dot(pose_.translation) + error_};
-    tracking_.next = (next + 1) % CloudTracking::kPlanes;
-    known_ = std::max(known_, std::size_t{next} + 1);
-  }
-
-  // A lower bound for every element below the node: of the first plane that leaves it out, or of
-  // all planes. The plane that left out the last node mostly leaves out the next one as well.
-  [[nodiscard]] double bound(std::size_t level, std::size_t i) noexcept {
-    const double enough = best_.lower - kGap + error_;
-    double most = -kInfinity;
-    for (std::size_t k = 0; k < known_; ++k) {
-      const std::size_t at = last_ + k < known_ ? last_ + k : last_ + k - known_;
-      const Plane& plane = planes_[at];
-      most = std::max(most, elements_.least_along(level, i, plane.normal) - plane.offset);
-      if (most >= enough) {
-        last_ = at;
-        break;
-      }
-    }
-    return most - error_;
+    has_newest_ =
+        r.status == DistanceStatus::kConverged || r.status == DistanceStatus::kOverlapping;
+    if (!has_newest_) return;
+    newest_ = {r.normal, least() - r.lower + (r.upper - r.lower) + error_};
+    witness_ = in_cloud(r.point_on_a - pose_.translation);
   }
 
   // Is every element with this lower bound left out? Then its bound counts for the result.
   bool leaves_out(double lower) noexcept {
-    if (!(lower >= best_.lower - kGap)) return false;
+    if (!is_left_out(lower)) return false;
     left_out_ = std::min(left_out_, lower);
     return true;
   }
 
-  void evaluate_block(std::size_t b) noexcept {
-    Lanes lower = elements_.present(b);
-    const auto add_plane = [&](const Plane& plane) {
-      const Lanes along = elements_.lanes_along(b, plane.normal);
-      for (std::size_t k = 0; k < along.size(); ++k) {
-        lower[k] = std::max(lower[k], along[k] - plane.offset - error_);
+  // The cut of the last query, if it is one of this tree, and the motion since then.
+  void take_cut() noexcept {
+    if (tracking_.part != &part_ || cut_.levels != cloud_.levels() ||
+        cut_.count > CloudCut::kSlots) {
+      tracking_.part = &part_;
+      cut_.levels = cloud_.levels();
+      cut_.count = cut_.in_use = 0;
+      cut_.free = CloudCut::kNoSlot;
+      cut_.revision = 0;
+    }
+    const Vec3 origin = -in_cloud(pose_.translation);
+    if (cut_.revision != cloud_.revision() || !((origin - cut_.pivot).norm() <= kPivotMoves)) {
+      if (cut_.revision != cloud_.revision()) remove_empty_groups();
+      cut_.revision = cloud_.revision();
+      cut_.travelled = cut_.turned = 0.0;
+      cut_.pivot = origin;
+      for (std::uint32_t slot = 0; slot < cut_.count; ++slot) {
+        if (cut_.groups[slot].stored) invalidate(slot);
       }
-    };
-    for (std::size_t i = 0; i < known_; ++i) add_plane(planes_[i]);
-    // The nearest element of the newest plane first, which makes the best bound for the others.
-    std::array<bool, PointCloud::kFanOut> done{};
-    for (std::size_t round = 0; round < done.size(); ++round) {
-      std::size_t next = done.size();
-      for (std::size_t k = 0; k < done.size(); ++k) {
-        if (done[k] || (next < done.size() && lower[k] >= lower[next])) continue;
-        next = k;
-      }
-      if (leaves_out(lower[next])) return;  // and with it all others, whose bounds are no smaller
-      done[next] = true;
-      const std::uint32_t place = tracking_.next;
-      evaluate(b, next);
-      if (tracking_.next != place) add_plane(planes_[place]);
+    } else {
+      const Mat3 turn = pose_.rotation - cut_.last.rotation;
+      const Vec3 shift = turn * cut_.pivot + (pose_.translation - cut_.last.translation);
+      // The 2-norm of the difference of two rotations is its Frobenius norm over the root of two.
+      // The two computed ones are off by their errors, three of whose Frobenius norms are below
+      // this.
+      cut_.turned += turn.norm() * (0.70710678118654757 + 0x1p-40) +
+                     3.0 * (pose_.rotation_error + cut_.last.rotation_error) + 0x1p-50;
+      cut_.travelled += shift.norm() + moved_ + cut_.last_error + error_;
+    }
+    cut_.last = pose_;
+    cut_.last_error = moved_;
+  }
+
+  void invalidate(std::uint32_t slot) noexcept {
+    cut_.carried[slot] = -kInfinity;
+    cut_.farthest[slot] = -1.0;
+  }
+
+  [[nodiscard]] std::uint16_t take_slot() noexcept {
+    std::uint16_t slot = cut_.free;
+    if (slot != CloudCut::kNoSlot) {
+      cut_.free = cut_.groups[slot].parent;
+    } else if (cut_.count < CloudCut::kSlots) {
+      slot = static_cast<std::uint16_t>(cut_.count++);
+    } else {
+      return CloudCut::kNoSlot;
+    }
+    ++cut_.in_use;
+    return slot;
+  }
+  void remove(std::uint32_t slot) noexcept {
+    Group& group = cut_.groups[slot];
+    Group& parent = cut_.groups[group.parent];
+    parent.expanded = static_cast<std::uint8_t>(parent.expanded & ~(1U << group.lane));
+    group.stored = false;
+    group.parent = cut_.free;
+    cut_.free = static_cast<std::uint16_t>(slot);
+    cut_.carried[slot] = kInfinity;
+    cut_.farthest[slot] = 0.0;
+    --cut_.in_use;
+  }
+  // In another frame, groups may be missing. Groups below them have no elements either.
+  void remove_empty_groups() noexcept {
+    for (std::uint32_t slot = 1; slot < cut_.count; ++slot) {
+      const Group& group = cut_.groups[slot];
+      if (group.stored && elements_.is_empty(group.level, group.index)) remove(slot);
     }
   }
 
-  void evaluate(std::size_t b, std::size_t lane) noexcept {
-    const DistanceResult r = elements_.evaluate(b, lane, *this);
+  // Looks at the next group, and removes it if its parent's plane leaves it out well.
+  void remove_a_group() noexcept {
+    cut_.checked = cut_.checked + 1 < cut_.count ? cut_.checked + 1 : 1;
+    const Group& group = cut_.groups[cut_.checked];
+    if (cut_.checked >= cut_.count || !group.stored || group.expanded != 0) return;
+    const std::uint16_t parent = group.parent;
+    BoundLanes lower;
+    elements_.bound(cut_.groups[parent].level, cut_.groups[parent].index, cut_.planes[parent],
+                    bounds_, lower);
+    const double bound = lower[group.lane];
+    if (!(bound >= best_.lower + kSpareToRemove)) return;
+    cut_.carried[parent] = std::min(cut_.carried[parent], carried(bound, parent));
+    remove(cut_.checked);
+  }
+
+  [[nodiscard]] double carried(double bound, std::uint32_t slot) const noexcept {
+    return bound + cut_.travelled + cut_.turned * cut_.farthest[slot];
+  }
+
+  // The element of the last answer first, which makes the best bound for the others.
+  void evaluate_hint() noexcept {
+    if (tracking_.block >= cloud_.blocks() || tracking_.lane >= kCloudLanes ||
+        !elements_.is_present(tracking_.block, tracking_.lane)) {
+      return;
+    }
+    hint_block_ = tracking_.block;
+    hint_lane_ = tracking_.lane;
+    hint_lower_ = evaluate(hint_block_, hint_lane_, tracking_.normal);
+    hint_plane_ = newest_;
+    has_hint_plane_ = has_newest_;
+    has_hint_ = true;
+  }
+
+  double evaluate(std::size_t b, std::size_t lane, const Vec3& along) noexcept {
+    const DistanceResult r = elements_.evaluate(b, lane, along, *this);
+    if (leaves_out(r.lower)) return r.lower;
     best_.lower = std::min(best_.lower, r.lower);
-    if (!(r.upper < best_.upper)) return;
+    if (!(r.upper < best_.upper)) return r.lower;
     best_.upper = r.upper;
     best_.normal = r.normal;
     best_.point_on_part = r.point_on_a;
     best_.point_on_element = r.point_on_b;
     best_.source = elements_.source(b, lane);
     tracking_.block = static_cast<std::uint32_t>(b);
-    tracking_.features = features_;
+    tracking_.lane = static_cast<std::uint32_t>(lane);
+    return r.lower;
   }
 
-  void descend(std::size_t level, std::size_t i) noexcept {
-    if (leaves_out(bound(level, i))) return;
-    if (level == 0) {
-      if (i != visited_) evaluate_block(i);
-      return;
+  void process(std::uint32_t slot) noexcept {
+    Group& group = cut_.groups[slot];
+    if (cut_.farthest[slot] < 0.0) {
+      cut_.farthest[slot] = elements_.farthest(group.level, group.index, cut_.pivot);
     }
-    Children children = children_of(level, i);
-    // A plane towards the middle of the box leaves most children out at the price of one query.
-    if (children.count > kFewChildren) {
-      static_cast<void>(query(elements_.middle(level, i), point_features_));
-      if (leaves_out(bound(level, i))) return;
-      children = children_of(level, i);
-    }
-    for (std::size_t k = 0; k < children.count; ++k) {
-      const Child& child = children.list[k];
-      if (!leaves_out(child.lower)) descend(level - 1, child.index);
-    }
+    cut_.carried[slot] = carried(least_of(group, cut_.planes[slot], slot), slot);
   }
 
-  struct Child {
-    double lower;
-    std::size_t index;
-  };
-  // Those that no plane leaves out, the nearest first.
-  struct Children {
-    std::array<Child, PointCloud::kFanOut> list;
-    std::size_t count = 0;
-  };
-  [[nodiscard]] Children children_of(std::size_t level, std::size_t i) noexcept {
-    Children children;
-    const std::size_t first = i * PointCloud::kFanOut;
-    const std::size_t end = std::min(first + PointCloud::kFanOut, cloud_.nodes(level - 1));
-    for (std::size_t c = first; c < end; ++c) {
-      const Child child{bound(level - 1, c), c};
-      if (leaves_out(child.lower)) continue;
-      std::size_t at = children.count++;
-      for (; at > 0 && child.lower < children.list[at - 1].lower; --at) {
-        children.list[at] = children.list[at - 1];
+  // The least bound of all lanes of a group that are not expanded. All elements below the group are
+  // then left out or evaluated.
+  double least_of(Group& group, PlaneLanes& planes, std::uint32_t slot) noexcept {
+    BoundLanes lower;
+    elements_.bound(group.level, group.index, planes, bounds_, lower);
+    for (std::size_t k = 0; k < kCloudLanes; ++k) {
+      if ((group.expanded >> k & 1U) != 0) lower[k] = kInfinity;
+    }
+    unsigned done = 0, asked = 0;  // a bit a lane
+    if (has_hint_ && group.level == 0 && group.index == hint_block_) {
+      lower[hint_lane_] = hint_lower_;
+      if (has_hint_plane_) planes.set(hint_lane_, hint_plane_);
+      done |= 1U << hint_lane_;
+    }
+    for (;;) {
+      std::size_t k = kCloudLanes;
+      for (std::size_t i = 0; i < kCloudLanes; ++i) {
+        if ((done >> i & 1U) == 0 && (k == kCloudLanes || lower[i] < lower[k])) k = i;
       }
-      children.list[at] = child;
+      if (k == kCloudLanes || is_left_out(lower[k])) break;
+      if (group.level == 0) {
+        done |= 1U << k;
+        const double element = evaluate(group.index, k, {planes.x[k], planes.y[k], planes.z[k]});
+        if (has_newest_) adopt_plane(group, planes, done, lower);
+        lower[k] = element;
+        continue;
+      }
+      if ((asked >> k & 1U) == 0 && std::popcount(asked) < kAsksOfAGroup) {
+        asked |= 1U << k;
+        const std::size_t node = group.index * kCloudLanes + k;
+        const Vec3 p = elements_.towards(group.level - 1U, node, witness_);
+        if (p != witness_) {
+          static_cast<void>(query(p, {.depth = false}));
+          if (has_newest_) adopt_plane(group, planes, done, lower);
+          continue;
+        }
+      }
+      done |= 1U << k;
+      lower[k] = expand(group, planes.get(k), k, slot);
     }
-    return children;
+    const double least = *std::min_element(lower.begin(), lower.end());
+    left_out_ = std::min(left_out_, least);
+    return least;
+  }
+
+  // The newest plane, for the lanes that it bounds better than theirs.
+  void adopt_plane(const Group& group, PlaneLanes& planes, unsigned done,
+                   BoundLanes& lower) noexcept {
+    const PartPlane in_cloud_frame{in_cloud(newest_.normal),
+                                   newest_.offset - newest_.normal.dot(pose_.translation)};
+    BoundLanes by_newest;
+    elements_.bound(group.level, group.index, in_cloud_frame, bounds_, by_newest);
+    const unsigned others = done | group.expanded;
+    for (std::size_t k = 0; k < kCloudLanes; ++k) {
+      if (!(by_newest[k] > lower[k]) || (others >> k & 1U) != 0) continue;
+      lower[k] = by_newest[k];
+      planes.set(k, newest_);
+    }
+  }
+
+  // The group below a lane. Returns its least bound, or infinity if it has a slot of its own.
+  double expand(Group& parent, const PartPlane& plane, std::size_t lane,
+                std::uint32_t parent_slot) noexcept {
+    const auto index = static_cast<std::uint32_t>(parent.index * kCloudLanes + lane);
+    const auto level = static_cast<std::uint8_t>(parent.level - 1U);
+    const std::uint16_t slot = parent.stored ? take_slot() : CloudCut::kNoSlot;
+    if (slot == CloudCut::kNoSlot) {
+      Group group{index, CloudCut::kNoSlot, level, static_cast<std::uint8_t>(lane), 0, false};
+      PlaneLanes planes;
+      planes.fill(plane);
+      return least_of(group, planes, slot);
+    }
+    cut_.groups[slot] = {index, static_cast<std::uint16_t>(parent_slot),
+                         level, static_cast<std::uint8_t>(lane),
+                         0,     true};
+    cut_.planes[slot].fill(plane);
+    parent.expanded = static_cast<std::uint8_t>(parent.expanded | 1U << lane);
+    invalidate(slot);
+    process(slot);
+    return kInfinity;
   }
 
   const ConvexBody& part_;
@@ -342,15 +344,16 @@ class Search {
   const decltype(std::declval<Elements>().cloud())& cloud_;
   const RelativePose& pose_;
   CloudTracking& tracking_;
-  double moved_ = 0.0;      // an element's place in the part's frame is at most this far off, m
-  double error_ = 0.0;      // of a plane's bound, m
-  TrackingState features_;  // of the part and an element
-  TrackingState point_features_;                      // of the part and the middle of a box
-  std::array<Plane, CloudTracking::kPlanes> planes_;  // those of tracking_, in the cloud's frame
-  std::size_t known_ = 0, last_ = 0;
-  std::size_t visited_ = 0;
+  CloudCut& cut_;
+  PlaneBounds bounds_;
+  double moved_ = 0.0;  // an element's place in the part's frame is at most this far off, m
+  double error_ = 0.0;  // of a plane's bound, m
+  Vec3 witness_ = Vec3::Zero();    // the part's point in the last answer, in the cloud's frame
+  PartPlane newest_, hint_plane_;  // of the last query, of the hint; in the part's frame
+  bool has_newest_ = false, has_hint_ = false, has_hint_plane_ = false, bad_pose_ = false;
+  std::size_t hint_block_ = 0, hint_lane_ = 0;
+  double hint_lower_ = 0.0;
   double left_out_ = kInfinity;
-  bool bad_pose_ = false;
   NearestElement best_;
 };
 

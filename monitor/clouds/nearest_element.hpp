@@ -1,34 +1,15 @@
 // The element of a cloud that is nearest to a convex part, with certified bounds.
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "core/distance.hpp"
+#include "monitor/clouds/cloud_tracking.hpp"
 #include "monitor/clouds/depth_cloud.hpp"
 #include "monitor/clouds/point_cloud.hpp"
 #include "monitor/clouds/slab_body.hpp"
 
 namespace clearance {
-
-// A half-space n.x <= offset that contains a part, in the frame of the part.
-struct PartPlane {
-  Vec3 normal = Vec3::Zero();  // unit
-  double offset = 0.0;         // m, rounding included
-};
-
-// The state of a part between queries, also from one frame to the next, and for any cloud. The
-// block and the features are hints. The planes are facts about `part`: they stay true wherever it
-// moves. A query of another body drops them.
-struct CloudTracking {
-  static constexpr std::size_t kPlanes = 12;
-
-  std::uint32_t block = 0;  // the block of the last nearest element
-  TrackingState features;   // of the part and that element
-  const ConvexBody* part = nullptr;
-  std::array<PartPlane, kPlanes> planes;
-  std::uint32_t known = 0, next = 0;  // planes; the place of the next one
-};
 
 enum class CloudAnswer : std::uint8_t {
   kNearest,

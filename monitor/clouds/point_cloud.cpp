@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "core/shapes.hpp"
+#include "monitor/clouds/revision.hpp"
 
 namespace clearance {
 namespace {
@@ -24,6 +25,10 @@ std::uint32_t cell(double from_low, double scale) noexcept {
   return static_cast<std::uint32_t>(std::clamp(from_low * scale, 0.0, kCells - 1.0));
 }
 
+constexpr float kEndless = std::numeric_limits<float>::infinity();
+constexpr PointCloud::Node kEmpty{
+    {kEndless, kEndless, kEndless}, {-kEndless, -kEndless, -kEndless}, 0.0F};
+
 void include(PointCloud::Node& node, const PointCloud::Node& other) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     node.low[k] = std::min(node.low[k], other.low[k]);
@@ -38,13 +43,14 @@ PointCloud::PointCloud(std::size_t capacity)
     : capacity_(capacity), origin_(std::get<ConvexBody>(point(Vec3::Zero(), 0.0))) {
   keys_.resize(capacity);
   sorted_.resize(capacity);
-  std::size_t of_level = (capacity + kFanOut - 1) / kFanOut, nodes = of_level;
-  blocks_.resize(of_level);
-  while (of_level > 1) {
-    of_level = (of_level + kFanOut - 1) / kFanOut;
-    nodes += of_level;
+  std::size_t nodes = (capacity + kFanOut - 1) / kFanOut, groups = 0;
+  blocks_.resize(nodes);
+  while (nodes > 0) {
+    const std::size_t above = (nodes + kFanOut - 1) / kFanOut;
+    groups += above;
+    nodes = nodes > 1 ? above : 0;
   }
-  nodes_.resize(nodes);
+  boxes_.resize(groups);
 }
 
 CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
@@ -84,6 +90,7 @@ CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
   cropped_ = cropped;
   extent_ = std::sqrt(extent2) * (1.0 + 0x1p-50);
   levels_ = 0;
+  revision_ = next_revision();
   if (size_ == 0) return CloudBuild::kBuilt;
   sort();
   fill_blocks(points);
@@ -111,13 +118,12 @@ void PointCloud::sort() noexcept {
 }
 
 void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
-  levels_ = 1;
   first_[0] = 0;
   count_[0] = (size_ + kFanOut - 1) / kFanOut;
   for (std::size_t b = 0; b < count_[0]; ++b) {
     Block& block = blocks_[b];
     block.removed = 0;
-    Node node;
+    Node node = kEmpty;
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       const std::uint32_t source = keys_[std::min(b * kFanOut + lane, size_ - 1)].source;
       const MeasuredPoint& p = points[source];
@@ -126,11 +132,9 @@ void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
       block.z[lane] = p.z;
       block.radius[lane] = p.radius;
       block.source[lane] = source;
-      const Node one{{p.x, p.y, p.z}, {p.x, p.y, p.z}, p.radius};
-      if (lane == 0) node = one;
-      include(node, one);
+      include(node, {{p.x, p.y, p.z}, {p.x, p.y, p.z}, p.radius});
     }
-    nodes_[b] = node;
+    set_node(0, b, node);
   }
 }
 
@@ -147,32 +151,50 @@ void PointCloud::refit() noexcept {
   for (std::size_t b = 0; b < count_[0]; ++b) {
     const Block& block = blocks_[b];
     if (block.removed == 0) continue;
-    Node& node = nodes_[b];
-    node.low.fill(std::numeric_limits<float>::infinity());
-    node.high.fill(-std::numeric_limits<float>::infinity());
-    node.radius = 0.0F;
+    Node node = kEmpty;
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       if (!block.is_present(lane)) continue;
       const std::array<float, 3> at{block.x[lane], block.y[lane], block.z[lane]};
       include(node, {at, at, block.radius[lane]});
     }
+    set_node(0, b, node);
   }
-  levels_ = 1;
   add_levels();
 }
 
+PointCloud::Node PointCloud::node(std::size_t level, std::size_t i) const noexcept {
+  const Boxes& group = boxes_[first_[level] + i / kFanOut];
+  Node node;
+  for (std::size_t k = 0; k < 3; ++k) {
+    node.low[k] = group.low[k][i % kFanOut];
+    node.high[k] = group.high[k][i % kFanOut];
+  }
+  node.radius = group.radius[i % kFanOut];
+  return node;
+}
+
+void PointCloud::set_node(std::size_t level, std::size_t i, const Node& node) noexcept {
+  Boxes& group = boxes_[first_[level] + i / kFanOut];
+  for (std::size_t k = 0; k < 3; ++k) {
+    group.low[k][i % kFanOut] = node.low[k];
+    group.high[k][i % kFanOut] = node.high[k];
+  }
+  group.radius[i % kFanOut] = node.radius;
+}
+
 void PointCloud::add_levels() noexcept {
-  while (count_[levels_ - 1] > 1) {
-    const std::size_t below = levels_ - 1;
-    first_[levels_] = first_[below] + count_[below];
-    count_[levels_] = (count_[below] + kFanOut - 1) / kFanOut;
-    for (std::size_t i = 0; i < count_[levels_]; ++i) {
-      const std::size_t end = std::min((i + 1) * kFanOut, count_[below]);
-      Node node = nodes_[first_[below] + i * kFanOut];
-      for (std::size_t k = i * kFanOut + 1; k < end; ++k) include(node, nodes_[first_[below] + k]);
-      nodes_[first_[levels_] + i] = node;
+  for (levels_ = 1;; ++levels_) {
+    const std::size_t below = levels_ - 1, groups = (count_[below] + kFanOut - 1) / kFanOut;
+    for (std::size_t i = count_[below]; i < groups * kFanOut; ++i) set_node(below, i, kEmpty);
+    if (count_[below] == 1) return;
+    first_[levels_] = first_[below] + groups;
+    count_[levels_] = groups;
+    for (std::size_t i = 0; i < groups; ++i) {
+      Node node = kEmpty;
+      for (std::size_t k = i * kFanOut; k < (i + 1) * kFanOut; ++k)
+        include(node, this->node(below, k));
+      set_node(levels_, i, node);
     }
-    ++levels_;
   }
 }
 

@@ -48,6 +48,11 @@ class PointCloud {
     std::array<float, 3> low{}, high{};
     float radius = 0.0F;
   };
+  // Eight boxes as vector lanes.
+  struct Boxes {
+    std::array<std::array<float, kFanOut>, 3> low{}, high{};
+    std::array<float, kFanOut> radius{};
+  };
   // Eight points as vector lanes. The last block repeats its last point.
   struct Block {
     std::array<float, kFanOut> x{}, y{}, z{}, radius{};
@@ -83,14 +88,18 @@ class PointCloud {
   [[nodiscard]] std::size_t cropped() const noexcept { return cropped_; }  // outside the crop
   // No centre is farther from the origin of the frame, m.
   [[nodiscard]] double extent() const noexcept { return extent_; }
+  // Another number after each build, of any cloud. Copies of a cloud share it.
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
   [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : count_[0]; }
   [[nodiscard]] const Block& block(std::size_t i) const noexcept { return blocks_[i]; }
   // Level 0 has a node a block; the last level has one node. An empty cloud has no level.
   [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
   [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return count_[level]; }
-  [[nodiscard]] const Node& node(std::size_t level, std::size_t i) const noexcept {
-    return nodes_[first_[level] + i];
+  [[nodiscard]] Node node(std::size_t level, std::size_t i) const noexcept;
+  // The children of a node above level 0. Lanes without a child are empty.
+  [[nodiscard]] const Boxes& children(std::size_t level, std::size_t i) const noexcept {
+    return boxes_[first_[level - 1] + i];
   }
   // A point at the origin, which queries place at each element.
   [[nodiscard]] const ConvexBody& origin() const noexcept { return origin_; }
@@ -103,15 +112,17 @@ class PointCloud {
 
   void sort() noexcept;
   void fill_blocks(std::span<const MeasuredPoint> points) noexcept;
+  void set_node(std::size_t level, std::size_t i, const Node& node) noexcept;
   void add_levels() noexcept;
 
   std::size_t capacity_;
   std::vector<Key> keys_, sorted_;
   std::vector<Block> blocks_;
-  std::vector<Node> nodes_;
-  std::array<std::size_t, kMostLevels> first_{}, count_{};
+  std::vector<Boxes> boxes_;
+  std::array<std::size_t, kMostLevels> first_{}, count_{};  // the first group, the nodes, by level
   std::size_t levels_ = 0, built_ = 0, size_ = 0, missing_ = 0, cropped_ = 0;
   double extent_ = 0.0;
+  std::uint64_t revision_ = 0;
   ConvexBody origin_;
 };
 

@@ -1,0 +1,162 @@
+// The elements of either kind of cloud, as the search for the nearest one reads them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "core/distance.hpp"
+#include "monitor/clouds/depth_cloud.hpp"
+#include "monitor/clouds/plane_bounds.hpp"
+#include "monitor/clouds/point_cloud.hpp"
+#include "monitor/clouds/slab_body.hpp"
+
+namespace clearance {
+
+// Lengths that are computed here are at most this factor too small.
+inline constexpr double kLengthRoundedUp = 1.0 + 0x1p-40;
+
+// The balls of a PointCloud.
+class Balls {
+ public:
+  explicit Balls(const PointCloud& cloud) noexcept : cloud_(cloud) {}
+
+  [[nodiscard]] const PointCloud& cloud() const noexcept { return cloud_; }
+  [[nodiscard]] const ConvexBody& origin() const noexcept { return cloud_.origin(); }
+  [[nodiscard]] bool is_empty(std::size_t level, std::size_t i) const noexcept {
+    return i >= cloud_.nodes(level) || PointCloud::is_empty(cloud_.node(level, i));
+  }
+  [[nodiscard]] bool is_present(std::size_t b, std::size_t lane) const noexcept {
+    return cloud_.block(b).is_present(lane);
+  }
+  [[nodiscard]] std::uint32_t source(std::size_t b, std::size_t lane) const noexcept {
+    return cloud_.block(b).source[lane];
+  }
+
+  // The bounds of the eight children of a node, or of the elements of a block for level 0.
+  template <class Planes>
+  void bound(std::size_t level, std::size_t i, const Planes& planes, const PlaneBounds& by,
+             BoundLanes& out) const noexcept {
+    if (level > 0) {
+      by.of(cloud_.children(level, i), planes, out);
+      return;
+    }
+    const PointCloud::Block& block = cloud_.block(i);
+    by.of(block, planes, out);
+    for (std::size_t k = 0; block.removed != 0 && k < out.size(); ++k) {
+      if (!block.is_present(k)) out[k] = kInfinity;
+    }
+  }
+  // A point of the node's box that is near `a`.
+  [[nodiscard]] Vec3 towards(std::size_t level, std::size_t i, const Vec3& a) const noexcept {
+    const PointCloud::Node node = cloud_.node(level, i);
+    Vec3 p;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      p[k] = std::clamp(a[k], double{node.low[axis]}, double{node.high[axis]});
+    }
+    return p;
+  }
+  // No element below the node has a point farther from c, m.
+  [[nodiscard]] double farthest(std::size_t level, std::size_t i, const Vec3& c) const noexcept {
+    const PointCloud::Node node = cloud_.node(level, i);
+    double squared = 0.0;
+    for (int k = 0; k < 3; ++k) {
+      const auto axis = static_cast<std::size_t>(k);
+      const double along =
+          std::max(std::abs(node.low[axis] - c[k]), std::abs(node.high[axis] - c[k]));
+      squared += along * along;
+    }
+    return (std::sqrt(squared) + node.radius) * kLengthRoundedUp;
+  }
+
+  // A ball's signed distance is that of its centre less its radius.
+  template <class Search>
+  [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane, const Vec3&,
+                                        Search& search) const noexcept {
+    const PointCloud::Block& block = cloud_.block(b);
+    const double radius = block.radius[lane];
+    DistanceResult r = search.query({block.x[lane], block.y[lane], block.z[lane]}, {});
+    r.lower = outward(r.lower - radius, -1.0);
+    r.upper = outward(r.upper - radius, 1.0);
+    r.point_on_b -= radius * r.normal;
+    return r;
+  }
+
+ private:
+  static double outward(double x, double sign) noexcept { return x + sign * 0x1p-52 * std::abs(x); }
+
+  const PointCloud& cloud_;
+};
+
+// The slabs of a DepthCloud.
+class Slabs {
+ public:
+  Slabs(const DepthCloud& cloud, SlabBody& body) noexcept : cloud_(cloud), body_(body) {}
+
+  [[nodiscard]] const DepthCloud& cloud() const noexcept { return cloud_; }
+  [[nodiscard]] const ConvexBody& origin() const noexcept { return body_.origin(); }
+  [[nodiscard]] bool is_empty(std::size_t level, std::size_t i) const noexcept {
+    return i >= cloud_.nodes(level) || DepthCloud::is_empty(cloud_.node(level, i));
+  }
+  [[nodiscard]] bool is_present(std::size_t b, std::size_t lane) const noexcept {
+    return !is_empty(0, b) && cloud_.block(b).low[lane] <= cloud_.block(b).high[lane];
+  }
+  [[nodiscard]] std::uint32_t source(std::size_t b, std::size_t lane) const noexcept {
+    return cloud_.source(b, lane);
+  }
+
+  template <class Planes>
+  void bound(std::size_t level, std::size_t i, const Planes& planes, const PlaneBounds& by,
+             BoundLanes& out) const noexcept {
+    by.of(cloud_.lanes(level, i), planes, out);
+  }
+  [[nodiscard]] Vec3 towards(std::size_t level, std::size_t i, const Vec3& a) const noexcept {
+    const DepthCloud::Slab slab = cloud_.slab(level, i);
+    const double z = std::clamp(a.z(), slab.low, slab.high);
+    return {std::clamp(a.x(), slab.x0 * z, slab.x1 * z),
+            std::clamp(a.y(), slab.y0 * z, slab.y1 * z), z};
+  }
+  [[nodiscard]] double farthest(std::size_t level, std::size_t i, const Vec3& c) const noexcept {
+    const DepthCloud::Slab slab = cloud_.slab(level, i);
+    const auto widest = [](double x0, double x1, double z0, double z1, double at) {
+      const double low = std::min(x0 * z0, x0 * z1), high = std::max(x1 * z0, x1 * z1);
+      return std::max(std::abs(low - at), std::abs(high - at));
+    };
+    const double x = widest(slab.x0, slab.x1, slab.low, slab.high, c.x());
+    const double y = widest(slab.y0, slab.y1, slab.low, slab.high, c.y());
+    const double z = std::max(std::abs(slab.low - c.z()), std::abs(slab.high - c.z()));
+    return std::sqrt(x * x + y * y + z * z) * kLengthRoundedUp;
+  }
+
+  // A slab is small, so a vertex of it is mostly the nearest point, or the deepest one. Then a
+  // query of that point answers: its distance is an upper bound for the slab, its plane gives a
+  // lower one, and the two agree. Otherwise the slab is a body.
+  template <class Search>
+  [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane, const Vec3& along,
+                                        Search& search) const noexcept {
+    const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
+    unsigned corner = slab.corner_along(search.in_cloud(along));
+    for (int i = 0; i < 3; ++i) {
+      DistanceResult r = search.query(slab.vertex(corner), {});
+      if (r.status != DistanceStatus::kConverged && r.status != DistanceStatus::kOverlapping) break;
+      const Vec3 n = search.in_cloud(r.normal);
+      r.lower = std::min(r.lower, search.bound_by_newest(slab.least_along(n)));
+      if (r.upper - r.lower <= kTightVertex || search.is_left_out(r.lower)) return r;
+      const unsigned next = slab.corner_along(n);
+      if (next == corner) break;
+      corner = next;
+    }
+    return search.query(body_.of(slab), slab);
+  }
+
+ private:
+  // The bounds of a slab by its vertex differ by rounding, or the vertex is not the nearest point,
+  // m.
+  static constexpr double kTightVertex = 1e-10;
+
+  const DepthCloud& cloud_;
+  SlabBody& body_;
+};
+
+}  // namespace clearance
