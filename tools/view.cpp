@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
+#include <map>
 #include <sstream>
 
 #include "monitor/app/cell_arguments.hpp"
@@ -36,6 +38,7 @@ using view::Source;
 
 constexpr std::int64_t kFrameNs = 1'000'000'000 / 60;
 constexpr std::size_t kMostCurves = 64;  // pairs that a page may ask for at once
+constexpr double kLongest_s = 1e9;       // times that a page may ask for
 
 constexpr const char* kFooter =
     R"(Open the printed address in a browser; Ctrl-C ends the program. Foxglove, Lichtblick and other
@@ -169,21 +172,44 @@ std::map<std::string, view::Resource> resources(const Source& source) {
   return all;
 }
 
-// "end=12.5&pairs=3,17"
-view::Resource history(const Source& source, const std::string& query) {
-  double end_s = 0.0;
-  std::vector<std::uint32_t> pairs;
-  std::istringstream fields(query);
-  for (std::string field; std::getline(fields, field, '&');) {
-    const std::size_t value = field.find('=') + 1;
-    if (field.starts_with("end=")) end_s = std::strtod(&field[value], nullptr);
-    if (!field.starts_with("pairs=")) continue;
-    std::istringstream list(field.substr(value));
-    for (std::uint32_t pair = 0; list >> pair && pairs.size() < kMostCurves; list.ignore()) {
-      pairs.push_back(pair);
-    }
+// The values of "a=3&b=17" by their names, as texts.
+std::map<std::string, std::string> fields_of(const std::string& query) {
+  std::map<std::string, std::string> fields;
+  std::istringstream all(query);
+  for (std::string field; std::getline(all, field, '&');) {
+    const std::size_t equals = std::min(field.find('='), field.size());
+    fields[field.substr(0, equals)] = field.substr(std::min(equals + 1, field.size()));
   }
-  return resource("application/json", source.history(std::isfinite(end_s) ? end_s : 0.0, pairs));
+  return fields;
+}
+
+// The number from 0 to `most` that a text begins with; else `without`.
+double number_of(const std::string& text, double most, double without) {
+  const double value = text.empty() ? without : std::strtod(text.c_str(), nullptr);
+  return std::isfinite(value) ? std::clamp(value, 0.0, most) : without;
+}
+
+// "end=12.5&width=30&pairs=3,17": s after the first report, and s.
+view::Resource history(const Source& source, const std::string& query) {
+  auto fields = fields_of(query);
+  std::vector<std::uint32_t> pairs;
+  std::istringstream list(fields["pairs"]);
+  for (std::uint32_t pair = 0; list >> pair && pairs.size() < kMostCurves; list.ignore()) {
+    pairs.push_back(pair);
+  }
+  return resource("application/json", source.history(number_of(fields["end"], kLongest_s, 0.0),
+                                                     number_of(fields["width"], kLongest_s, 30.0),
+                                                     pairs));
+}
+
+// "a=3&b=17": numbers of two objects.
+view::Resource distance(Source& source, const std::string& query) {
+  auto fields = fields_of(query);
+  constexpr double kNone = std::numeric_limits<std::uint32_t>::max();
+  const auto object = [&](const char* name) {
+    return static_cast<std::uint32_t>(number_of(fields[name], kNone, kNone));
+  };
+  return resource("application/json", source.distance(object("a"), object("b")));
 }
 
 // The bodies that the page draws of the present cell.
@@ -229,7 +255,8 @@ view::Content content_of(const Cell& cell, Source& source, Drawn& drawn) {
               [found = resources(source), &source, &drawn](const std::string& path,
                                                            const std::string& query) {
                 if (path == "/history.json") return history(source, query);
-                if (path == "/visuals.json") return drawn.visuals();
+                if (path == "/distance.json") return distance(source, query);
+                if (path == "/visuals.bin") return drawn.visuals();
                 if (path == "/scene.json") return drawn.scene();
                 const auto entry = found.find(path);
                 return entry == found.end() ? view::Resource{} : entry->second;

@@ -12,6 +12,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/mesh/child_work.hpp"
@@ -30,6 +31,7 @@ unsigned seconds_for(std::size_t bytes) { return 2 + static_cast<unsigned>(bytes
 
 // The first byte of the child's answer.
 constexpr char kMesh = 'm', kFault = 'f';
+const Vec3 kNoColour(-1.0, -1.0, -1.0);
 
 // Any order serves, as long as it depends on the coordinates only.
 bool lexicographic(const Vec3& a, const Vec3& b) {
@@ -79,35 +81,59 @@ bool take(std::string_view& bytes, std::vector<Item>& items) {
   return true;
 }
 
+enum class Colours : std::uint8_t { kJoined, kApart };
+
+void append(const std::optional<Vec3>& colour, const TriangleMesh& mesh, std::string& bytes) {
+  append(std::vector{colour.value_or(kNoColour)}, bytes);
+  append(mesh.vertices, bytes);
+  append(mesh.triangles, bytes);
+}
+bool take(std::string_view& bytes, ColouredMesh& mesh) {
+  std::vector<Vec3> colour;
+  if (!take(bytes, colour) || colour.size() != 1) return false;
+  if (colour[0] != kNoColour) mesh.colour = colour[0];
+  return take(bytes, mesh.mesh.vertices) && take(bytes, mesh.mesh.triangles);
+}
+
 // Runs in the child.
-std::string import_into_bytes(const std::string& bytes, const std::string& format) {
-  const auto result = import_mesh(bytes, format);
+std::string import_into_bytes(const std::string& bytes, const std::string& format,
+                              Colours colours) {
+  auto result = import_mesh(bytes, format);
   if (const auto* fault = std::get_if<MeshFault>(&result)) return kFault + fault->reason;
-  const auto& triangles = std::get<std::vector<Triangle>>(result);
-  for (const Triangle& t : triangles) {
-    if (!std::ranges::all_of(t, [](const Vec3& v) { return v.allFinite(); })) {
-      return std::string(1, kFault) + "a vertex is not finite";
+  auto& all = std::get<std::vector<ColouredTriangles>>(result);
+  std::string said(1, kMesh);
+  std::vector<Triangle> joined;
+  for (const auto& [colour, triangles] : all) {
+    for (const Triangle& t : triangles) {
+      if (!std::ranges::all_of(t, [](const Vec3& v) { return v.allFinite(); })) {
+        return std::string(1, kFault) + "a vertex is not finite";
+      }
+    }
+    if (colours == Colours::kJoined) {
+      joined.insert(joined.end(), triangles.begin(), triangles.end());
+    } else {
+      append(colour, indexed(triangles), said);
     }
   }
-  const TriangleMesh mesh = indexed(triangles);
-  std::string said(1, kMesh);
-  append(mesh.vertices, said);
-  append(mesh.triangles, said);
+  if (colours == Colours::kJoined) append({}, indexed(joined), said);
   return said;
 }
 
 // Runs in the parent. A child that was corrupted by its input may answer anything.
-std::variant<TriangleMesh, MeshFault> taken(const std::string& said) {
+std::variant<std::vector<ColouredMesh>, MeshFault> taken(const std::string& said) {
   if (said.starts_with(kFault)) return MeshFault{excerpt(std::string_view(said).substr(1))};
   const MeshFault no_answer{"the library that reads it gave no answer"};
   if (!said.starts_with(kMesh)) return no_answer;
-  TriangleMesh mesh;
+  std::vector<ColouredMesh> all;
   std::string_view left = std::string_view(said).substr(1);
-  if (!take(left, mesh.vertices) || !take(left, mesh.triangles) || !left.empty()) return no_answer;
-  for (const auto& corners : mesh.triangles) {
-    if (*std::ranges::max_element(corners) >= mesh.vertices.size()) return no_answer;
-  }
-  return mesh;
+  do {
+    ColouredMesh& next = all.emplace_back();
+    if (!take(left, next)) return no_answer;
+    for (const auto& corners : next.mesh.triangles) {
+      if (*std::ranges::max_element(corners) >= next.mesh.vertices.size()) return no_answer;
+    }
+  } while (!left.empty());
+  return all;
 }
 
 // Returns "stl" for "STL" or ".STL".
@@ -118,19 +144,32 @@ std::string format_of(const std::string& extension) {
   return format;
 }
 
-}  // namespace
-
-std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
-                                                const std::string& extension) {
+std::variant<std::vector<ColouredMesh>, MeshFault> read(const std::string& bytes,
+                                                        const std::string& extension,
+                                                        Colours colours) {
   const std::string format = format_of(extension);
   if (std::ranges::find(kFormats, format) == kFormats.end()) {
     return MeshFault{fmt::format("its format is none of {}", fmt::join(kFormats, ", "))};
   }
   const ChildWork work =
-      in_child([&] { return import_into_bytes(bytes, format); },
+      in_child([&] { return import_into_bytes(bytes, format, colours); },
                {.cpu_s = seconds_for(bytes.size()), .wall_s = 30 * seconds_for(bytes.size())});
   if (!work.fault.empty()) return MeshFault{"the library that reads it " + work.fault};
   return taken(work.bytes);
+}
+
+}  // namespace
+
+std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
+                                                const std::string& extension) {
+  auto result = read(bytes, extension, Colours::kJoined);
+  if (auto* const fault = std::get_if<MeshFault>(&result)) return std::move(*fault);
+  return std::move(std::get<std::vector<ColouredMesh>>(result).front().mesh);
+}
+
+std::variant<std::vector<ColouredMesh>, MeshFault> read_coloured_mesh(
+    const std::string& bytes, const std::string& extension) {
+  return read(bytes, extension, Colours::kApart);
 }
 
 }  // namespace clearance

@@ -1,8 +1,10 @@
 // Reads the triangles of a mesh file: STL, OBJ, PLY, DAE.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "config/decomposition/triangle_mesh.hpp"
 #include "config/mesh/mesh_fault.hpp"
@@ -20,5 +22,15 @@ namespace clearance {
 // that it never finishes, are a fault like any other.
 [[nodiscard]] std::variant<TriangleMesh, MeshFault> read_mesh(const std::string& bytes,
                                                               const std::string& extension);
+
+// The triangles of one colour: red, green, blue from 0 to 1. Nothing: the file states none.
+struct ColouredMesh {
+  std::optional<Vec3> colour;
+  TriangleMesh mesh;
+};
+
+// The same triangles by their colours, for pictures only. Only a DAE states colours.
+[[nodiscard]] std::variant<std::vector<ColouredMesh>, MeshFault> read_coloured_mesh(
+    const std::string& bytes, const std::string& extension);
 
 }  // namespace clearance

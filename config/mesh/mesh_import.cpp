@@ -6,12 +6,15 @@
 #include <fmt/format.h>
 
 #include <assimp/config.h>
+#include <assimp/material.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cstdint>
 #include <cstring>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "config/mesh/collada_check.hpp"
@@ -37,14 +40,37 @@ Vec3 corner(const aiMesh& mesh, unsigned f, unsigned k, const aiMatrix4x4& place
   return to_vec3(placed * mesh.mVertices[index]);
 }
 
+// The diffuse colour of the material. Assimp invents one where a file has none, and a texture
+// replaces it.
+std::optional<Vec3> colour_of(const aiScene& scene, const aiMesh& mesh) {
+  if (mesh.mMaterialIndex >= scene.mNumMaterials) return std::nullopt;
+  const aiMaterial& material = *scene.mMaterials[mesh.mMaterialIndex];
+  aiColor4D colour;
+  if (material.GetTextureCount(aiTextureType_DIFFUSE) > 0 ||
+      material.Get(AI_MATKEY_COLOR_DIFFUSE, colour) != aiReturn_SUCCESS) {
+    return std::nullopt;
+  }
+  const Vec3 found(colour.r, colour.g, colour.b);
+  if (!found.allFinite()) return std::nullopt;
+  return found.cwiseMax(0.0).cwiseMin(1.0);
+}
+
+std::vector<Triangle>& triangles_of(const std::optional<Vec3>& colour,
+                                    std::vector<ColouredTriangles>& all) {
+  const auto known = std::ranges::find(all, colour, &ColouredTriangles::colour);
+  return known != all.end() ? known->triangles : all.emplace_back(colour).triangles;
+}
+
 // Depth first through the scene graph; `outer` is the transform from the node's parent to the
 // file's root, column vectors on the right.
-void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
-             std::vector<Triangle>& triangles) {
+void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer, bool has_colours,
+             std::vector<ColouredTriangles>& all) {
   const aiMatrix4x4 placed = outer * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     if (node.mMeshes[i] >= scene.mNumMeshes) throw BadMesh{"it places a mesh that it lacks"};
     const aiMesh& mesh = *scene.mMeshes[node.mMeshes[i]];
+    std::vector<Triangle>& triangles =
+        triangles_of(has_colours ? colour_of(scene, mesh) : std::nullopt, all);
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
       if (face.mNumIndices < 3) continue;  // stray points and lines are no part of the surface
@@ -55,7 +81,7 @@ void collect(const aiScene& scene, const aiNode& node, const aiMatrix4x4& outer,
     }
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i)
-    collect(scene, *node.mChildren[i], placed, triangles);
+    collect(scene, *node.mChildren[i], placed, has_colours, all);
 }
 
 // Returns assimp's message without the name that it invents for bytes in memory.
@@ -96,7 +122,7 @@ void refuse_cut_off_stl(const std::string& bytes) {
 }
 
 // Reads STL, OBJ and COLLADA.
-std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::string& format) {
+std::vector<ColouredTriangles> import_with_assimp(const std::string& bytes, const std::string& format) {
   if (format == "stl") refuse_cut_off_stl(bytes);
   if (format == "dae") {
     if (const std::string fault = fault_of_collada(bytes); !fault.empty()) throw BadMesh{fault};
@@ -106,25 +132,39 @@ std::vector<Triangle> import_with_assimp(const std::string& bytes, const std::st
   keep_one_format(importer, format);
   const aiScene* scene = importer.ReadFileFromMemory(bytes.data(), bytes.size(), 0, format.c_str());
   if (scene == nullptr) throw BadMesh{plain(importer.GetErrorString())};
-  std::vector<Triangle> triangles;
-  if (scene->mRootNode != nullptr) collect(*scene, *scene->mRootNode, aiMatrix4x4(), triangles);
-  return triangles;
+  std::vector<ColouredTriangles> all;
+  if (scene->mRootNode != nullptr) {
+    collect(*scene, *scene->mRootNode, aiMatrix4x4(), format == "dae", all);
+  }
+  std::erase_if(all, [](const ColouredTriangles& each) { return each.triangles.empty(); });
+  return all;
+}
+
+std::variant<std::vector<ColouredTriangles>, MeshFault> import_ply(const std::string& bytes) {
+  auto read = ply_triangles(bytes);
+  if (auto* const fault = std::get_if<MeshFault>(&read)) return std::move(*fault);
+  std::vector<ColouredTriangles> all;
+  auto& triangles = std::get<std::vector<Triangle>>(read);
+  if (!triangles.empty()) all.push_back({.colour = {}, .triangles = std::move(triangles)});
+  return all;
 }
 
 }  // namespace
 
 // No post-processing step of assimp is used: joining and triangulating is done here. Assimp throws
 // for some malformed files, so everything is caught.
-std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
-                                                           const std::string& format) {
+std::variant<std::vector<ColouredTriangles>, MeshFault> import_mesh(const std::string& bytes,
+                                                                    const std::string& format) {
   try {
-    auto result =
-        format == "ply"
-            ? ply_triangles(bytes)
-            : std::variant<std::vector<Triangle>, MeshFault>(import_with_assimp(bytes, format));
-    const auto* triangles = std::get_if<std::vector<Triangle>>(&result);
-    if (triangles != nullptr && triangles->empty()) return MeshFault{"it has no faces"};
-    return result;
+    if (format == "ply") {
+      auto read = import_ply(bytes);
+      const auto* const all = std::get_if<std::vector<ColouredTriangles>>(&read);
+      if (all != nullptr && all->empty()) return MeshFault{"it has no faces"};
+      return read;
+    }
+    auto all = import_with_assimp(bytes, format);
+    if (all.empty()) return MeshFault{"it has no faces"};
+    return all;
   } catch (const BadMesh& fault) {
     return MeshFault{fault.reason};
   } catch (const std::bad_alloc&) {

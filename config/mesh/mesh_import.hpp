@@ -3,6 +3,7 @@
 // files.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,9 +13,17 @@
 
 namespace clearance {
 
-// Returns the triangles of read_mesh(), which calls it in a child process, in the order of the
-// file. `format`: in lower case, without a dot.
-[[nodiscard]] std::variant<std::vector<Triangle>, MeshFault> import_mesh(const std::string& bytes,
-                                                                         const std::string& format);
+// Triangles of one colour: red, green, blue from 0 to 1. Nothing: the file states none.
+struct ColouredTriangles {
+  std::optional<Vec3> colour;
+  std::vector<Triangle> triangles;
+};
+
+// Returns the triangles of read_mesh(), which calls it in a child process, at least one: by their
+// colours in the order in which these occur, and for each colour in the order of the file. Colours
+// are the diffuse ones of COLLADA; the other formats have none. `format`: in lower case, without a
+// dot.
+[[nodiscard]] std::variant<std::vector<ColouredTriangles>, MeshFault> import_mesh(
+    const std::string& bytes, const std::string& format);
 
 }  // namespace clearance

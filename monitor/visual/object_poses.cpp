@@ -45,6 +45,15 @@ void ObjectPoses::forget() {
   inputs_.emplace(nothing_known_);
 }
 
+bool ObjectPoses::is_on_time(std::size_t object) const {
+  const TrackedObject& state = inputs_->objects[object];
+  if (!state.input.has_value || state.absent) return false;
+  if (scene_.objects[object].fixed) return true;
+  if (state.follows_joints) return !state.joints_late && !state.joints_contradicted;
+  return !state.input.contradiction.holds(inputs_->time.now_ns) &&
+         age_ns(object) <= scene_.objects[object].age_limit_ns;
+}
+
 void ObjectPoses::take(PoseBatch batch, Numbers numbers) {
   if (!made_for(batch, scene_.revision)) return;
   const std::uint64_t number = numbers == Numbers::kOfSender ? batch.sequence_number : kNeverNamed;

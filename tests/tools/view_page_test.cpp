@@ -151,6 +151,42 @@ TEST_F(ViewPage, ZonesTellTheirStateAndWhatTheyWereEnteredBy) {
   EXPECT_THAT(found[0].value("kind", ""), HasSubstr("alarm"));
 }
 
+TEST_F(ViewPage, HiddenObjectsAreNotDrawnAndKeepTheirPairs) {
+  const json found = run({"hiding"})["hiding"];
+  EXPECT_EQ(found["hidden"]["off"], json({"wall", "back"}));
+  EXPECT_EQ(found["hidden"]["address"], "group:still");
+  EXPECT_EQ(found["hidden"]["drawn"], json({"swinging", "standing"}));
+  EXPECT_EQ(found["hidden"]["notice"], "2 objects not drawn");
+  EXPECT_EQ(found["hidden"]["pairs"], found["before"]["pairs"]);
+  EXPECT_EQ(found["after"], found["before"]);
+}
+
+// The gap between the two fixed boxes, which no rule pairs, is 3.1 m.
+TEST_F(ViewPage, MeasuresAnyTwoBodiesSavesTheTableAndPlotsMinutes) {
+  std::map<std::string, json> found = run({"measuring", "csv", "minutes"});
+  const json free = found["measuring"]["free"], watched = found["measuring"]["watched"];
+  EXPECT_NEAR(free.value("distance", 0.0), 3.1, 1e-9);
+  EXPECT_LE(free.value("lower", 9.0), 3.1 + 1e-12);
+  EXPECT_GE(free.value("upper", 0.0), 3.1 - 1e-12);
+  EXPECT_EQ(free["lines"], 1);
+  EXPECT_THAT(free.value("hint", ""), HasSubstr("not a published pair"));
+  EXPECT_THAT(watched.value("hint", ""), HasSubstr("a watched pair"));
+  EXPECT_TRUE(watched.value("measured", json()).is_null());
+
+  const json lines = found["csv"]["lines"];
+  EXPECT_THAT(found["csv"].value("name", ""), testing::MatchesRegex("swinging-[0-9]+\\.csv"));
+  ASSERT_EQ(lines.size(), found["csv"].value("pairs", std::size_t{0}) + 1);
+  EXPECT_EQ(lines[0][2], "object_a");
+  EXPECT_EQ(lines[0][5], "distance_m");
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    ASSERT_EQ(lines[i].size(), lines[0].size());
+    const auto number = [&](std::size_t column) { return std::stod(std::string(lines[i][column])); };
+    EXPECT_LE(number(6), number(5));
+    EXPECT_LE(number(5), number(7));
+  }
+  EXPECT_EQ(found["minutes"]["width"], -600);
+}
+
 void expect_causes(const json& found, PlacedBy placed_by) {
   ASSERT_EQ(found["texts"].size(), 8u);
   for (std::uint8_t i = 0; i < 8; ++i) {
@@ -211,9 +247,16 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   ASSERT_FALSE(said.empty()) << page.output();
   const json found = said.front().value("found", json::object());
   EXPECT_EQ(found["links"], json({"foot", "upper"})) << page.output();
-  EXPECT_EQ(found["hidden"], json({"foot", "upper"}));
+  EXPECT_EQ(found["replaced"], json({"foot", "upper"}));
   EXPECT_EQ(found["triangles"], json({4, 12}));
-  EXPECT_EQ(found["back"], (json{{"visible", false}, {"hidden", 0}}));
+  EXPECT_EQ(found["colours"], json({"#cc1a1a", "#cc1a1a"}));
+  ASSERT_EQ(found["leftOut"].size(), 1u);
+  EXPECT_THAT(found["leftOut"][0], HasSubstr("gone.obj"));
+  const auto mode = [](const char* text, bool visible, int replaced, bool glass) {
+    return json{{"text", text}, {"visible", visible}, {"replaced", replaced}, {"glass", glass}};
+  };
+  EXPECT_EQ(found["modes"],
+            json({mode("Looks", true, 2, false), mode("Both", true, 2, true), mode("Bodies", false, 0, false)}));
 }
 
 }  // namespace

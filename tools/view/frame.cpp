@@ -1,6 +1,8 @@
 #include "tools/view/frame.hpp"
 
+#include <cmath>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "monitor/visual/cell_markers.hpp"
@@ -10,6 +12,13 @@ namespace {
 
 Bytes shared(std::span<const std::byte> bytes) {
   return std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
+}
+
+nlohmann::json number(double value) {
+  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
+}
+nlohmann::json point(const Vec3& at) {
+  return {{"x", number(at.x())}, {"y", number(at.y())}, {"z", number(at.z())}};
 }
 
 }  // namespace
@@ -54,6 +63,24 @@ void Frame::publish(Server& server) {
   }
   for (const auto& [place, message] : new_) server.publish(message);
   new_.clear();
+}
+
+std::string Frame::distance_json(std::uint32_t a, std::uint32_t b) {
+  if (!measured_) measured_.emplace(scene_);
+  const bool is_current = report_time_ns_ != 0 && revision_ == scene_.revision;
+  const auto found = is_current ? measured_->between(a, b, poses_) : MeasuredDistance();
+  const auto age = [&](std::uint32_t object) {
+    return object < scene_.objects.size() ? poses_.age_ns(object) : -1;
+  };
+  return nlohmann::json{{"status", found.status},
+                        {"distance", number(found.distance)},
+                        {"lower", number(found.lower)},
+                        {"upper", number(found.upper)},
+                        {"witness_a", point(found.witness_a)},
+                        {"witness_b", point(found.witness_b)},
+                        {"age_a_ns", age(a)},
+                        {"age_b_ns", age(b)}}
+      .dump();
 }
 
 void Frame::use_report() {

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "monitor/intake/own_batches.hpp"
+#include "monitor/visual/measured_distance.hpp"
 #include "monitor/visual/object_poses.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tools/view/server.hpp"
@@ -38,6 +40,9 @@ class Frame {
   // The revision of the latest report or catalogue; 0 until one has come.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] std::int64_t report_time_ns() const noexcept { return report_time_ns_; }
+  // The distance of two objects of the scene at the poses of the latest report, as JSON with the
+  // members of a report's pair, the ages included. null: infinite or not known.
+  [[nodiscard]] std::string distance_json(std::uint32_t a, std::uint32_t b);
   // The recording moves to another time: earlier poses no longer hold.
   void jump() { poses_.forget(); }
 
@@ -52,6 +57,7 @@ class Frame {
 
   const Scene& scene_;
   ObjectPoses poses_;
+  std::optional<MeasuredDistances> measured_;  // made when it is first asked for
   OwnBatches own_;
   CdrDecoder decoder_;
   CdrEncoder encoder_;

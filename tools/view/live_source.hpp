@@ -27,6 +27,9 @@ class LiveSource final : public Source {
 
   // What is attached is known with the first catalogue.
   [[nodiscard]] nlohmann::json parameters() const override;
+  [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override {
+    return frame_->distance_json(a, b);
+  }
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.

@@ -29,8 +29,9 @@ RecordingSource::RecordingSource(std::shared_ptr<const Cell> cell,
       frame_(std::make_unique<Frame>(cell_->scene)),
       time_ns_(timeline_.begin_ns) {}
 
-std::string RecordingSource::history(double end_s, std::span<const std::uint32_t> pairs) const {
-  return timeline_.history.window(at(end_s), cell_->scene, pairs);
+std::string RecordingSource::history(double end_s, double width_s,
+                                     std::span<const std::uint32_t> pairs) const {
+  return timeline_.history.window(at(end_s), std::llround(1e9 * width_s), cell_->scene, pairs);
 }
 
 const SceneSince* RecordingSource::scene_now() const {

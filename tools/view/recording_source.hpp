@@ -28,9 +28,12 @@ class RecordingSource final : public Source {
   [[nodiscard]] std::shared_ptr<const Cell> cell() const override { return cell_; }
   void advance(Server& server) override;
   [[nodiscard]] nlohmann::json parameters() const override;
+  [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override {
+    return frame_->distance_json(a, b);
+  }
   void set(const std::string& name, const nlohmann::json& value) override;
   [[nodiscard]] std::string timeline() const override { return timeline_.json(); }
-  [[nodiscard]] std::string history(double end_s,
+  [[nodiscard]] std::string history(double end_s, double width_s,
                                     std::span<const std::uint32_t> pairs) const override;
 
  private:

@@ -10,9 +10,10 @@ namespace clearance::view {
 namespace {
 
 using Piece = RunHistory::Piece;
+using Extremes = RunHistory::Extremes;
 
-// Distances that are kept, 64 MB. An hour of 162 pairs is kept in stretches of 64 ms.
-constexpr std::size_t kMostDistances = 1 << 24;
+// Extremes that are kept, 64 MB. An hour of 162 pairs is kept in stretches of 128 ms.
+constexpr std::size_t kMostExtremes = 1 << 23;
 constexpr std::int64_t kShortestNs = 4'000'000;
 
 bool is_known(const clearance_msg_PairDistance& pair) {
@@ -38,21 +39,23 @@ nlohmann::json number(double value) {
 
 // The stretches that fit into memory with so many columns.
 std::size_t most_stretches(std::size_t columns) {
-  return std::max<std::size_t>(kMostDistances / std::max<std::size_t>(columns, 8), 2);
+  return std::max<std::size_t>(kMostExtremes / std::max<std::size_t>(columns, 8), 2);
 }
 
 }  // namespace
 
 void merge(const RunHistory::Piece& later, RunHistory::Piece& piece) {
   piece.tick_us = std::fmax(piece.tick_us, later.tick_us);
+  piece.scaling = std::fmin(piece.scaling, later.scaling);
   if (!(std::isnan(piece.distance) || later.distance < piece.distance)) return;
   piece.time_ns = std::isnan(later.distance) ? piece.time_ns : later.time_ns;
   piece.distance = later.distance;
   piece.lower = later.lower;
 }
 
-void merge(const RunHistory::Least& later, RunHistory::Least& least) {
-  least.distance = std::fmin(least.distance, later.distance);
+void merge(const RunHistory::Extremes& later, RunHistory::Extremes& extremes) {
+  extremes.distance = std::fmin(extremes.distance, later.distance);
+  extremes.closing_speed = std::fmax(extremes.closing_speed, later.closing_speed);
 }
 
 RunHistory::RunHistory() : run_(0, most_stretches(0), kShortestNs) {}
@@ -73,13 +76,22 @@ void RunHistory::change_scene(const Scene& scene) {
 }
 
 void RunHistory::take(const clearance_msg_Distances& report, std::int64_t log_ns) {
-  const std::span<Least> least = run_.add(piece_of(report, log_ns));
+  const std::span<Extremes> extremes = run_.add(piece_of(report, log_ns));
   for (const auto& pair : std::span(report.pairs._buffer, report.pairs._length)) {
     const std::uint32_t column =
         pair.pair < column_of_.size() ? column_of_[pair.pair] : kNotPublished;
     if (column == kNotPublished || !is_known(pair)) continue;
-    merge(Least{static_cast<float>(pair.distance)}, least[column]);
+    merge({static_cast<float>(pair.distance), static_cast<float>(pair.closing_speed)},
+          extremes[column]);
   }
+}
+
+void RunHistory::take(const clearance_msg_Separation& separation, std::int64_t log_ns) {
+  Piece piece{.begin_ns = log_ns, .time_ns = log_ns};
+  for (const auto& zone : std::span(separation.zones._buffer, separation.zones._length)) {
+    piece.scaling = std::fmin(piece.scaling, zone.scaling);
+  }
+  run_.add(piece);
 }
 
 Piece RunHistory::least() const {
@@ -107,14 +119,15 @@ std::vector<Piece> RunHistory::pieces(std::size_t most) const {
   return merged;
 }
 
-double RunHistory::least_of(std::uint32_t column, std::size_t first, std::size_t last) const {
-  Least least;
-  if (column == kNotPublished) return least.distance;
-  for (std::size_t i = first; i < last; ++i) merge(run_.cells(i)[column], least);
-  return least.distance;
+RunHistory::Extremes RunHistory::extremes_of(std::uint32_t column, std::size_t first,
+                                             std::size_t last) const {
+  Extremes extremes;
+  if (column == kNotPublished) return extremes;
+  for (std::size_t i = first; i < last; ++i) merge(run_.cells(i)[column], extremes);
+  return extremes;
 }
 
-std::string RunHistory::window(std::int64_t end_ns, const Scene& scene,
+std::string RunHistory::window(std::int64_t end_ns, std::int64_t width_ns, const Scene& scene,
                                std::span<const std::uint32_t> pairs) const {
   std::vector<std::pair<std::string, std::uint32_t>> columns;  // by the pair's id, as text
   for (const std::uint32_t pair : pairs) {
@@ -127,9 +140,11 @@ std::string RunHistory::window(std::int64_t end_ns, const Scene& scene,
                         {"distance", nlohmann::json::array()},
                         {"lower", nlohmann::json::array()},
                         {"tick", nlohmann::json::array()},
-                        {"pairs", nlohmann::json::object()}};
+                        {"scaling", nlohmann::json::array()},
+                        {"pairs", nlohmann::json::object()},
+                        {"speeds", nlohmann::json::object()}};
   const auto first =
-      std::ranges::upper_bound(run_.heads(), end_ns - kWindowNs, {}, &Piece::begin_ns);
+      std::ranges::upper_bound(run_.heads(), end_ns - width_ns, {}, &Piece::begin_ns);
   const auto last = std::ranges::upper_bound(run_.heads(), end_ns, {}, &Piece::begin_ns);
   const auto from = static_cast<std::size_t>(first - run_.heads().begin()),
              to = static_cast<std::size_t>(last - run_.heads().begin());
@@ -142,8 +157,11 @@ std::string RunHistory::window(std::int64_t end_ns, const Scene& scene,
     all["distance"].push_back(number(piece.distance));
     all["lower"].push_back(number(piece.lower));
     all["tick"].push_back(number(piece.tick_us));
+    all["scaling"].push_back(number(piece.scaling));
     for (const auto& [pair, column] : columns) {
-      all["pairs"][pair].push_back(number(least_of(column, i, end)));
+      const Extremes extremes = extremes_of(column, i, end);
+      all["pairs"][pair].push_back(number(extremes.distance));
+      all["speeds"][pair].push_back(number(extremes.closing_speed));
     }
   }
   return all.dump();

@@ -18,7 +18,6 @@ namespace clearance::view {
 
 class RunHistory {
  public:
-  static constexpr std::int64_t kWindowNs = 30'000'000'000;  // width of a plot
   static constexpr std::size_t kMostPoints = 600;  // points of a curve: more than its pixels
 
   // The least minimum of a stretch of time; NaN when no minimum was known.
@@ -28,11 +27,14 @@ class RunHistory {
     double distance = std::numeric_limits<double>::quiet_NaN();  // m
     double lower = distance;
     double tick_us = distance;  // the longest time from the begin of a tick to its report
+    double scaling = distance;  // the least speed scaling of all zones; NaN when there was none
   };
 
-  // The distance of a published pair, m; NaN when it was not known.
-  struct Least {
+  // The least distance of a published pair, m, and its greatest closing speed, m/s; NaN when they
+  // were not known.
+  struct Extremes {
     float distance = std::numeric_limits<float>::quiet_NaN();
+    float closing_speed = distance;
   };
 
   RunHistory();
@@ -41,33 +43,35 @@ class RunHistory {
   void change_scene(const Scene& scene);
   // Takes reports in the order of their log times.
   void take(const clearance_msg_Distances& report, std::int64_t log_ns);
+  void take(const clearance_msg_Separation& separation, std::int64_t log_ns);
 
   // The least of the whole run; NaN when there is none.
   [[nodiscard]] Piece least() const;
   // The run in at most `most` stretches of equal length, without those that have no report.
   [[nodiscard]] std::vector<Piece> pieces(std::size_t most) const;
-  // The last kWindowNs up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
-  // "tick": [...], "pairs": {"ID": [...]}}. Units are s after the first report, m and us. null: not
-  // known. The pairs are those of `scene`, also where another scene was in force; distances of
-  // pairs that are not published are null.
-  [[nodiscard]] std::string window(std::int64_t end_ns, const Scene& scene,
+  // The last `width_ns` up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
+  // "tick": [...], "scaling": [...], "pairs": {"ID": [...]}, "speeds": {"ID": [...]}}. Units are s
+  // after the first report, m, us and m/s. null: not known. The pairs are those of `scene`, also
+  // where another scene was in force; values of pairs that are not published are null.
+  [[nodiscard]] std::string window(std::int64_t end_ns, std::int64_t width_ns, const Scene& scene,
                                    std::span<const std::uint32_t> pairs) const;
 
  private:
   using Names = std::pair<std::string, std::string>;  // of two objects, in ascending order
   [[nodiscard]] static Names names_of(const Scene& scene, const ObjectPair& pair);
-  // The least distance of the stretches from `first` up to, but not including, `last`, m. NaN: the
-  // pair was not published, or never known.
-  [[nodiscard]] double least_of(std::uint32_t column, std::size_t first, std::size_t last) const;
+  // Those of the stretches from `first` up to, but not including, `last`; not known, if the pair
+  // was not published.
+  [[nodiscard]] Extremes extremes_of(std::uint32_t column, std::size_t first,
+                                     std::size_t last) const;
 
   static constexpr std::uint32_t kNotPublished = std::numeric_limits<std::uint32_t>::max();
   std::map<Names, std::uint32_t> columns_;
   std::vector<std::uint32_t> column_of_;  // by pair of the present scene
-  Stretches<Piece, Least> run_;           // a column per pair that any scene publishes
+  Stretches<Piece, Extremes> run_;          // a column per pair that any scene publishes
 };
 
 // Join two neighbouring stretches of time, or a pair's values in them; Stretches calls these.
 void merge(const RunHistory::Piece& later, RunHistory::Piece& into);
-void merge(const RunHistory::Least& later, RunHistory::Least& into);
+void merge(const RunHistory::Extremes& later, RunHistory::Extremes& into);
 
 }  // namespace clearance::view

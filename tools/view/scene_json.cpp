@@ -22,6 +22,9 @@ constexpr std::size_t kMostShells = 120;
 // So many round parts are drawn as finely as one alone. More are drawn more coarsely, down to steps
 // of kCoarsest (rad), so that the number of triangles stays about the same.
 constexpr double kMostFine = 30.0, kCoarsest = 0.6;
+// Steps of the arcs of zones' shells (rad). A shell is faint, and its facets are not seen; a plate's
+// shell has arcs at all edges and corners, so that fine ones cost ten times the cell's bodies.
+constexpr double kShellStep = 0.8;
 
 // Six digits: micrometres in a cell of a metre. The text is a third as long.
 double rounded(double value) { return std::round(value * 1e6) * 1e-6; }
@@ -69,17 +72,25 @@ class Meshes {
  public:
   explicit Meshes(const Scene& scene) : arc_step_(arc_step_of(scene)) {}
 
-  // The mesh of this body, its radius enlarged by `offset`, m.
-  std::size_t number_of(const ConvexBody& shape, double offset = 0.0) {
-    json found = mesh_json(body_mesh(shape, offset, kReach, arc_step_));
-    const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
-    if (is_new) list_.push_back(std::move(found));
-    return entry->second;
+  std::size_t number_of(const ConvexBody& shape) {
+    return number_of(body_mesh(shape, 0.0, kReach, arc_step_));
+  }
+  // The body with its radius enlarged by `offset`, m.
+  std::size_t number_of_shell(const ConvexBody& shape, double offset) {
+    return number_of(body_mesh(shape, offset, kReach, kShellStep));
   }
   [[nodiscard]] json take() { return std::move(list_); }
 
  private:
   static constexpr double kReach = 20.0;  // half width of the drawn part of an unbounded body, m
+
+  std::size_t number_of(const BodyMesh& mesh) {
+    json found = mesh_json(mesh);
+    const auto [entry, is_new] = numbers_.try_emplace(found.dump(), list_.size());
+    if (is_new) list_.push_back(std::move(found));
+    return entry->second;
+  }
+
   double arc_step_;
   std::map<std::string, std::size_t> numbers_;
   json list_ = json::array();
@@ -142,7 +153,7 @@ json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
       if (list.size() == kMostShells) return json::array();
       list.push_back({{"object", i},
                       {"pose", pose_json(part.object_from_part)},
-                      {"mesh", meshes.number_of(part.shape, zone.enter_below + object.margin)}});
+                      {"mesh", meshes.number_of_shell(part.shape, zone.enter_below + object.margin)}});
     }
   }
   return list;

@@ -31,11 +31,14 @@ class Source {
   [[nodiscard]] virtual nlohmann::json parameters() const { return nlohmann::json::array(); }
   virtual void set(const std::string& /*name*/, const nlohmann::json& /*value*/) {}
 
-  // The curves before this moment of a recording (RunHistory::window); else "null".
-  [[nodiscard]] virtual std::string history(double /*end_s*/,
+  // The curves of so many seconds before this moment of a recording (RunHistory::window); else
+  // "null".
+  [[nodiscard]] virtual std::string history(double /*end_s*/, double /*width_s*/,
                                             std::span<const std::uint32_t> /*pairs*/) const {
     return "null";
   }
+  // The distance of two objects as they are shown (Frame::distance_json).
+  [[nodiscard]] virtual std::string distance(std::uint32_t a, std::uint32_t b) = 0;
   // The time line of a recording as JSON; "null" where there is none.
   [[nodiscard]] virtual std::string timeline() const { return "null"; }
 };

@@ -29,6 +29,10 @@ class Scan {
       found_.zone_messages.push_back(
           {zone_->zone, message.log_ns, {message.cdr.begin(), message.cdr.end()}});
       take_zone(message.log_ns);
+    } else if (message.kind == TopicKind::kSeparation &&
+               decoder_.decode(message.cdr, separation_)) {
+      // The curves begin with the first report.
+      if (!found_.reports.empty()) found_.history.take(*separation_, message.log_ns);
     } else if (message.kind == TopicKind::kHealth && decoder_.decode(message.cdr, health_)) {
       take_health(message.log_ns);
     }
@@ -54,6 +58,7 @@ class Scan {
   CdrDecoder decoder_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_ZoneState> zone_;
+  Sample<clearance_msg_Separation> separation_;
   Sample<clearance_msg_Health> health_;
   Timeline found_;
   std::map<std::uint32_t, std::int64_t> active_;  // by zone: active since then

@@ -1,8 +1,10 @@
 #include "tools/view/visuals.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <chrono>
-#include <cmath>
+#include <cstdint>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,6 +19,7 @@
 #include "config/yaml/yaml_node.hpp"
 #include "core/shapes.hpp"
 #include "monitor/visual/body_mesh.hpp"
+#include "monitor/visual/smooth_mesh.hpp"
 
 namespace clearance::view {
 namespace {
@@ -63,106 +66,155 @@ std::vector<NamedRobot> robots_of(const Cell& cell) {
   return robots;
 }
 
-std::optional<TriangleMesh> mesh_of(const ShapeResult& made) {
-  const auto* const body = std::get_if<ConvexBody>(&made);
-  if (body == nullptr) return std::nullopt;
-  BodyMesh mesh = body_mesh(*body);
-  return TriangleMesh{std::move(mesh.positions), std::move(mesh.triangles)};
-}
-
-// Finds and reads meshes, each file once.
-class MeshFiles {
+// The meshes that are sent, numbered in their order.
+class SentMeshes {
  public:
-  explicit MeshFiles(RobotFiles files) : files_(std::move(files)) {}
-
-  std::optional<TriangleMesh> operator()(const UrdfMesh& named) {
-    const auto path = files_.find(named.file);
-    if (!path) return std::nullopt;
-    const auto [entry, is_new] = read_.try_emplace(path->string());
-    if (is_new) {
-      const auto bytes = read_bytes(path->string());
-      if (const auto* const text = std::get_if<std::string>(&bytes)) {
-        auto mesh = read_mesh(*text, path->extension().string());
-        if (auto* const good = std::get_if<TriangleMesh>(&mesh)) entry->second = std::move(*good);
+  // Nothing: there would be too many triangles.
+  std::optional<std::size_t> add(const BodyMesh& mesh) {
+    if (triangles_ + mesh.triangles.size() > kMostTriangles) return std::nullopt;
+    triangles_ += mesh.triangles.size();
+    for (const auto* vectors : {&mesh.positions, &mesh.normals}) {
+      for (const Vec3& each : *vectors) {
+        const Eigen::Vector3f sent = each.cast<float>();
+        append(sent.data(), sizeof(float));
       }
     }
-    if (!entry->second) return std::nullopt;
-    TriangleMesh scaled = *entry->second;
-    for (Vec3& vertex : scaled.vertices) vertex = vertex.cwiseProduct(named.scale);
-    return scaled;
+    for (const auto& corners : mesh.triangles) append(corners.data(), sizeof corners[0]);
+    list_.push_back({{"vertices", mesh.positions.size()}, {"triangles", mesh.triangles.size()}});
+    return list_.size() - 1;
   }
-  std::optional<TriangleMesh> operator()(const UrdfBox& shape) {
-    return mesh_of(box(0.5 * shape.size));
+  [[nodiscard]] const json& list() const noexcept { return list_; }
+  [[nodiscard]] const std::string& numbers() const noexcept { return numbers_; }
+
+ private:
+  void append(const void* three, std::size_t size) {
+    numbers_.append(static_cast<const char*>(three), 3 * size);
   }
-  std::optional<TriangleMesh> operator()(const UrdfSphere& shape) {
-    return mesh_of(point(Vec3::Zero(), shape.radius));
+
+  std::size_t triangles_ = 0;
+  json list_ = json::array();
+  std::string numbers_;
+};
+
+// A mesh with its own colour, if it has one.
+struct Look {
+  std::size_t mesh;
+  std::optional<Vec3> colour;
+};
+using Looks = std::variant<std::vector<Look>, std::string>;  // or the reason why there are none
+
+// Finds and reads shapes; each file of one scale becomes one set of meshes.
+class Shapes {
+ public:
+  Shapes(RobotFiles files, SentMeshes& sent) : files_(std::move(files)), sent_(sent) {}
+
+  Looks operator()(const UrdfMesh& named) {
+    const auto path = files_.find(named.file);
+    if (!path) return files_.why_not_found(named.file, PackagesFrom::kCell);
+    const Vec3& s = named.scale;
+    const auto [entry, is_new] =
+        read_.try_emplace(fmt::format("{} {} {} {}", path->string(), s.x(), s.y(), s.z()));
+    if (is_new) entry->second = read(*path, s);
+    return entry->second;
   }
-  std::optional<TriangleMesh> operator()(const UrdfCylinder& shape) {
-    return mesh_of(cylinder(shape.radius, 0.5 * shape.length));
+  Looks operator()(const UrdfBox& shape) { return look_of(box(0.5 * shape.size)); }
+  Looks operator()(const UrdfSphere& shape) { return look_of(point(Vec3::Zero(), shape.radius)); }
+  Looks operator()(const UrdfCylinder& shape) {
+    return look_of(cylinder(shape.radius, 0.5 * shape.length));
   }
-  std::optional<TriangleMesh> operator()(const UrdfCapsule& shape) {
+  Looks operator()(const UrdfCapsule& shape) {
     const Vec3 end(0.0, 0.0, 0.5 * shape.length);
-    return mesh_of(segment(-end, end, shape.radius));
+    return look_of(segment(-end, end, shape.radius));
   }
 
  private:
+  Looks read(const std::filesystem::path& path, const Vec3& scale) {
+    const auto bytes = read_bytes(path.string());
+    if (const auto* const fault = std::get_if<FileFault>(&bytes)) return fault->reason;
+    auto found = read_coloured_mesh(std::get<std::string>(bytes), path.extension().string());
+    if (const auto* const fault = std::get_if<MeshFault>(&found)) {
+      return fmt::format("cannot read {}: {}", path.string(), fault->reason);
+    }
+    std::vector<Look> looks;
+    for (auto& [colour, mesh] : std::get<std::vector<ColouredMesh>>(found)) {
+      for (Vec3& vertex : mesh.vertices) vertex = vertex.cwiseProduct(scale);
+      const auto number = sent_.add(smooth_mesh(mesh));
+      if (!number) return fmt::format("{} has too many triangles", path.string());
+      looks.push_back({*number, colour});
+    }
+    return looks;
+  }
+  Looks look_of(const ShapeResult& made) {
+    const auto* const body = std::get_if<ConvexBody>(&made);
+    const auto number = body == nullptr ? std::nullopt : sent_.add(body_mesh(*body));
+    if (!number) return "its shape cannot be drawn";
+    return std::vector<Look>{{*number, std::nullopt}};
+  }
+
   RobotFiles files_;
-  std::map<std::string, std::optional<TriangleMesh>> read_;
+  SentMeshes& sent_;
+  std::map<std::string, Looks> read_;
 };
 
-// Micrometres, as in the scene: the text is a third as long.
-json mesh_json(const TriangleMesh& mesh) {
-  json positions = json::array(), triangles = json::array();
-  for (const Vec3& vertex : mesh.vertices) {
-    for (int i = 0; i < 3; ++i) positions.push_back(std::round(vertex[i] * 1e6) * 1e-6);
-  }
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t corner : triangle) triangles.push_back(corner);
-  }
-  return {{"positions", std::move(positions)}, {"triangles", std::move(triangles)}};
+json visual_json(std::size_t object, const Pose& pose, const Look& look,
+                 const std::optional<Vec3>& colour) {
+  const Eigen::Quaterniond& q = pose.orientation;
+  const Vec3& p = pose.position;
+  json entry = {{"object", object},
+                {"pose", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
+                {"mesh", look.mesh}};
+  if (const auto& c = look.colour ? look.colour : colour) entry["colour"] = {c->x(), c->y(), c->z()};
+  return entry;
 }
 
 }  // namespace
 
-std::string visuals_json(const Cell& cell) {
+std::string visuals_of(const Cell& cell) {
   std::map<std::string, std::size_t> objects;
   for (std::size_t i = 0; i < cell.scene.objects.size(); ++i) {
     objects[cell.scene.objects[i].name] = i;
   }
-  json visuals = json::array(), meshes = json::array();
-  std::size_t triangles = 0;
+  json visuals = json::array(), left_out = json::array();
+  SentMeshes sent;
   for (const NamedRobot& robot : robots_of(cell)) {
     const auto urdf = robot.files.find(robot.urdf);
     if (!urdf) continue;
-    MeshFiles read({.named_in = *urdf, .packages = robot.files.packages});
+    Shapes shapes({.named_in = *urdf, .packages = robot.files.packages}, sent);
     for (const UrdfVisual& visual : read_visuals(*urdf)) {
       const auto object = objects.find(robot.prefix + visual.link);
       if (object == objects.end()) continue;
-      const auto mesh = std::visit(read, visual.shape.shape);
-      if (!mesh || triangles + mesh->triangles.size() > kMostTriangles) continue;
-      triangles += mesh->triangles.size();
+      const Looks looks = std::visit(shapes, visual.shape.shape);
+      if (const auto* const reason = std::get_if<std::string>(&looks)) {
+        left_out.push_back(fmt::format("{}: {}", object->first, *reason));
+        continue;
+      }
       const Pose pose = pose_of(visual.shape.link_from_shape);
-      const Eigen::Quaterniond& q = pose.orientation;
-      const Vec3& p = pose.position;
-      json entry = {{"object", object->second},
-                    {"pose", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
-                    {"mesh", meshes.size()}};
-      if (const auto& c = visual.colour) entry["colour"] = {c->x(), c->y(), c->z()};
-      visuals.push_back(std::move(entry));
-      meshes.push_back(mesh_json(*mesh));
+      for (const Look& look : std::get<std::vector<Look>>(looks)) {
+        visuals.push_back(visual_json(object->second, pose, look, visual.colour));
+      }
     }
   }
-  return json{{"visuals", std::move(visuals)}, {"meshes", std::move(meshes)}}.dump();
+  std::string text = json{{"visuals", std::move(visuals)},
+                          {"meshes", sent.list()},
+                          {"left_out", std::move(left_out)}}
+                         .dump(-1, ' ', false, json::error_handler_t::replace);
+  text.resize((text.size() + 3) / 4 * 4, ' ');
+  const auto length = static_cast<std::uint32_t>(text.size());
+  std::string all(reinterpret_cast<const char*>(&length), sizeof length);
+  all += text;
+  all += sent.numbers();
+  return all;
 }
 
 Resource Visuals::get() {
+  constexpr const char* kType = "application/octet-stream";
   if (resource_.body) return resource_;
   if (!made_.valid()) {
-    made_ = std::async(std::launch::async, [this] { return visuals_json(cell_); });
+    made_ = std::async(std::launch::async, [this] { return visuals_of(cell_); });
   }
   const bool is_made = made_.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
-  if (!is_made) return {"application/json", std::make_shared<const std::string>("null")};
-  return resource_ = {"application/json", std::make_shared<const std::string>(made_.get())};
+  if (!is_made) return {kType, std::make_shared<const std::string>()};
+  return resource_ = {kType, std::make_shared<const std::string>(made_.get())};
 }
 
 }  // namespace clearance::view

@@ -106,6 +106,42 @@ TEST_F(MeshFile, ColladaKeepsItsAxesAndItsUnit) {
   EXPECT_NEAR(highest, 4.0, 1e-6);
 }
 
+// Two triangles in red and one in a blue that is out of range; both readers find all three.
+TEST_F(MeshFile, ColladaHasItsColoursAndOtherFormatsHaveNone) {
+  const std::string dae = R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit meter="1" name="meter"/><up_axis>Z_UP</up_axis></asset>
+<library_effects>
+<effect id="re"><profile_COMMON><technique sid="t"><lambert><diffuse><color>1 0.25 0 1</color></diffuse></lambert></technique></profile_COMMON></effect>
+<effect id="be"><profile_COMMON><technique sid="t"><lambert><diffuse><color>0 0 7 1</color></diffuse></lambert></technique></profile_COMMON></effect>
+</library_effects>
+<library_materials><material id="r"><instance_effect url="#re"/></material><material id="b"><instance_effect url="#be"/></material></library_materials>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 2 0 0 0 4</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="2" material="red"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2 0 1 3</p></triangles>
+<triangles count="1" material="blue"><input semantic="VERTEX" source="#v" offset="0"/><p>0 2 3</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"><bind_material><technique_common>
+<instance_material symbol="red" target="#r"/><instance_material symbol="blue" target="#b"/>
+</technique_common></bind_material></instance_geometry></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+  const auto read = read_coloured_mesh(dae, ".dae");
+  const auto& found = std::get<std::vector<ColouredMesh>>(read);
+  ASSERT_EQ(found.size(), 2u);
+  EXPECT_EQ(found[0].colour, Vec3(1.0, 0.25, 0.0));
+  EXPECT_EQ(found[0].mesh.triangles.size(), 2u);
+  EXPECT_EQ(found[1].colour, Vec3(0.0, 0.0, 1.0));
+  EXPECT_EQ(found[1].mesh.triangles.size(), 1u);
+  const auto joined = read_mesh(dae, "dae");
+  EXPECT_EQ(std::get<TriangleMesh>(joined).triangles.size(), 3u);
+
+  const auto plain = read_coloured_mesh(kTetrahedronObj, "obj");
+  ASSERT_EQ(std::get<std::vector<ColouredMesh>>(plain).size(), 1u);
+  EXPECT_EQ(std::get<std::vector<ColouredMesh>>(plain)[0].colour, std::nullopt);
+}
+
 TEST_F(MeshFile, RevisionFollowsItsBytes) {
   write("mesh.obj", kTetrahedronObj);
   const std::uint64_t before = scene("file: mesh.obj").revision;

@@ -9,10 +9,9 @@ const { browser, page, errors } = await openBrowser();
 const facts = () => page.evaluate(() => {
   const { scene, report, pairs, history } = window.clearance.state;
   const rows = (id) => [...document.querySelectorAll(`#${id} tbody tr`)].map(({ cells }) => [...cells].map(({ textContent }) => textContent));
-  const oldest = history.points?.[0];
   return {
     revision: scene.revision, of_this_cell: Number(report?.scene_revision) === Number(scene.revision), objects: scene.objects.map(({ name }) => name),
-    contacts: rows("contacts"), attached: rows("attached"), kept: oldest?.kept !== undefined,
+    contacts: rows("contacts"), attached: rows("attached"), kept: history.goesOn === true,
     unnamed: report?.pairs.filter(({ pair }) => !pairs[pair]).length,
   };
 });

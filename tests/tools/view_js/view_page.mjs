@@ -172,19 +172,89 @@ async function inputs() {
   return { minimum: await page.$eval("#minimum-pair", ({ textContent }) => textContent) };
 }
 
-// The switch between bodies and visual meshes: the links with visual shapes, the triangles of each, and
-// which objects' bodies are left out.
+// The switch between bodies, visual meshes, and both: the links with visual shapes, the triangles and colour of each, which
+// objects' bodies are replaced, and whether these are seen as glass.
 async function visuals() {
+  const now = () => page.evaluate(() => {
+    const { visuals, bodies } = window.clearance.view;
+    return { text: document.getElementById("visuals").textContent, visible: visuals.visible, replaced: bodies.replaced.size, glass: bodies.glass.visible };
+  });
   await page.keyboard.press("b");
   await page.waitForFunction(() => window.clearance.view.visuals.visible);
   const shown = await page.evaluate(() => {
     const { visuals, bodies } = window.clearance.view, name = (object) => bodies.cell.objects[object].name;
-    return { links: visuals.children.map(({ userData }) => name(userData.object)), hidden: [...bodies.hidden].map(name),
-      triangles: visuals.children.map(({ geometry }) => geometry.getAttribute("position").count / 3) };
+    return { links: visuals.children.map(({ userData }) => name(userData.object)), replaced: [...bodies.replaced].map(name),
+      triangles: visuals.children.map(({ geometry }) => geometry.getIndex().count / 3), leftOut: visuals.leftOut,
+      colours: visuals.children.map(({ userData: { colour } }) => colour && `#${colour.getHexString()}`) };
   });
-  await page.click("#visuals");
-  const back = await page.evaluate(() => ({ visible: window.clearance.view.visuals.visible, hidden: window.clearance.view.bodies.hidden.size }));
-  return { ...shown, back };
+  const modes = [await now()];
+  for (const text of ["Both", "Bodies"]) {
+    await page.click("#visuals");
+    await page.waitForFunction((expected) => document.getElementById("visuals").textContent === expected, text);
+    modes.push(await now());
+  }
+  return { ...shown, modes };
+}
+
+// Hides a group by its box in the list, and draws all again: the names of hidden objects, the address, the notice, and
+// how many pairs the report has before and while.
+async function hiding() {
+  const now = () => page.evaluate(() => {
+    const { state, view: { bodies } } = window.clearance;
+    return { off: [...bodies.off].map((object) => bodies.cell.objects[object].name), address: new URLSearchParams(location.search).get("hide"),
+      drawn: bodies.cell.objects.map(({ name }) => name).filter((name) => !bodies.bounds((each) => each.name === name).isEmpty()),
+      notice: document.getElementById("hidden-count").hidden ? "" : document.getElementById("hidden-count").textContent, pairs: state.report.pairs.length };
+  });
+  const before = await now();
+  await page.keyboard.press("o");
+  await page.locator("#object-list summary", { hasText: "still" }).locator("input").click();
+  const hidden = await now();
+  await page.click("#all-objects");
+  await page.keyboard.press("o");
+  return { before, hidden, after: await now() };
+}
+
+// Measures two bodies that no rule pairs, and two whose pair is published, as two clicks on them do.
+async function measuring() {
+  const pick = (names) => page.evaluate((picked) => {
+    const { scene } = window.clearance.state;
+    for (const name of picked) window.clearance.view.on.objectChosen(scene.objects.findIndex((each) => each.name === name));
+  }, names);
+  const hint = () => page.$eval("#measure-hint", ({ textContent }) => textContent);
+  const measured = () => page.evaluate(() => {
+    const { state } = window.clearance, found = state.report.pairs.find(({ pair }) => pair === state.measuredId);
+    return found && { ...found, lines: window.clearance.view.lines.shown.filter(({ pair }) => pair.pair === state.measuredId).length };
+  });
+  await page.click("#measure");
+  await pick(["wall", "back"]);
+  await page.waitForFunction(() => window.clearance.view.lines.shown.some(({ pair }) => pair.pair === window.clearance.state.measuredId));
+  const free = { ...(await measured()), hint: await hint() };
+  await pick(["swinging", "standing"]);
+  const watched = { measured: await measured(), hint: await hint() };
+  await page.keyboard.press("Escape");
+  return { free, watched };
+}
+
+// The file that the button saves: its lines as fields, and the pairs of the report.
+async function csv() {
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click("#csv")]);
+  const pieces = [];
+  for await (const piece of await download.createReadStream()) pieces.push(piece);
+  const lines = Buffer.concat(pieces).toString().split("\r\n").filter(Boolean).map((line) => line.split(","));
+  return { name: download.suggestedFilename(), lines, pairs: await page.evaluate(() => window.clearance.state.report.pairs.length) };
+}
+
+// Plots of minutes, and the closing speed of a chosen pair: the width of the axis, and the speeds.
+async function minutes() {
+  await page.evaluate(() => window.clearance.view.on.pairChosen(window.clearance.state.pairs.find(({ name }) => name === "swinging – standing").id));
+  await page.selectOption("#quantity", "speed");
+  await page.selectOption("#span", "600");
+  const speeds = () => page.waitForFunction(() => {
+    const { data, scales } = window.clearance.plots.made.chosen?.plot ?? { data: [] };
+    const known = (data[1] ?? []).filter((value) => value !== null);
+    return known.some((value) => value > 0.1) && known.some((value) => value < -0.1) && { width: scales.x.min, known: known.length };
+  });
+  return (await speeds()).jsonValue();
 }
 
 // The page's texts for causes of zones by number, more than there are, as of the cell's first object.
@@ -193,7 +263,7 @@ const causes = () => page.evaluate(() => {
   return { object: state.scene.objects[0].name, texts: [0, 1, 2, 3, 4, 5, 6, 7].map((cause) => state.causeOf({ cause, cause_object: 0 })) };
 });
 
-const known = { causes, inputs, visuals, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+const known = { causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
 try {
   await page.goto(url);
   await ready();

@@ -1,4 +1,4 @@
-// The content of a link: time of a recording, chosen pairs, filter, sorting, place of the camera, theme.
+// The content of a link: time of a recording, chosen pairs, hidden objects, filter, sorting, place of the camera, theme.
 
 const text = new URLSearchParams(location.search);
 
@@ -9,14 +9,16 @@ export const asked = {
   sort: text.get("sort"),
   camera: text.get("camera"),
   theme: text.get("theme"),
+  hidden: text.get("hide")?.split(",").filter(Boolean) ?? [],
   shells: text.get("zones") !== "off",
 };
 
 // The address that shows the same view again; the objects of a pair are joined by "~".
-export function addressOf({ time, pairs, filter, sort, camera, theme, shells }) {
+export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hidden }) {
   const all = new URLSearchParams();
   if (time !== undefined) all.set("t", time.toFixed(6));
   if (pairs.length) all.set("pairs", pairs.join(","));
+  if (hidden.length) all.set("hide", hidden.join(","));
   if (filter) all.set("filter", filter);
   if (sort !== "lower") all.set("sort", sort);
   if (camera) all.set("camera", camera);

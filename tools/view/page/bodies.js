@@ -1,5 +1,6 @@
 // The bodies of the cell in a few draw calls. Moving parts are one group. Parts that stand still
-// (`still`), and those of them that have faded (`veil`), are groups of their own.
+// (`still`), and those of them that have faded (`veil`), are groups of their own. `glass` has moving parts that are
+// shown through.
 import * as THREE from "three";
 import { css } from "./format.js";
 import { gridOn } from "./grid.js";
@@ -22,6 +23,7 @@ export class Bodies extends THREE.Group {
     this.cell = scene;
     this.still = new THREE.Group();
     this.veil = new THREE.Group();
+    this.glass = new THREE.Group();
     this.stillChanges = 0; // counts changes in the look of what stands still
     this.poses = scene.objects.map(({ pose }) => (pose ? matrixOf(pose) : undefined));
     // Moving parts come first: a part below `moving` has that number in the first placements, the others in the second.
@@ -33,8 +35,10 @@ export class Bodies extends THREE.Group {
     this.placements = kinds.map((parts) => new Placements(parts.length));
     this.lights = { sun: { value: new THREE.Vector3(0, 0, 1) } };
     this.faded = new Set(); // objects
-    this.hidden = new Set(); // objects that something else shows
-    this.veil.visible = false;
+    this.replaced = new Set(); // objects that something else shows
+    this.isGlass = false; // whether these are still seen, as glass
+    this.off = new Set(); // objects that a person has hidden
+    this.veil.visible = this.glass.visible = false;
     this.edgeColour = { value: new THREE.Color() };
     this.local = this.parts.map(({ pose }) => matrixOf(pose));
     this.ofObject = scene.objects.map(() => []);
@@ -56,9 +60,11 @@ export class Bodies extends THREE.Group {
       const solid = (draws) => everywhere(new THREE.Mesh(triangles, solidMaterial(placements, this.lights, draws)));
       const segments = edgesOf(parts, meshes);
       const edges = (draws) => everywhere(new THREE.LineSegments(segments, edgeMaterial(placements, draws, this.edgeColour)));
-      const groups = kind === 0 ? [[this, DRAWS.all]] : [[this.still, DRAWS.solid], [this.veil, DRAWS.faded]];
+      const groups = kind === 0 ? [[this, DRAWS.solid], [this.glass, DRAWS.faded]] : [[this.still, DRAWS.solid], [this.veil, DRAWS.faded]];
       for (const [group, draws] of groups) group.add(solid(draws), edges(draws));
     });
+    this.glass.traverse((each) => (each.renderOrder = 3));
+    this.add(this.glass);
     this.shapes = meshes.map(({ positions, triangles }) => {
       const shape = new THREE.BufferGeometry().setAttribute("position", new THREE.Float32BufferAttribute(positions, 3)).setIndex(triangles);
       shape.computeBoundingBox();
@@ -118,11 +124,19 @@ export class Bodies extends THREE.Group {
       if (parts.length) colour.set(this.colourOf(object, known));
       for (const part of parts) {
         const [placements, i] = this.placedBy(part);
-        placements.colour(i, colour, this.thickness[part], this.hidden.has(object) ? "hidden" : this.faded.has(object) ? "faded" : "solid");
+        placements.colour(i, colour, this.thickness[part], this.lookOf(object));
       }
     });
     this.edgeColour.value.set(css("--edge"));
-    for (const grid of this.grids) grid.material.uniforms.colour.value.set(css("--grid"));
+    for (const grid of this.grids) {
+      grid.material.uniforms.colour.value.set(css("--grid"));
+      grid.visible = !this.off.has(grid.userData.object);
+    }
+  }
+  lookOf(object) {
+    if (this.off.has(object)) return "hidden";
+    if (this.replaced.has(object)) return this.isGlass ? "faded" : "hidden";
+    return this.faded.has(object) ? "faded" : "solid";
   }
   choose(objects) {
     this.chosen = new Set(objects);
@@ -134,11 +148,15 @@ export class Bodies extends THREE.Group {
     if (!same) this.recolour();
   }
 
-  // A sphere around everything whose pose is known, or around some of it.
+  // True for objects that are somewhere, and that no person has hidden.
+  isShown(object) {
+    return this.poses[object] !== undefined && !this.off.has(object);
+  }
+  // A box around everything that is shown, or around some of it.
   bounds(of = () => true) {
     const all = new THREE.Box3();
     this.parts.forEach(({ object, unbounded }, part) => {
-      if (unbounded || !this.poses[object] || !of(this.cell.objects[object])) return;
+      if (unbounded || !this.isShown(object) || !of(this.cell.objects[object])) return;
       all.union(box.copy(this.shapes[this.parts[part].mesh].boundingBox).applyMatrix4(this.placed(part)));
     });
     return all;
@@ -148,24 +166,30 @@ export class Bodies extends THREE.Group {
     const boxes = new Map();
     for (let part = 0; part < this.moving; ++part) {
       const { object, unbounded, mesh } = this.parts[part];
-      if (unbounded || !this.poses[object]) continue;
+      if (unbounded || !this.isShown(object)) continue;
       if (!boxes.has(object)) boxes.set(object, new THREE.Box3());
       boxes.get(object).union(box.copy(this.shapes[mesh].boundingBox).applyMatrix4(this.placed(part)));
     }
     return boxes;
   }
-  // Leaves out these objects, or none.
-  hide(objects) {
-    this.hidden = new Set(objects);
+  // Something else shows these objects, or none; their bodies are left out, or are glass.
+  replace(objects, isGlass) {
+    this.replaced = new Set(objects);
+    this.isGlass = this.glass.visible = isGlass;
+    this.veil.visible = isGlass || this.faded.size > 0;
+    this.recolour();
+  }
+  turnOff(objects) {
+    this.off = new Set(objects);
     this.recolour();
   }
   // Bodies between the eye and moving ones fade.
   fade(eye) {
     const still = this.parts.slice(this.moving).map(({ object, mesh }, i) => ({ object, shape: this.shapes[mesh], matrix: this.placements[1].matrices[i] }));
-    const hiding = hidingObjects(eye, [...this.movingBoxes().values()], still.filter(({ object }) => this.poses[object]), this.faded);
+    const hiding = hidingObjects(eye, [...this.movingBoxes().values()], still.filter(({ object }) => this.isShown(object)), this.faded);
     if (hiding.size === this.faded.size && [...hiding].every((object) => this.faded.has(object))) return;
     this.faded = hiding;
-    this.veil.visible = hiding.size > 0;
+    this.veil.visible = this.isGlass || hiding.size > 0;
     this.recolour();
   }
 
@@ -177,7 +201,7 @@ export class Bodies extends THREE.Group {
   objectAt(raycaster) {
     const probe = new THREE.Mesh(), hits = [];
     this.parts.forEach(({ mesh, object }, part) => {
-      if (!this.poses[object] || this.faded.has(object)) return;
+      if (!this.isShown(object) || this.faded.has(object)) return;
       probe.geometry = this.shapes[mesh];
       probe.matrixWorld = this.placed(part);
       const found = [];

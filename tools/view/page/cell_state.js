@@ -16,6 +16,7 @@ export class CellState {
     this.connected = false;
     this.timeNs = 0;
     this.history = timeline ? new RecordedHistory(timeline) : new LiveHistory((id) => this.pairs[id].name);
+    this.measuredId = scene.pairs.length; // of the pair that a person measures
     this.pairs = scene.pairs.map(([a, b], id) => ({
       id, a, b, name: `${scene.objects[a].name} – ${scene.objects[b].name}`,
       margins: scene.objects[a].margin + scene.objects[b].margin, zones: [],
@@ -29,7 +30,36 @@ export class CellState {
     this.lateObjects = new Map();
     this.meant = new Set((report.contacts ?? []).filter(({ status }) => status === ALLOWED).map(({ pair }) => pair));
     for (const pair of report.pairs) if (!isKnown(pair)) this.noteLate(pair);
-    this.history.take(report, this.minimum(), timeNs);
+    if (this.measured) report.pairs.push(this.measured);
+    this.history.take(report, this.minimum(), this.scaling, timeNs);
+  }
+
+  // The pair of these two objects if reports have it.
+  published(a, b) {
+    return this.report?.pairs.find(({ pair }) => pair !== this.measuredId && [this.pairs[pair].a, this.pairs[pair].b].sort().join() === [a, b].sort().join())?.pair;
+  }
+  // From now on `measuredId` is the pair of these two objects, as far as setMeasured() says; without objects, it is no
+  // pair any more.
+  measure(a, b) {
+    this.setMeasured(undefined);
+    if (a === undefined) return;
+    const name = `${this.scene.objects[a].name} – ${this.scene.objects[b].name}`;
+    this.pairs[this.measuredId] = { id: this.measuredId, a, b, name, margins: 0, zones: [] };
+    this.scene.pairs[this.measuredId] = [a, b, 0];
+    this.history.renew(this.measuredId);
+  }
+  // `pair` has the members of a report's pairs.
+  setMeasured(pair) {
+    this.measured = pair && { ...pair, pair: this.measuredId };
+    if (!this.report) return;
+    this.report.pairs = this.report.pairs.filter((each) => each.pair !== this.measuredId);
+    if (pair) this.report.pairs.push(this.measured);
+  }
+
+  // The least speed scaling of all zones; undefined where no zone has one.
+  get scaling() {
+    const zones = this.separation?.zones ?? [];
+    return zones.length ? Math.min(...zones.map(({ scaling }) => scaling)) : undefined;
   }
 
   // Notes which object of a pair is the cause: the one whose pose is older, or is unknown.

@@ -3,7 +3,9 @@ import { addressOf, asked } from "./address.js";
 import { CellState } from "./cell_state.js";
 import { Connection } from "./connection.js";
 import { isKnown } from "./format.js";
+import { HiddenObjects } from "./hidden_objects.js";
 import { onKeys } from "./keys.js";
+import { Measuring } from "./measuring.js";
 import { PairTable } from "./pair_table.js";
 import { savePicture } from "./picture.js";
 import { Plots } from "./plots.js";
@@ -11,7 +13,9 @@ import { drawLegend, drawReadouts } from "./readouts.js";
 import { ContactRows } from "./contact_rows.js";
 import { SeparationRows } from "./separation_rows.js";
 import { SceneView } from "./scene_view.js";
+import { save, tableCsv } from "./table_csv.js";
 import { Timeline } from "./timeline.js";
+import { MODES } from "./visuals.js";
 
 const element = (id) => document.getElementById(id);
 const json = async (path) => (await fetch(path)).json();
@@ -33,11 +37,22 @@ applyTheme();
 
 // ---- The parts of the page
 
-const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), pairLookedAt: look, objectChosen: chooseObject });
+const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), pairLookedAt: look, picksBodies: () => measuring.isOn, objectChosen: (object) => (measuring.isOn ? measuring.take(object) : chooseObject(object)) });
 const table = new PairTable(choose, look, changed);
 const separations = new SeparationRows(choose);
 const contacts = new ContactRows(choose, chooseObject);
 const plots = new Plots();
+const measuring = new Measuring(state, {
+  marked: (objects) => mark(objects),
+  chosen: (pair) => chosen.has(pair) || choose(pair, false),
+  released: (pair) => chosen.delete(pair) && selected(),
+  changed: () => ++view.changes,
+});
+const hidden = new HiddenObjects(scene, (objects) => {
+  view.bodies.turnOff(objects);
+  ++view.changes;
+  changed();
+});
 const topics = scene.topics;
 const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf"], {
   open: () => {
@@ -73,6 +88,7 @@ function isOfAnotherCell({ scene_revision, pairs }) {
 
 // ---- Selection
 
+let marked = []; // objects, while they are chosen rather than pairs
 // Chooses a pair, alone or, with `more`, in addition; a chosen pair is released.
 function choose(pair, more) {
   const was = chosen.has(pair);
@@ -96,17 +112,24 @@ function lookAtChosen() {
 function chooseObject(object) {
   if (object === undefined) return clear();
   table.filter = scene.objects[object].name;
+  mark([object]);
+}
+// Marks objects instead of pairs.
+function mark(objects) {
   chosen.clear();
   selected();
-  view.bodies.choose([object]);
+  view.bodies.choose(objects);
+  marked = objects;
   ++view.changes;
 }
 function clear() {
+  measuring.clear();
   chosen.clear();
   table.filter = "";
   selected();
 }
 function selected() {
+  marked = [];
   view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
   table.drawnMs = plots.drawnMs = 0;
   changed();
@@ -115,10 +138,11 @@ function selected() {
 // ---- Address
 
 const secondsIn = () => (timeline ? (state.timeNs - Number(timeline.begin_ns)) * 1e-9 : undefined);
+const linked = () => [...chosen].filter((id) => id !== state.measuredId);
 const pairName = (id) => `${scene.objects[state.pairs[id].a].name}~${scene.objects[state.pairs[id].b].name}`;
 function address(withCamera) {
   return addressOf({
-    time: secondsIn(), pairs: [...chosen].map(pairName), filter: table.filter, sort: table.sorting, theme,
+    time: secondsIn(), pairs: linked().map(pairName), hidden: hidden.names, filter: table.filter, sort: table.sorting, theme,
     camera: withCamera ? view.place : asked.camera, shells: view.shells.visible,
   });
 }
@@ -126,7 +150,7 @@ function address(withCamera) {
 function changeCell() {
   const link = new URL(address(true), location.href);
   link.searchParams.delete("t");
-  state.history.keep?.(chosen);
+  state.history.keep?.(linked());
   history.replaceState(null, "", link);
   location.reload();
 }
@@ -141,6 +165,7 @@ table.filter = asked.filter;
 if (asked.sort) table.sorting = asked.sort;
 view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
 view.shells.visible = asked.shells;
+hidden.names = asked.hidden;
 if (asked.camera) view.place = asked.camera;
 
 // ---- Buttons and keys
@@ -148,7 +173,7 @@ if (asked.camera) view.place = asked.camera;
 function toast(text) {
   element("toast").textContent = text;
   element("toast").hidden = false;
-  setTimeout(() => (element("toast").hidden = true), 1800);
+  setTimeout(() => (element("toast").hidden = true), Math.max(1800, 60 * text.length));
 }
 const actions = {
   fit: () => view.fit(),
@@ -167,10 +192,23 @@ const actions = {
   },
   visuals: async () => {
     if (!scene.has_robots) return;
-    const isWanted = !view.visuals.isWanted;
-    element("visuals").setAttribute("aria-pressed", isWanted);
-    await view.visuals.show(isWanted);
-    if (isWanted && !view.visuals.children.length) toast("No robot of this cell has visual shapes that can be read");
+    const mode = MODES[(MODES.indexOf(view.visuals.mode) + 1) % MODES.length];
+    element("visuals").setAttribute("aria-pressed", mode !== "bodies");
+    element("visuals").textContent = { bodies: "Bodies", looks: "Looks", both: "Both" }[mode];
+    const isFirst = !view.visuals.loaded;
+    await view.visuals.show(mode);
+    ++view.changes;
+    if (!isFirst) return;
+    if (view.visuals.leftOut.length) toast(`Not drawn: ${view.visuals.leftOut.join("; ")}`);
+    else if (!view.visuals.children.length) toast("The URDF has no visual shapes");
+  },
+  objects: () => hidden.toggleList(),
+  hide: () => {
+    for (const object of marked.length ? marked : [...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b])) hidden.toggle(object);
+  },
+  measure: () => measuring.toggle(),
+  csv: () => {
+    if (state.report) save(tableCsv(state, table.listed(state).map(({ pair }) => pair)), `${scene.name}-${state.report.cycle}.csv`, "text/csv");
   },
   share: async () => {
     const link = address(true);
@@ -193,7 +231,8 @@ const actions = {
   },
   help: () => (element("keys").open ? element("keys").close() : element("keys").showModal()),
 };
-for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help"]) element(id).onclick = actions[id];
+for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help", "measure", "csv"]) element(id).onclick = actions[id];
+element("object-button").onclick = actions.objects;
 element("look").onclick = lookAtChosen;
 element("visuals").hidden = !scene.has_robots;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
@@ -216,6 +255,7 @@ function frame(nowMs) {
   contacts.draw(state, frozen, nowMs);
   separations.draw(state, frozen, nowMs);
   plots.draw(state, chosen, nowMs);
+  measuring.draw(state, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());
   if (state.report && view.fitted) firstMs ??= nowMs;
   drawnReport = state.reportNs;
@@ -241,7 +281,8 @@ function isDrawn(time) {
 
 // For tests and pictures: the state of the page.
 window.clearance = {
-  state, view, connection, plots,
+  state, view, connection, plots, measuring,
+  csv: () => tableCsv(state, table.listed(state).map(({ pair }) => pair)),
   stands: () => ({ at: secondsIn(), report: drawnReport, time: state.timeNs, ready: view.isReady, frames, connected: state.connected }),
   shownFor: () => (firstMs === undefined ? -1 : (performance.now() - firstMs) / 1000),
   // True when the recording stands at this time, s, and has been drawn there with tables and plots.

@@ -40,8 +40,8 @@ export class PairLines extends THREE.Group {
     this.choose = choose;
     this.look = look;
     const flat = () => new THREE.MeshBasicMaterial({ depthTest: false, transparent: true });
-    this.lines = new THREE.InstancedMesh(new THREE.CylinderGeometry(1, 1, 1, 8).rotateX(Math.PI / 2), flat(), MOST_LINES);
-    this.points = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 12, 8), flat(), 2 * MOST_LINES);
+    this.lines = new THREE.InstancedMesh(new THREE.CylinderGeometry(1, 1, 1, 6).rotateX(Math.PI / 2), flat(), MOST_LINES);
+    this.points = new THREE.InstancedMesh(new THREE.SphereGeometry(1, 10, 6), flat(), 2 * MOST_LINES);
     for (const mesh of [this.lines, this.points]) {
       mesh.frustumCulled = false;
       mesh.renderOrder = 10;

@@ -4,7 +4,7 @@ import { contact, isKnown, milliseconds, mm, put, signed, STATUS } from "./forma
 import { COLOUR } from "./pair_lines.js";
 
 const MOST_ROWS = 250;
-const AGAIN_MS = 125;
+const AGAIN_MS = 200;
 
 const KEYS = {
   name: ({ name }) => name,

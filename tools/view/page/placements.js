@@ -7,7 +7,8 @@ const HIDDEN = 1e9; // the thickness of parts that are not drawn, m
 const A_ROW = 128; // parts per row
 const LEAST = 1e-9; // m
 
-// For vertex shaders: `owner` is the part's number.
+// For vertex shaders: `owner` is the part's number. Products of matrices with vectors come first: a product of two
+// matrices for each vertex would cost a processor that draws in software most of its time.
 export const PLACED = `uniform highp sampler2D placements; attribute float owner;
   vec4 texel(int i) { int part = int(owner); return texelFetch(placements, ivec2(${TEXELS} * (part % ${A_ROW}) + i, part / ${A_ROW}), 0); }
   mat4 placed() { return mat4(texel(0), texel(1), texel(2), texel(3)); }

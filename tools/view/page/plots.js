@@ -1,10 +1,12 @@
-// The last 30 s as curves, drawn by uPlot: the least distance and its lower bound, the time of the tick, chosen pairs.
+// The last seconds or minutes as curves, drawn by uPlot: the least distance and its lower bound, the time of the tick,
+// the speed scaling of zones, and distances or closing speeds of chosen pairs.
 import uPlot from "uplot";
 import { axisOf, ticksOf } from "./axis.js";
 import { css, micro, mm, put } from "./format.js";
-import { HISTORY_S, tickOf } from "./history.js";
+import { tickOf } from "./history.js";
 
-const AGAIN_MS = 66;
+const AGAIN_MS = 100, LONG_AGAIN_MS = 500; // between drawings, and between those of minutes
+const SHORT_S = 60;
 const MOST_THRESHOLDS = 4;
 const HUES = ["--accent", "--lost", "--good", "--near", "--alarm", "--quiet"];
 
@@ -20,14 +22,15 @@ const threshold = () => curve("--alarm", { width: 1, dash: [5, 4], auto: false }
 const valueRange = (plot, least, most) => axisOf(least ?? NaN, most ?? NaN);
 
 class Plot {
-  constructor(id, series) {
+  // `span()`: the width in s.
+  constructor(id, series, span) {
     this.element = document.getElementById(id);
     const grid = { stroke: () => css("--line"), width: 1 }, ticks = { show: false };
     this.plot = new uPlot({
       ...this.size(), legend: { show: false }, cursor: { show: false }, padding: [7, 0, 6, 0],
-      scales: { x: { time: false, range: [-HISTORY_S, 0] }, y: { range: valueRange } },
+      scales: { x: { time: false, range: () => [-span(), 0] }, y: { range: valueRange } },
       axes: [
-        { size: 0, grid, ticks, splits: [-20, -10], values: () => [] },
+        { size: 0, grid, ticks, splits: () => [(-2 / 3) * span(), (-1 / 3) * span()], values: () => [] },
         { size: 34, gap: 5, grid, ticks, font: "10px system-ui, sans-serif", stroke: () => css("--quiet"),
           splits: (plot, axis, low, high) => ticksOf(low, high), values: (plot, splits) => splits.map(axisNumber) },
       ],
@@ -52,48 +55,69 @@ const values = (curve, factor = 1) => curve.map(([, value]) => factor * value);
 
 export class Plots {
   constructor() {
-    this.minimum = new Plot("plot-minimum", [filled("--accent"), curve("--accent"), ...Array.from({ length: MOST_THRESHOLDS }, threshold)]);
-    this.tick = new Plot("plot-tick", [curve("--good")]);
-    this.figure = document.getElementById("chosen");
+    this.choices = { span: document.getElementById("span"), quantity: document.getElementById("quantity") };
+    for (const choice of Object.values(this.choices)) choice.onchange = () => (this.drawnMs = 0);
+    const span = () => this.span;
+    this.minimum = new Plot("plot-minimum", [filled("--accent"), curve("--accent"), ...Array.from({ length: MOST_THRESHOLDS }, threshold)], span);
+    this.tick = new Plot("plot-tick", [curve("--good")], span);
+    this.made = {}; // those that are hidden at first
     this.drawnMs = 0;
   }
 
+  // s
+  get span() {
+    return Number(this.choices.span.value);
+  }
+
   draw(state, chosen, nowMs) {
-    if (nowMs - this.drawnMs < AGAIN_MS || !state.report) return;
+    if (nowMs - this.drawnMs < (this.span > SHORT_S ? LONG_AGAIN_MS : AGAIN_MS) || !state.report) return;
     this.drawnMs = nowMs;
-    state.history.wish(chosen);
+    state.history.wish(chosen, this.span);
     this.drawMinimum(state);
     this.drawTick(state);
+    this.drawScaling(state);
     this.drawChosen(state, chosen);
   }
 
   // The distance is a line; below its lower bound, the area is filled.
   drawMinimum(state) {
     const { scene, history } = state, minimum = state.minimum();
-    const lower = history.curve("lower"), levels = Array.from({ length: MOST_THRESHOLDS }, (_, i) => 1e3 * scene.zones[i]?.enter_below);
-    this.minimum.draw([times(lower), values(lower, 1e3), values(history.curve("distance"), 1e3), ...levels.map((level) => lower.map(() => level))]);
+    const lower = history.curve("lower", this.span), levels = Array.from({ length: MOST_THRESHOLDS }, (_, i) => 1e3 * scene.zones[i]?.enter_below);
+    this.minimum.draw([times(lower), values(lower, 1e3), values(history.curve("distance", this.span), 1e3), ...levels.map((level) => lower.map(() => level))]);
     put(document.getElementById("plot-minimum-now"), minimum ? `${mm(minimum.distance, 2)} mm` : "not known");
   }
 
   drawTick({ report, history }) {
-    const curve = history.curve("tick"), tick = tickOf(report);
+    const curve = history.curve("tick", this.span), tick = tickOf(report);
     this.tick.draw([times(curve), values(curve)]);
     put(document.getElementById("plot-tick-now"), tick === undefined ? "not recorded" : micro(tick));
   }
 
-  // The figure has no size before it is shown, and its plot is made then.
+  // A figure has no size before it is shown, and its plot is made then.
+  shown(name, isShown, series) {
+    document.getElementById(name).hidden = !isShown;
+    return isShown && (this.made[name] ??= new Plot(`plot-${name}`, series(), () => this.span));
+  }
+
+  drawScaling({ history, scaling }) {
+    const plot = this.shown("scaling", scaling !== undefined, () => [curve("--near")]);
+    if (!plot) return;
+    const curveNow = history.curve("scaling", this.span);
+    plot.draw([times(curveNow), values(curveNow)]);
+    put(document.getElementById("plot-scaling-now"), scaling.toFixed(2));
+  }
+
   drawChosen({ pairs, history }, chosen) {
-    this.figure.hidden = chosen.size === 0;
-    if (!chosen.size) return;
-    this.pairs ??= new Plot("plot-chosen", HUES.map((hue) => curve(hue)));
-    const shown = [...chosen].slice(0, HUES.length);
-    const curves = HUES.map((_, i) => history.curve(shown[i] ?? shown[0]));
-    this.pairs.draw([times(curves[0]), ...curves.map((curve, i) => values(curve, i < shown.length ? 1e3 : NaN))]);
-    const names = document.getElementById("plot-chosen-names");
-    if (names.dataset.shown === shown.join()) return;
-    names.dataset.shown = shown.join();
+    const plot = this.shown("chosen", chosen.size > 0, () => HUES.map((hue) => curve(hue)));
+    if (!plot) return;
+    const of = this.choices.quantity.value, shown = [...chosen].slice(0, HUES.length);
+    const curves = HUES.map((_, i) => history.curve(shown[i] ?? shown[0], this.span, undefined, of));
+    plot.draw([times(curves[0]), ...curves.map((curve, i) => values(curve, i >= shown.length ? NaN : of === "distance" ? 1e3 : 1))]);
+    const names = document.getElementById("plot-chosen-names"), key = shown.map((id) => pairs[id].name).join();
+    if (names.dataset.shown === key) return;
+    names.dataset.shown = key;
     names.replaceChildren(...shown.map((id, i) => {
-      const name = Object.assign(document.createElement("span"), { textContent: pairs[id].name });
+      const name = Object.assign(document.createElement("span"), { textContent: pairs[id].name, title: pairs[id].name });
       name.style.setProperty("--mark", `var(${HUES[i]})`);
       return name;
     }));

@@ -89,7 +89,7 @@ export function drawLegend() {
 
 // Returns whether the view is frozen. Texts change only as often as a person can read: in a slow browser, layout costs
 // more than the scene.
-const AGAIN_MS = 66;
+const AGAIN_MS = 100;
 let drawnMs = 0, healthDrawnMs = 0, frozen = false;
 export function drawReadouts(state, playing, nowMs) {
   if (nowMs - drawnMs < AGAIN_MS) return frozen;

@@ -21,14 +21,23 @@ const STAYS_AGAIN_MS = 100, GROWTH = 1.15, INSIDE = 0.95;
 const GAP_SHARE = 0.45, OBJECT_SHARE = 0.6, LEAST_LOOK = 0.03;
 const ALONG = 0.6; // cosine between view and gap, above which the gap would be seen from its end
 
+// Without a graphics card, smooth outlines cost a third of a frame's time.
+function isDrawnInSoftware() {
+  const gl = document.createElement("canvas").getContext("webgl2"), names = gl?.getExtension("WEBGL_debug_renderer_info");
+  const isSo = /swiftshader|llvmpipe|software/i.test(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : "");
+  gl?.getExtension("WEBGL_lose_context")?.loseContext();
+  return isSo;
+}
+
 export class SceneView {
-  // Callbacks: pairChosen(pair), pairLookedAt(pair), objectChosen(object or undefined).
+  // Callbacks: pairChosen(pair), pairLookedAt(pair), objectChosen(object or undefined); picksBodies() is true while
+  // clicks choose bodies only.
   constructor(scene, on) {
     this.on = on;
     this.cell = scene;
     this.element = document.getElementById("scene");
     const canvas = document.getElementById("view");
-    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: scene.parts.length < LARGE });
+    this.renderer = new THREE.WebGLRenderer({ canvas, antialias: scene.parts.length < LARGE && !isDrawnInSoftware() });
     this.sharpness = Math.min(window.devicePixelRatio, 2);
     this.world = new THREE.Scene();
     this.camera = new THREE.PerspectiveCamera(38, 1, 0.01, 400);
@@ -176,7 +185,7 @@ export class SceneView {
     this.bodies.lit(this.camera, this.controls.target);
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.visuals.update();
-    this.shells.update(this.bodies.poses, state.zoneStates());
+    this.shells.update(this.bodies, state.zoneStates());
     if (state.report) this.lines.update(state, chosen, this.camera, this.size, this.bodies);
     const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
     this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));
@@ -233,7 +242,7 @@ export class SceneView {
       if (!down || Math.hypot(clientX - down[0], clientY - down[1]) > CLICK_PIXELS) return;
       const box = canvas.getBoundingClientRect();
       const x = clientX - box.left, y = clientY - box.top;
-      const pair = this.lines.pairAt(x, y, this.camera, this.size);
+      const pair = this.on.picksBodies() ? undefined : this.lines.pairAt(x, y, this.camera, this.size);
       if (pair !== undefined) return this.on.pairChosen(pair);
       const raycaster = new THREE.Raycaster();
       raycaster.setFromCamera(new THREE.Vector2((x / box.width) * 2 - 1, 1 - (y / box.height) * 2), this.camera);

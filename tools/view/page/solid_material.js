@@ -9,11 +9,11 @@ const SKY = 1.8, SUN = 2.0; // irradiances
 const GROUND = "#98a1ae";
 
 // The parts that a material draws.
-export const DRAWS = { all: 0, solid: 1, faded: 2 };
+export const DRAWS = { solid: 1, faded: 2 };
 
 // A part that is not drawn is put outside of the view.
 const LEAVE_OUT = `
-  if (isHidden() || (DRAWS != 0 && isFaded() != (DRAWS == 2))) {
+  if (isHidden() || isFaded() != (DRAWS == 2)) {
     gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
     return;
   }`;
@@ -25,7 +25,7 @@ const vertexShader = `${PLACED}
     mat4 world = placed();
     facing = mat3(world) * normal;
     colour = ownColour();
-    gl_Position = projectionMatrix * viewMatrix * world * vec4(position, 1.0);
+    gl_Position = projectionMatrix * (viewMatrix * (world * vec4(position, 1.0)));
   }`;
 
 // For fragment shaders: a lit colour, with the uniforms of lit().
@@ -78,7 +78,7 @@ export function edgeMaterial(placements, draws, colour) {
       varying float strength;
       void main() {
         ${LEAVE_OUT}
-        vec4 at = viewMatrix * placed() * vec4(position, 1.0);
+        vec4 at = viewMatrix * (placed() * vec4(position, 1.0));
         strength = clamp(${EDGE_PER_SIZE.toFixed(1)} * ownSize() * projectionMatrix[1][1] / max(1e-6, -at.z), 0.05, 0.55);
         gl_Position = projectionMatrix * at;
         gl_Position.z -= 2e-5 * gl_Position.w;

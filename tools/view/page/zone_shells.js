@@ -12,9 +12,9 @@ const material = (placements) => new THREE.ShaderMaterial({
   vertexShader: `${PLACED}
     varying vec3 normalSeen, seen;
     void main() {
-      mat4 inView = viewMatrix * placed();
-      vec4 at = inView * vec4(position, 1.0);
-      normalSeen = mat3(inView) * normal;
+      mat4 world = placed();
+      vec4 at = viewMatrix * (world * vec4(position, 1.0));
+      normalSeen = mat3(viewMatrix) * (mat3(world) * normal);
       seen = -at.xyz;
       gl_Position = projectionMatrix * at;
     }`,
@@ -45,11 +45,11 @@ export class ZoneShells extends THREE.Group {
   }
 
   // Moves the shells to their objects; `states` is CellState.zoneStates().
-  update(poses, states) {
+  update(bodies, states) {
     if (!this.visible) return;
     this.shells.forEach((shells, zone) => {
       shells?.parts.forEach(({ object }, i) => {
-        shells.placements.place(i, poses[object] && world.multiplyMatrices(poses[object], shells.local[i]));
+        shells.placements.place(i, bodies.isShown(object) ? world.multiplyMatrices(bodies.poses[object], shells.local[i]) : undefined);
       });
       if (this.active[zone] !== Boolean(states[zone].active)) {
         this.active[zone] = Boolean(states[zone].active);

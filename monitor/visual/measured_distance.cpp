@@ -1,0 +1,73 @@
+#include "monitor/visual/measured_distance.hpp"
+
+#include <algorithm>
+#include <span>
+
+#include "core/distance.hpp"
+#include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/pairs/evaluate_pair.hpp"
+
+namespace clearance {
+namespace {
+
+PairStatus status_of(DistanceStatus status) {
+  switch (status) {
+    case DistanceStatus::kConverged:
+      return PairStatus::kConverged;
+    case DistanceStatus::kTouching:
+      return PairStatus::kTouching;
+    case DistanceStatus::kOverlapping:
+      return PairStatus::kOverlapping;
+    case DistanceStatus::kIterationLimit:
+    case DistanceStatus::kDepthNotAsked:
+      return PairStatus::kIterationLimit;
+    case DistanceStatus::kBadPose:
+      break;
+  }
+  return PairStatus::kUnknown;
+}
+
+// The distance of two parts in `nearest`, if it is less than what is there.
+void take_nearer(const PosedPart& a, const PosedPart& b, MeasuredDistance& nearest) {
+  TrackingState cold;
+  const DistanceResult found =
+      distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold);
+  const DistanceBounds exact = for_exact_poses(found, a, b);
+  nearest.lower = std::min(nearest.lower, exact.lower);
+  if (!(exact.upper < nearest.upper)) return;
+  nearest.upper = exact.upper;
+  nearest.distance = found.distance;
+  nearest.status = status_of(found.status);
+  const Mat3& turn = a.world_from_part_rotation;
+  nearest.witness_a = turn * found.point_on_a + a.world_from_part.position;
+  nearest.witness_b = turn * found.point_on_b + a.world_from_part.position;
+}
+
+}  // namespace
+
+// Two parts whose spheres are farther apart than others can be do not decide.
+MeasuredDistance MeasuredDistances::between(std::uint32_t a, std::uint32_t b,
+                                            const ObjectPoses& poses) {
+  const std::size_t objects = first_.size() - 1;
+  if (a == b || a >= objects || b >= objects) return {};
+  if (!poses.is_on_time(a) || !poses.is_on_time(b)) return {};
+  const auto placed = [&](std::uint32_t object) {
+    const std::span<PosedPart> parts(&parts_[first_[object]], first_[object + 1] - first_[object]);
+    for (PosedPart& part : parts) place_at(*poses.pose(object), part);
+    return parts;
+  };
+  const auto of_a = placed(a), of_b = placed(b);
+  MeasuredDistance nearest;
+  nearest.lower = kInfinity;
+  for (const PosedPart& part_a : of_a) {
+    for (const PosedPart& part_b : of_b) {
+      if (least_between(part_a.sphere_in_world, part_b.sphere_in_world) > nearest.upper) continue;
+      take_nearer(part_a, part_b, nearest);
+    }
+  }
+  if (nearest.status == PairStatus::kUnknown) return {};
+  nearest.distance = std::clamp(nearest.distance, nearest.lower, nearest.upper);
+  return nearest;
+}
+
+}  // namespace clearance
