@@ -197,9 +197,9 @@ view::Resource history(const Source& source, const std::string& query) {
   for (std::uint32_t pair = 0; list >> pair && pairs.size() < kMostCurves; list.ignore()) {
     pairs.push_back(pair);
   }
-  return resource("application/json", source.history(number_of(fields["end"], kLongest_s, 0.0),
-                                                     number_of(fields["width"], kLongest_s, 30.0),
-                                                     pairs));
+  return resource("application/json",
+                  source.history(number_of(fields["end"], kLongest_s, 0.0),
+                                 number_of(fields["width"], kLongest_s, 30.0), pairs));
 }
 
 // "a=3&b=17": numbers of two objects.

@@ -122,7 +122,8 @@ void refuse_cut_off_stl(const std::string& bytes) {
 }
 
 // Reads STL, OBJ and COLLADA.
-std::vector<ColouredTriangles> import_with_assimp(const std::string& bytes, const std::string& format) {
+std::vector<ColouredTriangles> import_with_assimp(const std::string& bytes,
+                                                  const std::string& format) {
   if (format == "stl") refuse_cut_off_stl(bytes);
   if (format == "dae") {
     if (const std::string fault = fault_of_collada(bytes); !fault.empty()) throw BadMesh{fault};

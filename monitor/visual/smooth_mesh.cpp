@@ -7,8 +7,8 @@
 namespace clearance {
 namespace {
 
-constexpr double kSmooth = 0.766;       // cosine of 40 degrees
-constexpr double kSame = 1.0 - 1e-6;    // cosine of two normals that are drawn as one
+constexpr double kSmooth = 0.766;     // cosine of 40 degrees
+constexpr double kSame = 1.0 - 1e-6;  // cosine of two normals that are drawn as one
 
 struct Face {
   Vec3 area = Vec3::Zero();    // its normal, times twice its area, m^2

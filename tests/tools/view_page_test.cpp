@@ -180,7 +180,9 @@ TEST_F(ViewPage, MeasuresAnyTwoBodiesSavesTheTableAndPlotsMinutes) {
   EXPECT_EQ(lines[0][5], "distance_m");
   for (std::size_t i = 1; i < lines.size(); ++i) {
     ASSERT_EQ(lines[i].size(), lines[0].size());
-    const auto number = [&](std::size_t column) { return std::stod(std::string(lines[i][column])); };
+    const auto number = [&](std::size_t column) {
+      return std::stod(std::string(lines[i][column]));
+    };
     EXPECT_LE(number(6), number(5));
     EXPECT_LE(number(5), number(7));
   }
@@ -255,8 +257,8 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   const auto mode = [](const char* text, bool visible, int replaced, bool glass) {
     return json{{"text", text}, {"visible", visible}, {"replaced", replaced}, {"glass", glass}};
   };
-  EXPECT_EQ(found["modes"],
-            json({mode("Looks", true, 2, false), mode("Both", true, 2, true), mode("Bodies", false, 0, false)}));
+  EXPECT_EQ(found["modes"], json({mode("Looks", true, 2, false), mode("Both", true, 2, true),
+                                  mode("Bodies", false, 0, false)}));
 }
 
 }  // namespace

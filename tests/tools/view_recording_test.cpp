@@ -103,6 +103,7 @@ struct Before {
   bool zone_active = false;
   double least = kInfinity;          // m
   double least_of_pair = kInfinity;  // for pair 2
+  double fastest = -kInfinity;       // its closing speed, m/s
 };
 Before before(const std::string& file, double time_s) {
   RecordingReader reader(file);
@@ -122,18 +123,22 @@ Before before(const std::string& file, double time_s) {
       if (!report->minimum_known || report->minimum.status >= 5) continue;
       found.least = std::min(found.least, report->minimum.distance);
       found.least_of_pair = std::min(found.least_of_pair, report->pairs._buffer[2].distance);
+      const double speed = report->pairs._buffer[2].closing_speed;
+      if (!std::isnan(speed)) found.fastest = std::max(found.fastest, speed);
     }
   }
   return found;
 }
 
-double least_in(const json& curve) {
-  double least = kInfinity;
+// The known values of a curve.
+std::vector<double> known_in(const json& curve) {
+  std::vector<double> known;
   for (const json& value : curve) {
-    if (!value.is_null()) least = std::min(least, value.get<double>());
+    if (!value.is_null()) known.push_back(value);
   }
-  return least;
+  return known;
 }
+double least_in(const json& curve) { return std::ranges::min(known_in(curve)); }
 
 // The jumps lead to times between ticks. A report less than a microsecond later counts as the one
 // of that time.
@@ -154,6 +159,7 @@ TEST_F(ViewOfARecording, AJumpBringsTheZonesAndTheHistoryOfItsMoment) {
     EXPECT_LE(history["s"].back(), each["time"].get<double>() + 0.02);
     EXPECT_EQ(least_in(history["distance"]), truth.least);
     EXPECT_NEAR(least_in(history["pairs"]["2"]), truth.least_of_pair, 1e-6);
+    EXPECT_NEAR(std::ranges::max(known_in(history["speeds"]["2"])), truth.fastest, 1e-6);
   }
 }
 

@@ -67,7 +67,7 @@ class RunHistory {
   static constexpr std::uint32_t kNotPublished = std::numeric_limits<std::uint32_t>::max();
   std::map<Names, std::uint32_t> columns_;
   std::vector<std::uint32_t> column_of_;  // by pair of the present scene
-  Stretches<Piece, Extremes> run_;          // a column per pair that any scene publishes
+  Stretches<Piece, Extremes> run_;        // a column per pair that any scene publishes
 };
 
 // Join two neighbouring stretches of time, or a pair's values in them; Stretches calls these.

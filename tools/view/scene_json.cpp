@@ -22,8 +22,9 @@ constexpr std::size_t kMostShells = 120;
 // So many round parts are drawn as finely as one alone. More are drawn more coarsely, down to steps
 // of kCoarsest (rad), so that the number of triangles stays about the same.
 constexpr double kMostFine = 30.0, kCoarsest = 0.6;
-// Steps of the arcs of zones' shells (rad). A shell is faint, and its facets are not seen; a plate's
-// shell has arcs at all edges and corners, so that fine ones cost ten times the cell's bodies.
+// Steps of the arcs of zones' shells (rad). A shell is faint, and its facets are not seen; a
+// plate's shell has arcs at all edges and corners, so that fine ones cost ten times the cell's
+// bodies.
 constexpr double kShellStep = 0.8;
 
 // Six digits: micrometres in a cell of a metre. The text is a third as long.
@@ -151,9 +152,10 @@ json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
     for (const Part& part : object.parts) {
       if (!part.shape.bounded()) continue;
       if (list.size() == kMostShells) return json::array();
-      list.push_back({{"object", i},
-                      {"pose", pose_json(part.object_from_part)},
-                      {"mesh", meshes.number_of_shell(part.shape, zone.enter_below + object.margin)}});
+      list.push_back(
+          {{"object", i},
+           {"pose", pose_json(part.object_from_part)},
+           {"mesh", meshes.number_of_shell(part.shape, zone.enter_below + object.margin)}});
     }
   }
   return list;

@@ -163,7 +163,8 @@ json visual_json(std::size_t object, const Pose& pose, const Look& look,
   json entry = {{"object", object},
                 {"pose", {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()}},
                 {"mesh", look.mesh}};
-  if (const auto& c = look.colour ? look.colour : colour) entry["colour"] = {c->x(), c->y(), c->z()};
+  if (const auto& c = look.colour ? look.colour : colour)
+    entry["colour"] = {c->x(), c->y(), c->z()};
   return entry;
 }
 

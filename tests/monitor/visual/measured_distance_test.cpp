@@ -1,4 +1,5 @@
-// The distance of two objects that a person picks, against closed forms and the truth of posed spheres.
+// The distance of two objects that a person picks, against closed forms and the truth of posed
+// spheres.
 #include "monitor/visual/measured_distance.hpp"
 
 #include <gtest/gtest.h>
@@ -33,9 +34,9 @@ class MeasuredDistanceTest : public testing::Test {
   }
 
   // The hand is watched beside the post only; post and shelf are two fixed objects.
-  Scene scene = cell_of({moving("hand", {ball(0.1), ball(0.05, at(0.3, 0, 0))}),
-                         fixed("post", {ball(0.2)}, at(2, 0, 0)),
-                         fixed("shelf", {ball(0.25)}, at(0, 3, 0))});
+  Scene scene =
+      cell_of({moving("hand", {ball(0.1), ball(0.05, at(0.3, 0, 0))}),
+               fixed("post", {ball(0.2)}, at(2, 0, 0)), fixed("shelf", {ball(0.25)}, at(0, 3, 0))});
   ObjectPoses poses{scene};
   MeasuredDistances measured{scene};
 

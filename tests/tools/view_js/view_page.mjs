@@ -164,7 +164,14 @@ async function ticks() {
   });
 }
 
-const zones = () => page.$$eval("#zones .chip", (chips) => chips.map(({ textContent, className, title }) => ({ text: textContent, kind: className, title })));
+// The chips once the header has drawn the states of all zones.
+async function zones() {
+  await page.waitForFunction(() => {
+    const { zones: known, scene } = window.clearance.state, [first] = document.querySelectorAll("#zones .chip");
+    return known.size === scene.zones.length && first && !first.textContent.includes("not known");
+  });
+  return page.$$eval("#zones .chip", (chips) => chips.map(({ textContent, className, title }) => ({ text: textContent, kind: className, title })));
+}
 
 // What the header says of the least distance once the daemon has reported.
 async function inputs() {

@@ -78,7 +78,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
   },
 });
 const track = timeline && new Timeline(timeline, scene.zones, (name, value) => connection.set(name, value));
-drawLegend();
+drawLegend(scene);
 
 // Ids of a report of another cell mean other objects. A recording may be shown with a cell that was edited since.
 function isOfAnotherCell({ scene_revision, pairs }) {
@@ -235,6 +235,7 @@ for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help
 element("object-button").onclick = actions.objects;
 element("look").onclick = lookAtChosen;
 element("visuals").hidden = !scene.has_robots;
+element("shells").hidden = !scene.zones.length;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
 dark.addEventListener("change", () => {
   applyTheme();

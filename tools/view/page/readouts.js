@@ -77,9 +77,11 @@ function drawHealth(state) {
   ]));
 }
 
-export function drawLegend() {
+// Colours of pairs; those of zones only where the cell has zones.
+export function drawLegend({ zones }) {
+  const ofZones = ["inside", "leaving", "outside"];
   const meanings = { inside: "in a zone", leaving: "leaving it", outside: "outside its zones", free: "in no zone", meant: "allowed contact", lost: "late or unknown" };
-  element("legend").replaceChildren(...Object.entries(meanings).map(([level, text]) => {
+  element("legend").replaceChildren(...Object.entries(meanings).filter(([level]) => zones.length || !ofZones.includes(level)).map(([level, text]) => {
     const entry = document.createElement("span"), mark = document.createElement("i");
     mark.style.background = `var(${COLOUR[level]})`;
     entry.append(mark, text);

@@ -5,6 +5,7 @@ import { css } from "./format.js";
 import { plainMaterial } from "./solid_material.js";
 
 const AGAIN_MS = 300; // while the server reads the meshes
+const ALBEDO = 0.78; // of white paint: a whiter one would have no shades in this light
 
 // What is drawn of robots: the bodies, their looks, or their looks with the bodies around them as glass.
 export const MODES = ["bodies", "looks", "both"];
@@ -68,7 +69,7 @@ export class Visuals extends THREE.Group {
       visual.matrixWorldNeedsUpdate = true;
       const isMarked = late.has(object) || chosen.has(object) || !colour;
       if (isMarked) visual.material.uniforms.colour.value.set(this.bodies.colourOf(object, css));
-      else visual.material.uniforms.colour.value.copy(colour);
+      else visual.material.uniforms.colour.value.copy(colour).multiplyScalar(ALBEDO);
     }
   }
 }
