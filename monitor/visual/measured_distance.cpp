@@ -52,7 +52,8 @@ MeasuredDistance MeasuredDistances::between(std::uint32_t a, std::uint32_t b,
   if (a == b || a >= objects || b >= objects) return {};
   if (!poses.is_on_time(a) || !poses.is_on_time(b)) return {};
   const auto placed = [&](std::uint32_t object) {
-    const std::span<PosedPart> parts(&parts_[first_[object]], first_[object + 1] - first_[object]);
+    const std::span<PosedPart> parts(parts_.data() + first_[object],
+                                     first_[object + 1] - first_[object]);
     for (PosedPart& part : parts) place_at(*poses.pose(object), part);
     return parts;
   };
