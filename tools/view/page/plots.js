@@ -84,7 +84,7 @@ export class Plots {
     const { scene, history } = state, minimum = state.minimum();
     const lower = history.curve("lower", this.span), levels = Array.from({ length: MOST_THRESHOLDS }, (_, i) => 1e3 * scene.zones[i]?.enter_below);
     this.minimum.draw([times(lower), values(lower, 1e3), values(history.curve("distance", this.span), 1e3), ...levels.map((level) => lower.map(() => level))]);
-    put(document.getElementById("plot-minimum-now"), minimum ? `${mm(minimum.distance, 2)} mm` : "not known");
+    put(document.getElementById("plot-minimum-now"), minimum ? mm(minimum.distance, 2) : "not known");
   }
 
   drawTick({ report, history }) {
