@@ -100,8 +100,14 @@ enum NextFeature : std::int32_t {
 struct alignas(64) FailedLanes {
   std::uint32_t block, lanes;
   alignas(64) std::array<double, kBlockLanes> next;  // NextFeature
-  std::array<double, kBlockLanes> derivative;        // of two vertices: along that edge
+  // Of two vertices: along that edge. Of a facet and a vertex: from the vertex along that edge to
+  // the plane, m.
+  std::array<double, kBlockLanes> derivative;
 };
+constexpr bool has_derivative(FeaturePair pair) {
+  return pair == FeaturePair::kVertexVertex || pair == FeaturePair::kVertexFacet ||
+         pair == FeaturePair::kFacetVertex;
+}
 
 // One round of the vector code over all blocks.
 struct BatchRound {

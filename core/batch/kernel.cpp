@@ -141,7 +141,7 @@ HWY_INLINE std::size_t judge(BatchBlock& block, std::size_t first, const BatchRo
   // Certified or not: only what FailedLanes::lanes names is read. If the closest features are not
   // certified, no neighbour takes over, and distance() gets them unchanged.
   hn::Store(hn::IfThenElse(c.closest, all(kNextUnknown), c.next), Tag(), &failed.next[first]);
-  if constexpr (kPair == FeaturePair::kVertexVertex) {
+  if constexpr (has_derivative(kPair)) {
     hn::Store(c.derivative, Tag(), &failed.derivative[first]);
   }
   // A vertex is its own witness point: those rows never change.

@@ -52,12 +52,16 @@ TransitionsMade from_edge_and_vertex(const Features& f, std::int32_t next) noexc
   return go(f.on_other, FeatureKind::kEdge, edge_of_vertex(f.other, f.on_other, next).edge);
 }
 
-// If an edge of the vertex approaches, the vertex at its far end is next. If the vertex is past a
-// side of the facet, the edge at that side is next.
-TransitionsMade from_facet_and_vertex(const Features& f, std::int32_t next) noexcept {
+// If an edge of the vertex approaches, the vertex at its far end is next, or the edge itself if its
+// end is below the plane. If the vertex is past a side of the facet, the edge at that side is next.
+TransitionsMade from_facet_and_vertex(const Features& f, std::int32_t next,
+                                      double to_plane) noexcept {
   if (next >= kNextOfOther) {
     const EdgeUse& use = edge_of_vertex(f.other, f.on_other, next - kNextOfOther);
-    return go(f.on_other, FeatureKind::kVertex, f.other.edges[use.edge].vertex[1 - use.side]);
+    const Edge& edge = f.other.edges[use.edge];
+    const std::int32_t far = edge.vertex[1 - use.side];
+    return to_plane > edge.end || far == kNone ? go(f.on_other, FeatureKind::kVertex, far)
+                                               : go(f.on_other, FeatureKind::kEdge, use.edge);
   }
   const Facet& facet = f.owner.facets[f.on_owner.feature];
   return go(f.on_owner, FeatureKind::kEdge, f.owner.facet_edges[facet.first_side + next].edge);
@@ -98,7 +102,7 @@ TransitionsMade to_next_feature(FeaturePair features, const ConvexBody& a, const
       return from_edge_and_vertex(f, next);
     case FeaturePair::kVertexFacet:
     case FeaturePair::kFacetVertex:
-      return from_facet_and_vertex(f, next);
+      return from_facet_and_vertex(f, next, of.derivative[lane]);
     case FeaturePair::kEdgeEdge:
       return from_edges(f, next);
     default:

@@ -28,6 +28,15 @@ struct Closest {
   Lanes next, derivative;  // as of FailedLanes
 };
 
+// Are features at this distance (m) so far apart that they cannot touch? Else rounding decides on
+// their direction.
+HWY_INLINE LaneMask certainly_apart(const FeatureRows& at, const RelativePoses& pose,
+                                    Lanes distance) {
+  const Lanes size =
+      (at.shared(kBoundingRadiusA) + at.shared(kBoundingRadiusB)) + norm(pose.translation);
+  return hn::Gt(distance, all(kMayTouch) * size);
+}
+
 HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pose) {
   Closest c;
   c.point_a = at.points(0);
@@ -47,6 +56,7 @@ HWY_INLINE Closest vertex_vertex(const FeatureRows& at, const RelativePoses& pos
   c.derivative = hn::IfThenElse(from_a, on_a.derivative, of_b);
   c.next = hn::IfThenElse(from_a, on_a.which,
                           next_if(hn::Gt(of_b, error), named(on_b.which, kNextOfOther)));
+  c.next = next_if(certainly_apart(at, pose, c.distance), c.next);
   return c;
 }
 
@@ -74,8 +84,10 @@ HWY_INLINE Closest edge_vertex(const FeatureRows& at, const RelativePoses& pose)
       owner.opposite().direction_in_local(line.separation));
   const LaneMask recede = hn::Lt(side.derivative, hn::Neg(error));
   c.closest = hn::And(within, hn::And(recede, hn::Gt(away.derivative, error)));
+  const LaneMask approaches =
+      hn::And(hn::Gt(side.derivative, error), certainly_apart(at, pose, line.length));
   c.next = hn::IfThenElse(recede, next_if(hn::Gt(hn::Neg(away.derivative), error), away.which),
-                          next_if(hn::Gt(side.derivative, error), named(side.which, kNextBeside)));
+                          next_if(approaches, named(side.which, kNextBeside)));
   c.next = unless_past_end(begin, end, line.s, kNextEnd, c.next);
   line.place_witnesses(c, of_separation);
   return c;
@@ -114,6 +126,7 @@ HWY_INLINE Closest facet_vertex(const FeatureRows& at, const RelativePoses& pose
   const Lanes down =
       next_if(hn::Gt(hn::Neg(away.derivative), error), named(away.which, kNextOfOther));
   c.next = next_if(above, hn::IfThenElse(inside, down, within.which));
+  c.derivative = c.distance / hn::Neg(away.derivative);  // m: along the edge down to the plane
   plane.place_witnesses(c, tip, local_tip);
   return c;
 }
@@ -133,8 +146,12 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   const Points g = hn::CopySign(all(1.0), along_n) * lines.n;
   const Extreme on_a = Beside<false>{at, kInwardRow}.greatest_of_two(g);
   const Extreme on_b = Beside<true>{at, kSecond + kInwardRow}.least_of_two(direction_to_b(pose, g));
-  const LaneMask leave_a = hn::Ge(on_a.derivative, hn::Neg(error));
-  const LaneMask leave_b = hn::Le(on_b.derivative, error);
+  // If facets of both approach, the one that approaches faster takes over.
+  const Lanes of_a = on_a.derivative, of_b = hn::Neg(on_b.derivative);
+  const LaneMask stay_a = hn::And(hn::Gt(of_b, error), hn::Lt(of_a, of_b));
+  const LaneMask stay_b = hn::And(hn::Gt(of_a, error), hn::Le(of_b, of_a));
+  const LaneMask leave_a = hn::AndNot(stay_a, hn::Ge(of_a, hn::Neg(error)));
+  const LaneMask leave_b = hn::AndNot(stay_b, hn::Le(on_b.derivative, error));
   const LaneMask recede =
       hn::And(hn::Lt(on_a.derivative, hn::Neg(error)), hn::Gt(on_b.derivative, error));
   const auto beside = [](LaneMask leave, const Extreme& side, double step) HWY_ATTR {
@@ -142,7 +159,7 @@ HWY_INLINE Closest edge_edge(const FeatureRows& at, const RelativePoses& pose) {
   };
   // Nearly parallel edges are left to distance(), which has parallel_edges() for them.
   const LaneMask crossing = hn::Gt(lines.sine2, all(kCrossingSine2));
-  c.next = next_if(hn::Or(leave_a, leave_b),
+  c.next = next_if(hn::And(hn::Or(leave_a, leave_b), certainly_apart(at, pose, hn::Abs(along_n))),
                    hn::Add(beside(leave_a, on_a, 1.0), beside(leave_b, on_b, kNextBesideB)));
   c.next = unless_past_end(begin_b, end_b, lines.t, kNextEndB, c.next);
   c.next = unless_past_end(begin_a, end_a, lines.s, kNextEnd, c.next);

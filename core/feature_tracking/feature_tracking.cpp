@@ -13,7 +13,7 @@ TrackingEnd track_relative(const ConvexBody& a, const ConvexBody& b, const Relat
   const RelativePose4 pose4 = pose4_of(a_from_b);
   TrackedPair pair(a, b, pose4, state);
   const TrackingEnd end = track(pair);
-  if (end != TrackingEnd::kUndecided) r = result_of(pair);
+  if (are_closest(end)) r = result_of(pair);
   return end;
 }
 

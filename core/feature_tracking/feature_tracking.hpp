@@ -20,11 +20,17 @@
 namespace clearance {
 
 enum class TrackingEnd : std::uint8_t {
-  kUndecided,    // rounding cannot tell, both bodies are unbounded, or too many transitions
+  kUndecided,    // rounding cannot tell, or both bodies are unbounded
+  kExhausted,    // too many transitions
   kUncertified,  // these are the closest points, but the direction between them bounds the
                  // distance less closely than the bodies' precision allows
   kCertified,    // the bodies are disjoint, and the bounds are as close as rounding allows
 };
+
+// Are the features where tracking ended the closest ones?
+[[nodiscard]] constexpr bool are_closest(TrackingEnd end) noexcept {
+  return end == TrackingEnd::kUncertified || end == TrackingEnd::kCertified;
+}
 
 // The transitions that a query has made so far.
 struct TransitionsMade {
@@ -60,8 +66,8 @@ struct TransitionsMade {
 }
 inline constexpr std::uint32_t kTwoPoints = 2;
 
-// Moves the features of `state` by transitions until they are closest. Unless this ends undecided,
-// `result` (of the polyhedra, without radii) and the points of `state` belong to the last features.
+// Moves the features of `state` by transitions until they are closest. If they are, `result` (of
+// the polyhedra, without radii) and the points of `state` belong to them.
 [[nodiscard]] TrackingEnd track_features(const ConvexBody& a, const ConvexBody& b,
                                          const RelativePose& a_from_b, TrackingState& state,
                                          DistanceResult& result) noexcept;

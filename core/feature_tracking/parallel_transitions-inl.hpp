@@ -184,8 +184,8 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   const double s = clamped(halfway(owner, start, e), span.from, span.to);
   const Vec4 local = start + s * e, above = owner.point_to_other(local);
   const double distance = plane.height(local, above);
-  if (!(distance > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
   owner.pair.distance = distance;
+  if (!(distance > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
   owner.pair.certified = distance - tilt_error(owner.pair, std::abs(along));
   plane.place_witnesses(owner.pair, local, above);
   return Transition::kClosest;

@@ -25,7 +25,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/feature_tracking/transitions-inl.hpp"
+#include "core/feature_tracking/contact_transitions-inl.hpp"
 #include "core/model/radii.hpp"
 
 HWY_BEFORE_NAMESPACE();
@@ -61,33 +61,44 @@ HWY_INLINE double contact_inradius(const TrackedPair& pair) {
   return inradius;
 }
 
-// Edges that cross, each within the other body.
+// Edges that cross, each within the other body or touching it. The facets beside them decide on
+// which side of A's edge B's is, because the lines may be closer than rounding.
 HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
   if (!pair.a.bounded() || !pair.b.bounded()) return Transition::kUndecided;
   const Edge& first = pair.a.edges[pair.on_a.feature];
   const Edge& second = pair.b.edges[pair.on_b.feature];
   auto lines = lines_of(pair, first, second);
-  if (!(lines.sine2 > kCrossingSine2)) return Transition::kUndecided;
+  if (!(lines.sine2 > kCrossingSine2)) return disjoint_transition(pair);
   lines.find_nearest();
   const double s = lines.s, t = lines.t;
   const double to_end = std::min(std::min(s, first.end - s), std::min(t, second.end - t));
   const double sine = std::sqrt(lines.sine2), limit = -kDerivativeError * sine,
-               across = dot(lines.between, lines.n);
-  const Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, -across)));
-  const Vec4 back = -direction_to_b(pair.a_from_b, g);
-  if (!(to_end > 0.0) || !both_facets_recede(first, g, limit) ||
-      !both_facets_recede(second, back, limit)) {
-    return Transition::kUndecided;
+               across = std::abs(dot(lines.between, lines.n));
+  const double size = size_of(pair);
+  const bool near = across <= kNearContact * size * sine;
+  Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, -dot(lines.between, lines.n))));
+  const auto is_closest = [&] HWY_ATTR {
+    return to_end > 0.0 && both_facets_recede(first, g, limit) &&
+           both_facets_recede(second, -direction_to_b(pair.a_from_b, g), limit);
+  };
+  const bool overlap = is_closest();
+  if (!overlap) {
+    g = -g;
+    if (!near) return Transition::kUndecided;
+    if (!is_closest()) return disjoint_transition(pair);
   }
   pair.normal = over(g, sine);
   lines.place_witnesses(pair);
-  pair.distance = -std::abs(across) / sine;
+  const double between = norm(pair.point_b - pair.point_a), length = across / sine;
+  pair.distance = overlap ? -length : between;
   pair.inradius = to_end * sine;
   // The exact plane of the edges may also be nearer by the tilt of the normal.
   const double tilt =
       lines.tilt_error_of_edges(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
-  pair.certified = pair.distance - tilt;
+  pair.certified = (overlap ? -length : length) - tilt;
   pair.depth_error = tilt;
+  // The points of edges that touch are not exactly along the normal.
+  if (length <= kMayTouch * size) pair.depth_error += std::max(0.0, between - length);
   return Transition::kClosest;
 }
 
@@ -95,9 +106,11 @@ HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
   pair.inradius = pair.depth_error = 0.0;
   switch (pair.features()) {
     case FeaturePair::kVertexVertex:
+      return touching_vertices(pair);
     case FeaturePair::kVertexEdge:
+      return touching_edge(Owner<true>(pair));
     case FeaturePair::kEdgeVertex:
-      return Transition::kUndecided;  // no plane separates the bodies there
+      return touching_edge(Owner<false>(pair));
     case FeaturePair::kEdgeEdge:
       return penetrating_edges(pair);
     default:

@@ -23,7 +23,11 @@ namespace clearance::HWY_NAMESPACE {
 
 // Enough for 99.9 % of the tracked queries of the facet-ball workload. Longer ones are left to the
 // active-set iteration.
-inline constexpr int kMostTransitions = 24;
+inline constexpr int kMostTransitions = 40;
+
+HWY_INLINE double size_of(const TrackedPair& pair) {
+  return (pair.a.bounding_radius + pair.b.bounding_radius) + pair.a_from_b.translation_length;
+}
 
 // Leaves a vertex along its steepest edge: onto the edge, or past it to its far end.
 inline Transition leave_vertex(const ConvexBody& body, Side& side, const SteepestEdge& steepest) {
@@ -61,6 +65,7 @@ HWY_INLINE Transition vertex_vertex(TrackedPair& pair) {
   const Vec4 g = pair.point_b - pair.point_a, back = -direction_to_b(pair.a_from_b, g);
   const double distance = norm(g), limit = -kDerivativeError * distance;
   if (!all_edges_recede(pair.a, of_a, g, limit) || !all_edges_recede(pair.b, of_b, back, limit)) {
+    if (HWY_UNLIKELY(distance <= kMayTouch * size_of(pair))) return Transition::kUndecided;
     return leave_either(pair.a, pair.b, of_a, of_b, pair.on_a, pair.on_b, g, back, limit)
                ? Transition::kMoved
                : pair.parallel();
@@ -86,6 +91,7 @@ HWY_INLINE Transition edge_vertex(const Owner<kIsB>& owner) {
   const Vec4 g = owner.direction_in_local(line.separation);
   const Vec4 back = -owner.opposite().direction_in_local(line.separation);
   if (!both_facets_recede(edge, g, limit)) {
+    if (HWY_UNLIKELY(line.length <= kMayTouch * size_of(owner.pair))) return Transition::kUndecided;
     to_approaching_facet(edge, g, limit, owner.side());
     const Vec2 derivatives = facet_derivatives(edge, g);
     if (std::max(derivatives[0], derivatives[1]) > -limit) return Transition::kMoved;
@@ -114,7 +120,10 @@ HWY_INLINE Transition facet_vertex(const Owner<kIsB>& owner) {
   const Vec4 tip = load3_alone(vertex.position), local_tip = owner.point_from_other(tip);
   const auto plane = plane_of(owner, facet);
   const double distance = plane.height(tip, local_tip);
-  if (HWY_UNLIKELY(!(distance > 0.0)) && !owner.pair.penetrating) return Transition::kUndecided;
+  if (HWY_UNLIKELY(!(distance > 0.0)) && !owner.pair.penetrating) {
+    owner.pair.distance = distance;
+    return Transition::kUndecided;
+  }
   const std::int32_t crossed = crossed_side(owner.body(), facet, local_tip);
   if (crossed != kNone) return to_edge(owner.side(), crossed);
   const Vec4 back = -owner.opposite().direction_in_local(plane.n);
@@ -125,8 +134,13 @@ HWY_INLINE Transition facet_vertex(const Owner<kIsB>& owner) {
       return owner.pair.parallel();
     }
     const EdgeUse& use = owner.other_body().vertex_edges[away.at];
-    const std::int32_t next = owner.other_body().edges[use.edge].vertex[1 - use.side];
+    const Edge& down = owner.other_body().edges[use.edge];
+    const std::int32_t next = down.vertex[1 - use.side];
     if (next == kNone) return Transition::kUndecided;
+    // An edge that leads below the plane leaves the prism before, or the bodies overlap.
+    if (!(distance / away.derivative > down.end)) {
+      return to_edge(owner.other_side(), use.edge);
+    }
     return to_vertex(owner.other_side(), next);
   }
   owner.pair.distance = owner.pair.certified = distance;
@@ -159,6 +173,30 @@ inline HWY_NOINLINE Transition between_facets(TrackedPair& pair) {
   return facet_facet<Tracking::kFurther>(pair);
 }
 
+// For crossing edges beside which a facet approaches along g, the direction from A's to B's. If the
+// lines are so near that rounding may have reversed g, the edges may touch.
+inline HWY_NOINLINE Transition leave_edges(TrackedPair& pair, const Edge& first, const Edge& second,
+                                           Vec4 g, double limit, double along_n) {
+  Vec4 back = -direction_to_b(pair.a_from_b, g);
+  const auto steepest_of = [](const Edge& edge, Vec4 along) HWY_ATTR {
+    const Vec2 both = facet_derivatives(edge, along);
+    return edge.facet[0] == kNone ? -kInfinity : std::max(both[0], both[1]);
+  };
+  if (std::abs(along_n) <= kMayTouch * size_of(pair)) {
+    if (!pair.penetrating) return Transition::kUndecided;
+    // Then g is the direction along which no facet approaches by more than rounding.
+    if (std::max(steepest_of(first, -g), steepest_of(second, -back)) <= -limit) {
+      g = -g;
+      back = -back;
+    }
+  }
+  // If facets of both approach, the one that approaches faster takes over.
+  const double of_a = steepest_of(first, g), of_b = steepest_of(second, back);
+  if (!(of_b > -limit) || of_a >= of_b) to_approaching_facet(first, g, limit, pair.on_a);
+  if (!(of_a > -limit) || of_b > of_a) to_approaching_facet(second, back, limit, pair.on_b);
+  return pair.parallel();
+}
+
 // Crossing edges are closest if the feet of their common perpendicular lie within both, and all
 // four facets beside them recede along it. `kMode`: see transition().
 template <Tracking kMode>
@@ -186,9 +224,7 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   const Vec4 back = -direction_to_b(pair.a_from_b, g);
   if (HWY_UNLIKELY(!both_facets_recede(first, g, limit) ||
                    !both_facets_recede(second, back, limit))) {
-    to_approaching_facet(first, g, limit, pair.on_a);
-    to_approaching_facet(second, back, limit, pair.on_b);
-    return pair.parallel();
+    return leave_edges(pair, first, second, g, limit, along_n);
   }
   pair.normal = over(g, sine);
   lines.place_witnesses(pair);
@@ -343,7 +379,7 @@ HWY_INLINE TrackingEnd continue_tracking(TrackedPair& pair) {
     if (result == Transition::kClosest) return certify(pair);
     if (result == Transition::kUndecided) return TrackingEnd::kUndecided;
   }
-  return TrackingEnd::kUndecided;
+  return TrackingEnd::kExhausted;
 }
 
 HWY_INLINE TrackingEnd track(TrackedPair& pair) {

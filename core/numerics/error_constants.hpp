@@ -108,4 +108,8 @@ inline constexpr double kTiltError = 6 * kUlp;
 // worth trusting.
 inline constexpr double kCrossingSine2 = 1e-6;
 
+// Features nearer to each other than this, as a part of the pair's size, may touch. It is some ten
+// error bounds.
+inline constexpr double kMayTouch = 0x1p-44;
+
 }  // namespace clearance

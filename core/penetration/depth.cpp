@@ -129,6 +129,8 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   const Precision p = precision(a.body(), b.body(), a_from_b, std::abs(best.height));
   const Separator s = separator(body, best, a, b);
   out.normal = s.normal;
+  out.facet_of_a = s.facet_of_a;
+  out.facet_of_b = s.facet_of_b;
   if (!search.ended_early()) {
     out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }

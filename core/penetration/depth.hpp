@@ -33,6 +33,8 @@ struct Depth {
   double lower = -kInfinity, upper = kInfinity;
   double value = kInfinity;    // m: best estimate
   Vec3 normal = Vec3::Zero();  // unit, frame A, from A towards B
+  // The facet of A or of B whose normal that is, if it is one.
+  std::int32_t facet_of_a = kNone, facet_of_b = kNone;
 };
 
 // `guess`: a direction to begin with, or null; it costs or saves time and changes nothing else.

@@ -66,6 +66,15 @@ void conclude_penetrating(const ConvexBody& a, const ConvexBody& b, const Relati
   state.a.penetrating = true;
 }
 
+// Makes the facet that separates bodies which touch one of their features.
+void separate_by(const Depth& found, TrackingState& state) noexcept {
+  TrackingState::Side& side = found.facet_of_a != kNone ? state.a : state.b;
+  const std::int32_t facet = found.facet_of_a != kNone ? found.facet_of_a : found.facet_of_b;
+  if (facet == kNone) return;
+  side.kind = FeatureKind::kFacet;
+  side.feature = facet;
+}
+
 }  // namespace
 
 bool track_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
@@ -99,9 +108,12 @@ void measure_penetration(const ConvexBody& a, const ConvexBody& b, const Relativ
   // A penetration by less than the error bound can be seen from one side only: thrice.
   const bool narrow = result.upper - result.lower <= 3.0 * p.error_bound + 5.0 * p.gap_tolerance;
   if (narrow) {
-    // A facet that touches certifies the contact of the next query by itself.
-    state.a.penetrating =
-        state.a.kind == FeatureKind::kFacet || state.b.kind == FeatureKind::kFacet;
+    // The features that touch certify the contact of the next query by themselves. A facet beside
+    // which the search has stopped may be another one than the one that separates.
+    if (state.a.kind == FeatureKind::kFacet || state.b.kind == FeatureKind::kFacet) {
+      separate_by(found, state);
+    }
+    state.a.penetrating = !a.facets.empty() || !b.facets.empty();
     result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
     return;
   }

@@ -77,7 +77,7 @@ void place_witnesses(const ConvexBody& a, const ConvexBody& b, const RelativePos
   RelativePose moved = a_from_b;
   moved.translation += (found.value + farther) * found.normal;
   DistanceResult separated;
-  if (track_features(a, b, moved, state, separated) != TrackingEnd::kUndecided) {
+  if (are_closest(track_features(a, b, moved, state, separated))) {
     r.iterations = separated.iterations;
   } else {
     r.iterations = closest_when_moved(a, b, moved, state);

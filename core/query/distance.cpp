@@ -4,7 +4,7 @@
 //   or two facets ─────► one transition ─► certified ─────────────────────────────► result
 //                             └─ moved ─┐
 //   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
-//                                                 └─ left open ─► search.hpp
+//                                                 └─ left open ─► penetrating features
 //   touched or penetrated in the last query ► penetrating features ─► certified ───► result
 //                                                 └─ left open ─► search.hpp
 //   a curved body ─────────────────────────► core/curved
@@ -164,6 +164,15 @@ DistanceResult after_first_transition(const ConvexBody& a, const ConvexBody& b,
                                       TransitionsMade start, Transition first);
 DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                 const RelativePose4& a_from_b, TrackingState& state);
+DistanceResult from_contact(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
+                            TrackingState& state, bool depth);
+
+// Are the features where tracking ended worth a test for contact? Far below a facet's plane, as a
+// part of the size, they seldom certify a depth.
+inline constexpr double kShallow = 0x1p-5;
+HWY_INLINE bool may_touch(const TrackedPair& pair, TrackingEnd end) {
+  return end != TrackingEnd::kExhausted && !(pair.distance < -kShallow * size_of(pair));
+}
 
 HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
   DistanceResult result = result_of(pair);
@@ -306,10 +315,15 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
                                                    const RelativePose4& a_from_b,
                                                    TrackingState& state, TransitionsMade start,
                                                    Transition first) {
-  if (first == Transition::kDeferred) --start.transitions;
+  // What the first transition has left undecided is examined once more, as it is for a pair of a
+  // batch.
+  if (first != Transition::kMoved) --start.transitions;
   TrackedPair pair(a, b, a_from_b, state, start);
-  const bool moved = first == Transition::kMoved || first == Transition::kDeferred;
-  if (moved && continue_tracking(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
+  pair.distance = 0.0;
+  const TrackingEnd end =
+      first == Transition::kClosest ? TrackingEnd::kUncertified : continue_tracking(pair);
+  if (end == TrackingEnd::kCertified) return rounded_result_of(pair);
+  if (may_touch(pair, end)) return from_contact(a, b, a_from_b, state, true);
   return search_distance(a, b, pose_of(a_from_b), state, true);
 }
 
@@ -325,7 +339,10 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
                                         TransitionsMade start, bool depth) {
   if (state.a.penetrating && depth) return from_penetration(a, b, a_from_b, state);
   TrackedPair pair(a, b, a_from_b, state, start);
-  if (track(pair) == TrackingEnd::kCertified) return rounded_result_of(pair);
+  pair.distance = 0.0;
+  const TrackingEnd end = track(pair);
+  if (end == TrackingEnd::kCertified) return rounded_result_of(pair);
+  if (may_touch(pair, end)) return from_contact(a, b, a_from_b, state, depth);
   return search_distance(a, b, pose_of(a_from_b), state, depth);
 }
 
@@ -374,16 +391,31 @@ DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
   return distance_from(a, b, good_pose4_of(a_from_b), state, {}, depth);
 }
 
+HWY_INLINE DistanceResult penetrating_result_of(const TrackedPair& pair) {
+  DistanceResult result = penetration_result_of(pair);
+  add_radii(result, pair.a, pair.b);
+  assert(keeps_promises(result));
+  return result;
+}
+
 // The bodies touched or penetrated each other in the last query.
 HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
-  if (!track_penetrating_features(pair))
-    return penetrating_distance(a, b, pose_of(a_from_b), state);
-  DistanceResult result = penetration_result_of(pair);
-  add_radii(result, a, b);
-  assert(keeps_promises(result));
-  return result;
+  if (track_penetrating_features(pair)) return penetrating_result_of(pair);
+  return penetrating_distance(a, b, pose_of(a_from_b), state);
+}
+
+// Feature tracking has left a query open. The bodies may touch, or overlap by little, at the
+// features where it ended. If nobody asks for depths, only disjoint bodies are answered.
+HWY_NOINLINE DistanceResult from_contact(const ConvexBody& a, const ConvexBody& b,
+                                         const RelativePose4& a_from_b, TrackingState& state,
+                                         bool depth) {
+  TrackedPair pair(a, b, a_from_b, state);
+  if (track_penetrating_features(pair) && (depth || !pair.on_a.penetrating)) {
+    return penetrating_result_of(pair);
+  }
+  return search_distance(a, b, pose_of(a_from_b), state, depth);
 }
 
 }  // namespace clearance::HWY_NAMESPACE

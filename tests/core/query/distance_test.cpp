@@ -254,8 +254,10 @@ TEST(Distance, SaysWhichMethodHasAnswered) {
     return distance(body, body, relative_pose(Pose{}, pose), state).path;
   };
   EXPECT_EQ(path(cube(), at(1.5, 0.3, 0.2)), DistancePath::kFeatureTracking);
-  EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kActiveSet);
-  EXPECT_EQ(path(cube(), at(0.9, 0.3, 0.2)), DistancePath::kPenetration);
+  EXPECT_EQ(path(cube(), at(0.95, 0.3, 0.2)), DistancePath::kPenetration);
+  EXPECT_EQ(path(cube(), at(0.3, 0.2, 0.1)), DistancePath::kPenetration);
+  state = {};
+  EXPECT_EQ(path(cube(), at(0.3, 0.2, 0.1)), DistancePath::kActiveSet);
   const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
   EXPECT_EQ(path(column, leaning), DistancePath::kGjk);
 }

@@ -198,8 +198,9 @@ TEST(ErrorAccount, IsAppliedToDepths) {
         const double of_distance =
             account(kOfPolyhedra, e.a, e.b, pose, 0.0) * kRounded - ulps(2, depth);
         const double of_depth = of_distance + ulps(12, of.size()) + kRotationError * scaled;
-        // Features that a tracked query certifies at once are judged like those of disjoint bodies.
-        EXPECT_GE(r.upper, r.distance + (query == 0 ? of_depth : of_distance));
+        // Features that certify a depth at once are judged like those of disjoint bodies.
+        const bool by_features = query > 0 || r.path == DistancePath::kPenetration;
+        EXPECT_GE(r.upper, r.distance + (by_features ? of_distance : of_depth));
         // Along a facet of the other body, support values certify the depth from above, without
         // the 12.
         EXPECT_LE(r.lower, r.distance - of_distance + ulps(10, of.size()));
