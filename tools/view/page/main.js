@@ -235,7 +235,7 @@ for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help
 element("object-button").onclick = actions.objects;
 element("look").onclick = lookAtChosen;
 element("visuals").hidden = !scene.has_robots;
-element("shells").hidden = !scene.zones.length;
+element("shells").hidden = element("zones").hidden = !scene.zones.length;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
 dark.addEventListener("change", () => {
   applyTheme();
