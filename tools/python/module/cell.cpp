@@ -103,23 +103,6 @@ py::tuple CellObject::pair_names(const ObjectPair& pair) const {
   return py::make_tuple(scene().objects[pair.first].name, scene().objects[pair.second].name);
 }
 
-std::unique_ptr<Configurations> CellObject::borrow() const {
-  {
-    const std::lock_guard lock(mutex_);
-    if (!idle_.empty()) {
-      auto configurations = std::move(idle_.back());
-      idle_.pop_back();
-      return configurations;
-    }
-  }
-  return std::make_unique<Configurations>(scene());
-}
-
-void CellObject::give_back(std::unique_ptr<Configurations> configurations) const {
-  const std::lock_guard lock(mutex_);
-  idle_.push_back(std::move(configurations));
-}
-
 void add_cell(py::module_& module) {
   const py::object error = py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
       "clearance._clearance.CellError",
@@ -196,6 +179,7 @@ file: the name in messages; paths in the cell are relative to its folder. Raises
       .def("__repr__",
            [](const CellObject& c) { return "<clearance.Cell: " + summary(c.scene()) + ">"; });
   add_distances(module, cells);
+  add_questions(module, cells);
 }
 
 }  // namespace clearance::python

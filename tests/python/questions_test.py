@@ -1,0 +1,151 @@
+"""Questions about motions: closed forms of a planar arm, the same answer from a running daemon, and refusals."""
+
+import math
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import clearance
+from clearance import Question, QuestionStatus, Verdict
+
+LIMIT_S = 60
+# The tip is a sphere of 0.1 m at 2 m from the shoulder, and the wall begins at x = 3 m.
+SWING = dict(joints=["shoulder"], times=[0.0, 2.0], positions=[[-1.0], [0.5]])
+REST = dict(held={"elbow": 0.0}, poses={"ball": [0, 9, 9, 0, 0, 0, 1]}, others="still")
+
+
+def test_a_swing_has_its_least_distance_between_its_waypoints(planar):
+    answer = planar.ask(Question(**SWING, **REST, margins=[0.0, 0.8, 0.95], tolerance=1e-9))
+    assert answer.answered and answer.status is QuestionStatus.ANSWERED
+    assert answer.lower <= 0.9 + 1e-12 and answer.upper >= 0.9 - 1e-12
+    assert answer.upper - answer.lower <= 1e-9
+    assert answer.time == pytest.approx(4 / 3, abs=1e-3)
+    assert set(answer.pair) == {"wall", "lower"}
+    assert answer.points.shape == (2, 3)
+    assert np.linalg.norm(answer.points[0] - answer.points[1]) == pytest.approx(0.9, abs=1e-6)
+    assert [margin.verdict for margin in answer.margins] == [Verdict.FREE, Verdict.FREE, Verdict.BELOW]
+    assert answer.is_free() and answer.is_free(0.8)
+    assert not answer.is_free(0.95) and not answer.is_free(0.5), "0.5 was not asked for"
+    # The distance is 3 - 2 cos(a) - 0.1, and a = -1 + 0.75 t.
+    truth = (1 - math.acos((3 - 0.1 - 0.95) / 2)) / 0.75
+    below = answer.margins[2]
+    assert below.above_until <= truth + 1e-9 and below.below_at >= truth - 1e-9
+    assert below.below_at == pytest.approx(truth, abs=1e-5) and set(below.pair) == {"wall", "lower"}
+    assert answer.margins[0].pair is None and math.isnan(answer.margins[0].below_at)
+    assert answer.within_work_limit and answer.queries > 0
+
+
+def test_the_function_and_the_method_give_the_same_bits_in_every_thread(planar):
+    question = Question(**SWING, **REST)
+    first = planar.ask(question)
+    found = []
+
+    def ask():
+        found.extend(clearance.ask(planar, question) for _ in range(5))
+
+    threads = [threading.Thread(target=ask) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 20
+    assert {(a.lower, a.upper, a.time) for a in found} == {(first.lower, first.upper, first.time)}
+
+
+def test_cubic_motions_leave_the_chord(planar):
+    rest = Question(["shoulder"], [0, 1], [[0.5], [0.5]], **REST)
+    swung = Question(["shoulder"], [0, 1], [[0.5], [0.5]], [[-4.0], [4.0]], **REST)
+    assert planar.ask(swung).lower < planar.ask(rest).lower - 0.1
+
+
+def test_an_object_comes_nearer_by_its_largest_speed_unless_it_is_still(planar):
+    at = dict(held={"elbow": 0.0}, poses={"ball": [2.0, 5.0, 0, 0, 0, 0, 1]})
+    rest = dict(joints=["shoulder"], times=[0.0, 0.01], positions=[[0.0], [0.0]])
+    still = planar.ask(Question(**rest, **at, others="still"))
+    moving = planar.ask(Question(**rest, **at))
+    assert still.lower == pytest.approx(0.9, abs=1e-3), "the wall is nearer than the ball"
+    assert moving.lower == pytest.approx(0.9, abs=1e-3), "0.01 s x 100 m/s leave 3.65 m"
+    slow = planar.ask(Question(joints=["shoulder"], times=[0.0, 0.045], positions=[[0.0], [0.0]], **at))
+    assert slow.lower == pytest.approx(5.0 - 0.35 - 4.5, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    "change, match",
+    [
+        (dict(joints=["knee"]), "knee"),
+        (dict(held={}), "elbow"),
+        (dict(poses={}), "ball"),
+        (dict(times=[1.0, 1.0]), ""),
+        (dict(positions=[[0.0], [math.nan]]), ""),
+        (dict(margins=[-1.0]), "margin"),
+        (dict(tolerance=0.0), "tolerance"),
+    ],
+)
+def test_what_does_not_fit_the_cell_is_refused_with_the_reason(planar, change, match):
+    with pytest.raises(ValueError, match=match):
+        planar.ask(Question(**{**SWING, **REST, **change}))
+
+
+@pytest.mark.parametrize(
+    "change, error, match",
+    [
+        (dict(positions=[[0.0]]), ValueError, "positions"),
+        (dict(velocities=[0.0, 0.0]), ValueError, "velocities"),
+        (dict(times="now"), TypeError, "times"),
+        (dict(poses={"ball": [0, 0, 0]}), ValueError, "ball"),
+        (dict(poses={"ball": [0, 0, 0, 0, 0, 0, 2]}), ValueError, "ball"),
+        (dict(others="fly"), ValueError, "fly"),
+        (dict(beside=[(["elbow"], [0.0])]), ValueError, "beside"),
+        (dict(moving={"ball": ([0.0],)}), ValueError, "moving"),
+        (dict(payloads={"part": ("lower",)}), ValueError, "payloads"),
+        (dict(held={"elbow": "x"}), TypeError, ""),
+    ],
+)
+def test_wrong_shapes_are_refused_at_once(change, error, match):
+    with pytest.raises(error, match=match):
+        Question(**{**SWING, **REST, **change})
+
+
+@pytest.fixture
+def daemon(run_daemon, planar_file):
+    return run_daemon(planar_file, "--questions", "python tests")
+
+
+def test_a_daemon_answers_for_where_everything_is_now(daemon, planar):
+    connection = daemon.connection()
+    joints = clearance.JointWriter("python joints", ["shoulder", "elbow"], connection)
+    poses = clearance.PoseWriter("python poses", ["ball"], connection)
+    question = Question(**SWING, margins=[0.8], others="still")
+    with joints, poses, clearance.Questions("python tests", connection) as questions:
+        empty = questions.ask(question, LIMIT_S)
+        assert empty.status is QuestionStatus.NO_INPUT and not empty.answered
+        assert empty.lower == -math.inf and empty.upper == math.inf and not empty.is_free(0.8)
+        assert "shoulder" not in empty.reason and "elbow" in empty.reason
+        assert joints.wait_heard(LIMIT_S) and poses.wait_heard(LIMIT_S) and questions.is_heard
+        end = time.monotonic() + LIMIT_S
+        while True:
+            joints.write([-1.25, 0.0])
+            poses.write([[0, 9, 9, 0, 0, 0, 1]])
+            answer = questions.ask(question, LIMIT_S)
+            if answer.answered or time.monotonic() > end:
+                break
+        here = planar.ask(Question(**SWING, **REST, margins=[0.8]))
+        assert (answer.lower, answer.upper, answer.time) == (here.lower, here.upper, here.time)
+        assert answer.is_free(0.8) and answer.revision == planar.revision and answer.cycle > 0
+        assert answer.start_joint == "shoulder" and answer.start_deviation == 0.25
+        refused = questions.ask(Question(**{**SWING, "joints": ["knee"]}), LIMIT_S)
+        assert refused.status is QuestionStatus.REFUSED and "knee" in refused.reason
+        stale = questions.ask(question, LIMIT_S, revision=1)
+        assert stale.status is QuestionStatus.OTHER_REVISION
+
+
+def test_without_a_daemon_the_wait_ends_with_the_reason():
+    connection = clearance.Connection(partition="python-nobody-answers")
+    with clearance.Questions("python tests", connection) as questions:
+        assert not questions.is_heard
+        with pytest.raises(TimeoutError, match="no daemon"):
+            questions.ask(Question(**SWING), 0.1)
+    with pytest.raises(clearance.ClosedError):
+        questions.ask(Question(**SWING), 0.1)

@@ -1,0 +1,383 @@
+// clearance.Question and its answers: monitor/ask, and monitor/client/questions.hpp for a daemon.
+#include "monitor/client/questions.hpp"
+
+#include <fmt/format.h>
+#include <pybind11/stl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "monitor/ask/asker.hpp"
+#include "monitor/ask/named_answer.hpp"
+#include "tools/python/module/arrays.hpp"
+#include "tools/python/module/cell.hpp"
+#include "tools/python/module/connection.hpp"
+#include "tools/python/module/module.hpp"
+
+namespace clearance::python {
+namespace {
+
+using Body = std::shared_ptr<ConvexBody>;
+
+std::vector<double> numbers_of(const Doubles& array) {
+  return {array.data(), array.data() + array.size()};
+}
+
+JointTrajectory trajectory_of(const std::vector<std::string>& joints, const py::object& times,
+                              const py::object& positions, const py::object& velocities) {
+  JointTrajectory motion;
+  motion.joints = joints;
+  motion.times = numbers_of(doubles_of(times, "times", {kAny}));
+  const auto rows = static_cast<py::ssize_t>(motion.times.size());
+  const auto columns = static_cast<py::ssize_t>(joints.size());
+  motion.positions = numbers_of(doubles_of(positions, "positions", {rows, columns}));
+  if (!velocities.is_none())
+    motion.velocities = numbers_of(doubles_of(velocities, "velocities", {rows, columns}));
+  return motion;
+}
+
+ObjectMotion object_motion(const std::string& object, const py::tuple& value) {
+  const std::string name = "moving['" + object + "']";
+  if (value.size() != 2)
+    throw py::value_error(name + ": expected times and poses: (times (n,), poses (n, 7))");
+  ObjectMotion motion{.object = object, .times = {}, .world_from_object = {}};
+  motion.times = numbers_of(doubles_of(value[0], name.c_str(), {kAny}));
+  const auto rows = static_cast<py::ssize_t>(motion.times.size());
+  const Doubles poses = doubles_of(value[1], name.c_str(), {rows, 7});
+  for (py::ssize_t i = 0; i < rows; ++i)
+    motion.world_from_object.push_back(pose_in(poses.data(i, 0), name.c_str(), i));
+  return motion;
+}
+
+Payload payload_of(const std::string& object, const py::tuple& value) {
+  const std::string name = "payloads['" + object + "']";
+  if (value.size() < 2 || value.size() > 4) {
+    throw py::value_error(name +
+                          ": expected (link, pose in the link's frame[, names that it may touch[, "
+                          "Body of a new object]])");
+  }
+  Payload payload{.name = object,
+                  .shape = {},
+                  .link = value[0].cast<std::string>(),
+                  .link_from_object = pose_of(value[1], name.c_str()),
+                  .touch = {}};
+  if (value.size() > 2) payload.touch = value[2].cast<std::vector<std::string>>();
+  if (value.size() > 3) {
+    const Body body = value[3].cast<Body>();
+    if (body == nullptr) throw py::value_error(name + ": found None; expected a Body");
+    payload.shape = *body;
+  }
+  return payload;
+}
+
+Question question_of(const std::vector<std::string>& joints, const py::object& times,
+                     const py::object& positions, const py::object& velocities,
+                     const std::map<std::string, double>& held,
+                     const std::map<std::string, py::object>& poses,
+                     const std::vector<py::tuple>& beside,
+                     const std::map<std::string, py::tuple>& moving,
+                     const std::map<std::string, py::tuple>& payloads, const std::string& others,
+                     const std::vector<double>& margins, double tolerance, bool only_margins,
+                     std::uint32_t profile, double profile_tolerance,
+                     const std::optional<std::pair<std::string, std::string>>& profile_pair,
+                     bool time_scaling, std::uint64_t work_limit) {
+  Question question;
+  question.motion = trajectory_of(joints, times, positions, velocities);
+  for (const py::tuple& each : beside) {
+    if (each.size() != 3 && each.size() != 4)
+      throw py::value_error("beside: expected (joints, times, positions[, velocities]) each");
+    question.beside.push_back(trajectory_of(each[0].cast<std::vector<std::string>>(), each[1],
+                                            each[2],
+                                            each.size() == 4 ? py::object(each[3]) : py::none()));
+  }
+  for (const auto& [name, position] : held) question.held.push_back({name, position});
+  for (const auto& [name, pose] : poses) {
+    question.poses.push_back(
+        {.object = name, .world_from_object = pose_of(pose, ("poses['" + name + "']").c_str())});
+  }
+  for (const auto& [name, value] : moving) question.moving.push_back(object_motion(name, value));
+  for (const auto& [name, value] : payloads) question.payloads.push_back(payload_of(name, value));
+  if (others != "max_speed" && others != "still") {
+    throw py::value_error(
+        fmt::format("others: found '{}'; expected 'max_speed' or 'still'", others));
+  }
+  question.others = others == "still" ? OthersMove::kNot : OthersMove::kWithinMaxSpeed;
+  question.margins = margins;
+  question.tolerance = tolerance;
+  question.only_margins = only_margins;
+  if (profile > 0) {
+    const auto [first, second] = profile_pair.value_or(std::pair<std::string, std::string>());
+    question.profile = ProfileRequest{
+        .first = first, .second = second, .tolerance = profile_tolerance, .most_points = profile};
+  }
+  question.time_scaling = time_scaling;
+  question.work_limit = work_limit;
+  return question;
+}
+
+constexpr std::uint64_t kWorkLimit = 1'000'000;
+
+QuestionResult ask_cell(const CellObject& cell, const Question& asked) {
+  Question question = asked;
+  if (question.work_limit == 0) question.work_limit = kWorkLimit;
+  std::optional<std::string> refused;
+  Answer answer;
+  QuestionResult result;
+  {
+    const Unlocked unlock;
+    std::unique_ptr<Asker> asker = cell.borrow_asker();
+    refused = asker->ask(question, answer);
+    cell.give_back(std::move(asker));
+    if (!refused) name_answer(answer, question, cell.scene(), result);
+  }
+  if (refused) throw py::value_error(*refused);
+  result.scene_revision = cell.scene().revision;
+  return result;
+}
+
+struct QuestionParts {
+  QuestionParts(SharedConnection joined, const std::string& client)
+      : connection(std::move(joined)), questions(*connection, client) {}
+  SharedConnection connection;
+  client::Questions questions;
+};
+
+class Questions : public Live<QuestionParts> {
+ public:
+  Questions(const std::string& client, const SharedConnection& connection)
+      : Live("Questions", connection_of(connection), client) {}
+
+  QuestionResult ask(const Question& question, double timeout, std::uint64_t revision) {
+    if (!(timeout >= 0.0 && timeout <= 1e6))
+      throw py::value_error("timeout: expected seconds, 0 to 1e6");
+    for (const Payload& payload : question.payloads) {
+      if (payload.shape)
+        throw py::value_error("payloads: a Body cannot be sent; expected objects of the cell");
+    }
+    const Use parts = use();
+    bool stopped = false;
+    const client::QuestionOptions options{.scene_revision = revision,
+                                          .stop = [&stopped] { return stopped = interrupted(); }};
+    std::optional<QuestionResult> result;
+    {
+      const Unlocked unlock;
+      result = parts->questions.ask(
+          question, options, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * timeout)));
+    }
+    if (stopped) throw py::error_already_set();
+    if (result) return *result;
+    const std::string why = parts->questions.is_heard()
+                                ? "nothing is known of the motion"
+                                : "no daemon answers questions on " + parts->connection->where();
+    PyErr_SetString(PyExc_TimeoutError,
+                    fmt::format("no answer came within {} s: {}", timeout, why).c_str());
+    throw py::error_already_set();
+  }
+};
+
+// Two names, or None.
+py::object pair_of(const std::string& first, const std::string& second) {
+  if (first.empty() && second.empty()) return py::none();
+  return py::make_tuple(first, second);
+}
+
+py::object points_of(const QuestionResult& result) {
+  if (!result.point_on_first.allFinite()) return py::none();
+  Doubles points({py::ssize_t{2}, py::ssize_t{3}});
+  for (py::ssize_t i = 0; i < 3; ++i) {
+    points.mutable_at(0, i) = result.point_on_first[i];
+    points.mutable_at(1, i) = result.point_on_second[i];
+  }
+  return points;
+}
+
+Doubles profile_of(const QuestionResult& result) {
+  Doubles profile({static_cast<py::ssize_t>(result.profile.size()), py::ssize_t{4}});
+  double* out = profile.mutable_data();
+  for (const ProfilePart& part : result.profile) {
+    for (const double number : {part.from, part.to, part.lower, part.upper}) *out++ = number;
+  }
+  return profile;
+}
+
+py::list profile_pairs(const QuestionResult& result) {
+  py::list pairs;
+  for (const ProfilePart& part : result.profile) pairs.append(pair_of(part.first, part.second));
+  return pairs;
+}
+
+void add_question(py::module_& module) {
+  using Empty = std::map<std::string, py::object>;
+  py::class_<Question>(module, "Question",
+                       "A motion that was not made yet, and what is asked of it.")
+      .def(
+          py::init(&question_of), py::arg("joints"), py::arg("times"), py::arg("positions"),
+          py::arg("velocities") = py::none(), py::kw_only(),
+          py::arg("held") = std::map<std::string, double>(), py::arg("poses") = Empty(),
+          py::arg("beside") = std::vector<py::tuple>(),
+          py::arg("moving") = std::map<std::string, py::tuple>(),
+          py::arg("payloads") = std::map<std::string, py::tuple>(), py::arg("others") = "max_speed",
+          py::arg("margins") = std::vector<double>{0.0}, py::arg("tolerance") = 1e-3,
+          py::arg("only_margins") = false, py::arg("profile") = 0,
+          py::arg("profile_tolerance") = 5e-3, py::arg("profile_pair") = py::none(),
+          py::arg("time_scaling") = false, py::arg("work_limit") = 0,
+          R"(joints: names of k joints. times: (n,), s, increasing. positions: (n, k), rad or m; joints move
+linearly between waypoints. velocities: (n, k), per second; then along cubic polynomials.
+
+held: positions of all other joints, by name. poses: of objects that are neither fixed nor part of a
+robot. A daemon knows both; what is left out is where it is now. beside: motions of other robots, each
+(joints, times, positions[, velocities]). moving: {object: (times (n,), poses (n, 7))}. payloads:
+{object: (link, pose in the link[, names that it may touch[, Body of a new object]])}.
+others: "max_speed": such objects stay within max_speed x time of their poses; "still": they do not move.
+
+margins: m; 0 asks for contact. tolerance: m, upper - lower. only_margins: bounds need not be better
+than the verdicts need. profile: most parts of a distance profile; 0: none. profile_tolerance: m.
+profile_pair: names of two objects; None: the least distance. time_scaling: asks by how much the motion
+may be timed faster for zones with `separation`. work_limit: most distance queries; 0: 1,000,000, or
+that of the daemon.
+
+Raises TypeError and ValueError for wrong shapes; names and values are checked when it is asked.)")
+      .def("__repr__", [](const Question& q) {
+        return fmt::format("<clearance.Question: {} joints, {} waypoints>", q.motion.joints.size(),
+                           q.motion.times.size());
+      });
+}
+
+void add_answer(py::module_& module) {
+  std::vector<Enumerator> statuses;
+  for (std::size_t i = 0; i < kQuestionStatuses; ++i) {
+    statuses.push_back(
+        {constant_name(name_of(static_cast<QuestionStatus>(i))), static_cast<int>(i)});
+  }
+  // The types are attributes of the module, which outlives its functions.
+  const py::handle status_type =
+      add_enum(module, "QuestionStatus", statuses, "Whether a question was answered.").release();
+  std::vector<Enumerator> words;
+  for (const Verdict verdict : {Verdict::kFree, Verdict::kBelow, Verdict::kUndecided})
+    words.push_back({constant_name(name(verdict)), static_cast<int>(verdict)});
+  const py::handle verdict_type =
+      add_enum(module, "Verdict", words, "Whether a motion keeps a margin.").release();
+
+  py::class_<MarginResult>(module, "MarginAnswer", "Whether a motion keeps one margin.")
+      .def_readonly("margin", &MarginResult::margin, "m.")
+      .def_property_readonly(
+          "verdict",
+          [verdict_type](const MarginResult& m) {
+            return verdict_type(static_cast<int>(m.verdict));
+          },
+          "A Verdict: FREE, BELOW or UNDECIDED.")
+      .def_readonly("above_until", &MarginResult::above_until,
+                    "s: the distance is at least the margin at all instants before this.")
+      .def_readonly("below_at", &MarginResult::below_at,
+                    "s: an instant below the margin; NaN unless BELOW.")
+      .def_property_readonly(
+          "pair", [](const MarginResult& m) { return pair_of(m.first, m.second); },
+          "Names of the pair that is below it, or may be; None if FREE.")
+      .def("__repr__", [](const MarginResult& m) {
+        return fmt::format("<clearance.MarginAnswer: {} m {}>", m.margin, name(m.verdict));
+      });
+  py::class_<TimeLimit>(module, "TimeLimit", "The speed that zones with `separation` admit.")
+      .def_readonly("is_limited", &TimeLimit::is_limited,
+                    "Such a zone has a pair with a robot of the motion.")
+      .def_readonly("factor", &TimeLimit::factor,
+                    "At this factor of the speed and at all lower ones, S_p holds at all instants.")
+      .def_readonly("factor_above", &TimeLimit::factor_above,
+                    "At a larger one S_p does not hold at `time`.")
+      .def_readonly("time", &TimeLimit::time, "s.")
+      .def_property_readonly(
+          "pair", [](const TimeLimit& t) { return pair_of(t.first, t.second); },
+          "Names of the pair that limits it, or None.")
+      .def_readonly("zone", &TimeLimit::zone, "The name of the zone that limits it, or ''.");
+  py::class_<QuestionResult>(module, "MotionAnswer", "What is certain about a motion.")
+      .def_property_readonly(
+          "status",
+          [status_type](const QuestionResult& r) -> py::object {
+            const int value = static_cast<int>(r.status);
+            if (value >= static_cast<int>(kQuestionStatuses)) return py::int_(value);
+            return status_type(value);
+          },
+          "A QuestionStatus, or the number of one that this client does not know.")
+      .def_property_readonly("answered", &QuestionResult::done,
+                             "False: nothing is known of the motion, and `reason` says why.")
+      .def("is_free", &QuestionResult::is_free, py::arg("margin") = 0.0,
+           "True if the motion certainly keeps this margin, which the question had, m.")
+      .def_readonly("path", &QuestionResult::path, "Of a refusal: the field at fault.")
+      .def_readonly("reason", &QuestionResult::reason, "Of a refusal: a sentence.")
+      .def_readonly("revision", &QuestionResult::scene_revision, "Of the scene of the answer.")
+      .def_readonly("cycle", &QuestionResult::cycle,
+                    "Of a daemon: joints and objects are where this tick had them.")
+      .def_readonly("now_ns", &QuestionResult::now_ns, "Of a daemon: the time of that tick.")
+      .def_readonly("lower", &QuestionResult::lower,
+                    "m: no distance of a watched pair is smaller at any instant.")
+      .def_readonly("upper", &QuestionResult::upper,
+                    "m: the least distance is not larger; 0 if bodies overlap.")
+      .def_readonly("time", &QuestionResult::time, "s: where `upper` is attained.")
+      .def_property_readonly(
+          "pair", [](const QuestionResult& r) { return pair_of(r.first, r.second); },
+          "Names of the pair that attains `upper`, or None.")
+      .def_property_readonly("points", &points_of,
+                             "(2, 3), m, in the world: its closest points then, or None.")
+      .def_readonly("margins", &QuestionResult::margins,
+                    "A MarginAnswer for each margin of the question.")
+      .def_property_readonly("profile", &profile_of,
+                             "(parts, 4): from, to, s; lower and upper at all instants between, m.")
+      .def_property_readonly("profile_pairs", &profile_pairs,
+                             "Names of the closest pair in the middle of each part.")
+      .def_readonly("time_limit", &QuestionResult::time_limit,
+                    "A TimeLimit if it was asked for, or None.")
+      .def_readonly("within_work_limit", &QuestionResult::within_work_limit,
+                    "False: the bounds hold, but may be wider than asked for.")
+      .def_readonly("queries", &QuestionResult::queries, "Distance queries.")
+      .def_readonly(
+          "start_deviation", &QuestionResult::start_deviation,
+          "Of a daemon: largest difference of a first waypoint from the present position.")
+      .def_readonly("start_joint", &QuestionResult::start_joint, "That joint.")
+      .def("__repr__", [](const QuestionResult& r) {
+        if (!r.done())
+          return fmt::format("<clearance.MotionAnswer: {}: {}>", name_of(r.status), r.reason);
+        return fmt::format("<clearance.MotionAnswer: {} - {} m>", r.lower, r.upper);
+      });
+}
+
+}  // namespace
+
+void add_questions(py::module_& module, CellClass& cells) {
+  add_question(module);
+  add_answer(module);
+  constexpr const char* kAsk =
+      R"(Certified bounds of the distance over the whole motion: all instants, not samples.
+
+The question states all joints and all objects that move. Returns a MotionAnswer. Raises ValueError
+with the reason if the question does not fit the cell. Releases the interpreter's lock.)";
+  cells.def("ask", &ask_cell, py::arg("question"), kAsk);
+  module.def("ask", &ask_cell, py::arg("cell"), py::arg("question"), kAsk);
+  py::class_<Questions> questions(module, "Questions", R"(Asks a running daemon about motions.
+
+The daemon adds where joints and objects are now (idl/QUESTIONS.md).)");
+  questions
+      .def(
+          py::init<const std::string&, const SharedConnection&>(), py::arg("client"),
+          py::arg("connection") = py::none(),
+          R"(client: a name of 1 to 32 bytes under `questions` of the daemon's cell, which no other running
+program uses. Raises ValueError and DdsError.)")
+      .def("ask", &Questions::ask, py::arg("question"), py::arg("timeout") = 10.0, py::kw_only(),
+           py::arg("revision") = 0,
+           R"(Asks, and waits for the answer.
+
+revision: refused unless this scene is in force; 0: any. Returns a MotionAnswer, also of a refusal:
+look at `answered`, or at is_free(). Raises ValueError for a payload with a Body, and TimeoutError when
+no answer came within `timeout` s. Releases the interpreter's lock; Ctrl-C ends it.)")
+      .def_property_readonly(
+          "is_heard", [](Questions& self) { return self.use()->questions.is_heard(); },
+          "True when a daemon answers questions on this topic.");
+  add_closing(questions);
+}
+
+}  // namespace clearance::python
