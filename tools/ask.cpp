@@ -16,7 +16,9 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/asker.hpp"
+#include "monitor/bags/bag.hpp"
 #include "monitor/files/file_error.hpp"
+#include "tools/ask/bag_motions.hpp"
 #include "tools/ask/motion_json.hpp"
 
 namespace clearance {
@@ -27,8 +29,11 @@ using OrderedJson = nlohmann::ordered_json;
 constexpr const char* kDescription =
     R"(Says of a motion before it is made how near it comes to anything: at all instants, not at samples.
 
+MOTIONS may be a bag of ROS 2: then each trajectory_msgs/JointTrajectory is a motion, and all other joints are where the
+joint states before it have them. Otherwise it has one motion a line, below.
+
 CELL is a cell file. If it is a folder, the key "scene" of each motion names a cell in it: SCENE.yaml.
-MOTIONS has one motion a line, a JSON object:
+A motion is a JSON object:
   id          a name, repeated in the answer
   joints      names of joints of the cell
   times_s     of the waypoints, s, increasing
@@ -104,7 +109,6 @@ class Program {
     for (std::string text; std::getline(in, text);) {
       ++number;
       if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
-      ++lines_;
       OrderedJson line;
       try {
         line = answer(nlohmann::json::parse(text));
@@ -113,17 +117,41 @@ class Program {
       } catch (const nlohmann::json::exception& error) {
         line = {{"line", number}, {"error", std::string("not a motion: ") + error.what()}};
       }
-      if (line.contains("error") && bad_++ == 0) {
-        print(stderr, "{}:{}: {}\n", options_.motions, number, line["error"].get<std::string>());
-      }
-      out << line.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) << '\n';
+      write(line, std::to_string(number), out);
     }
+    return conclude(in.bad() ? "cannot read " + options_.motions : "", "a JSON object a line", out);
+  }
+
+  // The motions of a bag.
+  int answer_bag(std::ostream& out) {
+    const std::string error = for_each_motion(options_.motions, [&](const BagMotion& motion) {
+      OrderedJson line;
+      try {
+        line = answer(motion);
+      } catch (const BadMotion& bad) {
+        line = {{"id", motion.id}, {"error", bad.what()}};
+      }
+      write(line, motion.id, out);
+    });
+    return conclude(error, "messages of trajectory_msgs/msg/JointTrajectory", out);
+  }
+
+ private:
+  void write(const OrderedJson& line, const std::string& place, std::ostream& out) {
+    ++lines_;
+    if (line.contains("error") && bad_++ == 0)
+      print(stderr, "{}:{}: {}\n", options_.motions, place, line["error"].get<std::string>());
+    out << line.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) << '\n';
+  }
+
+  // `error` says why the input could not be read to its end.
+  int conclude(const std::string& error, const std::string& expected, std::ostream& out) {
     out.flush();
-    if (in.bad() || lines_ == 0 || !out) {
+    if (!error.empty() || lines_ == 0 || !out) {
       print(stderr, "clearance-ask: {}\n",
-            in.bad()      ? "cannot read " + options_.motions
-            : lines_ == 0 ? options_.motions + " has no motion; expected a JSON object a line"
-                          : "could not write all answers to " + options_.out);
+            !error.empty() ? error
+            : lines_ == 0  ? options_.motions + " has no motion; expected " + expected
+                           : "could not write all answers to " + options_.out);
       return kUsage;
     }
     summarise();
@@ -131,7 +159,6 @@ class Program {
     return bad_ + failed_ > 0 ? kFailed : kOk;
   }
 
- private:
   bool add(const std::string& scene, const std::filesystem::path& file) {
     std::optional<Cell> cell = cell_or_errors(read_cell(file, told_on_stderr()));
     if (cell) places_[scene] = std::make_unique<Place>(std::move(*cell));
@@ -152,8 +179,26 @@ class Program {
   }
 
   OrderedJson answer(const nlohmann::json& motion) {
-    const Question question = read_question(motion, defaults_);
-    Place& place = place_of(motion);
+    return answer(read_question(motion, defaults_),
+                  motion.contains("id") ? OrderedJson(motion["id"]) : OrderedJson(),
+                  place_of(motion));
+  }
+
+  // A bag has joint states of other robots, too.
+  OrderedJson answer(const BagMotion& motion) {
+    if (const auto* reason = std::get_if<std::string>(&motion.motion)) throw BadMotion(*reason);
+    Place& place = *places_.at("");
+    Question question = defaults_;
+    question.motion = std::get<JointTrajectory>(motion.motion);
+    for (const HeldJoint& held : motion.held) {
+      const auto& variables = place.cell.scene.variables;
+      if (std::ranges::find(variables, held.name, &JointVariable::name) != variables.end())
+        question.held.push_back(held);
+    }
+    return answer(question, motion.id, place);
+  }
+
+  OrderedJson answer(const Question& question, const OrderedJson& id, Place& place) {
     double least_us = 1e300;
     for (int i = 0; i < options_.repeat; ++i) {
       const auto start = std::chrono::steady_clock::now();
@@ -164,7 +209,7 @@ class Program {
     }
     times_us_.push_back(least_us);
     OrderedJson line;
-    if (motion.contains("id")) line["id"] = motion["id"];
+    if (!id.is_null()) line["id"] = id;
     line.update(answer_line(answer_, place.cell.scene, question));
     for (const MarginAnswer& margin : answer_.margins) {
       undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
@@ -210,7 +255,12 @@ int run(const Options& options) {
     return kUsage;
   }
   std::ifstream file_in;
-  if (options.motions != "-") {
+  const bool is_bag = options.motions != "-" && bag_format(options.motions) != BagFormat::kOther;
+  if (is_bag && std::filesystem::is_directory(options.cell)) {
+    print(stderr, "clearance-ask: found a folder of cells, and a bag; expected one cell for it\n");
+    return kUsage;
+  }
+  if (options.motions != "-" && !is_bag) {
     file_in.open(options.motions);
     if (!file_in || std::filesystem::is_directory(options.motions)) {
       print(stderr, "clearance-ask: {}\n", cannot_read(options.motions));
@@ -227,8 +277,9 @@ int run(const Options& options) {
       return kUsage;
     }
   }
-  return program.answer_all(options.motions == "-" ? std::cin : file_in,
-                            options.out == "-" ? std::cout : file_out);
+  std::ostream& out = options.out == "-" ? std::cout : file_out;
+  if (is_bag) return program.answer_bag(out);
+  return program.answer_all(options.motions == "-" ? std::cin : file_in, out);
 }
 
 }  // namespace
@@ -239,7 +290,8 @@ int main(int argc, char** argv) {
   app.footer(clearance::kExample);
   clearance::Options options;
   app.add_option("CELL", options.cell, "Cell file, or a folder of cells")->required();
-  app.add_option("MOTIONS", options.motions, "File of motions, one a line; - is standard input")
+  app.add_option("MOTIONS", options.motions,
+                 "File of motions, one a line, or a ROS 2 bag; - is standard input")
       ->required();
   app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
   app.add_option("--margin", options.margins, "Margins, m; 0 asks for contact; repeatable")

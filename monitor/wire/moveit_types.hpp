@@ -22,6 +22,12 @@ topic_descriptor<moveit_msgs_msg_dds__PlanningScene_>() noexcept {
   return moveit_msgs_msg_dds__PlanningScene__desc;
 }
 
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<trajectory_msgs_msg_dds__JointTrajectory_>() noexcept {
+  return trajectory_msgs_msg_dds__JointTrajectory__desc;
+}
+
 // A message that is lost is a change that is lost, so readers are reliable. MoveIt's writers are,
 // too, and volatile.
 inline constexpr RosType kRosCollisionObject{

@@ -1,0 +1,73 @@
+#include "monitor/intake/ros_joint_trajectory.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+
+namespace clearance {
+namespace {
+
+double seconds_of(const builtin_interfaces_msg_dds__Duration_& duration) {
+  return static_cast<double>(duration.sec) + 1e-9 * static_cast<double>(duration.nanosec);
+}
+
+// Adds where the joints are before the first point. Returns a sentence if that is not known.
+std::string begin_at_rest(const std::vector<HeldJoint>& held, JointTrajectory& motion) {
+  for (const std::string& joint : motion.joints) {
+    const auto known = std::ranges::find(held, joint, &HeldJoint::name);
+    if (known == held.end()) {
+      return fmt::format(
+          "found a first point after time 0 and no position of joint '{}' before it; expected a "
+          "point at time 0, or a joint state",
+          joint);
+    }
+    motion.positions.push_back(known->position);
+  }
+  motion.times.push_back(0.0);
+  return "";
+}
+
+}  // namespace
+
+std::variant<JointTrajectory, std::string> motion_of(
+    const trajectory_msgs_msg_dds__JointTrajectory_& message, const std::vector<HeldJoint>& held) {
+  JointTrajectory motion;
+  const std::uint32_t joints = message.joint_names._length, points = message.points._length;
+  if (joints == 0 || points == 0)
+    return fmt::format("found {} joints and {} points; expected some of both", joints, points);
+  for (std::uint32_t i = 0; i < joints; ++i) {
+    const char* const name = message.joint_names._buffer[i];
+    motion.joints.emplace_back(name == nullptr ? "" : name);
+  }
+  const auto* const first = message.points._buffer;
+  const auto* const last = first + points;
+  const bool has_velocities =
+      std::all_of(first, last, [&](const auto& each) { return each.velocities._length == joints; });
+  if (seconds_of(first->time_from_start) > 0.0) {
+    if (std::string reason = begin_at_rest(held, motion); !reason.empty()) return reason;
+    if (has_velocities) motion.velocities.assign(joints, 0.0);
+  }
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const auto& point = first[i];
+    if (point.positions._length != joints) {
+      return fmt::format("found {} positions in points[{}]; expected {}, one for each joint",
+                         point.positions._length, i, joints);
+    }
+    if (point.accelerations._length > 0) {
+      return fmt::format(
+          "found accelerations in points[{}]; expected positions, or positions and velocities. "
+          "With accelerations, joints move along polynomials of degree 5",
+          i);
+    }
+    const auto take = [&](const auto& from, std::vector<double>& to) {
+      to.insert(to.end(), from._buffer, from._buffer + from._length);
+    };
+    motion.times.push_back(seconds_of(point.time_from_start));
+    take(point.positions, motion.positions);
+    if (has_velocities) take(point.velocities, motion.velocities);
+  }
+  return motion;
+}
+
+}  // namespace clearance

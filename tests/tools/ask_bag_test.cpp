@@ -1,0 +1,119 @@
+// clearance-ask on bags of ROS 2. The oracle is the closed form of an arm that swings past a pin.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+const std::string kAsk = test::places::programs() + "/clearance-ask";
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+
+struct PointText {
+  double time = 0.0;
+  std::vector<double> positions;
+  std::vector<double> velocities = {}, accelerations = {};
+};
+
+RosMessage trajectory(std::int64_t log_ns, const std::vector<std::string>& joints,
+                      const std::vector<PointText>& points) {
+  RosCdr cdr;
+  cdr.header(log_ns, "").number(static_cast<std::uint32_t>(joints.size()));
+  for (const std::string& joint : joints) cdr.text(joint);
+  cdr.number(static_cast<std::uint32_t>(points.size()));
+  for (const PointText& point : points) {
+    cdr.numbers(point.positions).numbers(point.velocities).numbers(point.accelerations).numbers({});
+    const auto ns = static_cast<std::int64_t>(point.time * 1e9);
+    cdr.number(static_cast<std::int32_t>(ns / kSecondNs));
+    cdr.number(static_cast<std::uint32_t>(ns % kSecondNs));
+  }
+  return {"/arm/joint_trajectory", "trajectory_msgs/msg/JointTrajectory", log_ns, cdr.bytes()};
+}
+
+// The finger is a sphere of 0.05 m that circles at 2 m around the origin.
+class AskOfABag : public RunsPrograms {
+ protected:
+  void SetUp() override {
+    write_text(folder / "scara.urdf", kScaraUrdf);
+    write_text(folder / "cell.yaml",
+               "name: bag\nunits: {length: m, angle: rad}\n"
+               "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+               "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
+               "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n");
+  }
+  int ask(const std::vector<RosMessage>& messages, const std::vector<std::string>& more = {}) {
+    write_mcap_bag(path("run.mcap"), messages);
+    const int status = run(kAsk, with({path("cell.yaml"), path("run.mcap"), "--out",
+                                       path("answers.jsonl"), "--tolerance", "1e-6"},
+                                      more));
+    answers.clear();
+    std::ifstream file(path("answers.jsonl"));
+    for (std::string line; std::getline(file, line);)
+      answers.push_back(nlohmann::json::parse(line));
+    return status;
+  }
+  std::vector<nlohmann::json> answers;
+};
+
+const JointStateText kRest{{"elbow", "push", "shoulder", "elsewhere"}, {0.0, 0.0, -1.0, 7.0}};
+
+TEST_F(AskOfABag, HoldsTheOtherJointsWhereTheJointStatesHaveThem) {
+  ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest),
+                 trajectory(2 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {0.6}}})}),
+            0)
+      << output;
+  ASSERT_EQ(answers.size(), 1u);
+  EXPECT_EQ(answers[0]["id"], "/arm/joint_trajectory at 1.000 s");
+  EXPECT_NEAR(answers[0]["upper"], 0.15, 1e-6);
+  EXPECT_NEAR(answers[0]["t"], 1.25, 1e-3);
+  EXPECT_EQ(answers[0]["verdict"]["0.05"], "free");
+}
+
+// The controller swings from -1 rad to the only point.
+TEST_F(AskOfABag, BeginsWhereTheJointsAreIfTheFirstPointIsLater) {
+  const RosMessage late = trajectory(2 * kSecondNs, {"shoulder"}, {{2.0, {0.6}}});
+  ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest), late}), 0) << output;
+  EXPECT_NEAR(answers.at(0)["upper"], 0.15, 1e-6);
+  EXPECT_EQ(ask({late}), 1) << "nothing says where it begins";
+  EXPECT_TRUE(answers.at(0).contains("error"));
+}
+
+TEST_F(AskOfABag, TakesVelocitiesAndRefusesAccelerations) {
+  const auto with_points = [&](std::vector<PointText> points) {
+    return ask({joint_state(kSecondNs, kSecondNs, kRest),
+                trajectory(2 * kSecondNs, {"shoulder"}, points)});
+  };
+  ASSERT_EQ(with_points({{0.0, {-1.0}}, {2.0, {-1.0}}}), 0) << output;
+  const double held = answers.at(0)["upper"];
+  ASSERT_EQ(with_points({{0.0, {-1.0}, {3.0}}, {2.0, {-1.0}, {-3.0}}}), 0) << output;
+  EXPECT_LT(answers.at(0)["upper"].get<double>(), held - 0.1) << "it leaves its chord";
+  EXPECT_EQ(with_points({{0.0, {-1.0}, {0.0}, {1.0}}, {2.0, {-0.9}, {0.0}, {0.0}}}), 1);
+  EXPECT_NE(answers.at(0)["error"].get<std::string>().find("accelerations"), std::string::npos);
+}
+
+TEST_F(AskOfABag, FailsIfAMotionComesNearerThanExpected) {
+  const std::vector<RosMessage> messages = {
+      joint_state(kSecondNs, kSecondNs, kRest),
+      trajectory(2 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {-0.5}}}),
+      trajectory(3 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {0.6}}})};
+  EXPECT_EQ(ask(messages, {"--expect-min-distance", "0.1"}), 0) << output;
+  EXPECT_EQ(ask(messages, {"--expect-min-distance", "0.2"}), 1) << output;
+  EXPECT_NE(output.find("/arm/joint_trajectory at 2.000 s"), std::string::npos) << output;
+  EXPECT_NE(output.find("pin - finger"), std::string::npos) << output;
+}
+
+TEST_F(AskOfABag, RefusesABagWithoutAMotion) {
+  EXPECT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest)}), 2);
+  EXPECT_NE(output.find("JointTrajectory"), std::string::npos) << output;
+}
+
+}  // namespace
+}  // namespace clearance::test

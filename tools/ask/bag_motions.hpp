@@ -1,0 +1,28 @@
+// The motions of a ROS 2 bag: each trajectory_msgs/JointTrajectory, with the joint states before
+// it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "monitor/ask/question.hpp"
+
+namespace clearance {
+
+struct BagMotion {
+  std::string id;  // "/arm/joint_trajectory at 12.345 s": the time since the first message
+  // The motion, and all other joints of the bag where they were then; or why there is none.
+  std::variant<JointTrajectory, std::string> motion = {};
+  std::vector<HeldJoint> held = {};
+};
+
+// Calls `take` for each motion of a bag, in order. Returns an empty text, or what is wrong with the
+// bag; the motions before that were taken.
+[[nodiscard]] std::string for_each_motion(const std::filesystem::path& bag,
+                                          const std::function<void(const BagMotion&)>& take);
+
+}  // namespace clearance
