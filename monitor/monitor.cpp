@@ -249,6 +249,17 @@ PresentPose Monitor::present_link(std::uint32_t robot, std::uint32_t link) const
   return {kUsable, state.pose};
 }
 
+PresentJoint Monitor::present_joint(std::uint32_t variable) const noexcept {
+  using enum PresentPose::State;
+  const InputAge age = joint_age(variable);
+  if (age.contradicted) return {kContradicted};
+  if (age.age_ns < 0) return {kUnknown};
+  if (age.stale) return {kLate};
+  const TrackedVariable& joint = state_->inputs.robots.variables()[variable];
+  return {kUsable, joint.position,
+          joint.velocity_known ? joint.velocity : std::numeric_limits<double>::quiet_NaN()};
+}
+
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.stamp_ns;
 }

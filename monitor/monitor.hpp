@@ -39,6 +39,13 @@ struct PresentPose {
   Pose world_from_body = {};  // if it is usable
 };
 
+// The position of a joint variable at the last tick.
+struct PresentJoint {
+  PresentPose::State state = PresentPose::State::kUnknown;
+  double position = 0.0;  // rad or m, if it is usable
+  double velocity = 0.0;  // per second; NaN: not known
+};
+
 class Monitor {
  public:
   // Allocates all memory that it ever needs. The scene must outlive the monitor. `similar`, if not
@@ -114,6 +121,7 @@ class Monitor {
   // trusted.
   [[nodiscard]] PresentPose present_pose(std::uint32_t object) const noexcept;
   [[nodiscard]] PresentPose present_link(std::uint32_t robot, std::uint32_t link) const noexcept;
+  [[nodiscard]] PresentJoint present_joint(std::uint32_t variable) const noexcept;
 
   // Stamp of the pose in use; 0 if the object is fixed or no pose is in use.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;

@@ -26,6 +26,7 @@ struct Cell {
   Topics topics = {};
   RosSettings ros = {};
   CommandSettings commands = {};
+  QuestionSettings questions = {};
   AddedCapacity capacity = {};
   Simulation simulation = {};  // may be empty
 

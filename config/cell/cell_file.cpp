@@ -264,6 +264,8 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   if (ros_ != nullptr) read_ros(*ros_, cell.ros, diagnostics_);
   if (const YamlNode* commands = map.optional("commands"))
     cell.commands = read_commands(*commands, file_.parent_path(), diagnostics_);
+  if (const YamlNode* questions = map.optional("questions"))
+    cell.questions = read_questions(*questions, diagnostics_);
   if (const YamlNode* capacity = map.optional("capacity"))
     cell.capacity = read_capacity(*capacity, diagnostics_);
   read_objects_and_pairs(map, quantities, cell);

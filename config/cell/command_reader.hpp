@@ -1,4 +1,4 @@
-// Reads `commands:` and `capacity:` of a cell file.
+// Reads `commands:`, `questions:` and `capacity:` of a cell file.
 #pragma once
 
 #include <filesystem>
@@ -13,6 +13,8 @@ namespace clearance {
 [[nodiscard]] CommandSettings read_commands(const YamlNode& node,
                                             const std::filesystem::path& directory,
                                             Diagnostics& diagnostics);
+
+[[nodiscard]] QuestionSettings read_questions(const YamlNode& node, Diagnostics& diagnostics);
 
 [[nodiscard]] AddedCapacity read_capacity(const YamlNode& node, Diagnostics& diagnostics);
 

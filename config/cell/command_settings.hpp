@@ -1,8 +1,10 @@
-// The keys `commands:` and `capacity:` of a cell: the clients that may change the scene of a
-// running daemon, the folders of their files, and the greatest growth of the scene.
+// The keys `commands:`, `questions:` and `capacity:` of a cell: the clients that may change the
+// scene of a running daemon, and the folders of their files; those that may ask about motions; the
+// greatest growth of the scene.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -16,6 +18,15 @@ struct CommandSettings {
   // Absolute.
   std::vector<std::filesystem::path> folders = {};
   friend bool operator==(const CommandSettings&, const CommandSettings&) = default;
+};
+
+struct QuestionSettings {
+  // The clients whose questions are answered; empty: there is no topic for questions.
+  std::vector<std::string> from = {};
+  std::size_t threads = 1;             // that answer questions
+  std::size_t queue = 16;              // questions of one client that may wait
+  std::uint64_t work_limit = 200'000;  // most distance queries for an answer
+  friend bool operator==(const QuestionSettings&, const QuestionSettings&) = default;
 };
 
 // The growth for which a daemon has memory, beyond the cell that it began with.

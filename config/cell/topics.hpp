@@ -18,6 +18,8 @@ struct Topics {
   std::string gradients = "clearance/gradients";
   std::string commands = "clearance/commands";
   std::string command_results = "clearance/command_results";
+  std::string questions = "clearance/questions";
+  std::string answers = "clearance/answers";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -25,7 +27,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 10> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 12> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -36,6 +38,8 @@ inline constexpr std::array<TopicKey, 10> kTopicKeys = {{
     {"gradients", &Topics::gradients},
     {"commands", &Topics::commands},
     {"command_results", &Topics::command_results},
+    {"questions", &Topics::questions},
+    {"answers", &Topics::answers},
 }};
 
 }  // namespace clearance

@@ -47,6 +47,10 @@ inline constexpr LogLine<Text, Count, Text, Text> kCommandRefused{
     "command-refused", kWarn, "request {1} of '{0}' is refused ({2}): {3}"};
 inline constexpr LogLine<Text> kCommandsLeftOut{"commands-left-out", kWarn,
                                                 "{} about refused commands left out"};
+inline constexpr LogLine<Text, Count, Text, Text> kQuestionRefused{
+    "question-refused", kWarn, "question {1} of '{0}' is refused ({2}): {3}"};
+inline constexpr LogLine<Text> kQuestionsLeftOut{"questions-left-out", kWarn,
+                                                 "{} about refused questions left out"};
 inline constexpr LogLine<Text> kMoveItLeftOut{"moveit-left-out", kWarn, "MoveIt's {}"};
 inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
     "moveit-refused", kWarn, "a message of MoveIt on {} changes nothing: {}{}"};
@@ -228,6 +232,8 @@ inline constexpr std::tuple kAll{kStarted,
                                  kSceneRefused,
                                  kCommandRefused,
                                  kCommandsLeftOut,
+                                 kQuestionRefused,
+                                 kQuestionsLeftOut,
                                  kMoveItLeftOut,
                                  kMoveItRefused,
                                  kSceneResumed,

@@ -6,15 +6,11 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <map>
-#include <memory>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
-#include "monitor/client/client.hpp"
-#include "monitor/command.hpp"
+#include "monitor/client/requests.hpp"
 
 namespace clearance::client {
 
@@ -28,13 +24,10 @@ struct CommandOptions {
 
 // Sends commands under the name of one client, which the daemon's cell names under `commands`, and
 // which no other running program uses.
-class Commands {
+class Commands : public CommandRequests {
  public:
   // Throws std::invalid_argument when the name has no bytes or more than 32.
   Commands(Connection& connection, std::string_view client);
-  ~Commands();
-  Commands(const Commands&) = delete;
-  Commands& operator=(const Commands&) = delete;
 
   // Sends changes that are made wholly or not at all, and waits for their result. The same request
   // is sent again every second until the result comes. Returns nothing when none came in time: the
@@ -46,30 +39,6 @@ class Commands {
   // Sends changes without waiting, and returns the number of the request. Nothing repeats it.
   // Returns 0 when DDS did not take the message.
   std::uint64_t post(const std::vector<CellChange>& changes, const CommandOptions& options = {});
-  // Waits up to `timeout` for the result of a request. Among results without a waiting caller, the
-  // last 64 are kept.
-  [[nodiscard]] std::optional<CommandResult> result(std::uint64_t request,
-                                                    std::chrono::nanoseconds timeout = {});
-
-  // True when a daemon takes commands on this topic. Whether it takes them from this client, the
-  // first result says.
-  [[nodiscard]] bool is_heard() const;
-
- private:
-  class Stop;
-
-  [[nodiscard]] Command next_command(const std::vector<CellChange>& changes,
-                                     const CommandOptions& options);
-  bool write(const Command& command);
-  void take_results();
-  std::optional<CommandResult> wait_for(std::uint64_t request, std::int64_t end_ns, Stop& stop);
-
-  std::string client_;
-  std::uint64_t request_ = 0;  // the last one
-  dds_entity_t writer_, reader_;
-  std::unique_ptr<DataWait> wait_;
-  Sample<clearance_msg_CommandResult> message_;
-  std::map<std::uint64_t, CommandResult> results_;  // by request
 };
 
 }  // namespace clearance::client

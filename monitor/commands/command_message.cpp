@@ -11,15 +11,11 @@
 #include <type_traits>
 #include <utility>
 
-#include "config/text/utf8.hpp"
 #include "monitor/commands/change_fields.hpp"
+#include "monitor/commands/wire_values.hpp"
 
 namespace clearance {
 namespace {
-
-constexpr std::string_view kFinite = "found a number that is not finite; expected a finite one";
-
-std::string_view text_of(const char* text) { return text == nullptr ? "" : text; }
 
 std::size_t longest(ChangeText kind) {
   switch (kind) {
@@ -51,17 +47,9 @@ class FromWire {
   }
   void take(const std::string& path, const char* from, std::string& to, ChangeText kind) const {
     const std::string_view text = text_of(from);
-    const std::size_t most = longest(kind);
-    if (text.empty() && kind != ChangeText::kMayBeEmpty) {
-      refuse(path, "found an empty text; expected one that is not empty");
-    } else if (text.size() > most) {
-      refuse(path, fmt::format("found a text of {} bytes; expected at most {}", text.size(), most));
-    } else if (end_of_utf8(text) != text.size()) {
-      refuse(path, fmt::format("found a text that is no UTF-8 at byte {}; expected UTF-8",
-                               end_of_utf8(text)));
-    } else {
-      to = text;
-    }
+    auto fault = fault_of_text(text, longest(kind), kind == ChangeText::kMayBeEmpty);
+    if (fault) return refuse(path, *std::move(fault));
+    to = text;
   }
   void take(const std::string& path, const dds_sequence_string& from, std::vector<std::string>& to,
             ChangeText kind) const {
@@ -70,7 +58,7 @@ class FromWire {
   }
   void take(const std::string&, bool from, bool& to) const { to = from; }
   void take(const std::string& path, double from, double& to) const {
-    if (!std::isfinite(from)) return refuse(path, std::string(kFinite));
+    if (!std::isfinite(from)) return refuse(path, std::string(kNotFinite));
     to = from;
   }
   void take(const std::string& path, std::uint8_t from, SetPair::Rule& to) const {
@@ -80,18 +68,8 @@ class FromWire {
     to = static_cast<SetPair::Rule>(from);
   }
   void take(const std::string& path, const clearance_msg_Placement& from, Pose& to) const {
-    const auto& [x, y, z] = from.position;
-    if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-      return refuse(path + ".position", std::string(kFinite));
-    const auto& q = from.orientation;
-    const Eigen::Quaterniond turn(q.w, q.x, q.y, q.z);
-    if (!is_unit(turn)) {
-      return refuse(path + ".orientation",
-                    fmt::format("found a quaternion of length {:g}; expected 1 within {:g}",
-                                turn.norm(), kUnitTolerance));
-    }
-    to.position = Vec3(x, y, z);
-    to.orientation = turn;
+    if (auto fault = take_placement(from, to))
+      refuse(fmt::format("{}.{}", path, fault->field), std::move(fault->reason));
   }
   void take(const std::string&, std::int64_t from, std::int64_t& to) const { to = from; }
   // The ends of a contact: those that are not stated stay.
@@ -125,20 +103,15 @@ struct ToWire {
   }
 
  private:
-  static void put(const std::string& from, char*& to) { to = dds_string_dup(from.c_str()); }
+  static void put(const std::string& from, char*& to) { put_value(from, to); }
   static void put(const std::vector<std::string>& from, dds_sequence_string& to) {
-    reserve_sequence(to, from.size());
-    for (const std::string& text : from) put(text, to._buffer[to._length++]);
+    put_value(from, to);
   }
   template <class Number>
   requires std::is_arithmetic_v<Number>
   static void put(Number from, Number& to) { to = from; }
   static void put(SetPair::Rule from, std::uint8_t& to) { to = static_cast<std::uint8_t>(from); }
-  static void put(const Pose& from, clearance_msg_Placement& to) {
-    const Eigen::Quaterniond& q = from.orientation;
-    to.position = {from.position.x(), from.position.y(), from.position.z()};
-    to.orientation = {q.x(), q.y(), q.z(), q.w()};
-  }
+  static void put(const Pose& from, clearance_msg_Placement& to) { put_value(from, to); }
   static void put(double from, clearance_msg_StatedNumber& to) {
     to = {.is_stated = from != ContactEnd{}.distance, .value = from};
   }
@@ -218,14 +191,6 @@ std::optional<MalformedField> take_files(const clearance_msg_Command& message,
     }
   }
   return std::nullopt;
-}
-
-// Into a bounded string, cut to fit.
-template <std::size_t N>
-void copy_text(std::string_view text, char (&out)[N]) {
-  const std::size_t length = std::min(text.size(), N - 1);
-  std::memcpy(out, text.data(), length);
-  std::memset(out + length, 0, N - length);
 }
 
 }  // namespace

@@ -100,14 +100,21 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
-  if (cell.commands.from.empty()) return;
-  commands_ = std::make_unique<CommandPort>(
-      cell, participant_, reports_.daemon(),
-      [this](QueuedCommand command) { return put(std::move(command)); },
-      [this] { return revision_.load(); });
+  const auto revision = [this] { return revision_.load(); };
+  if (!cell.commands.from.empty()) {
+    commands_ = std::make_unique<CommandPort>(
+        cell, cell.commands.from, participant_, reports_.daemon(),
+        [this](QueuedCommand command) { return put(std::move(command)); }, revision);
+  }
+  if (!cell.questions.from.empty()) {
+    desk_ = std::make_unique<QuestionDesk>(now_.cell, *loop_, loop_ended_);
+    questions_ = std::make_unique<QuestionPort>(
+        cell, cell.questions.from, participant_, reports_.daemon(),
+        [this](QueuedQuestion question) { return desk_->put(std::move(question)); }, revision);
+  }
 }
 
-Daemon::~Daemon() { end_commands(); }
+Daemon::~Daemon() { end_requests(); }
 
 Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   OfCell parts{std::move(cell), nullptr, nullptr};
@@ -139,6 +146,10 @@ void Daemon::run(StopSignal& signal) {
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
   if (commands_) commands_->start();
+  if (questions_) {
+    desk_->start();
+    questions_->start();
+  }
   for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
     ++polls;
     const bool looks = polls % kPollsALook == 0;
@@ -149,7 +160,7 @@ void Daemon::run(StopSignal& signal) {
   service_.stopping();
   stop_ = true;
   ticking.join();
-  end_commands();
+  end_requests();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
   reports_.finish();
@@ -175,10 +186,12 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
   done = true;
 }
 
-// The scene thread answers through the port, so that the port ends last.
-void Daemon::end_commands() {
+// The threads that answer do so through their port, so that the port ends last.
+void Daemon::end_requests() {
   moveit_.close();
   loop_ended_ = true;
+  if (desk_) desk_->end();
+  questions_.reset();
   if (!scene_thread_ || still_reads_) return;
   still_reads_ = !scene_thread_->end();
   if (!still_reads_) commands_.reset();
@@ -255,7 +268,8 @@ std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell
   return sinks;
 }
 
-// Returns when no other thread uses the cell before, except a recording: a disk may be slow.
+// Returns when no other thread uses the cell before, except a recording, whose disk may be slow,
+// and questions. Both keep it until they have ended.
 void Daemon::follow(const SceneInForce& since) noexcept {
   reports_.continue_with(*next_.cell, since, *next_.queue);
   if (recording_) recording_->follow(since);
@@ -264,6 +278,7 @@ void Daemon::follow(const SceneInForce& since) noexcept {
   if (now_.ros) now_.ros->finish();
   dropped_before_ += now_.queue->dropped_reports();
   now_ = std::move(next_);
+  if (desk_) desk_->follow(now_.cell);
 }
 
 void Daemon::abandon() {

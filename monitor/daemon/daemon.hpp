@@ -17,12 +17,13 @@
 #include "monitor/daemon/file_watch.hpp"
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/recording.hpp"
-#include "monitor/dds/command_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
+#include "monitor/dds/request_port.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/questions/question_desk.hpp"
 #include "monitor/ros/ros_messages.hpp"
 #include "monitor/ros/ros_writer.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
@@ -86,7 +87,7 @@ class Daemon : private CellParts {
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
   void tick_thread(std::atomic<bool>& done);
   void raise_priorities();
-  void end_commands();
+  void end_requests();
   void read_again();
   [[nodiscard]] bool files_changed();
   void watch_files(const std::vector<std::filesystem::path>& files);
@@ -118,6 +119,8 @@ class Daemon : private CellParts {
   std::atomic<std::uint64_t> revision_;  // in force
   std::unique_ptr<SceneThread> scene_thread_;
   std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
+  std::unique_ptr<QuestionDesk> desk_;     // likewise, here and below
+  std::unique_ptr<QuestionPort> questions_;
   bool still_reads_ = false;
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;

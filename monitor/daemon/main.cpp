@@ -51,9 +51,10 @@ struct Arguments {
   bool record_over = false;  // replace existing files
   RecordingArguments recording;
   bool gradients = false;
-  std::vector<std::string> ros;       // ROS 2 outputs in addition to the cell's
-  std::vector<std::string> commands;  // clients in addition to the cell's
-  std::filesystem::path metrics;      // a socket; empty: none
+  std::vector<std::string> ros;        // ROS 2 outputs in addition to the cell's
+  std::vector<std::string> commands;   // clients in addition to the cell's
+  std::vector<std::string> questions;  // likewise
+  std::filesystem::path metrics;       // a socket; empty: none
   DaemonOptions daemon;
 };
 
@@ -107,6 +108,11 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "repeatable")
       ->allow_extra_args(false)
       ->check(is_client);
+  app.add_option("--questions", arguments.questions,
+                 "Answer questions of this client too, about motions before they are made "
+                 "(idl/QUESTIONS.md); repeatable")
+      ->allow_extra_args(false)
+      ->check(is_client);
   app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
                  "Keep the changed scene in this file, and begin with it after a crash");
   app.add_flag(
@@ -143,14 +149,18 @@ int check_only(const CellArguments& cell) {
   return kOk;
 }
 
+void add_clients(const std::vector<std::string>& asked, std::vector<std::string>& from) {
+  for (const std::string& client : asked) {
+    if (std::ranges::find(from, client) == from.end()) from.push_back(client);
+  }
+}
+
 // Adds to a cell, and to every changed one, what the command line asks for.
 void finish(const Arguments& arguments, Cell& cell) {
   cell.scene.gradients = cell.scene.gradients || arguments.gradients;
   add_ros_outputs(arguments.ros, cell.ros.outputs);
-  for (const std::string& client : arguments.commands) {
-    std::vector<std::string>& from = cell.commands.from;
-    if (std::ranges::find(from, client) == from.end()) from.push_back(client);
-  }
+  add_clients(arguments.commands, cell.commands.from);
+  add_clients(arguments.questions, cell.questions.from);
 }
 
 // The summary goes to stdout at the end; the log goes to stderr during the run.

@@ -2,7 +2,21 @@
 
 #include <algorithm>
 
+#include "monitor/loop/ports.hpp"
+
 namespace clearance {
+namespace {
+
+bool admits(const dds_sample_info_t* info, void* names) {
+  return static_cast<NameLimit*>(names)->admits(info->publication_handle, info->instance_handle,
+                                                SystemClock().monotonic_ns());
+}
+
+}  // namespace
+
+dds_topic_filter filter_of(NameLimit& names) noexcept {
+  return {.mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names};
+}
 
 bool NameLimit::admits(std::uint64_t writer, std::uint64_t name, std::int64_t monotonic_ns) {
   const std::lock_guard lock(mutex_);

@@ -5,6 +5,8 @@
 // permanently. Samples that are refused here are never stored.
 #pragma once
 
+#include <dds/dds.h>
+
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -46,5 +48,9 @@ class NameLimit {
   std::map<std::uint64_t, Writer> writers_;
   std::uint64_t refused_ = 0;
 };
+
+// A filter for a reader: Cyclone asks it before it stores a sample, with the name's instance handle
+// and no decoded sample. The limit must outlive the reader.
+[[nodiscard]] dds_topic_filter filter_of(NameLimit& names) noexcept;
 
 }  // namespace clearance

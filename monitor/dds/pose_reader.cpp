@@ -49,12 +49,6 @@ void log_matched(dds_entity_t reader, const dds_subscription_matched_status_t st
            topic_of(reader), status.current_count);
 }
 
-// Cyclone asks before it stores a sample, with the name's instance handle and no decoded sample.
-bool admits(const dds_sample_info_t* info, void* names) {
-  return static_cast<NameLimit*>(names)->admits(info->publication_handle, info->instance_handle,
-                                                SystemClock().monotonic_ns());
-}
-
 // The domain that a ROS 2 node started from the same shell would join.
 std::string ros_domain() {
   const char* const id = std::getenv("ROS_DOMAIN_ID");
@@ -114,8 +108,7 @@ void PoseReader::open(Participant& participant, TopicKind kind) {
   dds_listener_t* listener = dds_create_listener(nullptr);
   dds_lset_requested_incompatible_qos(listener, log_incompatible);
   dds_lset_subscription_matched_arg(listener, log_matched, &writers_changed_, true);
-  const dds_topic_filter filter{
-      .mode = DDS_TOPIC_FILTER_SAMPLEINFO_ARG, .f = {.sampleinfo_arg = admits}, .arg = &names_};
+  const dds_topic_filter filter = filter_of(names_);
   const dds_entity_t reader =
       participant.reader(kind, topics_->*topic(kind).name, 0, listener, &filter);
   dds_delete_listener(listener);

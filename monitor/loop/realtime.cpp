@@ -57,6 +57,9 @@ Refusal lock_memory() {
       std::strerror(errno));
 }
 
+// The nice value is that of a thread in Linux. Nice 10 has a weight of 110 beside 1024.
+void lower_priority() noexcept { (void)setpriority(PRIO_PROCESS, 0, 10); }
+
 void name_thread(const char* name) noexcept { pthread_setname_np(pthread_self(), name); }
 
 }  // namespace clearance

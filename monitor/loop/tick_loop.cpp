@@ -3,7 +3,9 @@
 #include "monitor/loop/tick_loop.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
+#include <thread>
 
 namespace clearance {
 namespace {
@@ -12,6 +14,8 @@ namespace {
 // processor from all other threads, and the kernel would end it at a limit of real-time processor
 // time (RLIMIT_RTTIME). Hence it sleeps this long after this time, in ns.
 constexpr std::int64_t kLongestWithoutSleep = 50'000'000, kShortSleep = 10'000;
+// The time between two looks of another thread for its answer.
+constexpr std::chrono::microseconds kLookForAnswer{50};
 
 }  // namespace
 
@@ -96,22 +100,26 @@ bool TickLoop::offer(Successor& successor) noexcept {
   return offered_.compare_exchange_strong(none, &successor, std::memory_order_acq_rel);
 }
 
-bool TickLoop::ask(PoseQuestion& question) noexcept {
-  PoseQuestion* none = nullptr;
-  return asked_.compare_exchange_strong(none, &question, std::memory_order_acq_rel);
-}
-
-void TickLoop::take_back(PoseQuestion& question) noexcept {
-  PoseQuestion* asked = &question;
+bool TickLoop::ask(LoopQuestion& question, const std::atomic<bool>& loop_ended) {
+  LoopQuestion* none = nullptr;
+  while (!asked_.compare_exchange_strong(none, &question, std::memory_order_acq_rel)) {
+    none = nullptr;
+    if (loop_ended) return false;
+    std::this_thread::sleep_for(kLookForAnswer);
+  }
+  while (!question.is_answered() && !loop_ended) std::this_thread::sleep_for(kLookForAnswer);
+  if (question.is_answered()) return true;
+  LoopQuestion* asked = &question;
   asked_.compare_exchange_strong(asked, nullptr, std::memory_order_acq_rel);
+  return false;
 }
 
 // Its owner may delete the question as soon as it is answered.
 void TickLoop::answer_question() noexcept {
-  PoseQuestion* const question = asked_.load(std::memory_order_acquire);
+  LoopQuestion* const question = asked_.load(std::memory_order_acquire);
   if (question == nullptr) return;
   asked_.store(nullptr, std::memory_order_release);
-  question->answer(*monitor_);
+  question->answer({*scene_, *monitor_, statistics_});
 }
 
 // Between two ticks. An offer that has failed is dropped.

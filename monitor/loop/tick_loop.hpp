@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
+#include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/loop/pose_question.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/loop/successor.hpp"
 #include "monitor/monitor.hpp"
@@ -46,12 +46,11 @@ class TickLoop {
   // successor.
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
 
-  // Any one thread: asks where bodies of the present scene are. The tick thread answers between two
-  // ticks, without a lock and without memory. Returns false while another question waits. The
-  // question must live until it is answered or taken back.
-  bool ask(PoseQuestion& question) noexcept;
-  // Once the loop has ended: no answer comes any more.
-  void take_back(PoseQuestion& question) noexcept;
+  // Any thread but that of the tick: asks, and waits until the tick thread has answered between two
+  // ticks, without a lock and without memory. Several threads are answered one after another, one
+  // in a tick. Returns false if the loop has ended meanwhile: `loop_ended` is set once its thread
+  // has ended.
+  [[nodiscard]] bool ask(LoopQuestion& question, const std::atomic<bool>& loop_ended);
 
   // Runs in the calling thread until `stop` is set or `max_ticks` are done.
   void run(const std::atomic<bool>& stop) noexcept;
@@ -74,7 +73,7 @@ class TickLoop {
   const Scene* scene_;
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
-  std::atomic<PoseQuestion*> asked_{nullptr};
+  std::atomic<LoopQuestion*> asked_{nullptr};
   SceneIds ids_;
   SteadyTime time_;
   PoseSource& source_;

@@ -2,11 +2,8 @@
 // here.
 #pragma once
 
-#include <condition_variable>
 #include <cstddef>
-#include <deque>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 
@@ -14,6 +11,7 @@
 #include "config/edit/cell_editor.hpp"
 #include "core/pose.hpp"
 #include "monitor/command.hpp"
+#include "monitor/loop/request_queue.hpp"
 
 namespace clearance {
 
@@ -35,29 +33,17 @@ struct QueuedCommand {
   CompleteChanges complete = {};
 };
 
-// Any thread but that of the tick.
-class CommandQueue {
- public:
-  // The number of commands that may wait, and the bytes of their texts and files. One command may
-  // always wait, however large it is.
-  static constexpr std::size_t kMost = 64, kMostBytes = 128 << 20;
-
-  // Returns false, and drops it, if too much waits, or after close().
-  [[nodiscard]] bool put(QueuedCommand command);
-  // Waits for a command. Returns nothing after close().
-  [[nodiscard]] std::optional<QueuedCommand> next();
-  // Drops the commands that wait.
-  void close();
-
- private:
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::deque<QueuedCommand> waiting_;
-  std::size_t bytes_ = 0;
-  bool closed_ = false;
-};
-
 // The bytes of the texts and files of a command, roughly.
 [[nodiscard]] std::size_t bytes_of(const Command& command);
+[[nodiscard]] inline std::size_t bytes_of(const QueuedCommand& queued) {
+  return bytes_of(queued.command) + queued.bytes_to_make;
+}
+
+class CommandQueue : public RequestQueue<QueuedCommand> {
+ public:
+  // The number of commands that may wait, and the bytes of their texts and files.
+  static constexpr std::size_t kMost = 64, kMostBytes = 128 << 20;
+  CommandQueue() : RequestQueue(kMost, kMostBytes) {}
+};
 
 }  // namespace clearance

@@ -1,17 +1,9 @@
 #include "monitor/scene_changes/present_poses.hpp"
 
 #include <algorithm>
-#include <chrono>
-#include <cstdint>
-#include <thread>
 #include <utility>
 
 namespace clearance {
-namespace {
-
-constexpr std::chrono::microseconds kLookForAnswer{50};
-
-}  // namespace
 
 std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene) {
   for (const Robot& robot : scene.robots) {
@@ -72,15 +64,7 @@ std::optional<PresentPoses> present_poses(const std::vector<std::string>& names,
   PresentPoses poses;
   if (bodies.empty()) return poses;
   PoseQuestion question(std::move(bodies));
-  while (!loop.ask(question)) {
-    if (loop_ended) return std::nullopt;
-    std::this_thread::sleep_for(kLookForAnswer);
-  }
-  while (!question.is_answered() && !loop_ended) std::this_thread::sleep_for(kLookForAnswer);
-  if (!question.is_answered()) {
-    loop.take_back(question);
-    return std::nullopt;
-  }
+  if (!loop.ask(question, loop_ended)) return std::nullopt;
   for (std::size_t i = 0; i < known.size(); ++i) poses[known[i]] = question.poses()[i];
   return poses;
 }

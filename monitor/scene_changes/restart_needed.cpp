@@ -58,6 +58,7 @@ std::optional<std::string> restart_needed(const Cell& before, const Cell& now) {
   if (!follows_frames(old) && follows_frames(scene))
     return restart("an object or a robot follows a frame of tf, and none did before");
   if (before.commands != now.commands) return restart("'commands' change");
+  if (before.questions != now.questions) return restart("'questions' change");
   if (before.capacity != now.capacity) return restart("the 'capacity' changes");
   return std::nullopt;
 }

@@ -9,6 +9,7 @@
 
 #include "clearance.h"
 #include "commands.h"
+#include "questions.h"
 
 namespace clearance {
 
@@ -66,6 +67,17 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_CommandResult>() noexcept {
   return clearance_msg_CommandResult_desc;
+}
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_Question>() noexcept {
+  return clearance_msg_Question_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_Answer>() noexcept {
+  return clearance_msg_Answer_desc;
 }
 
 // One sample of a topic type, all zero at first. Everything it points to is from dds_alloc and is

@@ -28,6 +28,8 @@ enum class TopicKind : std::uint8_t {
   kGradients,
   kCommands,
   kCommandResults,
+  kQuestions,
+  kAnswers,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
@@ -51,8 +53,8 @@ struct Topic {
 // reports that used them. A distances writer keeps 64 reports for a client that is held up for a
 // moment. Inputs are states, of which only the newest counts: behind a lost sample, a reader waits
 // for as many samples as the writer keeps. What waits in a reader is taken at once and delays
-// nothing, so a reader may be late by 16 batches (16 ms at 1 kHz) without losing any. Commands are
-// repeated by their client until a result comes, so a lost one does no harm.
+// nothing, so a reader may be late by 16 batches (16 ms at 1 kHz) without losing any. Commands
+// and questions are repeated by their client until a result comes, so a lost one does no harm.
 inline constexpr auto kTopics = [] {
   constexpr auto row = [](TopicKind kind, const dds_topic_descriptor_t& type, Delivery delivery,
                           std::int32_t writer_depth, std::int32_t reader_depth) {
@@ -72,12 +74,14 @@ inline constexpr auto kTopics = [] {
       row(kGradients, clearance_msg_Gradients_desc, kStream, 64, 64),
       row(kCommands, clearance_msg_Command_desc, kStream, 64, 64),
       row(kCommandResults, clearance_msg_CommandResult_desc, kLatched, 64, 64),
+      row(kQuestions, clearance_msg_Question_desc, kStream, 64, 64),
+      row(kAnswers, clearance_msg_Answer_desc, kStream, 64, 64),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());
 
 // The topics that recordings and viewers have. A command is what a client asked for, and the
-// catalogue has what came of it.
+// catalogue has what came of it. A question changes nothing.
 inline constexpr std::span<const Topic> kRecordedTopics =
     std::span(kTopics).first(static_cast<std::size_t>(TopicKind::kCommands));
 

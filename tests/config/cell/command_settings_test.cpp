@@ -1,4 +1,4 @@
-// The keys `commands:` and `capacity:` of a cell.
+// The keys `commands:`, `questions:` and `capacity:` of a cell.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,18 @@ TEST(CommandSettingsOfACell, AreOffUnlessTheCellNamesClients) {
   const Cell cell = read_good(with(""));
   EXPECT_EQ(cell.commands, CommandSettings{});
   EXPECT_TRUE(cell.commands.from.empty());
+  EXPECT_EQ(cell.questions, QuestionSettings{});
+  EXPECT_TRUE(cell.questions.from.empty());
   EXPECT_EQ(cell.capacity, AddedCapacity{});
+}
+
+TEST(CommandSettingsOfACell, NameClientsThatAskAndTheWorkForThem) {
+  const Cell cell = read_good(
+      with("questions: {from: [planner, pendant], threads: 2, queue: 3, work_limit: 5000}\n"));
+  EXPECT_EQ(cell.questions,
+            (QuestionSettings{
+                .from = {"planner", "pendant"}, .threads = 2, .queue = 3, .work_limit = 5000}));
+  EXPECT_EQ(read_good(with("questions: {from: [a]}\n")).questions, QuestionSettings{.from = {"a"}});
 }
 
 TEST(CommandSettingsOfACell, NameClientsAndFoldersBesideTheCell) {
@@ -48,6 +59,10 @@ TEST(CommandSettingsOfACell, AreRefusedWithTheirPlace) {
               mistake_at("4:33", "empty"));
   EXPECT_THAT(errors_of(with("commands: {from: [a], folder: [b]}\n")),
               mistake_at("4:23", "folders"));
+  EXPECT_THAT(errors_of(with("questions: {threads: 2}\n")), mistake_at("4:12", "from"));
+  EXPECT_THAT(errors_of(with("questions: {from: [a], threads: 0}\n")), mistake_at("4:33"));
+  EXPECT_THAT(errors_of(with("questions: {from: [a], work_limit: no}\n")), mistake_at("4:36"));
+  EXPECT_THAT(errors_of(with("questions: {from: [a], qeue: 1}\n")), mistake_at("4:24", "queue"));
   EXPECT_THAT(errors_of(with("capacity: {objects: -1}\n")), mistake_at("4:21"));
   EXPECT_THAT(errors_of(with("capacity: {pair: 5}\n")), mistake_at("4:12", "pairs"));
 }

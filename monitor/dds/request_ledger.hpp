@@ -1,5 +1,5 @@
-// Decides which commands are done: by whom they are sent, in which order, and what was answered
-// before. It neither knows DDS nor looks at the changes.
+// Decides which requests of clients are done: by whom they are sent, in which order, and what was
+// answered before. It neither knows DDS nor looks into a request.
 #pragma once
 
 #include <cstddef>
@@ -13,23 +13,25 @@
 #include <vector>
 
 #include "monitor/command.hpp"
+#include "monitor/motion_question.hpp"
 
 namespace clearance {
 
-// Any thread but that of the tick.
-class CommandLedger {
+// Any thread but that of the tick. `Result` is CommandResult or QuestionResult.
+template <class Result>
+class RequestLedger {
  public:
   // The number of a client's last requests whose results are known, and of the programs that may
   // send under its name before more are not told apart.
   static constexpr std::size_t kKnown = 64, kWriters = 8;
 
-  // `clients`: those whose commands are taken.
-  explicit CommandLedger(const std::vector<std::string>& clients);
+  // `clients`: those whose requests are taken. `key` is that of the cell which names them.
+  RequestLedger(const std::vector<std::string>& clients, std::string key);
 
   struct Request {
     std::string client;
     std::uint64_t number = 0;
-    std::uint64_t content = 0;  // a hash of the whole command
+    std::uint64_t content = 0;  // a hash of the whole message
   };
   enum class Next : std::uint8_t {
     kDo,     // it is new, and pending from now on
@@ -38,20 +40,19 @@ class CommandLedger {
   };
   struct Verdict {
     Next next = Next::kDo;
-    CommandResult result = {};
+    Result result = {};
   };
 
-  // Tells whether this client may command, and whether this writer is the only one under its name.
-  // Returns the refusal. The numbers of a new writer need not be above those of the one before: a
-  // clock that was stepped back between two runs bars no client. To be called for every message,
-  // also for one that is malformed.
-  [[nodiscard]] std::optional<CommandResult> refuse_sender(const Request& request,
-                                                           std::uint64_t writer);
+  // Tells whether this client may send requests, and whether this writer is the only one under its
+  // name. Returns the refusal. The numbers of a new writer need not be above those of the one
+  // before: a clock that was stepped back between two runs bars no client. To be called for every
+  // message, also for one that is malformed.
+  [[nodiscard]] std::optional<Result> refuse_sender(const Request& request, std::uint64_t writer);
   // Judges a request that refuse_sender() lets pass. kDo must be followed by answer() or
   // withdraw().
   [[nodiscard]] Verdict admit(const Request& request);
   // The result of a pending request, which is known from now on.
-  void answer(const CommandResult& result);
+  void answer(const Result& result);
   // The pending request was not begun, and counts as not sent.
   void withdraw(const Request& request);
   // Forgets all writers except these, which still exist.
@@ -60,8 +61,8 @@ class CommandLedger {
  private:
   struct Known {
     std::uint64_t number = 0, content = 0;
-    std::uint64_t before = 0;                  // the last number then
-    std::optional<CommandResult> result = {};  // none: pending
+    std::uint64_t before = 0;           // the last number then
+    std::optional<Result> result = {};  // none: pending
   };
   struct Client {
     std::vector<std::uint64_t> writers = {};
@@ -69,8 +70,12 @@ class CommandLedger {
     std::uint64_t writer = 0;      // the last that sent alone: a program that runs
     std::uint64_t last = 0;        // the largest number of this writer
   };
+  const std::string key_;
   std::mutex mutex_;
   std::map<std::string, Client> clients_;
 };
+
+extern template class RequestLedger<CommandResult>;
+extern template class RequestLedger<QuestionResult>;
 
 }  // namespace clearance

@@ -5,11 +5,16 @@
 #include <limits>
 #include <vector>
 
-#include "monitor/scene_changes/command_ledger.hpp"
+#include "monitor/dds/request_ledger.hpp"
 
 namespace clearance {
 namespace {
 
+class CommandLedger : public RequestLedger<CommandResult> {
+ public:
+  explicit CommandLedger(const std::vector<std::string>& clients)
+      : RequestLedger(clients, "commands") {}
+};
 using Next = CommandLedger::Next;
 
 CommandResult done(std::uint64_t request, const std::string& client = "planner") {

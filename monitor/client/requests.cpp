@@ -1,0 +1,156 @@
+#include "monitor/client/requests.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include "monitor/commands/command_message.hpp"
+#include "monitor/commands/question_message.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/wire/topics.hpp"
+
+namespace clearance::client {
+namespace {
+
+constexpr std::size_t kKeptResults = 64;
+constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent again
+constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
+constexpr std::int64_t kAskNs = 50'000'000;       // until the caller is asked again
+
+bool has_matched(dds_entity_t writer, dds_entity_t reader) {
+  dds_publication_matched_status_t readers{};
+  dds_subscription_matched_status_t writers{};
+  return dds_get_publication_matched_status(writer, &readers) == DDS_RETCODE_OK &&
+         dds_get_subscription_matched_status(reader, &writers) == DDS_RETCODE_OK &&
+         readers.current_count > 0 && writers.current_count > 0;
+}
+
+}  // namespace
+
+// Asks the caller whether to end a wait, not more often than every kAskNs.
+template <class Request, class Result, class Message>
+class Requests<Request, Result, Message>::Stop {
+ public:
+  explicit Stop(std::function<bool()> ask) : ask_(std::move(ask)) {}
+  [[nodiscard]] bool operator()() {
+    if (stopped_ || !ask_ || dds_time() < next_ns_) return stopped_;
+    next_ns_ = dds_time() + kAskNs;
+    return stopped_ = ask_();
+  }
+  // The time until a wait has to end so that the caller can be asked.
+  [[nodiscard]] std::int64_t slice(std::int64_t left_ns) const noexcept {
+    return ask_ ? std::min(left_ns, kAskNs) : left_ns;
+  }
+
+ private:
+  std::function<bool()> ask_;
+  std::int64_t next_ns_ = 0;
+  bool stopped_ = false;
+};
+
+template <class Request, class Result, class Message>
+Requests<Request, Result, Message>::Requests(Connection& connection, std::string_view client,
+                                             TopicKind requests, TopicKind results)
+    : client_(client) {
+  if (client.empty() || client.size() > 32) {
+    throw std::invalid_argument(fmt::format(
+        "the client '{}' has {} bytes; expected a name of 1 to 32", client, client.size()));
+  }
+  Participant& participant = connection.participant();
+  const Topics& topics = connection.topics();
+  reader_ = participant.reader(results, topics.*topic(results).name);
+  writer_ = participant.writer(requests, topics.*topic(requests).name);
+  wait_ = std::make_unique<DataWait>(participant, std::vector{reader_});
+}
+
+template <class Request, class Result, class Message>
+Requests<Request, Result, Message>::~Requests() {
+  wait_.reset();
+  dds_delete(writer_);
+  dds_delete(reader_);
+}
+
+template <class Request, class Result, class Message>
+bool Requests<Request, Result, Message>::is_heard() const {
+  return has_matched(writer_, reader_);
+}
+
+template <class Request, class Result, class Message>
+bool Requests<Request, Result, Message>::write(const Request& request) {
+  const auto message = to_wire(request);
+  return dds_write(writer_, &*message) == DDS_RETCODE_OK;
+}
+
+template <class Request, class Result, class Message>
+Request Requests<Request, Result, Message>::next(const Make& make) {
+  request_ = std::max(request_ + 1, static_cast<std::uint64_t>(now_ns()));
+  return make(client_, request_);
+}
+
+template <class Request, class Result, class Message>
+std::uint64_t Requests<Request, Result, Message>::post(const Make& make) {
+  return write(next(make)) ? request_ : 0;
+}
+
+// A volatile topic: what is written before a daemon is met does not arrive.
+template <class Request, class Result, class Message>
+std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
+                                                               std::function<bool()> ask,
+                                                               std::chrono::nanoseconds timeout) {
+  const std::int64_t end_ns = dds_time() + timeout.count();
+  Stop stop(std::move(ask));
+  while (!is_heard() && dds_time() < end_ns && !stop()) dds_sleepfor(kLookNs);
+  if (!is_heard() || stop()) return std::nullopt;
+  const Request request = next(make);
+  do {
+    (void)write(request);
+    if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {
+      // A busy daemon has not taken the request.
+      if (result->status != decltype(Result::status)::kBusy) return result;
+      if (dds_time() + kAgainNs >= end_ns) return result;
+      results_.erase(request_);
+      const std::int64_t again_ns = dds_time() + kAgainNs;
+      while (dds_time() < again_ns && !stop()) dds_sleepfor(stop.slice(again_ns - dds_time()));
+    }
+  } while (dds_time() < end_ns && !stop());
+  return std::nullopt;
+}
+
+template <class Request, class Result, class Message>
+std::optional<Result> Requests<Request, Result, Message>::result(std::uint64_t request,
+                                                                 std::chrono::nanoseconds timeout) {
+  Stop never({});
+  return wait_for(request, dds_time() + timeout.count(), never);
+}
+
+template <class Request, class Result, class Message>
+void Requests<Request, Result, Message>::take_results() {
+  void* pointer = &*message_;
+  dds_sample_info_t info;
+  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
+    if (!info.valid_data || client_ != message_->client) continue;
+    Result result = from_wire(*message_);
+    results_[result.request] = std::move(result);
+    if (results_.size() > kKeptResults) results_.erase(results_.begin());
+  }
+}
+
+template <class Request, class Result, class Message>
+std::optional<Result> Requests<Request, Result, Message>::wait_for(std::uint64_t request,
+                                                                   std::int64_t end_ns,
+                                                                   Stop& stop) {
+  while (true) {
+    take_results();
+    if (const auto found = results_.find(request); found != results_.end()) return found->second;
+    const std::int64_t left_ns = end_ns - dds_time();
+    if (left_ns <= 0 || stop()) return std::nullopt;
+    wait_->wait(stop.slice(left_ns));
+  }
+}
+
+template class Requests<Command, CommandResult, clearance_msg_CommandResult>;
+template class Requests<MotionQuestion, QuestionResult, clearance_msg_Answer>;
+
+}  // namespace clearance::client

@@ -1,0 +1,32 @@
+// Completes the question of a client by what the daemon knows: positions of joints and poses of
+// objects that the client has not stated.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "config/scene/scene.hpp"
+#include "monitor/motion_question.hpp"
+#include "monitor/questions/input_state.hpp"
+
+namespace clearance {
+
+// A joint that moves faster than this does not stay where it is, rad/s or m/s. Drives at rest
+// report less.
+inline constexpr double kRestSpeed = 2e-3;
+
+// Adds to `held` and `poses` what the question lacks. Returns why it cannot: a sentence that names
+// the inputs which are unknown, late or contradicted, or a joint that is taken to stay and moves.
+// Names that the scene lacks stay, for Asker to refuse.
+[[nodiscard]] std::optional<std::string> complete(const Scene& scene, const InputState& state,
+                                                  Question& question);
+
+// The joint whose first waypoint differs most from its present position.
+struct StartDeviation {
+  double deviation = 0.0;  // rad or m; infinite: the position is not usable
+  std::string joint = {};
+};
+[[nodiscard]] StartDeviation start_deviation(const Scene& scene, const InputState& state,
+                                             const JointTrajectory& motion);
+
+}  // namespace clearance

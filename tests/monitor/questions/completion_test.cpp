@@ -1,0 +1,110 @@
+// A question is completed by what the daemon knows, and by nothing that it does not know.
+#include "monitor/questions/completion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using PoseState = PresentPose::State;
+
+// Joints shoulder, elbow, push; the cart is the only object with poses of its own.
+struct Known {
+  Known() {
+    for (std::size_t i = 0; i < 3; ++i)
+      state.joints[i] = {PoseState::kUsable, 0.1 * static_cast<double>(i + 1), 0.0};
+    state.objects.at(0).pose = {PoseState::kUsable, {.position = {1, 2, 3}}};
+    state.objects.at(0).age = 0.25;
+    question.motion = {
+        .joints = {"shoulder"}, .times = {0.0, 1.0}, .positions = {0.0, 1.0}, .velocities = {}};
+  }
+  std::optional<std::string> completed() { return complete(scene, state, question); }
+
+  Scene scene = test::scara_cell();
+  InputState state = room_for_inputs(scene);
+  Question question;
+};
+
+TEST(QuestionCompletion, TakesJointsAndPosesThatTheQuestionLacks) {
+  Known known;
+  ASSERT_EQ(known.state.objects.size(), 1u);
+  EXPECT_EQ(known.completed(), std::nullopt);
+  ASSERT_EQ(known.question.held.size(), 2u);
+  EXPECT_EQ(known.question.held[0].name, "elbow");
+  EXPECT_EQ(known.question.held[0].position, 0.2);
+  EXPECT_EQ(known.question.held[1].position, 0.1 * 3);
+  ASSERT_EQ(known.question.poses.size(), 1u);
+  EXPECT_EQ(known.question.poses[0].object, "cart");
+  EXPECT_EQ(known.question.poses[0].world_from_object.position, Vec3(1, 2, 3));
+  EXPECT_EQ(known.question.poses[0].age, 0.25);
+}
+
+TEST(QuestionCompletion, KeepsWhatTheQuestionStates) {
+  Known known;
+  known.question.held = {{"elbow", 9.0}};
+  known.question.poses = {{.object = "cart", .world_from_object = {.position = {7, 7, 7}}}};
+  known.question.beside = {
+      {.joints = {"push"}, .times = {0.0}, .positions = {0.0}, .velocities = {}}};
+  known.state = room_for_inputs(known.scene);
+  EXPECT_EQ(known.completed(), std::nullopt) << "nothing else is needed";
+  EXPECT_EQ(known.question.held.size(), 1u);
+  EXPECT_EQ(known.question.held[0].position, 9.0);
+  EXPECT_EQ(known.question.poses.size(), 1u);
+}
+
+TEST(QuestionCompletion, NamesWhatIsNotUsable) {
+  for (const PoseState state : {PoseState::kUnknown, PoseState::kLate, PoseState::kContradicted}) {
+    Known known;
+    known.state.joints[1].state = state;
+    EXPECT_NE(known.completed().value_or("").find("'elbow'"), std::string::npos);
+  }
+  for (const PoseState state : {PoseState::kUnknown, PoseState::kLate, PoseState::kContradicted}) {
+    Known known;
+    known.state.objects[0].pose.state = state;
+    EXPECT_NE(known.completed().value_or("").find("'cart'"), std::string::npos);
+  }
+}
+
+// The joint that moves needs no present position.
+TEST(QuestionCompletion, NeedsNoPositionOfAJointWithWaypoints) {
+  Known known;
+  known.state.joints[0].state = PoseState::kLate;
+  EXPECT_EQ(known.completed(), std::nullopt);
+  EXPECT_TRUE(
+      std::isinf(start_deviation(known.scene, known.state, known.question.motion).deviation));
+}
+
+TEST(QuestionCompletion, LeavesOutWhatIsAbsent) {
+  Known known;
+  known.state.objects[0].pose.state = PoseState::kAbsent;
+  EXPECT_EQ(known.completed(), std::nullopt);
+  EXPECT_TRUE(known.question.poses.empty());
+}
+
+TEST(QuestionCompletion, RefusesAJointThatMovesUnlessTheQuestionSaysThatNothingElseMoves) {
+  for (const double velocity : {0.1, -0.1, std::numeric_limits<double>::quiet_NaN()}) {
+    Known known;
+    known.state.joints[1].velocity = velocity;
+    EXPECT_NE(known.completed().value_or("").find("'elbow'"), std::string::npos) << velocity;
+    known.question.others = OthersMove::kNot;
+    EXPECT_EQ(known.completed(), std::nullopt) << velocity;
+  }
+}
+
+TEST(QuestionCompletion, MeasuresTheStartOfAnAngleThatWrapsByTheShorterWay) {
+  Known known;
+  known.question.motion.joints = {"elbow"};
+  known.question.motion.positions = {0.2 + 2.0 * std::acos(-1.0), 0.0};
+  const StartDeviation start = start_deviation(known.scene, known.state, known.question.motion);
+  EXPECT_EQ(start.joint, "elbow");
+  EXPECT_NEAR(start.deviation, 0.0, 1e-12);
+}
+
+}  // namespace
+}  // namespace clearance
