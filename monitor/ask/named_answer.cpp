@@ -1,32 +1,15 @@
 #include "monitor/ask/named_answer.hpp"
 
-#include <algorithm>
-#include <cstddef>
-#include <string>
+#include <cstdint>
+
+#include "monitor/ask/asker.hpp"
 
 namespace clearance {
-namespace {
-
-// New objects follow those of the scene, in the order of the question.
-std::string new_payload(const Question& question, const Scene& scene, std::uint32_t object) {
-  std::size_t place = object - scene.objects.size();
-  for (const Payload& payload : question.payloads) {
-    const bool is_new =
-        std::ranges::find(scene.objects, payload.name, &Object::name) == scene.objects.end();
-    if (is_new && place-- == 0) return payload.name;
-  }
-  return "";
-}
-
-}  // namespace
 
 void name_answer(const Answer& answer, const Question& question, const Scene& scene,
                  QuestionResult& result) {
   const double end = question.motion.times.back();
-  const std::size_t objects = scene.objects.size();
-  const auto name = [&](std::uint32_t object) {
-    return object < objects ? scene.objects[object].name : new_payload(question, scene, object);
-  };
+  const auto name = [&](std::uint32_t object) { return object_name(scene, question, object); };
   result.lower = answer.lower;
   result.upper = answer.upper;
   if (answer.has_pair && answer.upper < kInfinity) {
