@@ -1,6 +1,7 @@
 // A tick is a sequence of stages. Each stage reads the results of those before it:
 //
-//   ingest         samples of poses and joints -> Inputs: the values in use of objects and joints
+//   ingest         samples of poses and joints -> Inputs: the values in use of objects and joints;
+//                  frames of sensors           -> the contents of their objects
 //   displace       Inputs                      -> Displacements: how far each object moved
 //   pose           moved objects               -> parts placed in the world
 //   allow          time, Contacts              -> Contacts: which allowances are in force
@@ -20,6 +21,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
@@ -80,13 +82,22 @@ struct Monitor::State {
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
+  // Of sensors, by their numbers.
+  struct Shown {
+    SensorFrame frame;  // that the next tick takes; its cloud is null: none
+    SourceClock clock;
+  };
+  std::vector<Shown> shown;
+  std::unique_ptr<CloudPairs> clouds;  // ingest and evaluate; null: the scene has no sensors
+
   State(const Scene& the_scene, const KnownHulls& known_hulls);
 
   [[nodiscard]] TickView view() const noexcept {
-    return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns};
+    return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns, clouds.get()};
   }
   void make_absent(std::uint32_t object) noexcept;
   void note_presence(std::uint32_t object) noexcept;
+  void take_frames() noexcept;
   void begin_first_tick() noexcept;
   void add_presence_changes() noexcept;
   void count_pairs() noexcept;
@@ -112,12 +123,14 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   State& s = *state_;
   if (s.displacer.is_first()) s.begin_first_tick();
   ingest(samples, joints, time, s.scene, s.inputs);
+  s.take_frames();
   s.displacer.displace(s.inputs);
   s.add_presence_changes();
   const Displacements& displaced = s.displacer.result();
   pose_parts(s.inputs.objects, displaced.changed, s.first_part, s.parts);
 
-  const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table, s.inputs.time.now_ns);
+  const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table, s.inputs.time.now_ns,
+                      s.clouds.get());
   check_displaced(displaced.changed, s.first_part, tick);
 
   s.contacts.begin_tick(s.inputs.cycle, s.inputs.time.now_ns);
@@ -175,6 +188,22 @@ bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
     s.note_presence(object);
   }
   return true;
+}
+
+bool Monitor::show(std::uint32_t sensor, const SensorFrame& frame) noexcept {
+  State& s = *state_;
+  if (sensor >= s.shown.size() || frame.cloud == nullptr || frame.cloud->size() == 0) return false;
+  s.shown[sensor].frame = frame;
+  return true;
+}
+
+bool Monitor::uses(const SeenCloud* cloud) const noexcept {
+  const State& s = *state_;
+  for (std::uint32_t sensor = 0; sensor < s.shown.size(); ++sensor) {
+    if (s.shown[sensor].frame.cloud == cloud || s.clouds->content(sensor).cloud == cloud)
+      return true;
+  }
+  return false;
 }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
@@ -287,6 +316,8 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
   for (std::size_t i = 0; i < spheres.size(); ++i)
     inputs.objects[i].bounding_radius = spheres[i].bounding_radius;
   presence_changed.reserve(scene.objects.size());
+  shown.resize(scene.sensors.size());
+  if (!scene.sensors.empty()) clouds = std::make_unique<CloudPairs>(scene, parts, table);
   report.scene_revision = scene.revision;
   report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
   for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
@@ -316,6 +347,26 @@ void Monitor::State::make_absent(std::uint32_t object) noexcept {
   clearance::make_absent(inputs.objects[object]);
   culling.forget_object(object, table);
   note_presence(object);
+}
+
+// The former frame is forgotten as an object that goes away. What is seen now may be elsewhere.
+void Monitor::State::take_frames() noexcept {
+  for (std::uint32_t sensor = 0; sensor < shown.size(); ++sensor) {
+    const SensorFrame frame = std::exchange(shown[sensor].frame, {});
+    if (frame.cloud == nullptr) continue;
+    const std::uint32_t object = scene.sensors[sensor].object;
+    const std::int64_t stamp_ns = shown[sensor].clock.in_tick_time(
+        frame.stamp_ns, inputs.time,
+        {.future_ns = scene.future_limit_ns, .age_ns = scene.objects[object].age_limit_ns});
+    const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
+    if (const auto cause = see(frame.world_from_sensor, stamp_ns, limits, inputs.objects[object])) {
+      clearance::refuse(object, *cause, inputs);
+      continue;
+    }
+    culling.forget_object(object, table);
+    clouds->set(sensor, {frame.cloud, frame.pose_error});
+    inputs.visits.visit(object);
+  }
 }
 
 void Monitor::State::note_presence(std::uint32_t object) noexcept {

@@ -46,6 +46,16 @@ struct PresentJoint {
   double velocity = 0.0;  // per second; NaN: not known
 };
 
+class SeenCloud;  // monitor/clouds
+
+// A frame of a sensor, as the tick takes it.
+struct SensorFrame {
+  const SeenCloud* cloud = nullptr;  // not empty
+  std::int64_t stamp_ns = 0;         // of its content, CLOCK_REALTIME of the sender
+  Pose world_from_sensor;            // at that time
+  double pose_error = 0.0;           // m: no element is farther from its exact place in the world
+};
+
 class Monitor {
  public:
   // Allocates all memory that it ever needs. The scene must outlive the monitor. `similar`, if not
@@ -91,6 +101,15 @@ class Monitor {
   // trusted: its pairs are unknown until its next pose. Returns false if the scene has no such
   // object, or if it is fixed. The time grows with the number of its pairs.
   bool set_absent(std::uint32_t object, bool absent) noexcept;
+
+  // To be called between ticks: the next tick takes this frame into use, in the place of the
+  // sensor's former one, unless its stamp is in the future or before that one. The cloud must not
+  // change while uses() says so. Returns
+  // false, and changes nothing, if the scene has no such sensor or the cloud is empty: that an
+  // empty frame is clear is never certain.
+  bool show(std::uint32_t sensor, const SensorFrame& frame) noexcept;
+  // True if the cloud is that of a frame in use, or of one that the next tick takes.
+  [[nodiscard]] bool uses(const SeenCloud* cloud) const noexcept;
 
   // Any pair at the last tick, whether it is published or not. All are unknown before the first
   // tick.

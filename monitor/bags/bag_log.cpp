@@ -32,7 +32,10 @@ BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputL
                .joint_topics = options.joint_topics,
                .use_scene = options.with_scenes
                                 ? [this](moveit::RawScene message) { use(std::move(message)); }
-                                : MoveItMessages::Use()},
+                                : MoveItMessages::Use(),
+               .use_sensor = options.with_sensors
+                                 ? [this](RawSensorMessage message) { use(std::move(message)); }
+                                 : UseSensorMessage()},
               [this](PoseBatch& batch) {
                 use(std::move(batch));
                 return true;
@@ -118,6 +121,12 @@ void BagLog::use(moveit::RawScene message) {
   waiting_.emplace(
       log_ns_, LoggedBatch{.batch = {},
                            .scene = std::make_shared<const moveit::RawScene>(std::move(message))});
+}
+
+void BagLog::use(RawSensorMessage message) {
+  waiting_.emplace(
+      log_ns_, LoggedBatch{.batch = {},
+                           .sensor = std::make_shared<const RawSensorMessage>(std::move(message))});
 }
 
 // Lists the topics that the bag has instead, so that a user can choose one.

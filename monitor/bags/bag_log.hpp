@@ -47,6 +47,7 @@ class BagLog final : public InputLog {
   void take(const BagMessage& message);
   void use(PoseBatch batch);
   void use(moveit::RawScene message);
+  void use(RawSensorMessage message);
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;

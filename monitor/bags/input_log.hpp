@@ -16,6 +16,7 @@ namespace clearance {
 namespace moveit {
 struct RawScene;
 }
+struct RawSensorMessage;
 
 // One message.
 struct LoggedBatch {
@@ -23,6 +24,8 @@ struct LoggedBatch {
   std::int64_t log_ns = 0;  // when it was recorded
   // A message of MoveIt that keeps the scene; the batch is then empty. Null: it is a batch.
   std::shared_ptr<const moveit::RawScene> scene = {};
+  // Likewise, a message of a sensor, or transforms that may place one.
+  std::shared_ptr<const RawSensorMessage> sensor = {};
 };
 
 struct InputLogOptions {
@@ -34,6 +37,8 @@ struct InputLogOptions {
   // Gives out the messages of MoveIt on the topics that the cell names. Otherwise they are left
   // out.
   bool with_scenes = false;
+  // Gives out the messages of the cell's sensors. Otherwise they are left out.
+  bool with_sensors = false;
 };
 
 // Not for several threads at once.

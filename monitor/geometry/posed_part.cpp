@@ -149,7 +149,8 @@ std::vector<PosedPart> parts_of(const Scene& scene) {
       placed.sphere_in_part = sphere_around(part.shape);
       placed.offset_length = part.object_from_part.position.norm();
       placed.sphere_offset = placed.sphere_in_part.centre.norm();
-      placed.keeps_direction = part.shape.bounded() || part.shape.is_half_space();
+      placed.keeps_direction =
+          (part.shape.bounded() || part.shape.is_half_space()) && !object.is_seen();
       parts.push_back(placed);
     }
   }

@@ -45,7 +45,8 @@ struct PosedPart {
   double sphere_offset = 0.0;  // from there to the sphere's centre, m
   // True when a direction that separates it from another part still bounds their distance after
   // both have moved (carried_gap.hpp). This is so for bounded bodies and half-spaces. For other
-  // unbounded bodies, rounding leaves open how far along their rays a direction holds.
+  // unbounded bodies, rounding leaves open how far along their rays a direction holds. No direction
+  // separates all that a sensor sees.
   bool keeps_direction = false;
 };
 

@@ -108,7 +108,8 @@ GradientAlternative alternative_of(const PairReport& pair, std::span<const Vec3>
   GradientAlternative found{.status = GradientStatus::kPartsCompared,
                             .farther = farther_of(pair.pair, part_pair, view),
                             .tilt = kNan};
-  if (pair.status == PairStatus::kConverged) {
+  // A cloud has many elements: whether another one is as near is not known.
+  if (pair.status == PairStatus::kConverged && !is_of_cloud(part_pair, view)) {
     found.tilt = tilt_of(view.parts[table.part_a[part_pair]], view.parts[table.part_b[part_pair]],
                          {pair.witness_a, pair.witness_b, pair.normal}, turns);
     if (found.tilt >= 0.0) found.status = GradientStatus::kUnique;

@@ -95,6 +95,12 @@ const char* text(FrameFault fault) noexcept {
       return "another publisher sends frames as well";
     case FrameFault::kTooOften:
       return "frames come more often than the cell states";
+    case FrameFault::kNoPlace:
+      return "the place of the sensor at its stamp is not known";
+    case FrameFault::kCannotBuild:
+      return "its picture is too wide, or has more points within the range than the cell states";
+    case FrameFault::kNothingSeen:
+      return "nothing is seen within the range but the robot itself: that is not clear";
   }
   return "";
 }

@@ -38,8 +38,12 @@ enum class FrameFault : std::uint8_t {
   kFrozen,             // bit for bit the depth of the frame before, under a newer stamp
   kSecondPublisher,    // the writer of the frames in use is still heard
   kTooOften,           // more frames than the cell states
+  // Faults that show when a frame is built.
+  kNoPlace,      // no transform leads from its frame to the cell, or where it was mounted is unknown
+  kCannotBuild,  // a picture too wide, or more points within the range than the cell states
+  kNothingSeen,  // no pixel or point within the range but the robot's own
 };
-inline constexpr std::size_t kFrameFaults = 20;
+inline constexpr std::size_t kFrameFaults = 23;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

@@ -13,6 +13,7 @@ namespace clearance {
 Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
     : scene_(&cell.scene),
       hears_moveit_(options.use_scene && cell.ros.moveit.any()),
+      hears_sensors_(options.use_sensor && !cell.scene.sensors.empty()),
       topics_(&cell.topics),
       options_(std::move(options)),
       use_(std::move(use)),
@@ -27,8 +28,9 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
   add<OwnPoses>(topics_->poses, options_.most_samples, *this);
   add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
-  transforms_ = add<RosTransforms>(cell, from, *this);
+  transforms_ = add<RosTransforms>(cell, from, *this, options_.use_sensor);
   add<MoveItMessages>(cell, options_.use_scene, *this);
+  add<SensorMessages>(cell, options_.use_sensor, *this);
 }
 
 void Intake::change(const Cell& cell) {

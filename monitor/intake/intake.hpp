@@ -19,6 +19,7 @@
 #include "monitor/intake/pose_sources.hpp"
 #include "monitor/intake/ros_joint_states.hpp"
 #include "monitor/intake/ros_transforms.hpp"
+#include "monitor/intake/sensor_messages.hpp"
 #include "monitor/intake/slow_inputs.hpp"
 #include "monitor/wire/topics.hpp"
 
@@ -36,6 +37,9 @@ struct IntakeOptions {
   std::vector<std::string> joint_topics = {};
   // Receives MoveIt's messages that keep the scene. Empty: they are not used.
   MoveItMessages::Use use_scene = {};
+  // Receives the messages of the cell's sensors, and the transforms that place them. Empty: they
+  // are not used.
+  UseSensorMessage use_sensor = {};
   // The name of a writer in news.
   std::function<std::string(std::uint64_t)> writer_name = [](std::uint64_t writer) {
     return std::to_string(writer);
@@ -67,7 +71,7 @@ class Intake final : public Outlet {
 
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
-    return !scene_->variables.empty() || transforms_->any() || hears_moveit_;
+    return !scene_->variables.empty() || transforms_->any() || hears_moveit_ || hears_sensors_;
   }
 
   // Returns false if the bytes are not a message of the topic's type.
@@ -105,7 +109,7 @@ class Intake final : public Outlet {
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
   const Scene* scene_;
-  bool hears_moveit_;
+  bool hears_moveit_, hears_sensors_;
   std::vector<std::uint64_t> former_revisions_;  // of the cells before
   const Topics* topics_;
   IntakeOptions options_;

@@ -49,16 +49,20 @@ TrackedFrames frames_of(const Cell& cell, TransformsFrom from) {
 
 }  // namespace
 
-RosTransforms::RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out)
+RosTransforms::RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out,
+                             UseSensorMessage use)
     : ros_(&cell.ros),
       from_(from),
       out_(out),
+      use_(std::move(use)),
+      is_used_(use_ && needs_transforms(cell.scene)),
       frames_(frames_of(cell, from)),
       following_(frames_.followers().size(), Following{.state = State::kMissing}) {}
 
 // Transforms stay known. The poses of all followers are handed over anew.
 void RosTransforms::change(const Cell& cell) {
   ros_ = &cell.ros;
+  is_used_ = use_ && needs_transforms(cell.scene);
   frames_ = frames_of(cell, from_);
   following_.assign(frames_.followers().size(), Following{.state = State::kMissing});
   by_rivals_.clear();
@@ -66,7 +70,7 @@ void RosTransforms::change(const Cell& cell) {
 
 // A topic of transforms is /tf or /tf_static; in a log, in any namespace. Both are one source.
 std::optional<Decoder::Wanted> RosTransforms::wants(const TopicName& topic) {
-  if (!frames_.any() || topic.type != kTransformsType) return std::nullopt;
+  if (!any() || topic.type != kTransformsType) return std::nullopt;
   const bool is_static = topic.name.ends_with(kStatic);
   const std::string source =
       topic.name.substr(0, topic.name.size() - (is_static ? kStatic.size() : 0));
@@ -98,6 +102,15 @@ bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const 
                            TopicCounts& counts) {
   if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   const Topic& topic = topics_[port];
+  if (is_used_) {
+    using enum RawSensorMessage::Type;
+    use_({topic.is_static ? kStaticTransforms : kTransforms,
+          {},
+          message.sent_ns,
+          message.writer,
+          {message.cdr.begin(), message.cdr.end()},
+          message.bytes});
+  }
   for (std::uint32_t i = 0; i < message_->transforms._length; ++i) {
     take(message_->transforms._buffer[i], port, message, now, counts);
   }

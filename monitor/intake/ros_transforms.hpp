@@ -17,6 +17,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
 #include "monitor/intake/frame_claims.hpp"
+#include "monitor/intake/sensor_messages.hpp"
 #include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tracked_frames.hpp"
 #include "monitor/wire/cdr.hpp"
@@ -35,8 +36,9 @@ class RosTransforms final : public Decoder {
   // A transform that is missing for this long is reported.
   static constexpr std::int64_t kMissingNs = 5'000'000'000;
 
-  // The cell and the outlet must outlive this.
-  RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out);
+  // The cell and the outlet must outlive this. `use` receives every message as well, if a sensor of
+  // the cell stands in a frame.
+  RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out, UseSensorMessage use = {});
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
@@ -47,8 +49,8 @@ class RosTransforms final : public Decoder {
   void keep(std::span<const std::uint64_t> writers) override;
   void change(const Cell& cell) override;
 
-  // True if anything of the cell follows frames.
-  [[nodiscard]] bool any() const noexcept { return frames_.any(); }
+  // True if anything of the cell follows frames, or stands in one.
+  [[nodiscard]] bool any() const noexcept { return frames_.any() || is_used_; }
   // The roots of trees that were taken to be the cell's world, if the cell gives its world no frame
   // name.
   [[nodiscard]] std::vector<std::string> worlds() const;
@@ -96,6 +98,8 @@ class RosTransforms final : public Decoder {
   const RosSettings* ros_;
   TransformsFrom from_;
   Outlet& out_;
+  UseSensorMessage use_;
+  bool is_used_;  // by sensors
   TrackedFrames frames_;
   std::vector<Topic> topics_;  // by port
   CdrDecoder decoder_;

@@ -34,6 +34,7 @@ std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs&
   }
   if (inputs.robots.follows_joints(sample.object)) return Reject::kOtherSource;
   const Object& object = scene.objects[sample.object];
+  if (object.is_seen()) return Reject::kOtherSource;  // its poses come with its frames
   const std::int64_t stamp_ns = tick_stamp(sample, object.age_limit_ns, scene, inputs);
   const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
   TrackedObject& state = inputs.objects[sample.object];

@@ -7,6 +7,7 @@
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/mean_twist.hpp"
 #include "monitor/motion/directed_rounding.hpp"
+#include "monitor/objects/presence.hpp"
 
 namespace clearance {
 namespace {
@@ -164,6 +165,22 @@ bool take_at_rest(const Object& object, const PoseSample& sample, std::int64_t s
   return true;
 }
 
+std::optional<Reject> see(const Pose& world_from_sensor, std::int64_t stamp_ns,
+                          const SampleLimits& limits, TrackedObject& state) noexcept {
+  if (state.absent) return Reject::kUnknownObject;
+  const PoseSample sample{.world_from_object = world_from_sensor, .twist = {}};
+  if (const auto cause = malformed(sample)) return cause;
+  if (elapsed(limits.now_ns, stamp_ns) > limits.future_ns) return Reject::kFuture;
+  if (state.input.has_value && stamp_ns < state.input.stamp_ns) return Reject::kBackwards;
+  make_absent(state);
+  make_present(state);
+  state.pose = as_queries_take_it(world_from_sensor);
+  state.twist_known = true;  // of what it sees: at rest, so that pairs have the speed of the part
+  state.input.stamp_ns = stamp_ns;
+  state.input.has_value = true;
+  return std::nullopt;
+}
+
 void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
             TrackedObject& state) noexcept {
   const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
@@ -212,10 +229,10 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
     input.late = state.joints_late;
     state.may_have_moved = state.unobserved_by_joints;
   } else {
+    const bool may_move = input.late || (object.is_seen() && object.max_speed < kInfinity);
     state.may_have_moved = input.contradicted ? kInfinity
-                           : input.late
-                               ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
-                               : 0.0;
+                           : may_move ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
+                                      : 0.0;
   }
   state.unobserved =
       state.newly_known ? state.may_have_moved : std::max(unobserved_before, state.may_have_moved);

@@ -35,7 +35,7 @@ struct alignas(64) TrackedObject {
   bool plain = false;
   bool absent = false;  // known not to be there (presence.hpp); then no pose is in use
   // Bound of the motion since its stamp, m. It is 0 unless late, and infinity if no speed is
-  // stated.
+  // stated. What a sensor sees may also have moved before it is late, if a speed is stated.
   double may_have_moved = 0.0;
   double unobserved = 0.0;  // may_have_moved, or that of the last tick if larger and known, m
   // Bounds of the displacement of any point, m, set by displace(). `displacement` is that since the
@@ -117,6 +117,11 @@ struct alignas(64) TrackedObject {
 [[nodiscard]] bool take_at_rest(const Object& object, const PoseSample& sample,
                                 std::int64_t stamp_ns, const SampleLimits& limits,
                                 TrackedObject& state) noexcept;
+
+// Takes the pose of a sensor at a new frame, whose content replaces the former one: nothing from
+// before is used. Returns why the frame must not be used, and then changes nothing.
+[[nodiscard]] std::optional<Reject> see(const Pose& world_from_sensor, std::int64_t stamp_ns,
+                                        const SampleLimits& limits, TrackedObject& state) noexcept;
 
 // Takes the state of a robot's link from its joints, or from what carries it. A link that was known
 // and no longer is may be anywhere. The same applies if the rounding error of its pose exceeds

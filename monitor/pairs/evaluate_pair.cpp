@@ -69,9 +69,33 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
                              motion.displacement, motion.bend);
 }
 
+// The same for what a sensor sees. Its direction separates no more than the nearest element, so it
+// bounds nothing at other poses.
+double query_cloud(std::uint32_t part_pair, const OpenTick& tick, Budget& budget) noexcept {
+  PairTable& table = tick.table;
+  const CloudPairs::Answer found = tick.clouds->query(
+      part_pair, tick.parts[table.part_a[part_pair]], tick.parts[table.part_b[part_pair]]);
+  budget.spend();
+  const double lower = std::max(table.lower[part_pair], found.bounds.lower);
+  const double upper = std::min(table.upper[part_pair], found.bounds.upper);
+  table.lower[part_pair] = lower;
+  table.upper[part_pair] = upper;
+  ClosestPoints& closest = table.closest[part_pair];
+  closest.distance = 0.5 * (lower + upper);
+  closest.witness_a = found.witness_a;
+  closest.witness_b = found.witness_b;
+  closest.normal = found.normal;
+  closest.lower = table.gap[part_pair] = -kInfinity;
+  table.status[part_pair] = found.status;
+  table.part_pair_evaluated_cycle[part_pair] = tick.cycle;
+  return -kInfinity;
+}
+
 // Queries a part pair; returns what write_answer() does.
 double query_part_pair(std::uint32_t part_pair, const PairMotion& motion, const OpenTick& tick,
                        Budget& budget) noexcept {
+  if (is_of_cloud(part_pair, tick)) [[unlikely]]
+    return query_cloud(part_pair, tick, budget);
   const DistanceResult found = query_distance(part_pair, tick);
   const PairTable& table = tick.pairs;
   const DistanceBounds known{table.lower[part_pair], table.upper[part_pair]};
@@ -188,7 +212,7 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept {
   const PairTable& table = tick.pairs;
   if (budget.left() == 0) return;
-  if (table.part_pairs_of(pair) > 1) {
+  if (table.part_pairs_of(pair) > 1 || is_of_cloud(table.entries[pair].first_part_pair, tick)) {
     evaluate_part_pairs(pair, tick, budget);
     return;
   }

@@ -14,8 +14,11 @@ constexpr std::size_t kGroup = 256;
 // A query of a pose that is NaN ends before it begins.
 const Pose kNowhere{.position = Vec3::Constant(std::numeric_limits<double>::quiet_NaN())};
 
-bool is_single(std::uint32_t pair, const PairTable& table) noexcept {
-  return table.part_pairs_of(pair) == 1;
+// Vector code takes pairs of two convex bodies.
+bool is_single(std::uint32_t pair, const Scene& scene, const PairTable& table) noexcept {
+  const ObjectPair& of = scene.pairs[pair];
+  return table.part_pairs_of(pair) == 1 && !scene.objects[of.first].is_seen() &&
+         !scene.objects[of.second].is_seen();
 }
 
 }  // namespace
@@ -28,13 +31,14 @@ PublishedPairs::PublishedPairs(const Scene& scene, const std::vector<PosedPart>&
     pairs_.push_back(p);
     part_pairs_ += table.part_pairs_of(p);
   }
-  if (every_tick_) form_groups(parts, table);
+  if (every_tick_) form_groups(scene, parts, table);
 }
 
-void PublishedPairs::form_groups(const std::vector<PosedPart>& parts, const PairTable& table) {
+void PublishedPairs::form_groups(const Scene& scene, const std::vector<PosedPart>& parts,
+                                 const PairTable& table) {
   std::vector<std::uint32_t> single;
   for (const std::uint32_t pair : pairs_) {
-    (is_single(pair, table) ? single : many_parts_).push_back(pair);
+    (is_single(pair, scene, table) ? single : many_parts_).push_back(pair);
   }
   known_.reserve(many_parts_.size());
 

@@ -35,7 +35,7 @@ class PublishedPairs {
     DistanceBatch batch;
     std::uint32_t known = 0;  // how many of the pairs are known in this tick
   };
-  void form_groups(const std::vector<PosedPart>& parts, const PairTable& table);
+  void form_groups(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table);
   void evaluate_group(Group& group, const OpenTick& tick) noexcept;
 
   std::vector<std::uint32_t> pairs_;
@@ -44,8 +44,9 @@ class PublishedPairs {
   std::vector<Group> groups_;
   std::vector<std::uint32_t> body_parts_;  // the part that each body of the groups is
   std::vector<Pose> world_from_body_;      // of this tick
-  std::vector<std::uint32_t> many_parts_;  // pairs of more than one part pair
-  std::vector<std::uint32_t> known_;       // those of them that are known in this tick
+  // Pairs of more than one part pair, or of what a sensor sees.
+  std::vector<std::uint32_t> many_parts_;
+  std::vector<std::uint32_t> known_;  // those of them that are known in this tick
 };
 
 }  // namespace clearance

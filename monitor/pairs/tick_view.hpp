@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "monitor/pairs/cloud_pairs.hpp"
 #include "monitor/pairs/pair_table.hpp"
 
 namespace clearance {
@@ -16,7 +17,8 @@ struct TickView {
   const std::vector<PosedPart>& parts;
   std::uint64_t cycle;  // counts ticks from 1
   const PairTable& pairs;
-  std::int64_t now_ns = 0;  // the time of the tick
+  std::int64_t now_ns = 0;       // the time of the tick
+  CloudPairs* clouds = nullptr;  // null: the scene has no sensors
 };
 
 // A tick whose pairs are still being carried and evaluated. Functions that take this one write to
@@ -25,14 +27,20 @@ struct OpenTick : TickView {
   PairTable& table;  // the same as `pairs`
 
   OpenTick(const std::vector<TrackedObject>& the_objects, const std::vector<PosedPart>& the_parts,
-           std::uint64_t the_cycle, PairTable& the_table, std::int64_t the_time = 0) noexcept
-      : TickView{the_objects, the_parts, the_cycle, the_table, the_time}, table(the_table) {}
+           std::uint64_t the_cycle, PairTable& the_table, std::int64_t the_time = 0,
+           CloudPairs* the_clouds = nullptr) noexcept
+      : TickView{the_objects, the_parts, the_cycle, the_table, the_time, the_clouds},
+        table(the_table) {}
 };
 
 // An object is known not to be there.
 [[nodiscard]] inline bool is_absent(std::uint32_t pair, const TickView& view) noexcept {
   const PairEntry& entry = view.pairs.entries[pair];
   return view.objects[entry.object_a].absent || view.objects[entry.object_b].absent;
+}
+// One of the two parts is what a sensor sees.
+[[nodiscard]] inline bool is_of_cloud(std::uint32_t part_pair, const TickView& view) noexcept {
+  return view.clouds != nullptr && view.clouds->has(part_pair);
 }
 // Both objects' poses are known.
 [[nodiscard]] inline bool is_known(std::uint32_t pair, const TickView& view) noexcept {

@@ -364,7 +364,8 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
     SceneHistory history(first);
     InputLogOptions log{.joint_topics = options.joint_topics,
                         .joints = options.joints,
-                        .with_scenes = first.ros.moveit.any()};
+                        .with_scenes = first.ros.moveit.any(),
+                        .with_sensors = true};
     MoveItChanges moveit(first, [&](Scene& scene) { adapt(options, options.gradients, scene); });
     TickFeed feed(open_input_log(recording, first, log), first.scene,
                   options.tick_hz.value_or(first.scene.rate_hz));

@@ -36,6 +36,8 @@ void RecordedLoop::start(const Cell& cell, bool followed) {
   next_ = nullptr;
   monitor_ = std::make_unique<Monitor>(cell.scene);
   ids_ = std::make_unique<SceneIds>(cell.scene, followed);
+  sensors_ =
+      cell.scene.sensors.empty() ? nullptr : std::make_unique<Sensors>(cell, SensorsOptions{true});
 }
 
 // A daemon that was started anew has no history, and may have another cell. Where the recording
@@ -53,6 +55,7 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   poses_.clear();
   joints_.clear();
   for (const PoseBatch& batch : input.batches) take(batch);
+  if (sensors_) show_frames(input);
   const Report& report = monitor_->tick(poses_, joints_, input.time);
   if (next_) {
     keep_mapped(next_->map.objects_now, &PoseSample::object, 0, poses_);
@@ -62,6 +65,16 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   const bool goes_on =
       input.recorded == nullptr ? follow_moveit(input) : change_after(*input.recorded);
   return goes_on ? &report : nullptr;
+}
+
+// The joints of this tick come first: they may be those at the stamp of a frame.
+void RecordedLoop::show_frames(const TickInput& input) {
+  const std::int64_t now_ns = input.time.now_ns;
+  sensors_->add(poses_, joints_);
+  for (const auto& message : input.sensors) sensors_->add(*message, now_ns);
+  sensors_->settle(
+      now_ns, [this](const SeenCloud* cloud) { return monitor_->uses(cloud); },
+      [this](std::uint32_t sensor, const SensorFrame& frame) { monitor_->show(sensor, frame); });
 }
 
 // A message waits while the scene changes because of the one before it.
@@ -150,6 +163,13 @@ void RecordedLoop::succeed() {
   cell_ = next_->cell;
   since_ = {.began_after = next_->began_after, .from = monitor_->cycle() + 1};
   monitor_ = std::move(next_->monitor);
+  if (cell_->scene.sensors.empty()) {
+    sensors_ = nullptr;
+  } else if (sensors_) {
+    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_);
+  } else {
+    sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true});
+  }
   ids_->change(cell_->scene.revision, next_->map);
   from_ = next_->from;
   next_ = nullptr;

@@ -14,6 +14,7 @@
 #include "monitor/replay/moveit_changes.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/replay/tick_feed.hpp"
+#include "monitor/sensors/sensors.hpp"
 
 namespace clearance {
 
@@ -31,6 +32,8 @@ class RecordedLoop {
   // next call.
   [[nodiscard]] const Report* tick(const TickInput& input);
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
+  // What the sensors of the cell have seen so far; null: it has none.
+  [[nodiscard]] const Sensors* sensors() const noexcept { return sensors_.get(); }
 
   // The cell of the last tick, and the monitor that ran it.
   [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
@@ -56,6 +59,7 @@ class RecordedLoop {
   void start(const Cell& cell, bool followed);
   void begin_with(const clearance_msg_Distances& report);
   void take(const PoseBatch& batch);
+  void show_frames(const TickInput& input);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
   [[nodiscard]] bool begin(const Cell& cell, std::uint64_t from);
@@ -70,6 +74,7 @@ class RecordedLoop {
   const Cell* cell_ = nullptr;
   std::unique_ptr<Monitor> monitor_;
   std::unique_ptr<SceneIds> ids_;
+  std::unique_ptr<Sensors> sensors_;
   std::unique_ptr<Next> next_;
   SceneInForce since_;
   bool begun_ = false;

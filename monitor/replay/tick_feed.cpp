@@ -71,6 +71,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.batches.clear();
   tick.sources.clear();
   tick.scenes.clear();
+  tick.sensors.clear();
   tick.recorded = nullptr;
   tick.separation = nullptr;
   tick.gradients = nullptr;
@@ -318,6 +319,11 @@ void TickFeed::take_until_now(TickInput& tick) {
     last_batch_ns_ = batches_waiting_.front().log_ns;
     if (auto& scene = batches_waiting_.front().scene) {
       tick.scenes.push_back(std::move(scene));
+      batches_waiting_.pop_front();
+      continue;
+    }
+    if (auto& sensor = batches_waiting_.front().sensor) {
+      tick.sensors.push_back(std::move(sensor));
       batches_waiting_.pop_front();
       continue;
     }

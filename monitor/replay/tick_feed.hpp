@@ -37,6 +37,8 @@ struct TickInput {
   std::vector<SourceUse> sources;
   // Messages of MoveIt in a log, up to this tick.
   std::vector<std::shared_ptr<const moveit::RawScene>> scenes;
+  // Likewise, messages of sensors.
+  std::vector<std::shared_ptr<const RawSensorMessage>> sensors;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
   // this tick.

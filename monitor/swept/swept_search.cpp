@@ -44,7 +44,9 @@ void place_between(const InterpolatedMotion& motion, double s, PosedPart& part) 
 }  // namespace
 
 SweptSearch::SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept
-    : a_(view.parts[view.pairs.part_a[part_pair]]),
+    : part_pair_(part_pair),
+      clouds_(is_of_cloud(part_pair, view) ? view.clouds : nullptr),
+      a_(view.parts[view.pairs.part_a[part_pair]]),
       b_(view.parts[view.pairs.part_b[part_pair]]),
       motion_a_(view.objects[a_.object].interpolated()),
       motion_b_(view.objects[b_.object].interpolated()),
@@ -86,10 +88,17 @@ SweptBounds SweptSearch::decide(double level, Budget& budget) noexcept {
 SweptSearch::Instant SweptSearch::query_at(double s, Budget& budget) noexcept {
   place_between(motion_a_, s, a_);
   place_between(motion_b_, s, b_);
-  const DistanceResult found = distance(
-      *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
+  DistanceBounds bounds;
+  Vec3 normal_in_a = Vec3::Zero();
+  if (clouds_ != nullptr) {
+    bounds = clouds_->query(part_pair_, a_, b_).bounds;
+  } else {
+    const DistanceResult found = distance(
+        *a_.shape, *b_.shape, relative_pose(a_.world_from_part, b_.world_from_part), tracking_);
+    bounds = for_exact_poses(found, a_, b_);
+    normal_in_a = found.normal;
+  }
   budget.spend();
-  const DistanceBounds bounds = for_exact_poses(found, a_, b_);
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
   const PosedPart& other = from_b_ ? a_ : b_;
   const Pose frame = pose_at(from_b_ ? motion_b_ : motion_a_, s);
@@ -97,7 +106,7 @@ SweptSearch::Instant SweptSearch::query_at(double s, Budget& budget) noexcept {
   instant.centre = into * (other.sphere_in_world.centre - frame.position);
   // Only a direction that separates bounds the distance at other instants.
   if (directed_ && bounds.lower >= 0.0) {
-    instant.normal = into * (a_.world_from_part_rotation * found.normal) * (from_b_ ? -1.0 : 1.0);
+    instant.normal = into * (a_.world_from_part_rotation * normal_in_a) * (from_b_ ? -1.0 : 1.0);
   }
   return instant;
 }

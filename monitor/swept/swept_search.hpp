@@ -48,6 +48,8 @@ class SweptSearch {
   [[nodiscard]] double fall(const Instant& from, const Instant& to) const noexcept;
   void insert(const Instant& instant) noexcept;
 
+  std::uint32_t part_pair_;
+  CloudPairs* clouds_;  // null: no part is what a sensor sees
   PosedPart a_, b_;
   InterpolatedMotion motion_a_, motion_b_;
   bool from_b_ = false;    // A moves relative to B's object, not B relative to A's, because that

@@ -1,0 +1,72 @@
+#include "monitor/intake/sensor_messages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "monitor/wire/camera_types.hpp"
+
+namespace clearance {
+namespace {
+
+using Type = RawSensorMessage::Type;
+
+// A row a kind of topic: the key of a sensor that names it.
+struct Input {
+  std::string Sensor::*topic;
+  SensorKind of;
+  std::string_view type;
+  const RosType* delivery;
+  Type message;
+};
+constexpr std::array<Input, 3> kInputs = {{
+    {&Sensor::topic, SensorKind::kDepthImage, "sensor_msgs/msg/Image", &kRosImage, Type::kImage},
+    {&Sensor::camera_info, SensorKind::kDepthImage, "sensor_msgs/msg/CameraInfo", &kRosCameraInfo,
+     Type::kCameraInfo},
+    {&Sensor::topic, SensorKind::kPoints, "sensor_msgs/msg/PointCloud2", &kRosPointCloud2,
+     Type::kPoints},
+}};
+
+}  // namespace
+
+bool needs_transforms(const Scene& scene) noexcept {
+  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) {
+    return sensor.frames_by_message || !sensor.mount.frame.empty();
+  });
+}
+
+std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
+  if (!use_) return std::nullopt;
+  for (const Input& input : kInputs) {
+    if (topic.type != input.type) continue;
+    const auto sensor = std::ranges::find_if(scene_->sensors, [&](const Sensor& each) {
+      return each.kind == input.of && each.*input.topic == topic.name;
+    });
+    if (sensor == scene_->sensors.end()) continue;
+    const auto known = std::ranges::find(topics_, topic.name, &Topic::name);
+    const auto port = static_cast<std::uint32_t>(known - topics_.begin());
+    if (known == topics_.end()) {
+      topics_.push_back({input.message, topic.name});
+      out_.tell({.cause = News::Cause::kTopicHeard,
+                 .is_warning = false,
+                 .text = fmt::format("sensor '{}' on {}", sensor->name, topic.name)});
+    }
+    return Wanted{port, input.delivery};
+  }
+  return std::nullopt;
+}
+
+bool SensorMessages::decode(std::uint32_t port, const RawMessage& message, const Now&,
+                            TopicCounts&) {
+  use_({topics_[port].type,
+        topics_[port].name,
+        message.sent_ns,
+        message.writer,
+        {message.cdr.begin(), message.cdr.end()},
+        message.bytes});
+  return true;
+}
+
+}  // namespace clearance

@@ -1,0 +1,58 @@
+// Hands on the messages of cameras and other sensors, and the transforms that place them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "monitor/intake/decoder.hpp"
+#include "monitor/wire/cdr.hpp"
+
+namespace clearance {
+
+// A message as it came. Decoding an image takes longer than a reading thread should wait.
+struct RawSensorMessage {
+  enum class Type : std::uint8_t {
+    kImage,
+    kCameraInfo,
+    kPoints,
+    kTransforms,
+    kStaticTransforms,
+  };
+  Type type = Type::kImage;
+  std::string topic = {};  // of all but transforms
+  std::int64_t sent_ns = 0;
+  std::uint64_t writer = 0;
+  std::vector<std::byte> cdr = {};
+  CdrBytes bytes = CdrBytes::kUnchecked;
+};
+using UseSensorMessage = std::function<void(RawSensorMessage message)>;
+
+// True if a sensor of the cell stands in a frame of tf.
+[[nodiscard]] bool needs_transforms(const Scene& scene) noexcept;
+
+class SensorMessages final : public Decoder {
+ public:
+  // Without `use`, no topic is wanted.
+  SensorMessages(const Cell& cell, UseSensorMessage use, Outlet& out)
+      : scene_(&cell.scene), use_(std::move(use)), out_(out) {}
+
+  [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
+                            TopicCounts& counts) override;
+  void change(const Cell& cell) override { scene_ = &cell.scene; }
+
+ private:
+  struct Topic {
+    RawSensorMessage::Type type;
+    std::string name;
+  };
+  const Scene* scene_;
+  UseSensorMessage use_;
+  Outlet& out_;
+  std::vector<Topic> topics_;  // by port
+};
+
+}  // namespace clearance

@@ -1,0 +1,59 @@
+#include "monitor/pairs/cloud_pairs.hpp"
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// Bounds this close differ by rounding only (nearest_element.hpp), m.
+constexpr double kCloudGap = 2e-9;
+
+DistanceStatus status_of(const NearestElement& found) noexcept {
+  if (found.upper < 0.0) return DistanceStatus::kOverlapping;
+  if (found.lower <= 0.0) return DistanceStatus::kTouching;
+  return found.upper - found.lower <= kCloudGap ? DistanceStatus::kConverged
+                                                    : DistanceStatus::kIterationLimit;
+}
+
+}  // namespace
+
+CloudPairs::CloudPairs(const Scene& scene, const std::vector<PosedPart>& parts,
+                       const PairTable& table)
+    : content_(scene.sensors.size()), slot_(table.part_pairs(), kNone) {
+  for (const Object& object : scene.objects) sensor_of_.push_back(object.sensor);
+  for (std::uint32_t part_pair = 0; part_pair < table.part_pairs(); ++part_pair) {
+    const bool is_of_sensor = scene.objects[parts[table.part_a[part_pair]].object].is_seen() ||
+                              scene.objects[parts[table.part_b[part_pair]].object].is_seen();
+    if (!is_of_sensor) continue;
+    slot_[part_pair] = static_cast<std::uint32_t>(tracking_.size());
+    tracking_.emplace_back();
+  }
+}
+
+CloudPairs::Answer CloudPairs::query(std::uint32_t part_pair, const PosedPart& a,
+                                     const PosedPart& b) noexcept {
+  Answer answer;
+  answer.witness_a = answer.witness_b = answer.normal = Vec3::Constant(kNan);
+  const bool a_is_cloud = sensor_of_[a.object] != Object::kNoSensor;
+  const PosedPart& part = a_is_cloud ? b : a;
+  const PosedPart& seen = a_is_cloud ? a : b;
+  const Content& content = content_[sensor_of_[seen.object]];
+  if (content.cloud == nullptr) return answer;
+  const NearestElement found =
+      content.cloud->nearest(*part.shape, relative_pose(part.world_from_part, seen.world_from_part),
+                             body_, tracking_[slot_[part_pair]]);
+  if (found.answer != CloudAnswer::kNearest) return answer;
+  const double error = rounded_up(placing_error(a, b) + content.pose_error);
+  answer.bounds = {rounded_down(found.lower - error), rounded_up(found.upper + error)};
+  answer.status = status_of(found);
+  const Mat3& turn = part.world_from_part_rotation;
+  const Vec3 on_part = turn * found.point_on_part + part.world_from_part.position;
+  const Vec3 on_element = turn * found.point_on_element + part.world_from_part.position;
+  const Vec3 normal = turn * found.normal;
+  answer.witness_a = a_is_cloud ? on_element : on_part;
+  answer.witness_b = a_is_cloud ? on_part : on_element;
+  answer.normal = a_is_cloud ? Vec3(-normal) : normal;
+  return answer;
+}
+
+}  // namespace clearance

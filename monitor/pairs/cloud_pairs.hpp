@@ -1,0 +1,57 @@
+// Part pairs of which one part is what a sensor sees: a union of many convex elements.
+//
+// The signed distance is the least one over all elements. As that of two convex parts, it changes
+// by at most the motion of the two. But no direction separates a whole cloud from a part, so only
+// displacement carries these bounds.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/pairs/pair_table.hpp"
+
+namespace clearance {
+
+class CloudPairs {
+ public:
+  CloudPairs(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table);
+
+  // The content of a sensor's object from now on; null: none. It must not change while it is here.
+  // No element is farther than `pose_error` from its exact place, m.
+  struct Content {
+    const SeenCloud* cloud = nullptr;
+    double pose_error = 0.0;
+  };
+  void set(std::uint32_t sensor, const Content& content) noexcept { content_[sensor] = content; }
+  [[nodiscard]] const Content& content(std::uint32_t sensor) const noexcept {
+    return content_[sensor];
+  }
+
+  [[nodiscard]] bool has(std::uint32_t part_pair) const noexcept {
+    return slot_[part_pair] != kNone;
+  }
+
+  // Bounds for the exact poses of both parts. Points and normal are in the world; the normal leads
+  // from A to B. All of them are NaN if the status is kBadPose.
+  struct Answer {
+    DistanceBounds bounds;
+    DistanceStatus status = DistanceStatus::kBadPose;
+    Vec3 witness_a, witness_b, normal;
+  };
+  // Requires has(). The parts are those of the part pair, placed at any poses. noexcept, no heap.
+  [[nodiscard]] Answer query(std::uint32_t part_pair, const PosedPart& a,
+                             const PosedPart& b) noexcept;
+
+ private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  std::vector<Content> content_;          // by sensor
+  std::vector<std::uint32_t> sensor_of_;  // by object
+  std::vector<std::uint32_t> slot_;       // by part pair: index into tracking_
+  std::vector<CloudTracking> tracking_;
+  SlabBody body_;  // scratch
+};
+
+}  // namespace clearance

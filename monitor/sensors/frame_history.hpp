@@ -1,0 +1,47 @@
+// The transforms of tf over time: where a frame was at the stamp of an image.
+//
+// Between two transforms of a frame, its place is taken from the straight motion; how far it may be
+// off is taken to be at most half of that motion. After the last one, a frame is taken to stay, to
+// within the speed of its last two transforms. That is an assumption: tf states no speed limit. A
+// frame that stands still has no such error.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "core/pose.hpp"
+#include "monitor/sensors/stamped_series.hpp"
+
+namespace clearance {
+
+class FrameHistory {
+ public:
+  static constexpr std::size_t kMostFrames = 1024;
+  static constexpr std::size_t kKept = 256;
+  // A frame that was not heard for this long is lost, ns.
+  static constexpr std::int64_t kLostNs = 1'000'000'000;
+
+  // Transforms that are no poses, and those of too many frames, are left out.
+  void add(const std::string& child, const std::string& parent, const Pose& parent_from_child,
+           std::int64_t stamp_ns, bool is_static);
+
+  struct Step {
+    std::string parent;
+    Pose parent_from_child;
+    double shift_error = 0.0, turn_error = 0.0;  // m, rad
+  };
+  // Returns nothing if the frame has no transform at that time.
+  [[nodiscard]] std::optional<Step> step(const std::string& child, std::int64_t stamp_ns) const;
+
+ private:
+  struct Frame {
+    std::string parent;
+    bool is_static = false;
+    StampedSeries<Pose> poses{1};
+  };
+  std::map<std::string, Frame> frames_;  // by child
+};
+
+}  // namespace clearance

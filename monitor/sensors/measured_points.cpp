@@ -1,0 +1,49 @@
+#include "monitor/sensors/measured_points.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace clearance {
+namespace {
+
+constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+// Half of the diagonal of a square whose sides are 1, and of the roundings of a radius.
+constexpr double kHalfDiagonal = 0.70710678118654757 * (1.0 + 0x1p-40);
+
+float float_at(const std::byte* bytes) noexcept {
+  float value = 0.0F;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+// The true point lies within the error along the ray of the measured one, and its neighbours within
+// half of the spacing across it.
+MeasuredPoint ball(float x, float y, float z, const Sensor& sensor) noexcept {
+  const double range = std::sqrt(double{x} * x + double{y} * y + double{z} * z);
+  const double depth = sensor.along_ray ? range : double{z};
+  const bool is_there =
+      depth >= sensor.least_depth && depth <= sensor.greatest_depth && range <= kLongestRay * depth;
+  if (!is_there) return {kMissing, kMissing, kMissing, 0.0F};
+  const double error = sensor.error_at(depth);
+  const double radius = error * (range / depth) + (depth + error) * sensor.spacing * kHalfDiagonal;
+  return {x, y, z,
+          std::nextafter(static_cast<float>(radius * (1.0 + 0x1p-40)),
+                         std::numeric_limits<float>::infinity())};
+}
+
+}  // namespace
+
+void measured_points(const PointsView& view, const Sensor& sensor,
+                     std::vector<MeasuredPoint>& points) {
+  points.clear();
+  for (std::uint32_t row = 0; row < view.height; ++row) {
+    const std::byte* point = view.bytes.data() + row * view.row_step;
+    for (std::uint32_t column = 0; column < view.width; ++column, point += view.point_step) {
+      points.push_back(ball(float_at(point + view.x), float_at(point + view.y),
+                            float_at(point + view.z), sensor));
+    }
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,17 @@
+// The points of a message as balls that contain what was measured.
+#pragma once
+
+#include <vector>
+
+#include "config/scene/sensor.hpp"
+#include "monitor/clouds/point_cloud.hpp"
+#include "monitor/intake/camera_messages.hpp"
+
+namespace clearance {
+
+// Replaces the content of `points`. A point that is out of the range, or more than 51 degrees off
+// the axis along which the depth is measured, is missing: its coordinates are NaN.
+void measured_points(const PointsView& view, const Sensor& sensor,
+                     std::vector<MeasuredPoint>& points);
+
+}  // namespace clearance

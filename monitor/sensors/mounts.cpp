@@ -1,0 +1,99 @@
+#include "monitor/sensors/mounts.hpp"
+
+#include <algorithm>
+#include <vector>
+
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// Of a product of two poses, relative to the lengths that take part.
+constexpr double kComposed = 0x1p-48;
+
+PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,
+                 double turn_error) noexcept {
+  const double arm = parent_from_child.position.norm();
+  PastPose child = parent;
+  child.world_from_body = compose(parent.world_from_body, parent_from_child);
+  child.world_from_body.orientation.normalize();
+  const double rounding = kComposed * (arm + parent.world_from_body.position.norm());
+  child.shift_error =
+      rounded_up(parent.shift_error + parent.turn_error * arm + shift_error + rounding);
+  child.turn_error = rounded_up(parent.turn_error + turn_error + kComposed);
+  return child;
+}
+
+}  // namespace
+
+Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_root) {
+  const Scene& scene = cell.scene;
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    for (std::uint32_t link = 0; link < scene.robots[robot].links.size(); ++link)
+      links_.emplace(scene.robots[robot].links[link].name, std::pair(robot, link));
+  }
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.is_seen() || links_.contains(object.name)) continue;
+    objects_.emplace(object.frame.empty() ? object.name : object.frame, i);
+  }
+}
+
+std::optional<PastPose> Mounts::known_place(const std::string& frame,
+                                            const PostureHistory& postures) const {
+  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame)
+    return PastPose{.known = true, .world_from_body = {}};
+  if (const auto link = links_.find(frame); link != links_.end())
+    return postures.link(link->second.first, link->second.second);
+  if (const auto object = objects_.find(frame); object != objects_.end())
+    return postures.object(object->second);
+  return std::nullopt;
+}
+
+// A path that is longer than the number of frames contains a cycle.
+PastPose Mounts::of_frame(const std::string& frame, std::int64_t stamp_ns,
+                          const FrameHistory& frames, const PostureHistory& postures) const {
+  std::vector<FrameHistory::Step> path;
+  std::string at = frame;
+  std::optional<PastPose> place = known_place(at, postures);
+  while (!place) {
+    auto step = frames.step(at, stamp_ns);
+    if (!step) {
+      if (any_root_ && cell_.ros.world_frame.empty() && !path.empty())
+        place = PastPose{.known = true, .world_from_body = {}};
+      break;
+    }
+    if (path.size() > FrameHistory::kMostFrames) return {};
+    at = step->parent;
+    path.push_back(*std::move(step));
+    place = known_place(at, postures);
+  }
+  if (!place || !place->known) return {};
+  for (auto step = path.rbegin(); step != path.rend(); ++step)
+    place = carried(*place, step->parent_from_child, step->shift_error, step->turn_error);
+  return *place;
+}
+
+PastPose Mounts::find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                      const FrameHistory& frames, const PostureHistory& postures) const {
+  if (sensor.frames_by_message) return of_frame(frame, stamp_ns, frames, postures);
+  const RobotBase& mount = sensor.mount;
+  if (!mount.frame.empty()) {
+    const PastPose place = of_frame(mount.frame, stamp_ns, frames, postures);
+    return place.known ? carried(place, mount.frame_from_root, 0.0, 0.0) : place;
+  }
+  PastPose base{.known = true, .world_from_body = {}};
+  switch (mount.kind) {
+    case RobotBase::Kind::kWorld:
+      break;
+    case RobotBase::Kind::kObject:
+      base = postures.object(mount.object);
+      break;
+    case RobotBase::Kind::kLink:
+      base = postures.link(mount.robot, mount.link);
+      break;
+  }
+  return base.known ? carried(base, mount.base_from_root, 0.0, 0.0) : base;
+}
+
+}  // namespace clearance

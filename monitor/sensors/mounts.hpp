@@ -1,0 +1,41 @@
+// The place of a sensor in the world at the stamp of a frame.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "config/cell/cell.hpp"
+#include "monitor/sensors/frame_history.hpp"
+#include "monitor/sensors/posture_history.hpp"
+
+namespace clearance {
+
+class Mounts {
+ public:
+  // `any_root`: without a world_frame, the root of all frames is taken to be the world, as in a
+  // log. The cell must outlive this.
+  Mounts(const Cell& cell, bool any_root);
+
+  // Where the sensor was. `frame` is the one that the message names; `postures` are placed at the
+  // stamp. A path of frames ends at the first one that is a link, an object or the world of the
+  // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
+  // nowhere, or to what has no pose at that time.
+  [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                              const FrameHistory& frames, const PostureHistory& postures) const;
+
+ private:
+  [[nodiscard]] PastPose of_frame(const std::string& frame, std::int64_t stamp_ns,
+                                  const FrameHistory& frames, const PostureHistory& postures) const;
+  [[nodiscard]] std::optional<PastPose> known_place(const std::string& frame,
+                                                    const PostureHistory& postures) const;
+
+  const Cell& cell_;
+  bool any_root_;
+  std::map<std::string, std::pair<std::uint32_t, std::uint32_t>> links_;  // robot and link
+  std::map<std::string, std::uint32_t> objects_;                          // by their frames
+};
+
+}  // namespace clearance

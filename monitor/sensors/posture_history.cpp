@@ -1,0 +1,161 @@
+#include "monitor/sensors/posture_history.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// A source that was silent for this long has lost its inputs, ns.
+constexpr std::int64_t kSilentNs = 1'000'000'000;
+// Of the interpolation below, relative to the position, rad or m.
+constexpr double kInterpolated = 0x1p-50;
+
+// Whether the sample is of the source in use. A silent one is replaced.
+template <class Series>
+bool is_of_source(std::uint32_t source, std::int64_t stamp_ns, const Series& series,
+                  std::uint32_t& in_use) {
+  const bool is_silent = series.empty() || elapsed(series.last().stamp_ns, stamp_ns) > kSilentNs;
+  if (source != in_use && !is_silent) return false;
+  in_use = source;
+  return true;
+}
+
+double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
+  return static_cast<double>(elapsed(from_ns, to_ns)) * 1e-9;
+}
+
+Pose between(const Pose& a, const Pose& b, double share) noexcept {
+  return {(1.0 - share) * a.position + share * b.position,
+          a.orientation.slerp(share, b.orientation).normalized()};
+}
+
+}  // namespace
+
+double PastPose::error(double radius) const noexcept {
+  return rounded_up(shift_error + turn_error * radius);
+}
+
+// The value is within speed times the time of both ends, and the line has come mean times the time.
+double deviation(double before_s, double after_s, double speed, double mean) noexcept {
+  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
+  const double u = std::min(std::abs(mean), speed);
+  const double ahead = std::min(before_s * (speed - u), after_s * (speed + u));
+  const double behind = std::min(before_s * (speed + u), after_s * (speed - u));
+  return rounded_up(rounded_up(std::max(ahead, behind)));
+}
+
+PostureHistory::PostureHistory(const Scene& scene)
+    : scene_(scene),
+      joints_(scene.variables.size()),
+      variables_(scene.variables.size()),
+      bases_(scene.robots.size()),
+      objects_(scene.objects.size()),
+      kinematics_(scene.robots) {}
+
+void PostureHistory::add(const JointSample& sample) {
+  if (sample.variable >= joints_.size() || !(std::abs(sample.position) <= kLargestJoint)) return;
+  Joint& joint = joints_[sample.variable];
+  if (!is_of_source(sample.source, sample.stamp_ns, joint.positions, joint.source)) return;
+  joint.positions.add(sample.stamp_ns, sample.position);
+}
+
+void PostureHistory::add(const PoseSample& sample) {
+  if (sample.object >= scene_.objects.size()) return;
+  const Object& object = scene_.objects[sample.object];
+  const Pose& pose = sample.world_from_object;
+  const bool is_pose = pose.position.allFinite() && pose.orientation.coeffs().allFinite() &&
+                       std::abs(pose.orientation.norm() - 1.0) <= kSampleUnitTolerance;
+  if (object.fixed || object.is_seen() || !is_pose) return;
+  Body& body = bodies_[sample.object];
+  if (!is_of_source(sample.source, sample.stamp_ns, body.poses, body.source)) return;
+  body.poses.add(sample.stamp_ns, {pose.position, pose.orientation.normalized()});
+}
+
+bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {
+  const auto reaches = [&](const auto& series) {
+    return series.empty() || series.last().stamp_ns >= stamp_ns ||
+           elapsed(series.last().stamp_ns, stamp_ns) > kSilentNs;
+  };
+  return std::ranges::all_of(joints_,
+                             [&](const Joint& joint) { return reaches(joint.positions); }) &&
+         std::ranges::all_of(bodies_, [&](const auto& body) { return reaches(body.second.poses); });
+}
+
+void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns) {
+  const JointVariable& of = scene_.variables[variable];
+  TrackedVariable& state = variables_[variable];
+  state.may_have_moved = 0.0;
+  const auto [before, after] = joints_[variable].positions.around(stamp_ns);
+  state.input.has_value = before != nullptr;  // before the first position, nothing is known
+  if (before == nullptr) return;
+  const double speed = of.plausible_speed();
+  const double since = seconds_between(before->stamp_ns, stamp_ns);
+  state.position = before->value;
+  if (before == after) return;
+  if (after == nullptr) {
+    state.may_have_moved = rounded_up(speed * since);
+    return;
+  }
+  const double until = seconds_between(stamp_ns, after->stamp_ns);
+  double way = after->value - before->value;
+  if (of.wraps) way = std::remainder(way, 2.0 * std::numbers::pi);
+  state.position += way * (since / (since + until));
+  const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
+  state.may_have_moved =
+      rounded_up(deviation(since, until, speed, way / (since + until)) + rounding);
+}
+
+// An object is nowhere faster than its largest speed, and neither is any point of it.
+PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) const {
+  PastPose past;
+  const Object& of = scene_.objects[object];
+  if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
+  const auto body = bodies_.find(object);
+  if (body == bodies_.end()) return past;
+  const auto [before, after] = body->second.poses.around(stamp_ns);
+  if (before == nullptr) return past;
+  past.known = true;
+  past.world_from_body = before->value;
+  const double since = seconds_between(before->stamp_ns, stamp_ns);
+  if (before == after ||
+      same_pose(before->value, after == nullptr ? before->value : after->value)) {
+    if (after == nullptr) past.shift_error = rounded_up(of.plausible_speed() * since);
+    return past;
+  }
+  const double until = seconds_between(stamp_ns, after->stamp_ns);
+  past.world_from_body = between(before->value, after->value, since / (since + until));
+  past.shift_error = deviation(since, until, of.plausible_speed(), 0.0);
+  return past;
+}
+
+void PostureHistory::place(std::int64_t stamp_ns) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) place_joint(i, stamp_ns);
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) objects_[i] = pose_at(i, stamp_ns);
+  for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind != RobotBase::Kind::kObject) continue;
+    const PastPose& past = objects_[base.object];
+    bases_[robot] = {};
+    bases_[robot].known = past.known;
+    bases_[robot].pose = past.world_from_body;
+    bases_[robot].unobserved_shift = past.shift_error;
+  }
+  kinematics_.place(variables_, bases_);
+}
+
+PastPose PostureHistory::link(std::uint32_t robot, std::uint32_t link) const noexcept {
+  const LinkState& state = kinematics_.links(robot)[link];
+  return {.known = state.known,
+          .world_from_body = state.pose,
+          .shift_error = rounded_up(state.unobserved_shift + state.shift_error),
+          .turn_error = rounded_up(state.unobserved_turn + state.turn_error)};
+}
+
+PastPose PostureHistory::object(std::uint32_t object) const noexcept { return objects_[object]; }
+
+}  // namespace clearance

@@ -1,0 +1,79 @@
+// Where the bodies of a scene were at the stamp of a frame.
+//
+// Joint positions and poses are kept for some time. Between two of them, a joint is where the
+// straight line leads, to within what its largest speed allows; that deviation is part of the error
+// of every link which the joint carries. After the last one, it is within its largest speed times
+// the time since then. The speeds are those by which the tick bounds late inputs.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/sensors/stamped_series.hpp"
+
+namespace clearance {
+
+// A body at a past time. No point within `radius` of its origin was farther from its place by
+// `world_from_body` than error(radius), m.
+struct PastPose {
+  bool known = false;
+  Pose world_from_body;
+  double shift_error = 0.0, turn_error = 0.0;  // m; |R - R_exact|
+
+  [[nodiscard]] double error(double radius) const noexcept;
+};
+
+class PostureHistory {
+ public:
+  // At 1 kHz, two seconds.
+  static constexpr std::size_t kKept = 2048;
+
+  // The scene must outlive this. Allocates all memory for joints.
+  explicit PostureHistory(const Scene& scene);
+
+  // Samples in the order in which they came. Those of a second source are left out while the first
+  // one sends.
+  void add(const JointSample& sample);
+  void add(const PoseSample& sample);
+
+  // True if no joint or pose that was heard lacks a value at or after the stamp.
+  [[nodiscard]] bool covers(std::int64_t stamp_ns) const noexcept;
+  // Finds where everything was at this time, for the two functions below.
+  void place(std::int64_t stamp_ns);
+  [[nodiscard]] PastPose link(std::uint32_t robot, std::uint32_t link) const noexcept;
+  // Of an object that is no link: a fixed one, or one whose poses come.
+  [[nodiscard]] PastPose object(std::uint32_t object) const noexcept;
+
+ private:
+  struct Joint {
+    StampedSeries<double> positions{kKept};
+    std::uint32_t source = kNoSource;
+    bool is_heard = false;
+  };
+  struct Body {
+    StampedSeries<Pose> poses{kKept};
+    std::uint32_t source = kNoSource;
+  };
+
+  void place_joint(std::size_t variable, std::int64_t stamp_ns);
+  [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns) const;
+
+  const Scene& scene_;
+  std::vector<Joint> joints_;             // by variable
+  std::map<std::uint32_t, Body> bodies_;  // by object
+  std::vector<TrackedVariable> variables_;
+  std::vector<LinkState> bases_;   // by robot
+  std::vector<PastPose> objects_;  // at the last place()
+  ForwardKinematics kinematics_;
+};
+
+// How far a value may be from the straight line between two others, one of them `before_s` earlier
+// and the other `after_s` later, if its speed is at most `speed` and that of the line is `mean`.
+[[nodiscard]] double deviation(double before_s, double after_s, double speed, double mean) noexcept;
+
+}  // namespace clearance

@@ -1,0 +1,102 @@
+// From the messages of sensors to frames for the tick: decodes, judges, places, leaves out the
+// robot itself and sorts. It runs beside the tick, in one thread.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/intake/camera_stream.hpp"
+#include "monitor/intake/sensor_messages.hpp"
+#include "monitor/monitor.hpp"
+#include "monitor/sensors/mounts.hpp"
+
+namespace clearance {
+
+struct SensorsOptions {
+  bool is_log = false;  // see IntakeOptions::is_log
+  // A frame waits for joints and poses up to its stamp for this long, ns of the caller's time. Then
+  // it is built with what their largest speeds allow.
+  std::int64_t patience_ns = 20'000'000;
+};
+
+// The part of the robot's surroundings that a frame cannot show, because it is left out with the
+// robot's own image.
+struct OwnImage {
+  std::uint32_t object = 0;  // a link
+  std::size_t elements = 0;  // of the last frame
+  double thickness = 0.0;    // m: anything this close to the link may be left out with it
+  double thickest = 0.0;     // the largest of all frames
+};
+
+struct SensorStatus {
+  std::uint64_t frames = 0;   // built
+  std::uint64_t skipped = 0;  // good ones that a newer one overtook
+  std::int64_t stamp_ns = 0;  // of the last frame that was built
+  std::size_t elements = 0;   // of it
+  double pose_error = 0.0;    // m, of it
+  double largest_pose_error = 0.0;
+  std::int64_t longest_build_ns = 0;
+  // Messages that were used (kNoFault) or refused, by cause.
+  std::array<std::uint64_t, kFrameFaults> counts{};
+  std::vector<OwnImage> own;
+};
+
+class Sensors {
+ public:
+  // Allocates the memory of all clouds. The cell must outlive this.
+  Sensors(const Cell& cell, const SensorsOptions& options);
+  // For a changed cell: goes on with the transforms of `before` and the judged streams of sensors
+  // that are the same. Joints and poses are heard anew.
+  Sensors(const Cell& cell, Sensors& before);
+  ~Sensors();
+
+  // Samples as the tick gets them.
+  void add(std::span<const PoseSample> poses, std::span<const JointSample> joints);
+  // `now_ns`: the caller's time.
+  void add(const RawSensorMessage& message, std::int64_t now_ns);
+
+  // The receiver of a frame. Its cloud stays as it is while `is_used` says so.
+  using Use = std::function<void(std::uint32_t sensor, const SensorFrame& frame)>;
+  using IsUsed = std::function<bool(const SeenCloud* cloud)>;
+  // Builds the newest frame of each sensor whose time has come. If all clouds of a sensor are in
+  // use, its frame waits.
+  void settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use);
+
+  // True if a frame waits.
+  [[nodiscard]] bool any_waiting() const noexcept;
+  [[nodiscard]] SensorStatus status(std::uint32_t sensor) const;
+
+ private:
+  // One is in use, one is shown for the next tick, and one is built.
+  static constexpr std::size_t kClouds = 3;
+  static constexpr std::size_t kMostWaiting = 4;
+  struct Waiting;
+  struct State;
+
+  void add_transforms(const RawSensorMessage& message);
+  template <class Message>
+  void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
+  void build(State& state, const Waiting& frame, const IsUsed& is_used, const Use& use);
+  [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, SeenCloud& cloud);
+  void leave_out_own(State& state, const PastPose& place, SeenCloud& cloud);
+
+  const Cell& cell_;
+  SensorsOptions options_;
+  FrameHistory frames_;
+  PostureHistory postures_;
+  Mounts mounts_;
+  std::vector<std::unique_ptr<State>> states_;  // by sensor
+  CdrDecoder decoder_;
+  SlabBody body_;
+  std::vector<MeasuredPoint> points_;
+};
+
+}  // namespace clearance
