@@ -54,6 +54,9 @@ struct Sensors::State {
   CameraStream stream;
   std::vector<std::unique_ptr<SeenCloud>> clouds;
   std::deque<std::unique_ptr<Waiting>> waiting;
+  // The last image before the first CameraInfo: drivers publish the info of a frame after its
+  // image.
+  RawSensorMessage without_info;
   std::array<std::uint64_t, kFrameFaults> not_built{};
   SensorStatus status;
 };
@@ -113,6 +116,7 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   const FrameOrigin origin{frame->stamp_ns, message.sent_ns, message.writer};
   const FrameFault fault =
       state.stream.take(*sample, origin, frame->view(static_cast<const Message*>(nullptr)));
+  if (fault == FrameFault::kNoCameraInfo) state.without_info = message;
   if (fault != FrameFault::kNoFault) return;
   if (state.stream.camera()) frame->camera = *state.stream.camera();
   if (state.waiting.size() == kMostWaiting) {
@@ -133,8 +137,10 @@ void Sensors::add(const RawSensorMessage& message, std::int64_t now_ns) {
       Sample<sensor_msgs_msg_dds__CameraInfo_> info;
       if (!decoder_.decode(message.cdr, info, message.bytes)) {
         state->stream.refuse();
-      } else {
-        static_cast<void>(state->stream.take(*info));
+      } else if (state->stream.take(*info) == FrameFault::kNoFault &&
+                 !state->without_info.cdr.empty()) {
+        const RawSensorMessage first = std::exchange(state->without_info, {});
+        add_frame<sensor_msgs_msg_dds__Image_>(first, *state, now_ns);
       }
     } else if (sensor.topic != message.topic || is_image != (message.type == Type::kImage)) {
       continue;

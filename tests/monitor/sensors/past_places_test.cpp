@@ -1,0 +1,102 @@
+// Where links and frames were at the stamp of a frame. Oracles: motions that the test makes, whose
+// speed it limits.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "monitor/sensors/frame_history.hpp"
+#include "monitor/sensors/posture_history.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance::past_places_test {
+namespace {
+
+constexpr std::int64_t kStart = test::kStart, kMs = 1'000'000;
+
+TEST(PastPlaces, LieWithinTheDeviationThatASpeedAllows) {
+  Random random(7);
+  for (int path = 0; path < 2000; ++path) {
+    // A path that always goes at full speed, one way and then the other, is the farthest from the
+    // line between its ends.
+    const double speed = random.uniform(0.1, 3.0), turn_s = random.uniform(0.0, 1.0);
+    const auto value = [&](double s) { return speed * (s < turn_s ? s : 2.0 * turn_s - s); };
+    const double share = random.uniform(0.0, 1.0);
+    const double line = share * value(1.0);
+    EXPECT_LE(std::abs(value(share) - line), deviation(share, 1.0 - share, speed, value(1.0)));
+  }
+  EXPECT_EQ(deviation(0.0, 1.0, 2.0, 0.5), 0.0);
+  EXPECT_NEAR(deviation(0.5, 0.5, 2.0, 0.0), 1.0, 1e-12);
+  EXPECT_NEAR(deviation(0.5, 0.5, 2.0, 2.0), 0.0, 1e-12) << "no slack is left at full speed";
+}
+
+TEST(PastPlaces, OfLinksAreThoseOfTheirJointsAtTheStampAndNeverTheLatestOnes) {
+  const Scene scene = test::scara_cell();
+  PostureHistory history(scene);
+  const auto shoulder = [](double s) { return std::sin(2.0 * s); };  // at most 2 rad/s
+  for (int i = 0; i <= 200; ++i) {
+    for (const JointSample& sample :
+         test::joints(shoulder(i * 0.01), 0.0, 0.0, kStart + i * 10 * kMs))
+      history.add(sample);
+  }
+  for (const double s : {0.10, 0.3333, 0.5049, 1.2345}) {
+    const auto stamp = kStart + static_cast<std::int64_t>(std::llround(s * 1e9));
+    EXPECT_TRUE(history.covers(stamp));
+    history.place(stamp);
+    const PastPose upper = history.link(0, 1);
+    ASSERT_TRUE(upper.known);
+    const Vec3 tip = transform(upper.world_from_body, Vec3(1.0, 0.0, 0.0));
+    const Vec3 truth(std::cos(shoulder(s)), std::sin(shoulder(s)), 0.0);
+    EXPECT_LE((tip - truth).norm(), upper.error(1.0)) << s;
+    EXPECT_LE(upper.error(1.0), s == 0.10 ? 1e-12 : 2.0 * 0.005 * 2.0) << s;
+  }
+  const std::int64_t end = kStart + 2000 * kMs;
+  EXPECT_FALSE(history.covers(end + kMs));
+  history.place(end + 50 * kMs);
+  EXPECT_NEAR(history.link(0, 1).error(1.0), 0.1, 0.001) << "2 rad/s for 50 ms";
+  history.place(kStart - kMs);
+  EXPECT_FALSE(history.link(0, 1).known) << "before everything that is kept";
+  EXPECT_TRUE(history.link(0, 0).known) << "nothing moves the foot";
+}
+
+TEST(PastPlaces, OfJointsAreNotMixedFromTwoSources) {
+  const Scene scene = test::scara_cell();
+  PostureHistory history(scene);
+  for (int i = 0; i < 10; ++i) {
+    for (JointSample sample : test::joints(0.0, 0.0, 0.0, kStart + i * kMs)) history.add(sample);
+    for (JointSample sample : test::joints(1.0, 1.0, 0.1, kStart + i * kMs + kMs / 2)) {
+      sample.source = 1;
+      history.add(sample);
+    }
+  }
+  history.place(kStart + 5 * kMs + kMs / 2);
+  EXPECT_NEAR(history.link(0, 1).world_from_body.orientation.z(), 0.0, 1e-12);
+}
+
+TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove) {
+  FrameHistory frames;
+  frames.add("static", "world", test::at(1, 0, 0), 0, true);
+  for (int i = 0; i < 10; ++i) {
+    frames.add("still", "world", test::at(2, 0, 0), kStart + i * 100 * kMs, false);
+    frames.add("moving", "world", test::at(0.1 * i, 0, 0), kStart + i * 100 * kMs, false);
+  }
+  const std::int64_t at = kStart + 450 * kMs;
+  EXPECT_EQ(frames.step("static", at)->parent_from_child.position.x(), 1.0);
+  EXPECT_EQ(frames.step("static", at)->shift_error, 0.0);
+  EXPECT_EQ(frames.step("still", at)->shift_error, 0.0);
+  EXPECT_NEAR(frames.step("moving", at)->parent_from_child.position.x(), 0.45, 1e-12);
+  EXPECT_GE(frames.step("moving", at)->shift_error, 0.05);
+  EXPECT_EQ(frames.step("moving", kStart + 400 * kMs)->shift_error, 0.0);
+  EXPECT_GE(frames.step("moving", kStart + 950 * kMs)->shift_error, 0.05) << "after the last one";
+  EXPECT_FALSE(frames.step("moving", kStart + 2000 * kMs)) << "lost";
+  EXPECT_FALSE(frames.step("moving", kStart - kMs));
+  EXPECT_FALSE(frames.step("other", at));
+  Pose nonsense;
+  nonsense.orientation.coeffs().setZero();
+  frames.add("nonsense", "world", nonsense, kStart, false);
+  EXPECT_FALSE(frames.step("nonsense", kStart));
+}
+
+}  // namespace
+}  // namespace clearance::past_places_test

@@ -1,0 +1,277 @@
+// From messages of a camera to frames for the tick: the place at the stamp, the robot's own image,
+// and a cause for each frame that is refused.
+//
+// The camera has 8 x 6 pixels. Oracles: the depths and places that the test put in.
+#include "monitor/sensors/sensors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <map>
+#include <memory>
+
+#include "tests/monitor/intake/camera_texts.hpp"
+#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/small_cells.hpp"
+
+namespace clearance::sensors_test {
+namespace {
+
+using test::camera::CloudText;
+using test::camera::ImageText;
+using test::camera::InfoText;
+using Type = RawSensorMessage::Type;
+
+constexpr std::int64_t kStart = test::camera::kStart, kFrame = test::camera::kFrame;
+
+Cell cell_with(const std::string& sensor, const std::string& ros = "") {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  return read_good(
+      "name: test\nunits: {length: m, angle: rad}\n" + ros +
+          "robots: [{name: arm, urdf: scara.urdf}]\nobjects: [{name: cart, sphere: {radius: "
+          "0.1}}]\nsensors:\n  - {name: eye, " +
+          sensor + "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
+      folder / "cell.yaml");
+}
+const std::string kImage =
+    "depth_image: /cam/image, size: [8, 6], depth_error: {constant: 0.01}, range: [0.3, 4]";
+const std::string kPoints = "points: /cam/points, depth_error: {constant: 0.01}, range: [0.3, 4]";
+// It looks down from 2 m above the origin of the world.
+const std::string kAbove = ", mount: {pose: {xyz: [0, 0, 2], rpy: [3.141592653589793, 0, 0]}}";
+
+// All pixels have this depth, mm.
+ImageText flat(int number, std::uint16_t depth) {
+  ImageText text;
+  text.stamp_ns += number * kFrame;
+  for (std::size_t i = 0; i < text.data.size(); i += 2) {
+    text.data[i] = static_cast<std::uint8_t>(depth & 0xFF);
+    text.data[i + 1] = static_cast<std::uint8_t>(depth >> 8);
+  }
+  return text;
+}
+
+class SensorsTest : public testing::Test {
+ protected:
+  void make(const std::string& sensor, const std::string& ros = "") {
+    cell = cell_with(sensor, ros);
+    sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
+  }
+  void add(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns,
+           std::uint64_t writer = 1) {
+    static const std::map<Type, std::string> topics = {{Type::kImage, "/cam/image"},
+                                                       {Type::kCameraInfo, "/cam/camera_info"},
+                                                       {Type::kPoints, "/cam/points"}};
+    const auto topic = topics.find(type);
+    sensors->add({.type = type,
+                  .topic = topic == topics.end() ? "" : topic->second,
+                  .sent_ns = sent_ns,
+                  .writer = writer,
+                  .cdr = cdr},
+                 sent_ns);
+  }
+  void add(const ImageText& image) { add(Type::kImage, image.cdr(), image.stamp_ns + 1000); }
+  void add_joints(double shoulder, std::int64_t stamp_ns) {
+    sensors->add({}, test::joints(shoulder, 0.0, 0.0, stamp_ns));
+  }
+  // Returns the frames that are built by this time.
+  std::vector<SensorFrame> settle(std::int64_t now_ns) {
+    std::vector<SensorFrame> frames;
+    sensors->settle(
+        now_ns, [](const SeenCloud*) { return false; },
+        [&](std::uint32_t, const SensorFrame& frame) { frames.push_back(frame); });
+    return frames;
+  }
+  [[nodiscard]] std::uint64_t count(FrameFault fault) const {
+    return sensors->status(0).counts[static_cast<std::size_t>(fault)];
+  }
+
+  Cell cell;
+  std::unique_ptr<Sensors> sensors;
+};
+
+TEST_F(SensorsTest, MakeAFrameOfAnImageWithThePlaceThatTheCellStates) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(flat(0, 1000));
+  const auto frames = settle(kStart + 2000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].stamp_ns, kStart);
+  EXPECT_EQ(frames[0].cloud->size(), 48u);
+  EXPECT_LT(frames[0].pose_error, 1e-12);
+  // A ball at the origin is 1 m below the plane that all pixels see, less the error of 10 mm.
+  Monitor monitor(cell.scene);
+  ASSERT_TRUE(monitor.show(0, frames[0]));
+  const Report& report = monitor.tick(std::vector{test::sample(0, {}, kStart)}, kStart + 1'000'000);
+  for (std::size_t p = 0; p < cell.scene.pairs.size(); ++p) {
+    if (cell.scene.pairs[p].first != 0) continue;
+    EXPECT_NEAR(report.pairs[p].lower, 1.0 - 0.01 - 0.1, 1e-6);
+  }
+}
+
+TEST_F(SensorsTest, UseAnImageThatCameBeforeItsFirstCameraInfo) {
+  make(kImage + kAbove);
+  add(flat(0, 1000));
+  EXPECT_TRUE(settle(kStart + 1000).empty());
+  EXPECT_EQ(count(FrameFault::kNoCameraInfo), 1u);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart + 2000);
+  EXPECT_EQ(settle(kStart + 3000).size(), 1u);
+}
+
+TEST_F(SensorsTest, FindTheirPlaceByTheFrameOfTheMessageThroughLinksAndTheWorld) {
+  make(kImage);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(flat(0, 1000));
+  add_joints(0.5, kStart);
+  EXPECT_TRUE(settle(kStart + 30'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kNoPlace), 1u) << "no transform yet";
+  const auto tf = test::transforms(kStart, kStart,
+                                   {{"upper", "mast", {0.5, 0, 0}}, {"mast", "camera", {0, 0, 3}}});
+  add(Type::kStaticTransforms, tf.cdr, kStart);
+  add(flat(1, 1100));
+  add_joints(0.5, kStart + kFrame);
+  const auto frames = settle(kStart + kFrame + 1000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_LT(
+      (frames[0].world_from_sensor.position - Vec3(0.5 * std::cos(0.5), 0.5 * std::sin(0.5), 3.0))
+          .norm(),
+      1e-9);
+  EXPECT_LT(frames[0].pose_error, 1e-9) << "the stamp is that of the joints";
+}
+
+TEST_F(SensorsTest, RefuseAFrameWhoseTransformsLeadToNoPlaceOfTheCell) {
+  make(kImage, "ros2: {world_frame: map}\n");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(Type::kStaticTransforms, test::transforms(kStart, kStart, {{"odom", "camera"}}).cdr, kStart);
+  add(flat(0, 1000));
+  EXPECT_TRUE(settle(kStart + 30'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kNoPlace), 1u);
+  // A late transform, and one that circles.
+  add(Type::kTransforms, test::transforms(kStart, kStart + kFrame, {{"map", "odom"}}).cdr, kStart);
+  add(flat(1, 1100));
+  EXPECT_EQ(settle(kStart + kFrame + 30'000'000).size(), 1u);
+  add(Type::kTransforms, test::transforms(kStart, kStart + kFrame, {{"camera", "odom"}}).cdr,
+      kStart);
+  add(flat(2, 1200));
+  EXPECT_TRUE(settle(kStart + 2 * kFrame + 30'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kNoPlace), 2u);
+}
+
+// The lower arm is 0.8 to 1 m long along x of the shoulder, and 0.1 m thick: the camera sees its
+// upper face 1.95 m below.
+TEST_F(SensorsTest, LeaveOutTheRobotWhereItWasAtTheStampAndNotWhereItIsNow) {
+  make("depth_image: /cam/image, size: [8, 6], depth_error: {constant: 0.01}, range: [0.3, 4]" +
+       std::string(", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}"));
+  InfoText narrow;  // all pixels look at the upper arm if it lies along x
+  narrow.k = {400, 0, 3.5, 0, 400, 2.5, 0, 0, 1};
+  narrow.p = {400, 0, 3.5, 0, 0, 400, 2.5, 0, 0, 0, 1, 0};
+  add(Type::kCameraInfo, narrow.cdr(), kStart);
+  add_joints(0.0, kStart);
+  add_joints(2.0, kStart + 1'000'000'000);  // it has turned away since
+  add(Type::kImage, flat(0, 1950).cdr(), kStart + 1'000'000'000);
+  EXPECT_TRUE(settle(kStart + 1'000'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kNothingSeen), 1u);
+  const auto own = sensors->status(0).own;
+  EXPECT_EQ(std::ranges::max(own, {}, &OwnImage::elements).elements, 48u);
+  EXPECT_GT(std::ranges::max(own, {}, &OwnImage::elements).thickness, 0.01);
+  // Seen when it has turned away, the same picture is that of something else.
+  ImageText later = flat(0, 1950);
+  later.stamp_ns = kStart + 1'000'000'000;
+  later.data[0] ^= 1;
+  add(later);
+  const auto frames = settle(kStart + 1'000'000'000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 48u);
+}
+
+TEST_F(SensorsTest, CountTheUnknownMotionBetweenJointsAsAnErrorOfTheRobotsImage) {
+  make(kImage + ", mount: {on: upper, pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add_joints(0.0, kStart - 5'000'000);
+  add_joints(0.0, kStart + 5'000'000);
+  add(flat(0, 1000));
+  const auto frames = settle(kStart + 10'000'000);
+  ASSERT_EQ(frames.size(), 1u);
+  // At 2 rad/s for 5 ms, at the far end of the view of 8.1 m.
+  EXPECT_NEAR(frames[0].pose_error, 0.01 * cell.scene.sensors[0].extent(), 0.03);
+}
+
+TEST_F(SensorsTest, WaitForJointsUpToTheStampButNotForLong) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add_joints(0.0, kStart - 1'000'000);
+  add(flat(0, 1000));
+  EXPECT_TRUE(settle(kStart + 2000).empty());
+  EXPECT_TRUE(sensors->any_waiting());
+  EXPECT_EQ(settle(kStart + 21'000'000).size(), 1u);
+  add(flat(1, 1100));
+  EXPECT_TRUE(settle(kStart + kFrame + 2000).empty());
+  add_joints(0.0, kStart + kFrame);
+  EXPECT_EQ(settle(kStart + kFrame + 3000).size(), 1u);
+}
+
+TEST_F(SensorsTest, UseOnlyTheNewestOfSeveralFramesThatAreReady) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  for (int i = 0; i < 10; ++i) add(flat(i, static_cast<std::uint16_t>(1000 + i)));
+  const auto frames = settle(kStart + 10 * kFrame);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].stamp_ns, kStart + 9 * kFrame);
+  EXPECT_EQ(sensors->status(0).skipped, 9u);
+}
+
+TEST_F(SensorsTest, RefuseFrozenDamagedAndForeignFramesByCause) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(flat(0, 1000));
+  EXPECT_EQ(settle(kStart + 1000).size(), 1u);
+  const auto refuses = [&](const ImageText& image, FrameFault fault, std::uint64_t writer = 1) {
+    const std::uint64_t before = count(fault);
+    add(Type::kImage, image.cdr(), image.stamp_ns + 1000, writer);
+    EXPECT_TRUE(settle(image.stamp_ns + 1000).empty());
+    EXPECT_EQ(count(fault), before + 1) << text(fault);
+  };
+  refuses(flat(1, 1000), FrameFault::kFrozen);
+  refuses(flat(1, 1001), FrameFault::kSecondPublisher, 2);
+  ImageText half = flat(1, 1002);
+  half.data.resize(40);
+  refuses(half, FrameFault::kShortData);
+  ImageText other = flat(1, 1003);
+  other.encoding = "rgb8";
+  refuses(other, FrameFault::kEncoding);
+  refuses(flat(1, 0), FrameFault::kNothingSeen);
+  refuses(flat(2, 9000), FrameFault::kNothingSeen);
+  std::vector<std::byte> cut = flat(3, 1004).cdr();
+  cut.resize(30);
+  add(Type::kImage, cut, kStart);
+  EXPECT_EQ(count(FrameFault::kUndecodable), 1u);
+}
+
+TEST_F(SensorsTest, MakeBallsOfPointsThatContainErrorAndSpacing) {
+  make(kPoints + ", spacing: 0.02" + kAbove);
+  CloudText cloud;
+  cloud.width = 3;
+  cloud.row_step = 60;
+  cloud.data.assign(60, 0);
+  const auto put = [&](std::size_t point, float x, float y, float z) {
+    const std::array<float, 3> values = {x, y, z};
+    std::memcpy(&cloud.data[point * 20], values.data(), sizeof values);
+  };
+  put(0, 0.3F, 0.0F, 1.0F);
+  put(1, 0.0F, 0.0F, std::numeric_limits<float>::quiet_NaN());
+  put(2, 0.0F, 0.0F, 5.0F);  // out of range
+  add(Type::kPoints, cloud.cdr(), kStart);
+  const auto frames = settle(kStart + 1000);
+  ASSERT_EQ(frames.size(), 1u);
+  ASSERT_EQ(frames[0].cloud->size(), 1u);
+  const double radius = frames[0].cloud->points()->block(0).radius[0];
+  const double exact = 0.01 * std::hypot(0.3, 1.0) + 1.01 * 0.02 * std::sqrt(0.5);
+  EXPECT_GE(radius, exact);
+  EXPECT_LT(radius, exact * 1.0001);
+}
+
+}  // namespace
+}  // namespace clearance::sensors_test
