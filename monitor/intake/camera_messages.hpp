@@ -39,7 +39,7 @@ enum class FrameFault : std::uint8_t {
   kSecondPublisher,    // the writer of the frames in use is still heard
   kTooOften,           // more frames than the cell states
   // Faults that show when a frame is built.
-  kNoPlace,      // no transform leads from its frame to the cell, or where it was mounted is unknown
+  kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
   kCannotBuild,  // a picture too wide, or more points within the range than the cell states
   kNothingSeen,  // no pixel or point within the range but the robot's own
 };

@@ -12,7 +12,7 @@ DistanceStatus status_of(const NearestElement& found) noexcept {
   if (found.upper < 0.0) return DistanceStatus::kOverlapping;
   if (found.lower <= 0.0) return DistanceStatus::kTouching;
   return found.upper - found.lower <= kCloudGap ? DistanceStatus::kConverged
-                                                    : DistanceStatus::kIterationLimit;
+                                                : DistanceStatus::kIterationLimit;
 }
 
 }  // namespace

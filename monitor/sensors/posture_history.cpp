@@ -46,7 +46,8 @@ double deviation(double before_s, double after_s, double speed, double mean) noe
   const double u = std::min(std::abs(mean), speed);
   const double ahead = std::min(before_s * (speed - u), after_s * (speed + u));
   const double behind = std::min(before_s * (speed + u), after_s * (speed - u));
-  return rounded_up(rounded_up(std::max(ahead, behind)));
+  // The differences above lose digits where both speeds are nearly equal.
+  return rounded_up(std::max(ahead, behind) + 0x1p-48 * speed * (before_s + after_s));
 }
 
 PostureHistory::PostureHistory(const Scene& scene)
