@@ -60,7 +60,8 @@ Examples:
   clearance-view cell.yaml --replay run.mcap
   clearance-view cell.yaml --replay poses.mcap --offline
   clearance-view cell.yaml --replay run.mcap --screenshot worst.png --at 12.5
-  clearance-view cell.yaml --host 0.0.0.0 --allow robot.example)";
+  clearance-view cell.yaml --host 0.0.0.0 --allow robot.example
+  clearance-view cell.yaml --metrics /run/clearance/metrics.sock)";
 
 struct Arguments {
   CellArguments cell;
@@ -69,6 +70,7 @@ struct Arguments {
   std::string host = "127.0.0.1";
   std::uint16_t port = 8765;
   std::vector<std::string> allowed;  // hosts and origins
+  std::string metrics;               // the daemon's socket
   std::vector<std::string> screenshots;
   std::vector<double> at_s;
   std::string query;  // of the page in pictures
@@ -96,6 +98,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "of this origin: https://NAME; repeatable")
       ->allow_extra_args(false)
       ->check(view::fault_of_allowed);
+  app.add_option("--metrics", arguments.metrics,
+                 "Also serve /metrics for Prometheus: those of the daemon on this machine whose "
+                 "option --metrics names this Unix socket")
+      ->excludes(replay);
   const char* const kPictures = "Pictures";
   CLI::Option* const screenshot =
       app.add_option("--screenshot", arguments.screenshots,
@@ -248,7 +254,8 @@ nlohmann::json parameters_of(const Source& source) {
   return all;
 }
 
-view::Content content_of(const Cell& cell, Source& source, Drawn& drawn) {
+view::Content content_of(const Cell& cell, Source& source, Drawn& drawn,
+                         const std::string& metrics) {
   return {.name = cell.scene.name,
           .channels = view::channels_of(cell.topics),
           .get =
@@ -263,7 +270,8 @@ view::Content content_of(const Cell& cell, Source& source, Drawn& drawn) {
               },
           .parameters = [&source] { return parameters_of(source); },
           .set_parameter = [&source](const std::string& name,
-                                     const nlohmann::json& value) { source.set(name, value); }};
+                                     const nlohmann::json& value) { source.set(name, value); },
+          .metrics = metrics};
 }
 
 // One frame: sends everything new, then lets the server work until the next frame is due.
@@ -330,7 +338,7 @@ int run_view(const std::shared_ptr<const Cell>& cell, const Arguments& arguments
   const bool pictures = !arguments.screenshots.empty();
   Drawn drawn(*source);
   Server server(arguments.host, pictures ? std::uint16_t{0} : arguments.port, arguments.allowed,
-                content_of(*cell, *source, drawn));
+                content_of(*cell, *source, drawn, arguments.metrics));
   return pictures ? take_screenshots(arguments, server, *source)
                   : serve(arguments, server, *source, stop);
 }

@@ -31,7 +31,8 @@ class Commands : public CommandRequests {
 
   // Sends changes that are made wholly or not at all, and waits for their result. The same request
   // is sent again every second until the result comes. Returns nothing when none came in time: the
-  // changes may be made or not, and result() may tell later.
+  // changes may be made or not, and result() may tell later. While a former run of this program,
+  // which was killed, counts as a second one, it is sent again, too (COMMANDS.md: up to 3 s).
   [[nodiscard]] std::optional<CommandResult> send(
       const std::vector<CellChange>& changes, const CommandOptions& options = {},
       std::chrono::nanoseconds timeout = std::chrono::seconds(10));

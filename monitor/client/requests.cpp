@@ -17,6 +17,7 @@ namespace {
 constexpr std::size_t kKeptResults = 64;
 constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent again
 constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
+constexpr std::int64_t kLeaseNs = 2'000'000'000;  // a killed program's name is free after this time
 constexpr std::int64_t kAskNs = 50'000'000;       // until the caller is asked again
 
 bool has_matched(dds_entity_t writer, dds_entity_t reader) {
@@ -61,7 +62,8 @@ Requests<Request, Result, Message>::Requests(Connection& connection, std::string
   Participant& participant = connection.participant();
   const Topics& topics = connection.topics();
   reader_ = participant.reader(results, topics.*topic(results).name);
-  writer_ = participant.writer(requests, topics.*topic(requests).name);
+  writer_ = participant.writer(requests, topics.*topic(requests).name,
+                               {.process_lease_ns = kLeaseNs});
   wait_ = std::make_unique<DataWait>(participant, std::vector{reader_});
 }
 
@@ -104,11 +106,16 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
   while (!is_heard() && dds_time() < end_ns && !stop()) dds_sleepfor(kLookNs);
   if (!is_heard() || stop()) return std::nullopt;
   const Request request = next(make);
+  const std::int64_t alone_ns = dds_time() + kLeaseNs + kAgainNs / 2;
   do {
     (void)write(request);
     if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {
-      // A busy daemon has not taken the request.
-      if (result->status != decltype(Result::status)::kBusy) return result;
+      // In these cases the daemon has not taken the request.
+      using Status = decltype(Result::status);
+      const bool is_to_repeat =
+          result->status == Status::kBusy ||
+          (result->status == Status::kTwoWriters && dds_time() < alone_ns);
+      if (!is_to_repeat) return result;
       if (dds_time() + kAgainNs >= end_ns) return result;
       results_.erase(request_);
       const std::int64_t again_ns = dds_time() + kAgainNs;

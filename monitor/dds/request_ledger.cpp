@@ -47,8 +47,9 @@ std::optional<Result> RequestLedger<Result>::refuse_sender(const Request& reques
   }
   return refusal<Result>(
       request, Status::kTwoWriters,
-      fmt::format("found {} programs that send as '{}'; expected one. A program that "
-                  "was killed counts until its lease ends",
+      fmt::format("found {} programs that send as '{}'; expected one. One that was "
+                  "killed counts until its lease ends, 2 s with Clearance's client and up to 10 s "
+                  "with others",
                   writers.size(), request.client));
 }
 

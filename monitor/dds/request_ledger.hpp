@@ -55,7 +55,7 @@ class RequestLedger {
   void answer(const Result& result);
   // The pending request was not begun, and counts as not sent.
   void withdraw(const Request& request);
-  // Forgets all writers except these, which still exist.
+  // Forgets all writers except these, whose programs still run.
   void keep_writers(std::span<const std::uint64_t> writers);
 
  private:

@@ -29,10 +29,11 @@ std::uint64_t hash_of(std::span<const std::byte> bytes) {
 }
 
 template <class Traffic>
-dds_entity_t make_reader(const Cell& cell, Participant& participant, NameLimit& names) {
+dds_entity_t make_reader(const Cell& cell, Participant& participant, NameLimit& names,
+                         const LapsedWriters& lapsed) {
   const dds_topic_filter filter = filter_of(names);
   return participant.reader(Traffic::kRequests, cell.topics.*topic(Traffic::kRequests).name, 0,
-                            nullptr, &filter);
+                            lapsed.listener(), &filter);
 }
 
 // Where commands and questions differ.
@@ -81,7 +82,7 @@ RequestPort<Traffic>::RequestPort(const Cell& cell, const std::vector<std::strin
       put_(std::move(put)),
       revision_(std::move(revision)),
       ledger_(clients, Traffic::kKey),
-      reader_(make_reader<Traffic>(cell, participant, names_)),
+      reader_(make_reader<Traffic>(cell, participant, names_, lapsed_)),
       results_(participant.writer(Traffic::kResults, cell.topics.*topic(Traffic::kResults).name)),
       wait_(participant, {reader_}) {}
 
@@ -117,8 +118,9 @@ template <class Traffic>
 void RequestPort<Traffic>::take_all() {
   while (take_cdr(reader_, taken_, &ended_) > 0 && !stop_) {
     for (const std::uint64_t name : std::exchange(ended_, {})) names_.forget_name(name);
-    const std::vector<std::uint64_t> writers = writers_of(reader_);
+    std::vector<std::uint64_t> writers = writers_of(reader_);
     names_.keep(writers);
+    lapsed_.remove_from(writers);
     ledger_.keep_writers(writers);
     for (const CdrSample& sample : taken_) take(sample);
     taken_.clear();

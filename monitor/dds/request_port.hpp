@@ -17,6 +17,7 @@
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/request_ledger.hpp"
 #include "monitor/participant/cdr_sample.hpp"
+#include "monitor/participant/lapsed_writers.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/questions/question_desk.hpp"
 #include "monitor/scene_changes/command_queue.hpp"
@@ -83,6 +84,7 @@ class RequestPort {
   std::mutex mutex_;                 // guards what follows: results also come from other threads
   std::int64_t log_second_ = 0;
   std::uint64_t logged_ = 0, left_out_ = 0;  // refusals in that second
+  LapsedWriters lapsed_;
   dds_entity_t reader_, results_;
   DataWait wait_;
   std::vector<CdrSample> taken_;

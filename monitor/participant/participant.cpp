@@ -349,6 +349,8 @@ dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
   const Qos qos = endpoint_qos(row.delivery, row.writer_depth);
   if (options.lease_ns > 0) {
     dds_qset_liveliness(qos.get(), DDS_LIVELINESS_MANUAL_BY_TOPIC, options.lease_ns);
+  } else if (options.process_lease_ns > 0) {
+    dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, options.process_lease_ns);
   }
   if (!options.user_data.empty()) {
     dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());

@@ -34,6 +34,9 @@ struct WriterOptions {
   // learn that it is not. With 0, it counts as alive while its participant does. Cyclone gives a
   // silent participant up after 10 s.
   std::int64_t lease_ns = 0;
+  // If lease_ns is 0: Cyclone asserts it while the process runs, and readers learn within this time
+  // that the process was killed. With 0, as above.
+  std::int64_t process_lease_ns = 0;
   std::string user_data = {};                // USER_DATA, which every discovering program can read
   const dds_listener_t* listener = nullptr;  // may be null; it is copied
 };

@@ -8,9 +8,11 @@
 #include <csignal>
 #include <memory>
 #include <optional>
+#include <set>
 #include <thread>
 
 #include "monitor/client/client.hpp"
+#include "monitor/client/commands.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tests/shared/byte_writer.hpp"
 #include "tests/shared/poses.hpp"
@@ -202,6 +204,42 @@ TEST_F(DaemonCommands, OfTwoProgramsUnderOneNameAreRefusedUntilOneHasLeft) {
     second->forget();
     return second->result_of(other).done();
   }));
+}
+
+// The killed run is told apart from one that lives by its lease. Without that, the name would be
+// taken for longer than clearance-scene tries.
+TEST_F(DaemonCommands, OfAProgramThatStartsAgainAfterItWasKilledAreDone) {
+  start();
+  const ScratchFolder folder;
+  const std::string margin = (folder / "margin.yaml").string();
+  const std::string back = (folder / "back.yaml").string();
+  write_text(margin, "- set_margin: {object: floor, margin: 0.01}\n");
+  write_text(back, "- set_margin: {object: floor}\n");
+  const std::vector<std::string> send =
+      with({"send", margin, "--as", "planner"}, dds_arguments(dds));
+  ChildProcess former(kScene, with(send, {"--back", back, "--repeat", "1000000"}));
+  std::set<std::uint64_t> revisions;
+  ASSERT_TRUE(eventually([&] {
+    const auto report = distances.next();
+    if (report != nullptr) revisions.insert((*report)->scene_revision);
+    return revisions.size() > 1;
+  })) << former.output();
+  former.signal(SIGKILL);
+  former.wait();
+  ChildProcess again(kScene, send);
+  EXPECT_EQ(again.wait(), 0) << again.output();
+}
+
+// The lease is the process's: a client that is idle for longer keeps its name.
+TEST_F(DaemonCommands, OfTwoProgramsAreRefusedAlsoWhenOneWasIdle) {
+  start();
+  client::Connection one(dds), two(dds);
+  client::Commands idle(one, "planner"), other(two, "planner");
+  ASSERT_TRUE(idle.send({SetMargin{"floor", 0.01}})->done());
+  std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+  const auto result = other.send({SetMargin{"floor", 0.02}}, {}, std::chrono::milliseconds(900));
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->status, CommandStatus::kTwoWriters);
 }
 
 TEST_F(DaemonCommands, MalformedOnesAreRefusedByTheirField) {

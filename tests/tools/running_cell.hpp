@@ -24,6 +24,7 @@ inline const std::string kDaemon = test::places::programs() + "/clearanced";
 inline const std::string kRobot = test::places::programs() + "/clearance-robot";
 inline const std::string kRecord = test::places::programs() + "/clearance-record";
 inline const std::string kReplay = test::places::programs() + "/clearance-replay";
+inline const std::string kScene = test::places::programs() + "/clearance-scene";
 inline const std::string kWatch = test::places::programs() + "/clearance-watch";
 
 // A cell in a temporary file of its own.

@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "monitor/app/print.hpp"
+#include "tools/view/metrics_relay.hpp"
 #include "tools/view/protocol.hpp"
 #include "tools/view/server_state.hpp"
 #include "tools/view/viewer.hpp"
@@ -74,11 +75,21 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     Resource found;
     if (request.method() == http::verb::get) {
       const std::size_t end = std::min(target.find('?'), target.size());
+      if (!server_.content.metrics.empty() && target.substr(0, end) == "/metrics")
+        return relay(request);
       found = server_.content.get(target.substr(0, end),
                                   target.substr(std::min(end + 1, target.size())));
     }
     if (found.body) return respond(request, http::status::ok, found.type, *found.body);
     respond(request, http::status::not_found, "text/plain", "There is no such page here.\n");
+  }
+
+  void relay(const HttpRequest& request) {
+    relay_metrics(server_.context, server_.content.metrics,
+                  [self = shared_from_this(), request](RelayedMetrics metrics) {
+                    self->respond(request, http::int_to_status(metrics.status), metrics.type,
+                                  std::move(metrics.body));
+                  });
   }
 
   // Other servers' pages may neither embed what is sent nor show it in a frame.

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -28,6 +29,7 @@ struct Content {
   std::function<Resource(const std::string& path, const std::string& query)> get;
   std::function<nlohmann::json()> parameters;  // an array of {name, value}
   std::function<void(const std::string& name, const nlohmann::json& value)> set_parameter;
+  std::filesystem::path metrics = {};  // the daemon's socket, for /metrics; empty: there is none
 };
 
 struct ServerState;
