@@ -55,14 +55,13 @@ class Question : public std::enable_shared_from_this<Question> {
                       });
   }
   void read() {
-    http::async_read(stream_, buffer_, answer_,
-                     [self = shared_from_this()](const Error& error, std::size_t) {
-                       if (error) return self->fail(error);
-                       auto& answer = self->answer_.get();
-                       self->done_({answer.result_int(),
-                                    std::string(answer[http::field::content_type]),
-                                    std::move(answer.body())});
-                     });
+    http::async_read(
+        stream_, buffer_, answer_, [self = shared_from_this()](const Error& error, std::size_t) {
+          if (error) return self->fail(error);
+          auto& answer = self->answer_.get();
+          self->done_({answer.result_int(), std::string(answer[http::field::content_type]),
+                       std::move(answer.body())});
+        });
   }
   void fail(const Error& error) {
     done_({static_cast<unsigned>(http::status::bad_gateway), "text/plain; charset=utf-8",

@@ -1,0 +1,74 @@
+"""The tutorial: its commands are run one after another, as a reader pastes them, and print what the page shows.
+
+usage: tutorial_test.py BUILD
+"""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+PAGE = ROOT / "tools/TUTORIAL.md"
+NUMBER = re.compile(r"-?\d+(\.\d+)?")
+
+
+def blocks():
+    """The page's blocks of code, each as (language, text)."""
+    return re.findall(r"^```(\w*)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+
+
+def for_this_machine(text):
+    """Runs beside other tests, so it gets a partition of its own. A busy machine delays joint states by more than 20 ms."""
+    return text.replace("partition: tutorial", f"partition: tutorial-{os.getpid()}").replace(
+        "--partition tutorial", f"--partition tutorial-{os.getpid()}").replace("age_limit_ms: 20}", "age_limit_ms: 5000}")
+
+
+def pattern(line):
+    """The line with any numbers in the place of its own."""
+    at, parts = 0, []
+    for number in NUMBER.finditer(line):
+        parts += [re.escape(line[at:number.start()]), NUMBER.pattern]
+        at = number.end()
+    return re.compile("".join(parts) + re.escape(line[at:]))
+
+
+class Tutorial(unittest.TestCase):
+    def test_its_commands_run_and_print_what_it_shows(self):
+        with tempfile.TemporaryDirectory() as home:
+            share = pathlib.Path(home) / "clearance/share/clearance"
+            share.mkdir(parents=True)
+            (share / "cells").symlink_to(ROOT / "config/cells")
+            environment = {**os.environ, "HOME": home, "PATH": f"{BUILD}/bin:/usr/bin:/bin", "PYTHONPATH": f"{BUILD}/python"}
+            folder, output, ran, compared = home, "", 0, 0
+            for language, text in blocks():
+                if language == "sh":
+                    done = subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(text)], cwd=folder, env=environment,
+                                          capture_output=True, text=True, timeout=120)
+                    folder = pathlib.Path(home) / "tutorial"
+                    log = folder / "daemon.log"
+                    output = done.stdout + done.stderr
+                    self.assertEqual(done.returncode, 0, text + output + (log.read_text() if log.exists() else ""))
+                    ran += 1
+                elif language == "" and ran and "[" not in text and ">=" not in text:
+                    for line in text.splitlines():
+                        self.assertRegex(output, pattern(line))
+                        compared += 1
+            self.assertEqual((ran, compared), (5, 2))
+
+    def test_the_thresholds_that_it_works_out_are_those_of_its_formula(self):
+        text = PAGE.read_text(encoding="utf-8")
+        v, a, delay = 0.5, 5.0, 0.010 + 0.001 + 0.019
+        stop = v * delay + v * v / (2 * a)
+        slow = stop + v * v / a
+        for figure in (f"0.5 * {delay:.3f} + {v * v / (2 * a):.3f} = {stop:.3f} m", f"{stop:.3f} + {v * v / a:.2f} = {slow:.3f} m"):
+            self.assertIn(figure, text)
+
+
+if __name__ == "__main__":
+    unittest.main()
