@@ -140,7 +140,10 @@ CLI::App* add_report(CLI::App& app, ReportArguments& arguments) {
 
 CLI::App* add_reduce(CLI::App& app, ReduceArguments& arguments) {
   CLI::App* const reduce = app.add_subcommand(
-      "reduce", "Print simpler models around meshes, objects or links, with certified errors");
+      "reduce",
+      "Print simpler models around meshes, objects or links, with certified errors: a sphere, "
+      "capsule, box, rounded box, cylinder, ellipsoid, polyhedra of 8, 16, 32, ... facets, the "
+      "hull, and 2, 4, 8 and 16 parts");
   ReductionOptions& options = arguments.reduction;
   reduce
       ->add_option("FILE", options.files,
