@@ -3,7 +3,7 @@
 namespace clearance {
 
 LapsedWriters::LapsedWriters() : listener_(dds_create_listener(nullptr)) {
-  dds_lset_liveliness_changed_arg(listener_.get(), note, this, false);
+  dds_lset_liveliness_changed_arg(listener_.get(), note, this, true);
 }
 
 // Cyclone calls this in a thread of its own, once for each change of a writer: one that lapses, one

@@ -141,6 +141,7 @@ TEST(CommandLedger, CountsAWithdrawnRequestAsNotSentForTheOrderToo) {
   do_request(ledger, 10);
   ASSERT_EQ(ledger.admit({"planner", 20, 0}).next, Next::kDo);
   ledger.withdraw({"planner", 20, 0});
+  EXPECT_EQ(ledger.admit({"planner", 9, 0}).result.status, CommandStatus::kOutOfOrder);
   EXPECT_EQ(ledger.admit({"planner", 15, 0}).next, Next::kDo);
 }
 
