@@ -62,8 +62,8 @@ Requests<Request, Result, Message>::Requests(Connection& connection, std::string
   Participant& participant = connection.participant();
   const Topics& topics = connection.topics();
   reader_ = participant.reader(results, topics.*topic(results).name);
-  writer_ = participant.writer(requests, topics.*topic(requests).name,
-                               {.process_lease_ns = kLeaseNs});
+  writer_ =
+      participant.writer(requests, topics.*topic(requests).name, {.process_lease_ns = kLeaseNs});
   wait_ = std::make_unique<DataWait>(participant, std::vector{reader_});
 }
 
@@ -112,9 +112,8 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
     if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {
       // In these cases the daemon has not taken the request.
       using Status = decltype(Result::status);
-      const bool is_to_repeat =
-          result->status == Status::kBusy ||
-          (result->status == Status::kTwoWriters && dds_time() < alone_ns);
+      const bool is_to_repeat = result->status == Status::kBusy ||
+                                (result->status == Status::kTwoWriters && dds_time() < alone_ns);
       if (!is_to_repeat) return result;
       if (dds_time() + kAgainNs >= end_ns) return result;
       results_.erase(request_);
