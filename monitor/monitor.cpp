@@ -82,7 +82,7 @@ struct Monitor::State {
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 
-  // Of sensors, by their numbers.
+  // The objects of sensors, by their numbers.
   struct Shown {
     SensorFrame frame;  // that the next tick takes; its cloud is null: none
     SourceClock clock;

@@ -44,7 +44,7 @@ enum class QuestionStatus : std::uint8_t {
 };
 inline constexpr std::size_t kQuestionStatuses = 12;
 
-// As MarginAnswer, with names.
+// A MarginAnswer with names.
 struct MarginResult {
   double margin = 0.0;  // m
   Verdict verdict = Verdict::kUndecided;
@@ -53,14 +53,14 @@ struct MarginResult {
   std::string first = {}, second = {};
 };
 
-// As ProfilePoint, with names.
+// A ProfilePoint with names.
 struct ProfilePart {
   double from = 0.0, to = 0.0;      // s
   double lower = 0.0, upper = 0.0;  // m
   std::string first = {}, second = {};
 };
 
-// As TimeScaling, with names.
+// A TimeScaling with names.
 struct TimeLimit {
   bool is_limited = false;
   double factor = 0.0, factor_above = 0.0;
@@ -68,7 +68,7 @@ struct TimeLimit {
   std::string first = {}, second = {}, zone = {};
 };
 
-// As Answer, with names. Unless it is done(), the bounds say that nothing is known.
+// An Answer with names. Unless it is done(), the bounds say that nothing is known.
 struct QuestionResult {
   static constexpr double kInfinite = std::numeric_limits<double>::infinity();
   static constexpr double kNotKnown = std::numeric_limits<double>::quiet_NaN();

@@ -204,7 +204,7 @@ void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
   sensor.along_ray = axis == "ray";
 }
 
-// What the sensor sees has the limits of an object.
+// The object of a sensor has the limits of any object.
 void SensorReader::read_object(MapReader& map, Object& object, bool& groups_known) const {
   object.margin = defaults_.margin;
   object.age_limit_ns = kAgeLimitNs;

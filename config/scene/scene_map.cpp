@@ -77,7 +77,7 @@ bool same_input(const JointVariable& a, const JointVariable& b) {
   return a.source == b.source && a.wraps == b.wraps;
 }
 bool same_input(const Object& a, const Object& b) {
-  // What a sensor sees begins anew with its next frame.
+  // The object of a sensor begins anew with the next frame.
   return !a.fixed && !b.fixed && !a.is_seen() && !b.is_seen() && a.source == b.source &&
          a.frame == b.frame && a.absent == b.absent;
 }

@@ -27,9 +27,10 @@ struct Sensor {
   std::string topic;         // of the images or points, in ROS 2's spelling
   std::string camera_info;   // of CameraInfo; empty for points
 
-  // Where its frame is: z forward, x right, y down for a camera. With `frames_by_message`, the
-  // frame of tf that each message names; else `mount` states a frame of tf, and the sensor's pose
-  // in it (frame_from_root); or a pose on the world, an object or a link (base_from_root).
+  // The place of its frame, which has z forward, x right, y down for a camera. With
+  // `frames_by_message`, the frame of tf that each message names; else `mount` states a frame of
+  // tf, and the sensor's pose in it (frame_from_root); or a pose on the world, an object or a link
+  // (base_from_root).
   bool frames_by_message = true;
   RobotBase mount;
 
@@ -38,7 +39,7 @@ struct Sensor {
   double error_constant = 0.0, error_quadratic = 0.0;
   bool along_ray = false;
   double least_depth = 0.0, greatest_depth = 0.0;  // m; others count as missing
-  // Of points: the distance between neighbouring rays at a depth of 1 m, m. A ball of half of it
+  // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
   double spacing = 0.0;
 

@@ -100,7 +100,7 @@ enum NextFeature : std::int32_t {
 struct alignas(64) FailedLanes {
   std::uint32_t block, lanes;
   alignas(64) std::array<double, kBlockLanes> next;  // NextFeature
-  // Of two vertices: along that edge. Of a facet and a vertex: from the vertex along that edge to
+  // For two vertices: along that edge. For a facet and a vertex: from the vertex along that edge to
   // the plane, m.
   std::array<double, kBlockLanes> derivative;
 };

@@ -315,8 +315,8 @@ HWY_NOINLINE DistanceResult after_first_transition(const ConvexBody& a, const Co
                                                    const RelativePose4& a_from_b,
                                                    TrackingState& state, TransitionsMade start,
                                                    Transition first) {
-  // What the first transition has left undecided is examined once more, as it is for a pair of a
-  // batch.
+  // The pair that the first transition has left undecided is examined once more, as it is for a
+  // pair of a batch.
   if (first != Transition::kMoved) --start.transitions;
   TrackedPair pair(a, b, a_from_b, state, start);
   pair.distance = 0.0;
@@ -407,7 +407,7 @@ HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBo
 }
 
 // Feature tracking has left a query open. The bodies may touch, or overlap by little, at the
-// features where it ended. If nobody asks for depths, only disjoint bodies are answered.
+// features where it ended. If no depths are asked for, only disjoint bodies are answered.
 HWY_NOINLINE DistanceResult from_contact(const ConvexBody& a, const ConvexBody& b,
                                          const RelativePose4& a_from_b, TrackingState& state,
                                          bool depth) {

@@ -23,7 +23,7 @@ class MotionSearch {
   // The scene must outlive it. Allocates all memory for the search.
   explicit MotionSearch(const Scene& scene);
 
-  // As Asker::ask(), for a question without payloads.
+  // Does what Asker::ask() does, for a question without payloads.
   [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
 
  private:

@@ -18,7 +18,8 @@ namespace clearance {
 struct ObjectState {
   std::uint32_t object = 0;
   Pose pose;
-  // Of its origin, in the world, m/s. It is constant in the stretch if that is in one segment.
+  // The velocity of its origin, in the world, m/s. It is constant in the stretch if that is in one
+  // segment.
   Vec3 velocity = Vec3::Zero();
   double shift = 0.0;  // no farther does its origin move from its place at the instant, m
   double turn = 0.0;   // nor does it rotate by more, rad

@@ -19,7 +19,7 @@ namespace clearance {
 
 // The motion of an object that is no link, in a stretch.
 struct ObjectApproach {
-  // Of its stated motion, m: no point leaves its place at the middle by more, and by more than its
+  // By its stated motion, m: no point leaves its place at the middle by more, and by more than its
   // velocity says. The velocity is constant, m/s.
   double moved = 0.0, turned = 0.0;
   Vec3 velocity = Vec3::Zero();

@@ -1,4 +1,4 @@
-// What a part remembers of its queries of a cloud.
+// A part keeps this of its queries of a cloud.
 #pragma once
 
 #include <array>

@@ -30,7 +30,7 @@ struct Tiling {
   static std::uint32_t child_row_bits(std::size_t level) noexcept {
     return level == 0 ? 0 : row_bits(level - 1);
   }
-  // How many of the three bits of a child's place choose its column.
+  // The number of bits, of the three of a child's place, that choose its column.
   static std::uint32_t wide(std::size_t level) noexcept {
     return column_bits(level) - child_column_bits(level);
   }

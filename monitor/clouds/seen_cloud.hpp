@@ -1,4 +1,4 @@
-// What a sensor has seen in one frame, as a depth image or as points, behind one query.
+// The content of one frame of a sensor, a depth image or points, behind one query.
 #pragma once
 
 #include <cstddef>

@@ -28,7 +28,7 @@ class Reader {
     if (!std::isfinite(from)) return refuse(path, std::string(kNotFinite));
     to = from;
   }
-  // As number(), but 0 leaves what is there.
+  // The same as number(), but 0 leaves what is there.
   void number_or_default(const std::string& path, double from, double& to) {
     if (from != 0.0) number(path, from, to);
   }

@@ -36,7 +36,7 @@ dds_entity_t make_reader(const Cell& cell, Participant& participant, NameLimit& 
                             lapsed.listener(), &filter);
 }
 
-// Where commands and questions differ.
+// The differences between commands and questions.
 void begin_thread(const CommandTraffic&) { name_thread(CommandTraffic::kKey); }
 void begin_thread(const QuestionTraffic&) {
   name_thread(QuestionTraffic::kKey);

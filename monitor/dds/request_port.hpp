@@ -26,7 +26,7 @@
 
 namespace clearance {
 
-// What differs between commands and questions.
+// The differences between commands and questions.
 struct CommandTraffic {
   using Message = clearance_msg_Command;
   using Request = Command;

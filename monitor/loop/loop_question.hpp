@@ -12,7 +12,7 @@
 
 namespace clearance {
 
-// What the loop had at its last tick.
+// The state of the loop at its last tick.
 struct LoopState {
   const Scene& scene;
   const Monitor& monitor;
@@ -39,7 +39,7 @@ class LoopQuestion {
   std::atomic<bool> answered_{false};
 };
 
-// Where bodies of the scene are, which must be that of the loop.
+// Asks where bodies of the scene are, which must be that of the loop.
 class PoseQuestion final : public LoopQuestion {
  public:
   explicit PoseQuestion(std::vector<SceneBody> bodies)

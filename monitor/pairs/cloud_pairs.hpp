@@ -1,4 +1,4 @@
-// Part pairs of which one part is what a sensor sees: a union of many convex elements.
+// Part pairs with one part that is what a sensor sees: a union of many convex elements.
 //
 // The signed distance is the least one over all elements. As that of two convex parts, it changes
 // by at most the motion of the two. But no direction separates a whole cloud from a part, so only

@@ -140,7 +140,7 @@ void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
     bounds.swept_upper = rounded_up(bounds.swept_upper + rounded_up(unobserved));
   }
   const bool is_late = a.input.late || b.input.late;
-  // What a sensor sees may have moved since its frame although that is not late.
+  // The bodies that a sensor sees may have moved since its frame, although that is not late.
   if (!is_late && a.may_have_moved == 0.0 && b.may_have_moved == 0.0) return;
   const double may_have_moved = rounded_up(a.may_have_moved + b.may_have_moved);
   bounds.lower = rounded_down(bounds.lower - may_have_moved);

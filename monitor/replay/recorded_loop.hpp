@@ -32,7 +32,7 @@ class RecordedLoop {
   // next call.
   [[nodiscard]] const Report* tick(const TickInput& input);
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
-  // What the sensors of the cell have seen so far; null: it has none.
+  // The frames of the cell's sensors so far; null: it has none.
   [[nodiscard]] const Sensors* sensors() const noexcept { return sensors_.get(); }
 
   // The cell of the last tick, and the monitor that ran it.

@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-// Of a product of two poses, relative to the lengths that take part.
+// The rounding of a product of two poses, relative to the lengths that take part.
 constexpr double kComposed = 0x1p-48;
 
 PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,

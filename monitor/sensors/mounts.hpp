@@ -19,7 +19,7 @@ class Mounts {
   // log. The cell must outlive this.
   Mounts(const Cell& cell, bool any_root);
 
-  // Where the sensor was. `frame` is the one that the message names; `postures` are placed at the
+  // The pose of the sensor. `frame` is the one that the message names; `postures` are placed at the
   // stamp. A path of frames ends at the first one that is a link, an object or the world of the
   // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
   // nowhere, or to what has no pose at that time.

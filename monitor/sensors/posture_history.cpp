@@ -12,7 +12,7 @@ namespace {
 
 // A source that was silent for this long has lost its inputs, ns.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
-// Of the interpolation below, relative to the position, rad or m.
+// The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
 
 // Whether the sample is of the source in use. A silent one is replaced.

@@ -1,4 +1,4 @@
-// Where the bodies of a scene were at the stamp of a frame.
+// The places of a scene's bodies at the stamp of a frame.
 //
 // Joint positions and poses are kept for some time. Between two of them, a joint is where the
 // straight line leads, to within what its largest speed allows; that deviation is part of the error
@@ -46,7 +46,7 @@ class PostureHistory {
   // Finds where everything was at this time, for the two functions below.
   void place(std::int64_t stamp_ns);
   [[nodiscard]] PastPose link(std::uint32_t robot, std::uint32_t link) const noexcept;
-  // Of an object that is no link: a fixed one, or one whose poses come.
+  // The pose of an object that is no link: a fixed one, or one whose poses come.
   [[nodiscard]] PastPose object(std::uint32_t object) const noexcept;
 
  private:
@@ -72,8 +72,9 @@ class PostureHistory {
   ForwardKinematics kinematics_;
 };
 
-// How far a value may be from the straight line between two others, one of them `before_s` earlier
-// and the other `after_s` later, if its speed is at most `speed` and that of the line is `mean`.
+// Bounds the distance of a value from the straight line between two others, one of them `before_s`
+// earlier and the other `after_s` later, if its speed is at most `speed` and that of the line is
+// `mean`.
 [[nodiscard]] double deviation(double before_s, double after_s, double speed, double mean) noexcept;
 
 }  // namespace clearance

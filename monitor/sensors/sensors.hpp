@@ -1,4 +1,4 @@
-// From the messages of sensors to frames for the tick: decodes, judges, places, leaves out the
+// Makes frames for the tick from messages of sensors: decodes, judges, places, leaves out the
 // robot itself and sorts. It runs beside the tick, in one thread.
 #pragma once
 

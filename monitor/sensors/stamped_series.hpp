@@ -37,7 +37,7 @@ class StampedSeries {
   void clear() noexcept { first_ = size_ = 0; }
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  // From the oldest on.
+  // The oldest comes first.
   [[nodiscard]] const Entry& at(std::size_t i) const noexcept {
     return entries_[(first_ + i) % entries_.size()];
   }

@@ -13,7 +13,8 @@
 
 namespace clearance {
 
-// As a pair of a report, margins not subtracted: lower <= the distance of the bodies at these poses
+// These are like a pair of a report, margins not subtracted: lower <= the distance of the bodies at
+// these poses
 // <= upper, m. Witness points are in the world.
 struct MeasuredDistance {
   PairStatus status = PairStatus::kUnknown;

@@ -206,7 +206,7 @@ TEST_F(DaemonCommands, OfTwoProgramsUnderOneNameAreRefusedUntilOneHasLeft) {
   }));
 }
 
-// The killed run is told apart from one that lives by its lease. Without that, the name would be
+// The lease distinguishes the killed run from one that lives. Without that, the name would be
 // taken for longer than clearance-scene tries.
 TEST_F(DaemonCommands, OfAProgramThatStartsAgainAfterItWasKilledAreDone) {
   start();

@@ -179,7 +179,7 @@ TEST_F(DaemonQuestions, WithInputsThatAreMissingLateOrMovingAreNeverFree) {
            result->reason.find("moves") != std::string::npos;
   }));
   EXPECT_TRUE(eventually([&] { return daemon->told("question-refused", {"no-input"}); }));
-  // What the question states needs no input.
+  // A question needs no input for things that it states.
   Question stated = swing(-1.0, -0.9);
   stated.held = {{"elbow", 0.0}, {"push", 0.0}};
   stated.poses = {{.object = "cart", .world_from_object = {.position = {-5.0, 0.0, 0.0}}}};

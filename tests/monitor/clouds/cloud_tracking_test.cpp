@@ -1,4 +1,4 @@
-// What is carried from one query to the next, over motion, frames and removed elements. Oracle: the
+// The state that queries carry over motion, frames and removed elements. Oracle: the
 // core's query of the part and each element that is left, without a state.
 #include "monitor/clouds/cloud_tracking.hpp"
 

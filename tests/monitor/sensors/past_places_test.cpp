@@ -1,5 +1,5 @@
-// Where links and frames were at the stamp of a frame. Oracles: motions that the test makes, whose
-// speed it limits.
+// The places of links and frames at the stamp of a frame. Oracles: motions that the test makes,
+// whose speed it limits.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,4 +1,4 @@
-// What sensors see, as objects of the tick.
+// The frames of sensors as objects of the tick.
 //
 // Oracles: the closed form for capsules and points in long double, over every single point; a
 // second monitor for repeatability.

@@ -1,4 +1,4 @@
-// From messages of a camera to frames for the tick: the place at the stamp, the robot's own image,
+// Messages of a camera become frames for the tick: the place at the stamp, the robot's own image,
 // and a cause for each frame that is refused.
 //
 // The camera has 8 x 6 pixels. Oracles: the depths and places that the test put in.

@@ -44,7 +44,7 @@ using Bytes = std::vector<char>;
 
 constexpr std::uint32_t kLargest = 1 << 20;
 
-// A type of which only the name is known: its samples are the bytes of the wire.
+// A type that is known by its name only: its samples are the bytes of the wire.
 class WireType final : public fdds::TopicDataType {
  public:
   explicit WireType(const std::string& name) {
