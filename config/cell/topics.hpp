@@ -18,6 +18,8 @@ struct Topics {
   std::string gradients = "clearance/gradients";
   std::string commands = "clearance/commands";
   std::string command_results = "clearance/command_results";
+  std::string partner_ticks = "clearance/partner_ticks";
+  std::string partner_states = "clearance/partner_states";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -25,7 +27,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 10> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 12> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -36,6 +38,8 @@ inline constexpr std::array<TopicKey, 10> kTopicKeys = {{
     {"gradients", &Topics::gradients},
     {"commands", &Topics::commands},
     {"command_results", &Topics::command_results},
+    {"partner_ticks", &Topics::partner_ticks},
+    {"partner_states", &Topics::partner_states},
 }};
 
 }  // namespace clearance

@@ -9,6 +9,7 @@
 
 #include "clearance.h"
 #include "commands.h"
+#include "partners.h"
 
 namespace clearance {
 
@@ -66,6 +67,16 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_CommandResult>() noexcept {
   return clearance_msg_CommandResult_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_PartnerTick>() noexcept {
+  return clearance_msg_PartnerTick_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_PartnerState>() noexcept {
+  return clearance_msg_PartnerState_desc;
 }
 
 // One sample of a topic type, all zero at first. Everything it points to is from dds_alloc and is

@@ -28,6 +28,8 @@ enum class TopicKind : std::uint8_t {
   kGradients,
   kCommands,
   kCommandResults,
+  kPartnerTicks,
+  kPartnerStates,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
@@ -72,6 +74,8 @@ inline constexpr auto kTopics = [] {
       row(kGradients, clearance_msg_Gradients_desc, kStream, 64, 64),
       row(kCommands, clearance_msg_Command_desc, kStream, 64, 64),
       row(kCommandResults, clearance_msg_CommandResult_desc, kLatched, 64, 64),
+      row(kPartnerTicks, clearance_msg_PartnerTick_desc, kStream, 64, 256),
+      row(kPartnerStates, clearance_msg_PartnerState_desc, kStream, 1, 4),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());
