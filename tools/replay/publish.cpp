@@ -91,6 +91,8 @@ class Sender {
         return send(message, writer, gradients_);
       case TopicKind::kCommands:
       case TopicKind::kCommandResults:
+      case TopicKind::kPartnerTicks:
+      case TopicKind::kPartnerStates:
         break;  // recordings do not have them
     }
     return false;
