@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kRecentNs = 1'000'000'000;
 // A partner's report of a cycle is missing when this daemon publishes the second one after it.
 constexpr std::uint64_t kLateBy = 2;
 // A partner that was not heard for this time is known to be gone.
@@ -23,7 +23,7 @@ void copy_name(const std::string& from, char (&to)[N]) {
 
 bool PartnerReports::may_tell(Kind kind) {
   const std::int64_t now = SystemClock().monotonic_ns();
-  if (told_ns_[kind] != 0 && now - told_ns_[kind] < kSecondNs) return false;
+  if (told_ns_[kind] != 0 && now - told_ns_[kind] < kRecentNs) return false;
   told_ns_[kind] = now;
   return true;
 }
@@ -87,7 +87,7 @@ bool PartnerReports::hears_another(const std::string& partner) {
 void PartnerReports::fill(clearance_msg_PartnerHealth& out) {
   const std::lock_guard lock(mutex_);
   copy_name(name_, out.other);
-  out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kSecondNs;
+  out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kRecentNs;
   out.agrees_from = agrees_from_;
   out.compared = compared_;
   out.different = different_;
