@@ -29,6 +29,7 @@ bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
 
 // The ids of all former scenes are passed on to those of the changed one.
 void SceneIds::change(std::uint64_t revision, SceneMap& map) noexcept {
+  if (revision == revision_) return;
   auto& last = former_.slot(revision_);
   revision_ = revision;
   std::swap(last.kept, map);

@@ -48,7 +48,7 @@ class SceneIds {
                             std::vector<JointSample>& joints) noexcept;
 
   // The scene of this revision follows the one in force. `map` is that of the two, and is exchanged
-  // for one that is no longer needed.
+  // for one that is no longer needed. Nothing changes if both are the same scene.
   void change(std::uint64_t revision, SceneMap& map) noexcept;
 
   // Before the first batch, where scenes followed each other before: passes on the poses of a batch
