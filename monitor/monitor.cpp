@@ -212,7 +212,7 @@ void Monitor::flip_bit(bool of_pair, std::uint64_t which) noexcept {
   };
   const std::uint64_t bit = which % 64, place = which / 64;
   if (of_pair) {
-    flip(s.table.lower[place % s.table.lower.size()], bit);
+    flip(s.table.closest[place % s.table.closest.size()].witness_a[0], bit);
   } else {
     flip(s.inputs.objects[place % s.inputs.objects.size()].pose.position[0], bit);
   }

@@ -89,7 +89,7 @@ class Monitor {
   // another slice in each tick. The same ticks give the same one.
   static constexpr std::uint32_t kStateSlices = 8;
   [[nodiscard]] std::uint64_t checksum() const noexcept;
-  // For tests of that: flips a bit of a pose in use or, `of_pair`, of a bound.
+  // For tests of that: flips a bit of a pose in use or, `of_pair`, of a witness point.
   void flip_bit(bool of_pair, std::uint64_t which) noexcept;
 
   // The number of ticks so far, those of the monitors that it took over from included.
