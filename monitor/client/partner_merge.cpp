@@ -36,8 +36,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report) {
   check_ = std::exchange(found_, {});
   const bool has_partner = !names_[1].empty();
   if (check_.state == PartnerState::kAlone && has_partner && cycle_ != 0 && !before.is_compared) {
-    check_ = {PartnerState::kMissing, cycle_,
-              names_[0] == report.partner ? names_[1] : names_[0]};
+    check_ = {PartnerState::kMissing, cycle_, names_[0] == report.partner ? names_[1] : names_[0]};
   }
   if (report.cycle == cycle_ + 1) step_ns_ = report.now_ns - now_ns_;
   cycle_ = report.cycle;

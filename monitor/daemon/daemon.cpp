@@ -108,8 +108,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
   if (partner_) {
-    partner_states_ = std::make_unique<PartnerStates>(
-        partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_);
+    partner_states_ = std::make_unique<PartnerStates>(partner_->port, partner_->ticks, *loop_,
+                                                      *changer_, *scene_thread_, loop_ended_);
   }
   const auto revision = [this] { return revision_.load(); };
   if (!cell.commands.from.empty()) {

@@ -19,17 +19,17 @@ constexpr std::chrono::microseconds kLook{100};
 // A state is used at once: the partner's ticks since then must still be known. Its bytes are copied
 // for the scene thread.
 PartnerPort::Actions PartnerStates::actions() {
-  return {.wants_state = [this] { put([this] { prepare(); }); },
-          .send_state = [this] { put([this] { send(); }); },
-          .take_state =
-              [this](const PartnerStateView& state) {
-                put([this, own = state,
-                     bytes = std::vector<std::byte>(state.bytes.begin(),
-                                                    state.bytes.end())]() mutable {
-                  own.bytes = bytes;
-                  join(own);
-                });
-              }};
+  return {
+      .wants_state = [this] { put([this] { prepare(); }); },
+      .send_state = [this] { put([this] { send(); }); },
+      .take_state =
+          [this](const PartnerStateView& state) {
+            put([this, own = state,
+                 bytes = std::vector<std::byte>(state.bytes.begin(), state.bytes.end())]() mutable {
+              own.bytes = bytes;
+              join(own);
+            });
+          }};
 }
 
 // A full queue drops it; the port asks again.
@@ -53,7 +53,7 @@ void PartnerStates::send() {
   if (ticks_.standing() != PartnerStanding::kLeading) return;
   const auto outcome = changer_.renew(loop_ended_, [this](const Successor& successor) {
     std::vector<std::byte> bytes;
-    save_state(successor.numbers(), successor.monitor(), bytes);
+    save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
     port_.send_state({.revision = successor.scene().revision,
                       .lineage = ticks_.becoming(),
                       .cycle = successor.began_after(),

@@ -1,5 +1,5 @@
-// How a daemon takes over the state of its partner, and gives it its own. Both are work of the scene
-// thread, so that neither meets a change of the cell.
+// How a daemon takes over the state of its partner, and gives it its own. Both are work of the
+// scene thread, so that neither meets a change of the cell.
 #pragma once
 
 #include <atomic>

@@ -45,8 +45,10 @@ std::string DaemonIdentity::described() const {
 
 DaemonIdentity make_identity(std::string partner) {
   std::random_device random;
-  DaemonIdentity identity{
-      .start_ns = SystemClock().realtime_ns(), .pid = getpid(), .host = host_name(), .partner = std::move(partner)};
+  DaemonIdentity identity{.start_ns = SystemClock().realtime_ns(),
+                          .pid = getpid(),
+                          .host = host_name(),
+                          .partner = std::move(partner)};
   while (identity.id == 0) identity.id = std::uint64_t{random()} << 32 | random();
   return identity;
 }

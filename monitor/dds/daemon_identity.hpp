@@ -24,9 +24,9 @@ struct DaemonIdentity {
 // Makes a new identity for this process.
 [[nodiscard]] DaemonIdentity make_identity(std::string partner = {});
 
-// Writes and reads "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc", with
-// " partner=left" behind it if there is one.
-// Returns nothing if the text belongs to another program.
+// Writes and reads "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc",
+// with " partner=left" behind it if there is one. Returns nothing if the text belongs to another
+// program.
 [[nodiscard]] std::string to_user_data(const DaemonIdentity& identity);
 [[nodiscard]] std::optional<DaemonIdentity> from_user_data(std::string_view text);
 

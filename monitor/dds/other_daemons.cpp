@@ -69,10 +69,10 @@ void OtherDaemons::meet_partner(dds_instance_handle_t writer, const DaemonIdenti
   met_.push_back(writer);
   partners_.push_back({writer, partner});
   log_line(lines::kPartnerMet, partner.described(), topic_);
-  const bool is_third = partners_.size() > 1 &&
-                        std::ranges::all_of(partners_, [this](const Partner& each) {
-                          return gives_way(own_, each.identity);
-                        });
+  const bool is_third =
+      partners_.size() > 1 && std::ranges::all_of(partners_, [this](const Partner& each) {
+        return gives_way(own_, each.identity);
+      });
   if (!is_third) return;
   log_line(lines::kOtherDaemonFirst, partner.described(), topic_);
   give_way_ = true;

@@ -180,8 +180,9 @@ void PartnerPort::hear_states() {
       continue;
     }
     if (in.is_request) {
-      if (ticks_.standing() == PartnerStanding::kLeading && actions_.send_state)
-        actions_.send_state();
+      const bool is_answered = ticks_.standing() == PartnerStanding::kLeading &&
+                               !reports_.hears_another(in.partner) && actions_.send_state;
+      if (is_answered) actions_.send_state();
       continue;
     }
     const auto bytes = std::as_bytes(std::span(in.bytes._buffer, in.bytes._length));

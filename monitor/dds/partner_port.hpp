@@ -1,5 +1,5 @@
-// Joins a daemon's TickPartner with its partner on DDS: notices of ticks, states, and the reports of
-// the partner, which are compared with the daemon's own.
+// Joins a daemon's TickPartner with its partner on DDS: notices of ticks, states, and the reports
+// of the partner, which are compared with the daemon's own.
 #pragma once
 
 #include <array>

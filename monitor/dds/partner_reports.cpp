@@ -78,11 +78,16 @@ void PartnerReports::look_for_missing(std::uint64_t cycle) {
   agrees_from_ = is_gone ? 0 : agrees_from_;
 }
 
+bool PartnerReports::hears_another(const std::string& partner) {
+  const std::lock_guard lock(mutex_);
+  return heard_ns_ != 0 && name_ != partner &&
+         SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+}
+
 void PartnerReports::fill(clearance_msg_PartnerHealth& out) {
   const std::lock_guard lock(mutex_);
   copy_name(name_, out.other);
-  out.other_publishes =
-      heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kSecondNs;
+  out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kSecondNs;
   out.agrees_from = agrees_from_;
   out.compared = compared_;
   out.different = different_;

@@ -124,8 +124,8 @@ class ReportWriter {
   ContactLog contact_log_;
   HealthLog health_log_;
   bool write_zones_again_ = false;
-  bool leads_ = true;         // writes what has one leader
-  bool writes_zones_ = true;  // not while its partner's may be others
+  bool leads_ = true;                 // writes what has one leader
+  bool writes_zones_ = true;          // not while its partner's may be others
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};

@@ -15,8 +15,8 @@ class Checksum {
   }
   void add(double value) noexcept { add(std::bit_cast<std::uint64_t>(value)); }
   template <class T>
-  requires(std::is_enum_v<T> || (std::is_integral_v<T> && !std::is_same_v<T, std::uint64_t>))
-  void add(T value) noexcept {
+  requires(std::is_enum_v<T> || (std::is_integral_v<T> &&
+                                 !std::is_same_v<T, std::uint64_t>)) void add(T value) noexcept {
     add(static_cast<std::uint64_t>(value));
   }
   template <class Vector>

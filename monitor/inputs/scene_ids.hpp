@@ -12,6 +12,7 @@
 #include "monitor/inputs/former_scenes.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -56,6 +57,10 @@ class SceneIds {
   void restore(std::uint64_t revision, std::vector<std::uint32_t> objects_now) {
     former_.slot(revision).kept.objects_now = std::move(objects_now);
   }
+
+  // How the ids of former scenes are passed on, for ids of the same scene elsewhere. May allocate.
+  void save_former(StateWriter& out) const;
+  void restore_former(StateReader& in);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] SourceNumbers& sources() noexcept { return sources_; }

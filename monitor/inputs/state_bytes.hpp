@@ -1,5 +1,5 @@
-// The state of a monitor as bytes, for a monitor of the same scene in the same build elsewhere. Both
-// sides go through the same lists in the same order.
+// The state of a monitor as bytes, for a monitor of the same scene in the same build elsewhere.
+// Both sides go through the same lists in the same order.
 #pragma once
 
 #include <cstddef>
@@ -51,6 +51,16 @@ class StateReader {
   template <class T>
   void take(T& value) noexcept {
     take(std::span(&value, 1));
+  }
+  // A list of any length up to `most`. May allocate.
+  template <class T>
+  void take_list(std::vector<T>& values, std::size_t most) {
+    std::uint64_t count = 0;
+    copy(&count, sizeof count);
+    good_ = good_ && count <= most;
+    if (!good_) return;
+    values.resize(count);
+    copy(values.data(), count * sizeof(T));
   }
   // True if everything was taken, and nothing remains.
   [[nodiscard]] bool complete() const noexcept { return good_ && bytes_.empty(); }

@@ -22,7 +22,7 @@ namespace clearance {
 struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
-      4096;  // samples that one tick can use; the rest waits for the next tick
+      4096;                  // samples that one tick can use; the rest waits for the next tick
   TickPace* pace = nullptr;  // null: the loop alone decides when it ticks
 };
 
@@ -47,9 +47,12 @@ class TickLoop {
   // The preparing thread while the loop is not busy, which passes it to the constructor of a
   // successor.
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+  // The preparing thread, at any time but while the loop changes the scene: former scenes, but not
+  // the numbers of sources.
+  [[nodiscard]] const SceneIds& ids() const noexcept { return ids_; }
 
-  // Any one thread: offers the state of a partner, which the loop ticks from its next tick on. Returns
-  // false while another one waits. It must live until has_joined(), or the loop has ended.
+  // Any one thread: offers the state of a partner, which the loop ticks from its next tick on.
+  // Returns false while another one waits. It must live until has_joined(), or the loop has ended.
   bool offer(JoinedState& joined) noexcept;
   // True once the loop has let go of the state that was offered last.
   [[nodiscard]] bool has_joined() const noexcept {
@@ -73,6 +76,9 @@ class TickLoop {
   void follow_offer() noexcept;
   void join() noexcept;
   [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
+  [[nodiscard]] bool publishes() const noexcept {
+    return options_.pace == nullptr || options_.pace->publishes();
+  }
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;

@@ -27,8 +27,8 @@ class BatchStore {
 
   // Takes in what the source has. If too many batches wait, the oldest ones go.
   void take_in() noexcept;
-  // Chooses the batches that no tick has had, in the order in which they came. `keep`: an agreed tick
-  // may use them later.
+  // Chooses the batches that no tick has had, in the order in which they came. `keep`: an agreed
+  // tick may use them later.
   void choose_all(bool keep) noexcept;
   // Chooses these. Returns false, and chooses none, if one has not come.
   [[nodiscard]] bool choose(std::span<const TickInput> inputs) noexcept;

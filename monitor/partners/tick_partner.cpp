@@ -240,14 +240,11 @@ std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
   return deadline;
 }
 
-bool TickPartner::ticked(const Monitor& monitor) noexcept {
-  const bool is_heard = standing_ != PartnerStanding::kStarting;
-  if (!is_heard) return false;
+void TickPartner::ticked(const Monitor& monitor) noexcept {
   if (TickTag* const tag = tags_.back()) {
     *tag = {cycle_, lineage_, monitor.checksum(), standing_};
     tags_.push();
   }
-  return true;
 }
 
 bool TickPartner::is_behind() noexcept {

@@ -70,7 +70,10 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,
                       std::uint64_t revision) noexcept override;
   [[nodiscard]] TickTime time() noexcept override { return time_; }
-  bool ticked(const Monitor& monitor) noexcept override;
+  [[nodiscard]] bool publishes() const noexcept override {
+    return standing_ != PartnerStanding::kStarting;
+  }
+  void ticked(const Monitor& monitor) noexcept override;
   [[nodiscard]] bool is_behind() noexcept override;
   void successor_began(bool same_scene) noexcept override;
   void successor_gave_up() noexcept override { become(0); }

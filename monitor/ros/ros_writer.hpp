@@ -72,7 +72,7 @@ class RosWriter final : public ReportSink {
   ReportQueue queue_;
   SpscRing<Numbers> numbers_;
   std::int64_t period_ns_,
-      next_ns_ = 0;                      // tick thread: the time of the next report for this thread
+      next_ns_ = 0;  // tick thread: the time of the next report for this thread
   std::atomic<bool> scene_waits_{false};  // for a report that holds for it
 
   // Used by the thread only.

@@ -32,8 +32,7 @@ SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
   return replace(std::move(cell), loop_ended, {});
 }
 
-SceneChanger::Outcome SceneChanger::renew(const std::atomic<bool>& loop_ended,
-                                          const Began& began) {
+SceneChanger::Outcome SceneChanger::renew(const std::atomic<bool>& loop_ended, const Began& began) {
   return replace(cell_, loop_ended, began);
 }
 

@@ -23,8 +23,8 @@ class AddToChecksum {
 
  private:
   template <class Value>
-  requires(std::is_arithmetic_v<Value> || std::is_enum_v<Value>)
-  void add(const Value& value) const noexcept {
+  requires(std::is_arithmetic_v<Value> ||
+           std::is_enum_v<Value>) void add(const Value& value) const noexcept {
     sum_.add(value);
   }
   void add(const Vec3& v) const noexcept { sum_.add3(v); }
@@ -59,8 +59,8 @@ template <class Report>
   return sum.value();
 }
 
-// Of the rest of a report, and of the state of its tick. The counts of refused samples are left out:
-// a daemon that has joined counts from another start.
+// Of the rest of a report, and of the state of its tick. The counts of refused samples are left
+// out: a daemon that has joined counts from another start.
 [[nodiscard]] inline std::uint64_t checksum_of_rest(const Report& report,
                                                     std::uint64_t state) noexcept {
   Checksum sum;

@@ -57,7 +57,7 @@ TEST_F(SavedState, GivesTheSameBitsInEveryLaterTick) {
     for (int i = 0; i < 45; ++i, ++ticks) tick(*monitor);
     monitor = test::taken_over(*monitor, scene, scene, numbers);
     std::vector<std::byte> bytes;
-    save_state(numbers, *monitor, bytes);
+    save_state(numbers, SceneIds(scene), *monitor, bytes);
     JoinedState joined(scene);
     ASSERT_TRUE(joined.restore(bytes, 1));
     SceneIds ids(scene);
@@ -76,7 +76,7 @@ TEST_F(SavedState, GivesTheSameBitsInEveryLaterTick) {
 TEST_F(SavedState, OfAnotherSceneOrCutOffIsRefused) {
   const Monitor monitor(scene);
   std::vector<std::byte> bytes;
-  save_state(numbers, monitor, bytes);
+  save_state(numbers, SceneIds(scene), monitor, bytes);
   Scene other = scene;
   other.zones.clear();
   EXPECT_FALSE(JoinedState(other).restore(bytes, 1));

@@ -1,5 +1,5 @@
-// Two daemons without DDS: notices and states are carried by the test, in one thread and with clocks
-// that the test moves.
+// Two daemons without DDS: notices and states are carried by the test, in one thread and with
+// clocks that the test moves.
 //
 // Oracle: the checksums of the other daemon's report and state.
 #include "monitor/partners/tick_partner.hpp"
@@ -82,7 +82,8 @@ class Side {
     const Report& report = monitor->tick(poses_, joints_, ticks.time());
     cycle = report.cycle;
     now_ns = report.now_ns;
-    spoke = ticks.ticked(*monitor);
+    spoke = ticks.publishes();
+    if (spoke) ticks.ticked(*monitor);
     tag = {};
     if (const TickTag* front = ticks.tags().front()) {
       tag = *front;
@@ -110,7 +111,7 @@ class Side {
     monitor = test::taken_over(*monitor, scene_, scene_, ids.sources());
     ticks.successor_began(true);
     std::vector<std::byte> bytes;
-    save_state(ids.sources(), *monitor, bytes);
+    save_state(ids.sources(), ids, *monitor, bytes);
     JoinedState joined(scene_);
     ASSERT_TRUE(joined.restore(bytes, ticks.becoming()));
     joined.join(other.monitor, other.ids);
@@ -322,8 +323,8 @@ TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
-// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation overwrites
-// it before anything has used it: all pairs are compared in that time.
+// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation
+// overwrites it before anything has used it: all pairs are compared in that time.
 TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
   scene.budget = 2;
   Random random(34);

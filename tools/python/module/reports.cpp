@@ -308,7 +308,8 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
           "The report before is of another run of a daemon.")
       .def_property_readonly(
           "partner", [](const Report& r) { return client::name(r.partner); },
-          "Of two partners, whose reports are merged: 'alone', 'agrees', 'missing', 'other inputs', "
+          "Of two partners, whose reports are merged: 'alone', 'agrees', 'missing', 'other "
+          "inputs', "
           "'different' or 'corrupt'.")
       .def_property_readonly(
           "other_scene", [](const Report& r) { return r.check.other_scene; },
