@@ -194,6 +194,8 @@ std::uint64_t Monitor::checksum() const noexcept {
   Checksum sum;
   for (const TrackedObject& object : s.inputs.objects) {
     sum.add_pose(object.pose);
+    sum.add3(object.twist.linear);
+    sum.add3(object.twist.angular);
     sum.add(object.accumulated);
     sum.add(object.input.stamp_ns);
   }

@@ -13,13 +13,13 @@ const char* name(PartnerState state) noexcept {
   return index < kNames.size() ? kNames[index] : "";
 }
 
-// Cycles decide between partners that agree. Time decides where they do not count alike: a report
-// that is most of a period newer than the last one is not of a tick that was handed out already.
+// Cycles decide between partners that agree. Time decides where they do not count alike: the one
+// that counts lower takes the other's place when that has been silent for more than a period.
 bool PartnerMerge::is_next(const clearance_msg_Distances& report) const noexcept {
   if (cycle_ == 0) return true;
   const std::int64_t newer_ns = report.now_ns - now_ns_;
   if (report.cycle > cycle_) return newer_ns > 0;
-  return report.lineage != lineage_ && newer_ns > step_ns_ - step_ns_ / 4;
+  return report.lineage != lineage_ && newer_ns > step_ns_ + step_ns_ / 2;
 }
 
 bool PartnerMerge::take(const clearance_msg_Distances& report) {

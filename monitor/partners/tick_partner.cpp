@@ -142,11 +142,12 @@ void TickPartner::yield() noexcept {
   stand(kApart);
 }
 
-// `due` is a deadline that is still to come, or now. The time goes on from that of the last leader,
-// whatever this machine's clock says.
+// The time at which the tick is due, also if it begins up to half a period later: a follower that
+// had to wait for a notice tells the tick the time that its leader has told it. The time goes on
+// from that of the last leader, whatever this machine's clock says.
 TickTime TickPartner::own_time(std::int64_t due) noexcept {
   const TickTime read = steady_.read(clock_);
-  const std::int64_t early = std::max<std::int64_t>(0, due - clock_.monotonic_ns());
+  const std::int64_t early = std::max(-options_.period_ns / 2, due - clock_.monotonic_ns());
   const std::int64_t now = read.now_ns + early + ahead_of_own_ns_;
   return {std::max(now, time_.now_ns + 1), offset_ns_ + read.clock_offset_ns - own_offset_ns_};
 }

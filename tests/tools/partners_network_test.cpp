@@ -60,47 +60,5 @@ TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
   one.run([&] { robot.reset(); });
 }
 
-TEST_F(Partners, OneStreamGoesOnWhileOneOfThemIsKilledAndComesBack) {
-  start("left");
-  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
-  start("right");
-  ASSERT_TRUE(agree()) << logs();
-  for (const char* name : {"left", "right"}) {
-    SCOPED_TRACE(name);
-    daemons[name]->signal(SIGKILL);
-    states.clear();
-    EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 20; })) << logs();
-    start(name);
-    EXPECT_TRUE(agree()) << logs();
-  }
-  EXPECT_EQ(states[PartnerState::kDifferent], 0);
-  EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"right"})) << logs();
-  EXPECT_TRUE(daemons["right"]->told("partner-agrees", {"left"})) << logs();
-}
-
-TEST_F(Partners, AStoppedLeaderIsMissedAndAgreesAgain) {
-  start("left");
-  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
-  start("right");
-  ASSERT_TRUE(agree()) << logs();
-  daemons["left"]->signal(SIGSTOP);
-  states.clear();
-  EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 60; })) << logs();
-  daemons["left"]->signal(SIGCONT);
-  EXPECT_TRUE(agree()) << logs();
-  EXPECT_TRUE(daemons["right"]->told("partner-missing", {"left"})) << logs();
-}
-
-TEST_F(Partners, AThirdOneAndADaemonThatIsNoneAreExcluded) {
-  start("left");
-  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
-  start("right");
-  ASSERT_TRUE(agree()) << logs();
-  EXPECT_EQ(start("third").wait(), 4) << logs();
-  ChildProcess single(kDaemon, test::with({file.path()}, test::dds_arguments(dds)));
-  EXPECT_EQ(single.wait(), 4) << single.output();
-  EXPECT_TRUE(agree()) << logs();
-}
-
 }  // namespace
 }  // namespace clearance

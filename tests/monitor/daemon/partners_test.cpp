@@ -37,6 +37,8 @@ class Partners : public testing::Test {
   test::SendingRobot robot{dds, cell};
   client::Connection connection{dds, cell.topics};
   client::Reports reports{connection};
+  client::Catalogue catalogue{connection};
+  client::Pair boxes{catalogue, "left", "right"};
   std::map<std::string, std::unique_ptr<ChildProcess>> daemons;
   std::uint64_t cycle = 0, came = 0;
 
@@ -57,7 +59,7 @@ class Partners : public testing::Test {
     return false;
   }
   void note() {
-    const clearance_msg_PairDistance* const pair = client::find(*reports, 2);
+    const clearance_msg_PairDistance* const pair = boxes.in(*reports);
     if (pair != nullptr && pair->swept_lower < 0.3) inside = true;
     if (pair != nullptr && pair->swept_lower > 0.35) inside = false;
     if (pair != nullptr && (pair->swept_lower < 0.3) != was_inside) {
@@ -164,6 +166,51 @@ TEST_F(Partners, RandomKillsLoseNoCycleAndForgetNoZone) {
       "ms, p99.9 %.1f ms; reports of the two apart by p50 %.0f us\n",
       static_cast<unsigned long long>(kills), static_cast<unsigned long long>(came),
       takeovers_ms.size(), at(takeovers_ms, 0.5), at(takeovers_ms, 0.999), at(phases_us, 0.5));
+}
+
+TEST_F(Partners, OneStreamGoesOnWhileOneOfThemIsKilledAndComesBack) {
+  start("left");
+  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  start("right");
+  ASSERT_TRUE(agree()) << logs();
+  for (const char* name : {"left", "right"}) {
+    SCOPED_TRACE(name);
+    daemons[name]->signal(SIGKILL);
+    states.clear();
+    EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 20; })) << logs();
+    start(name);
+    EXPECT_TRUE(agree()) << logs();
+  }
+  EXPECT_EQ(states[PartnerState::kDifferent], 0);
+  EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"right"})) << logs();
+  EXPECT_TRUE(daemons["right"]->told("partner-agrees", {"left"})) << logs();
+}
+
+TEST_F(Partners, AStoppedLeaderIsMissedAndAgreesAgain) {
+  start("left");
+  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  start("right");
+  ASSERT_TRUE(agree()) << logs();
+  daemons["left"]->signal(SIGSTOP);
+  states.clear();
+  EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 60; })) << logs();
+  daemons["left"]->signal(SIGCONT);
+  EXPECT_TRUE(agree()) << logs();
+  EXPECT_TRUE(daemons["right"]->told("partner-missing", {"left"})) << logs();
+}
+
+TEST_F(Partners, AThirdOneAndADaemonThatIsNoneAreExcluded) {
+  start("left");
+  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  start("right");
+  ASSERT_TRUE(agree()) << logs();
+  ChildProcess& third = start("third");
+  EXPECT_TRUE(read_until([&] { return !third.running(); })) << logs();
+  EXPECT_EQ(third.wait(), 4) << logs();
+  ChildProcess single(kDaemon, test::with({file.path()}, test::dds_arguments(dds)));
+  EXPECT_TRUE(read_until([&] { return !single.running(); })) << single.output();
+  EXPECT_EQ(single.wait(), 4) << single.output();
+  EXPECT_TRUE(agree()) << logs();
 }
 
 }  // namespace
