@@ -14,7 +14,7 @@ namespace {
 
 // What happens without a message is seen this often.
 constexpr std::int64_t kLookNs = 10'000'000;
-constexpr std::int64_t kAskAgainNs = 1'000'000'000, kTellAgainNs = 1'000'000'000;
+constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
 // A leader stops writing somewhat before its lease ends.
 constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
@@ -136,6 +136,7 @@ void PartnerPort::hear() {
   while (!stop_) {
     wait_.wait(kLookNs);
     hear_notices();
+    ticks_.end_pass();
     hear_states();
     hear_reports();
     look();
@@ -200,10 +201,10 @@ void PartnerPort::hear_reports() {
 }
 
 void PartnerPort::look() {
-  ticks_.set_partner_present(writers_there(ticks_reader_) > 0);
+  ticks_.set_partner_present(reports_.hears_any());
   const PartnerStanding standing = ticks_.standing();
   const std::int64_t now = SystemClock().monotonic_ns();
-  if (standing != told_ && now - told_ns_ > kTellAgainNs) {
+  if (standing != told_ && now - told_ns_ > kStandAgainNs) {
     told_ = standing;
     told_ns_ = now;
     log_line(lines::kPartnerStands, name(standing));

@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kSecondNs = 1'000'000'000;
+constexpr std::int64_t kTellAgainNs = 1'000'000'000;
 // A partner's report of a cycle is missing when this daemon publishes the second one after it.
 constexpr std::uint64_t kLateBy = 2;
 // A partner that was not heard for this time is known to be gone.
@@ -23,7 +23,7 @@ void copy_name(const std::string& from, char (&to)[N]) {
 
 bool PartnerReports::may_tell(Kind kind) {
   const std::int64_t now = SystemClock().monotonic_ns();
-  if (told_ns_[kind] != 0 && now - told_ns_[kind] < kSecondNs) return false;
+  if (told_ns_[kind] != 0 && now - told_ns_[kind] < kTellAgainNs) return false;
   told_ns_[kind] = now;
   return true;
 }
@@ -78,6 +78,11 @@ void PartnerReports::look_for_missing(std::uint64_t cycle) {
   agrees_from_ = is_gone ? 0 : agrees_from_;
 }
 
+bool PartnerReports::hears_any() {
+  const std::lock_guard lock(mutex_);
+  return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+}
+
 bool PartnerReports::hears_another(const std::string& partner) {
   const std::lock_guard lock(mutex_);
   return heard_ns_ != 0 && name_ != partner &&
@@ -87,7 +92,7 @@ bool PartnerReports::hears_another(const std::string& partner) {
 void PartnerReports::fill(clearance_msg_PartnerHealth& out) {
   const std::lock_guard lock(mutex_);
   copy_name(name_, out.other);
-  out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kSecondNs;
+  out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kTellAgainNs;
   out.agrees_from = agrees_from_;
   out.compared = compared_;
   out.different = different_;

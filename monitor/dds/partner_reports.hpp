@@ -17,6 +17,8 @@ class PartnerReports {
   // A report that this daemon published, or that its partner did.
   void note_own(const clearance_msg_Distances& report) { note(report, false); }
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
+  // The partner has published in the last tenth of a second.
+  [[nodiscard]] bool hears_any();
   // A partner of another name than this has published in the last tenth of a second: a third one is
   // not let in.
   [[nodiscard]] bool hears_another(const std::string& partner);

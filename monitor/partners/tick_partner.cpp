@@ -11,8 +11,9 @@ namespace {
 constexpr std::size_t kWaiting = 256;
 // The interval at which a follower looks for a notice or batch that is due.
 constexpr std::int64_t kLookNs = 50'000;
-// After a sleep that was too long, the thread that hears the partner gets this time to do so.
-constexpr std::int64_t kHearNs = 500'000;
+// After a sleep that was too long, the thread that hears the partner gets so much time to take in
+// what came meanwhile.
+constexpr std::int64_t kHearNs = 20'000'000;
 
 }  // namespace
 
@@ -108,9 +109,7 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   listen();
   const bool is_late = clock_.monotonic_ns() > deadline + options_.period_ns / 2;
   if (is_late && partner_present_ && (standing_ == kLeading || standing_ == kFollowing)) {
-    clock_.sleep_until(clock_.monotonic_ns() + kHearNs);
-    store_.take_in();
-    listen();
+    hear_out();
   }
   if (standing_ == kLeading) yield();
   switch (standing_) {
@@ -127,6 +126,19 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
                                 clock_.monotonic_ns() - heard_ns_ < options_.lost_after_ns;
   wants_state_ = hears_same_scene && (standing_ == kStarting || standing_ == kApart);
   return deadline;
+}
+
+// The whole process may have been stopped. Two passes of the other thread, of which the second one
+// began after this call, have taken in everything.
+void TickPartner::hear_out() noexcept {
+  const std::uint64_t passes = passes_.load(std::memory_order_acquire) + 2;
+  const std::int64_t end = clock_.monotonic_ns() + kHearNs;
+  while (passes_.load(std::memory_order_acquire) < passes && clock_.monotonic_ns() < end) {
+    clock_.sleep_until(clock_.monotonic_ns() + kLookNs);
+    listen();
+  }
+  store_.take_in();
+  listen();
 }
 
 // A partner that has ticked on while this daemon could not is followed from this tick on. One that

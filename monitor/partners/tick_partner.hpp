@@ -46,7 +46,9 @@ class TickPartner final : public PoseSource, public TickPace {
   // The thread that hears the partner: a notice, with `due_ns` in CLOCK_MONOTONIC of this machine.
   // Returns false if the tick thread is too slow for it.
   bool hear(const TickNotice& notice) noexcept;
-  // Whether a partner is there, or may be: its process may be dead or stopped.
+  // It has handed over all that had come when it looked.
+  void end_pass() noexcept { passes_.fetch_add(1, std::memory_order_release); }
+  // Whether the partner was heard a moment ago.
   void set_partner_present(bool present) noexcept { partner_present_ = present; }
   // The thread that writes notices: waits for one, or for wake().
   void wait_for_notice() noexcept { noticed_.wait(); }
@@ -84,6 +86,7 @@ class TickPartner final : public PoseSource, public TickPace {
   static constexpr std::size_t kKnown = 256;  // notices: those of a quarter of a second
 
   void listen() noexcept;
+  void hear_out() noexcept;
   void yield() noexcept;
   [[nodiscard]] const TickNotice* known(std::uint64_t cycle) const noexcept;
   [[nodiscard]] bool outranks_this(const TickNotice& notice) const noexcept;
@@ -126,6 +129,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::atomic<bool> wants_state_{false}, partner_present_{false};
   std::atomic<std::uint64_t> shown_becoming_{0};
   std::atomic<std::int64_t> leads_since_ns_{0};
+  std::atomic<std::uint64_t> passes_{0};
 };
 
 }  // namespace clearance
