@@ -122,9 +122,14 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
     default:
       deadline = tick_apart(deadline);
   }
-  const bool hears_same_scene = heard_ns_ != 0 && newest_revision_ == revision_ &&
-                                clock_.monotonic_ns() - heard_ns_ < options_.lost_after_ns;
-  wants_state_ = hears_same_scene && (standing_ == kStarting || standing_ == kApart);
+  const bool hears_leader =
+      heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < options_.lost_after_ns;
+  wants_state_ = hears_leader && newest_revision_ == revision_ &&
+                 (standing_ == kStarting || standing_ == kApart);
+  // A daemon that was stopped for long counts lower than its leader: clients would see cycles
+  // again.
+  const bool counts_lower = hears_leader && newest_cycle_ > cycle_ + 1;
+  is_silent_ = standing_ == kStarting || (standing_ == kApart && counts_lower);
   return deadline;
 }
 

@@ -72,9 +72,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,
                       std::uint64_t revision) noexcept override;
   [[nodiscard]] TickTime time() noexcept override { return time_; }
-  [[nodiscard]] bool publishes() const noexcept override {
-    return standing_ != PartnerStanding::kStarting;
-  }
+  [[nodiscard]] bool publishes() const noexcept override { return !is_silent_; }
   void ticked(const Monitor& monitor) noexcept override;
   [[nodiscard]] bool is_behind() noexcept override;
   void successor_began(bool same_scene) noexcept override;
@@ -110,6 +108,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t began_ns_;
 
   PartnerStanding standing_ = PartnerStanding::kStarting;
+  bool is_silent_ = true;
   std::uint64_t cycle_ = 0, revision_ = 0;  // of the tick that is decided on
   std::uint64_t term_ = 0;
   std::uint64_t lineage_, before_ = 0, since_cycle_ = 0, becoming_ = 0;

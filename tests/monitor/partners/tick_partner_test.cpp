@@ -302,6 +302,25 @@ TEST_F(TickPartners, ABatchThatHasNotComeIsWaitedForAndThenTheTickRestsOnOtherIn
   EXPECT_EQ(right.cycle, left.cycle);
 }
 
+// It lacks the batches of that time. Its cycles would come a second time.
+TEST_F(TickPartners, ADaemonThatCountsLowerIsSilentUntilItHasTheOthersState) {
+  join();
+  for (int i = 0; i < 30; ++i) {
+    ++sent;
+    right.get(sent);
+    right.tick();
+    right.tell(left);
+  }
+  left.rest_for(30 * kTick);
+  for (int i = 0; i < 3; ++i) tick_both();
+  EXPECT_EQ(left.ticks.standing(), kApart);
+  EXPECT_FALSE(left.spoke);
+  right.give_state(left);
+  tick_both();
+  EXPECT_TRUE(left.spoke);
+  expect_agreement();
+}
+
 TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   for (int i = 0; i < 30; ++i) {
     send();
