@@ -108,7 +108,9 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   store_.take_in();
   listen();
   const bool is_late = clock_.monotonic_ns() > deadline + options_.period_ns / 2;
-  if (is_late && partner_present_ && (standing_ == kLeading || standing_ == kFollowing)) {
+  const bool knows_more = standing_ == kFollowing && known(cycle_) != nullptr;
+  const bool is_in_step = standing_ == kLeading || standing_ == kFollowing;
+  if (is_late && partner_present_ && is_in_step && !knows_more) {
     hear_out();
   }
   if (standing_ == kLeading) yield();
@@ -122,8 +124,7 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
     default:
       deadline = tick_apart(deadline);
   }
-  const bool hears_leader =
-      heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < options_.lost_after_ns;
+  const bool hears_leader = heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < lost_after();
   wants_state_ = hears_leader && newest_revision_ == revision_ &&
                  (standing_ == kStarting || standing_ == kApart);
   // A daemon that was stopped for long counts lower than its leader: clients would see cycles
@@ -241,11 +242,17 @@ std::int64_t TickPartner::part(std::int64_t deadline) noexcept {
   return tick_apart(deadline);
 }
 
+// A leader that stalls for a moment keeps its lead over a daemon that counts lower: clients would
+// see cycles again.
+std::int64_t TickPartner::lost_after() const noexcept {
+  return is_silent_ ? 5 * options_.lost_after_ns : options_.lost_after_ns;
+}
+
 // In phase with the leader, so that both are again when one has the state of the other.
 std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
   const std::int64_t now = clock_.monotonic_ns();
-  const bool is_gone = heard_ns_ == 0 ? now - began_ns_ > options_.alone_after_ns
-                                      : now - heard_ns_ > options_.lost_after_ns;
+  const bool is_gone =
+      heard_ns_ == 0 ? now - began_ns_ > options_.alone_after_ns : now - heard_ns_ > lost_after();
   if (is_gone) return take_the_lead(deadline, false);
   if (heard_ns_ != 0) {
     const std::int64_t period = options_.period_ns;

@@ -26,7 +26,8 @@ struct TickPartnerOptions {
   BatchStore::Size batch;
   // A daemon that hears no partner for this time after its start has none.
   std::int64_t alone_after_ns = 1'000'000'000;
-  // A leader that was heard no more for this time is gone, for a daemon that does not follow it.
+  // A leader that was heard no more for this time is gone, for a daemon that does not follow it. It
+  // is five times as long for one that publishes nothing.
   std::int64_t lost_after_ns = 20'000'000;
 };
 
@@ -84,6 +85,7 @@ class TickPartner final : public PoseSource, public TickPace {
   static constexpr std::size_t kKnown = 256;  // notices: those of a quarter of a second
 
   void listen() noexcept;
+  [[nodiscard]] std::int64_t lost_after() const noexcept;
   void hear_out() noexcept;
   void yield() noexcept;
   [[nodiscard]] const TickNotice* known(std::uint64_t cycle) const noexcept;
