@@ -213,7 +213,15 @@ bool ReportWriter::change() {
 
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
-  const bool published = write_distances(queued);
+  TickTag tag;
+  if (partner_ != nullptr) {
+    tag = partner_->tag(queued.report.cycle);
+    if (!tag.publishes) {
+      published_ = queued.report.cycle;
+      return;
+    }
+  }
+  const bool published = write_distances(queued, tag);
   if (leads_ && separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
@@ -226,10 +234,9 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   if (published) published_ = queued.report.cycle;
 }
 
-bool ReportWriter::write_distances(const QueuedReport& queued) {
+bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& tag) {
   clearance_msg_Distances& message = *now_->distances;
   if (partner_ != nullptr) {
-    const TickTag tag = partner_->tag(queued.report.cycle);
     identity_.partner.copy(message.partner, sizeof message.partner - 1);
     message.lineage = tag.lineage;
     message.checksum = checksum_of(queued.report);

@@ -71,7 +71,7 @@ class ReportWriter {
   // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
-  // The cycle of the last report that was published; 0: none yet.
+  // The cycle of the last report that was published, or left to the partner; 0: none yet.
   [[nodiscard]] std::uint64_t published_cycle() const noexcept { return published_.load(); }
   // Before finish(): the thread that writes.
   [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
@@ -100,7 +100,7 @@ class ReportWriter {
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
   void write_report(const QueuedReport& queued);
-  [[nodiscard]] bool write_distances(const QueuedReport& queued);
+  [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
   void note_lead(bool leads);
   void write_separation(const Report& report);
   void write_zones(const Report& report);

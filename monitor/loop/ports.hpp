@@ -49,9 +49,7 @@ class TickPace {
                               std::uint64_t revision) noexcept = 0;
   // After decide(): the time that the tick is told.
   [[nodiscard]] virtual TickTime time() noexcept = 0;
-  // False: neither the inputs nor the report of the tick are for the sinks.
-  [[nodiscard]] virtual bool publishes() const noexcept = 0;
-  // After a tick that publishes, before its report is handed over.
+  // After the tick, before its report is handed over.
   virtual void ticked(const Monitor& monitor) noexcept = 0;
   // The tick that follows is due already: no deadline is to be skipped.
   [[nodiscard]] virtual bool is_behind() noexcept = 0;

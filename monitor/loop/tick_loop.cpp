@@ -106,7 +106,6 @@ void TickLoop::tick_once() noexcept {
   statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
-  if (!publishes()) return;
   if (pace != nullptr) pace->ticked(*monitor_);
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
 }
@@ -185,15 +184,12 @@ void TickLoop::take_in() noexcept {
   samples_.clear();
   joints_.clear();
   used_count_ = 0;
-  const bool is_silent = !publishes();
   for (;;) {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
     if (samples_.size() + joints_.size() + waiting_->size() > options_.max_samples) return;
     use(*waiting_);
-    for (ReportSink* sink : sinks_) {
-      if (!is_silent) sink->input(*waiting_);
-    }
+    for (ReportSink* sink : sinks_) sink->input(*waiting_);
     waiting_ = nullptr;
   }
 }

@@ -76,9 +76,6 @@ class TickLoop {
   void follow_offer() noexcept;
   void join() noexcept;
   [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
-  [[nodiscard]] bool publishes() const noexcept {
-    return options_.pace == nullptr || options_.pace->publishes();
-  }
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;

@@ -267,7 +267,7 @@ std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
 
 void TickPartner::ticked(const Monitor& monitor) noexcept {
   if (TickTag* const tag = tags_.back()) {
-    *tag = {cycle_, lineage_, monitor.checksum(), standing_};
+    *tag = {cycle_, lineage_, monitor.checksum(), standing_, !is_silent_};
     tags_.push();
   }
 }

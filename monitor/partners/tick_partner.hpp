@@ -35,6 +35,7 @@ struct TickPartnerOptions {
 struct TickTag {
   std::uint64_t cycle = 0, lineage = 0, state_checksum = 0;
   PartnerStanding standing = PartnerStanding::kStarting;
+  bool publishes = false;  // false: only the daemon's own recording gets it
 };
 
 // The port of partners calls what is not for the tick thread. Nothing that the tick thread calls
@@ -73,7 +74,6 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,
                       std::uint64_t revision) noexcept override;
   [[nodiscard]] TickTime time() noexcept override { return time_; }
-  [[nodiscard]] bool publishes() const noexcept override { return !is_silent_; }
   void ticked(const Monitor& monitor) noexcept override;
   [[nodiscard]] bool is_behind() noexcept override;
   void successor_began(bool same_scene) noexcept override;

@@ -82,13 +82,13 @@ class Side {
     const Report& report = monitor->tick(poses_, joints_, ticks.time());
     cycle = report.cycle;
     now_ns = report.now_ns;
-    spoke = ticks.publishes();
-    if (spoke) ticks.ticked(*monitor);
+    ticks.ticked(*monitor);
     tag = {};
     if (const TickTag* front = ticks.tags().front()) {
       tag = *front;
       ticks.tags().pop();
     }
+    spoke = tag.publishes;
     checksum = checksum_of(report);
     rest = checksum_of_rest(report, tag.state_checksum);
   }
