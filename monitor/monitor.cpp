@@ -20,6 +20,7 @@
 #include "monitor/monitor.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <limits>
 #include <utility>
 #include <vector>
@@ -30,6 +31,7 @@
 #include "monitor/geometry/bounding_sphere.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/gradients/differentiate.hpp"
+#include "monitor/inputs/checksum.hpp"
 #include "monitor/invariant.hpp"
 #include "monitor/objects/displacements.hpp"
 #include "monitor/objects/ingest.hpp"
@@ -168,6 +170,54 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
   return true;
+}
+
+void Monitor::save(StateWriter& out) const {
+  const State& s = *state_;
+  clearance::save(s.inputs, out);
+  s.contacts.save(out);
+  s.zones.save(out);
+}
+
+bool Monitor::restore(StateReader& in) noexcept {
+  State& s = *state_;
+  CLEARANCE_INVARIANT(s.displacer.is_first());
+  clearance::restore(in, s.inputs);
+  s.contacts.restore(in);
+  s.zones.restore(in);
+  s.zones.count_absent(s.inputs.objects);
+  return in.complete();
+}
+
+std::uint64_t Monitor::checksum() const noexcept {
+  const State& s = *state_;
+  Checksum sum;
+  for (const TrackedObject& object : s.inputs.objects) {
+    sum.add_pose(object.pose);
+    sum.add3(object.twist.linear);
+    sum.add3(object.twist.angular);
+    sum.add(object.accumulated);
+    sum.add(object.input.stamp_ns);
+  }
+  for (const PosedPart& part : s.parts) sum.add_pose(part.world_from_part);
+  const std::uint64_t slice = s.inputs.cycle % kStateSlices, pairs = s.table.pairs();
+  const auto first = static_cast<std::uint32_t>(pairs * slice / kStateSlices);
+  const auto end = static_cast<std::uint32_t>(pairs * (slice + 1) / kStateSlices);
+  for (std::uint32_t pair = first; pair < end; ++pair) add_pair(pair, s.table, sum);
+  return sum.value();
+}
+
+void Monitor::flip_bit(bool of_pair, std::uint64_t which) noexcept {
+  State& s = *state_;
+  const auto flip = [&](double& value, std::uint64_t bit) {
+    value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ (std::uint64_t{1} << bit));
+  };
+  const std::uint64_t bit = which % 64, place = which / 64;
+  if (of_pair) {
+    flip(s.table.closest[place % s.table.closest.size()].witness_a[0], bit);
+  } else {
+    flip(s.inputs.objects[place % s.inputs.objects.size()].pose.position[0], bit);
+  }
 }
 
 std::uint64_t Monitor::cycle() const noexcept { return state_->inputs.cycle; }

@@ -11,6 +11,7 @@
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/report.hpp"
 #include "monitor/swept/swept_bounds.hpp"
@@ -75,6 +76,21 @@ class Monitor {
   // not with that of pairs.
   [[nodiscard]] bool take_over(const Monitor& before, const SceneMap& map,
                                SourceNumbers& numbers) noexcept;
+
+  // The state that take_over() gives to a monitor before its first tick, as bytes for another
+  // process of the same build.
+  void save(StateWriter& out) const;
+  // Before the first tick of a monitor of the same scene: goes on with that state, as take_over()
+  // does. The same ticks then give both the same bits. Returns false if the bytes are of another
+  // scene; this monitor must then not be used.
+  [[nodiscard]] bool restore(StateReader& in) noexcept;
+
+  // A checksum of where all objects are, and of one of kStateSlices slices of the pairs' bounds:
+  // another slice in each tick. The same ticks give the same one.
+  static constexpr std::uint32_t kStateSlices = 8;
+  [[nodiscard]] std::uint64_t checksum() const noexcept;
+  // For tests of that: flips a bit of a pose in use or, `of_pair`, of a witness point.
+  void flip_bit(bool of_pair, std::uint64_t which) noexcept;
 
   // The number of ticks so far, those of the monitors that it took over from included.
   [[nodiscard]] std::uint64_t cycle() const noexcept;

@@ -20,6 +20,8 @@ struct Topics {
   std::string command_results = "clearance/command_results";
   std::string questions = "clearance/questions";
   std::string answers = "clearance/answers";
+  std::string partner_ticks = "clearance/partner_ticks";
+  std::string partner_states = "clearance/partner_states";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -27,7 +29,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 12> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 14> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -40,6 +42,8 @@ inline constexpr std::array<TopicKey, 12> kTopicKeys = {{
     {"command_results", &Topics::command_results},
     {"questions", &Topics::questions},
     {"answers", &Topics::answers},
+    {"partner_ticks", &Topics::partner_ticks},
+    {"partner_states", &Topics::partner_states},
 }};
 
 }  // namespace clearance

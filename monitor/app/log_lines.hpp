@@ -220,6 +220,36 @@ inline constexpr LogLine<Text, Text> kOtherProgram{
 inline constexpr LogLine<Text, Count> kOtherWriterLeft{"other-writer-left", kInfo,
                                                        "another writer of {} has left, {} remain"};
 
+// ---- Partners
+
+inline constexpr LogLine<Text, Text> kPartnerMet{"partner-met", kInfo,
+                                                 "partner {} publishes on {} too"};
+inline constexpr LogLine<Text> kPartnerStands{"partner-stands", kInfo,
+                                              "this daemon is {} among the partners"};
+inline constexpr LogLine<Text, Count> kPartnerAgrees{
+    "partner-agrees", kInfo,
+    "partner '{}' agrees from cycle {} on: the same inputs, the same bits"};
+inline constexpr LogLine<Text, Count> kPartnerOtherInputs{
+    "partner-other-inputs", kWarn,
+    "partner '{}' ticked cycle {} with other inputs: both go on, until one has the other's state"};
+inline constexpr LogLine<Text, Count, Count> kPartnerDiffers{
+    "partner-differs", kError,
+    "partner '{}' reports other bits for cycle {} than this daemon, for the same inputs: one of "
+    "the "
+    "two machines is faulty ({} such reports so far)"};
+inline constexpr LogLine<Text, Count> kPartnerMissing{
+    "partner-missing", kWarn, "partner '{}' has not reported cycle {} in time"};
+inline constexpr LogLine<Text, std::int64_t> kPartnerClock{
+    "partner-clock", kWarn,
+    "the clock of partner '{}' differs from this machine's by about {} ms: keep both in step (PTP, "
+    "NTP)"};
+inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
+    "partner-other-build", kError,
+    "partner '{}' is another build, {}, than this one, {}: neither can take over the other's "
+    "state"};
+inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWarn,
+                                                    "the partner's state is not taken over: {}"};
+
 inline constexpr std::tuple kAll{kStarted,
                                  kHowToReach,
                                  kSystemRefuses,
@@ -297,6 +327,15 @@ inline constexpr std::tuple kAll{kStarted,
                                  kOtherDaemonFirst,
                                  kOtherDaemonLater,
                                  kOtherProgram,
-                                 kOtherWriterLeft};
+                                 kOtherWriterLeft,
+                                 kPartnerMet,
+                                 kPartnerStands,
+                                 kPartnerAgrees,
+                                 kPartnerOtherInputs,
+                                 kPartnerDiffers,
+                                 kPartnerMissing,
+                                 kPartnerClock,
+                                 kPartnerOtherBuild,
+                                 kPartnerStateRefused};
 
 }  // namespace clearance::lines

@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "config/cell/topics.hpp"
+#include "monitor/client/partner_merge.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"
@@ -73,8 +74,12 @@ class Stream {
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
   // Tells whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
+  // Of reports of two partners, which are merged into one stream: whether the two agree. A change
+  // from one to the other is no other daemon for check().
+  [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
 
-  // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake.
+  // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake,
+  // unless they are partners.
   [[nodiscard]] std::uint32_t daemons() const;
   // True if there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const;
@@ -92,6 +97,7 @@ class Stream {
   Sample<Message> message_, scratch_;
   ReportChecker checker_;
   ReportCheck check_;
+  PartnerMerge merge_;  // of reports
 };
 
 using Reports = Stream<clearance_msg_Distances>;

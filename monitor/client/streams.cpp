@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <span>
+#include <type_traits>
 #include <utility>
 
 #include "monitor/client/client.hpp"
@@ -105,7 +106,14 @@ Stream<Message>::~Stream() {
 
 template <class Message>
 bool Stream<Message>::take() {
-  if (!take_newer(reader_, message_, scratch_)) return false;
+  bool is_next = false;
+  while (!is_next) {
+    if (!take_one(reader_, *scratch_)) return false;
+    is_next = true;
+    if constexpr (std::is_same_v<Message, clearance_msg_Distances>)
+      is_next = *scratch_->partner == '\0' || merge_.take(*scratch_);
+  }
+  std::swap(*message_, *scratch_);
   check_ = checker_.check(*message_, now_ns());
   return true;
 }

@@ -65,6 +65,16 @@ void Contacts::take_over(const Contacts& before, const SceneMap& map) noexcept {
   }
 }
 
+void Contacts::save(StateWriter& out) const {
+  out.put(std::span(entries_));
+  out.put(std::span(reports_));
+}
+
+void Contacts::restore(StateReader& in) noexcept {
+  in.take(std::span(entries_));
+  in.take(std::span(reports_));
+}
+
 void Contacts::begin_tick(std::uint64_t cycle, std::int64_t now_ns) noexcept {
   any_allowed_ = false;
   for (std::size_t i = 0; i < entries_.size(); ++i) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/scene/scene_map.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
 
 namespace clearance {
@@ -18,6 +19,9 @@ class Contacts {
   // Before the first tick: an allowance that the scene before had as well goes on, or has ended, as
   // there. Does not allocate.
   void take_over(const Contacts& before, const SceneMap& map) noexcept;
+  // The same through bytes, for the same scene.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in) noexcept;
 
   // Stage 'allow' of a tick: ends the allowances whose end has come. Those that are in force now
   // are so for the time since the last tick.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
@@ -83,23 +84,33 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       moveit_([this](QueuedCommand command) { return put(std::move(command)); }),
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
+      identity_(make_identity(options.partner)),
+      partner_(options.partner.empty()
+                   ? nullptr
+                   : std::make_unique<OfPartner>(cell, participant_, poses_, clock_, identity_)),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       messages_(cell, participant_),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health,
-               &messages_),
+               &messages_, identity_, partner_ ? &partner_->port : nullptr),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
   watch_files(cell.files);
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
-                                                             PoseReader::joints_a_batch(cell))};
+                                                             PoseReader::joints_a_batch(cell)),
+                             .pace = partner_ ? &partner_->ticks : nullptr};
   std::vector<ReportSink*> sinks{now_.queue.get()};
   if (recording_) sinks.push_back(&recording_->sink());
   if (now_.ros) sinks.push_back(now_.ros.get());
-  loop_ = std::make_unique<TickLoop>(cell.scene, poses_, std::move(sinks), clock_, loop);
+  PoseSource& source = partner_ ? static_cast<PoseSource&>(partner_->ticks) : poses_;
+  loop_ = std::make_unique<TickLoop>(cell.scene, source, std::move(sinks), clock_, loop);
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
+  if (partner_) {
+    partner_states_ = std::make_unique<PartnerStates>(partner_->port, partner_->ticks, *loop_,
+                                                      *changer_, *scene_thread_, loop_ended_);
+  }
   const auto revision = [this] { return revision_.load(); };
   if (!cell.commands.from.empty()) {
     commands_ = std::make_unique<CommandPort>(
@@ -114,7 +125,25 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   }
 }
 
-Daemon::~Daemon() { end_requests(); }
+Daemon::~Daemon() {
+  if (partner_) partner_->port.stop();
+  end_requests();
+}
+
+Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseSource& source,
+                             Clock& clock, const DaemonIdentity& identity)
+    : ticks(source, clock,
+            {.period_ns = std::llround(1e9 / cell.scene.rate_hz),
+             .daemon = identity.id,
+             .start_ns = identity.start_ns,
+             .batch = {.samples = PoseReader::samples_a_batch(cell),
+                       .joints = PoseReader::joints_a_batch(cell)}}),
+      port(participant, cell.topics, identity, ticks) {}
+
+RosWrites::Leads Daemon::leads() {
+  if (!partner_) return {};
+  return [port = &partner_->port] { return port->leads(); };
+}
 
 Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   OfCell parts{std::move(cell), nullptr, nullptr};
@@ -122,7 +151,7 @@ Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
                                               ReportQueueOptions{.reports = kQueuedReports});
   if (writes_ros(*parts.cell)) {
     parts.ros = std::make_unique<RosWriter>(*parts.cell, participant_, poses_, *parts.queue,
-                                            recording_health_);
+                                            recording_health_, leads());
   }
   return parts;
 }
@@ -142,6 +171,7 @@ void Daemon::run(StopSignal& signal) {
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
   poses_.start();
+  if (partner_) partner_->port.start(partner_states_->actions());
   raise_priorities();
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
@@ -160,6 +190,7 @@ void Daemon::run(StopSignal& signal) {
   service_.stopping();
   stop_ = true;
   ticking.join();
+  if (partner_) partner_->port.stop();
   end_requests();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
@@ -175,6 +206,8 @@ void Daemon::raise_priorities() {
   if (priority == 0) return;
   (void)use_fifo_scheduling(priority, poses_.thread());
   (void)use_fifo_scheduling(priority, reports_.thread());
+  if (!partner_) return;
+  for (const auto thread : partner_->port.threads()) (void)use_fifo_scheduling(priority, thread);
 }
 
 // A refusal (no privilege) is logged and the daemon runs without it.

@@ -16,6 +16,7 @@
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/file_watch.hpp"
 #include "monitor/daemon/moveit_port.hpp"
+#include "monitor/daemon/partner_states.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
@@ -40,6 +41,7 @@ struct DaemonOptions {
   RecordingOptions recording = {.overwrite = false};
   std::optional<int> cpu;            // processor that the tick thread is pinned to
   CommanderOptions commander;        // how commands and SIGHUP change the cell
+  std::string partner;               // this daemon's name among partners; empty: it has none
   bool reload = false;               // read the cell again when its files have changed
   ReportWriter::OnHealth on_health;  // once a second; may be empty
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
@@ -84,7 +86,15 @@ class Daemon : private CellParts {
     std::unique_ptr<ReportQueue> queue;
     std::unique_ptr<RosWriter> ros;
   };
+  // What a daemon has that has a partner.
+  struct OfPartner {
+    TickPartner ticks;
+    PartnerPort port;
+    OfPartner(const Cell& cell, Participant& participant, PoseSource& source, Clock& clock,
+              const DaemonIdentity& identity);
+  };
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
+  [[nodiscard]] RosWrites::Leads leads();
   void tick_thread(std::atomic<bool>& done);
   void raise_priorities();
   void end_requests();
@@ -106,18 +116,21 @@ class Daemon : private CellParts {
   Participant participant_;
   MoveItPort moveit_;
   PoseReader poses_;
+  const DaemonIdentity identity_;
+  SystemClock clock_;
+  std::unique_ptr<OfPartner> partner_;  // null: it has none
   RecordingHealth recording_health_;
   OfCell now_, next_;
   std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
   RosMessages messages_;
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
-  SystemClock clock_;
   std::unique_ptr<TickLoop> loop_;
   std::unique_ptr<SceneChanger> changer_;
   std::atomic<bool> loop_ended_{false};
   std::atomic<std::uint64_t> revision_;  // in force
   std::unique_ptr<SceneThread> scene_thread_;
+  std::unique_ptr<PartnerStates> partner_states_;
   std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
   std::unique_ptr<QuestionDesk> desk_;     // likewise, here and below
   std::unique_ptr<QuestionPort> questions_;

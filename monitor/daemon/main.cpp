@@ -40,6 +40,7 @@ Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
   clearanced config/cells/two_arms.yaml --record run.mcap --record-around 10 --record-keep-mb 2000
   clearanced config/cells/two_arms.yaml --commands planner --keep-scene scene.yaml
+  clearanced config/cells/two_arms.yaml --partner left
   clearanced --urdf panda.urdf --srdf panda.srdf --interface default --ros2 markers)";
 
 // The command line, with its defaults.
@@ -84,6 +85,15 @@ std::string is_client(const std::string& text) {
                      kMaxSourceLength);
 }
 
+// The name stands in the announcement of the daemon, between blanks.
+std::string is_partner(const std::string& text) {
+  const bool fits = !text.empty() && text.size() <= kMaxSourceLength &&
+                    std::ranges::all_of(text, [](char c) { return c > ' ' && c < 127; });
+  if (fits) return {};
+  return fmt::format("found '{}'; expected a name of 1 to {} printable characters without blanks",
+                     text, kMaxSourceLength);
+}
+
 void add_options(CLI::App& app, Arguments& arguments) {
   arguments.cell.add_to(app, true);
   app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
@@ -115,6 +125,10 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(is_client);
   app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
                  "Keep the changed scene in this file, and begin with it after a crash");
+  app.add_option("--partner", arguments.daemon.partner,
+                 "Publish side by side with a second daemon of this cell, under this name "
+                 "(monitor/partners/README.md)")
+      ->check(is_partner);
   app.add_flag(
       "--reload", arguments.daemon.reload,
       "Read the cell again, as after SIGHUP, when its file or one that it names has changed");

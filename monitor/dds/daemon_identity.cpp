@@ -7,6 +7,7 @@
 #include <charconv>
 #include <random>
 #include <tuple>
+#include <utility>
 
 #include "monitor/loop/ports.hpp"
 
@@ -37,29 +38,40 @@ bool read_number(std::string_view text, Number& out, int base = 10) {
 
 }  // namespace
 
-std::string DaemonIdentity::described() const { return fmt::format("pid {} on {}", pid, host); }
+std::string DaemonIdentity::described() const {
+  const std::string process = fmt::format("pid {} on {}", pid, host);
+  return partner.empty() ? process : fmt::format("'{}', {}", partner, process);
+}
 
-DaemonIdentity make_identity() {
+DaemonIdentity make_identity(std::string partner) {
   std::random_device random;
-  DaemonIdentity identity{
-      .start_ns = SystemClock().realtime_ns(), .pid = getpid(), .host = host_name()};
+  DaemonIdentity identity{.start_ns = SystemClock().realtime_ns(),
+                          .pid = getpid(),
+                          .host = host_name(),
+                          .partner = std::move(partner)};
   while (identity.id == 0) identity.id = std::uint64_t{random()} << 32 | random();
   return identity;
 }
 
 std::string to_user_data(const DaemonIdentity& identity) {
-  return fmt::format("{}id={:016x} start_ns={} pid={} host={}", kProgram, identity.id,
-                     identity.start_ns, identity.pid, identity.host);
+  return fmt::format("{}id={:016x} start_ns={} pid={} host={}{}", kProgram, identity.id,
+                     identity.start_ns, identity.pid, identity.host,
+                     identity.partner.empty() ? "" : " partner=" + identity.partner);
 }
 
 std::optional<DaemonIdentity> from_user_data(std::string_view text) {
-  DaemonIdentity identity{.host = std::string(value_of(text, "host"))};
+  DaemonIdentity identity{.host = std::string(value_of(text, "host")),
+                          .partner = std::string(value_of(text, "partner"))};
   if (!text.starts_with(kProgram) || !read_number(value_of(text, "id"), identity.id, 16) ||
       !read_number(value_of(text, "start_ns"), identity.start_ns) ||
       !read_number(value_of(text, "pid"), identity.pid)) {
     return std::nullopt;
   }
   return identity;
+}
+
+bool are_partners(const DaemonIdentity& one, const DaemonIdentity& other) noexcept {
+  return !one.partner.empty() && !other.partner.empty() && one.partner != other.partner;
 }
 
 bool gives_way(const DaemonIdentity& one, const DaemonIdentity& other) noexcept {

@@ -15,18 +15,23 @@ struct DaemonIdentity {
   std::int64_t start_ns = 0;  // CLOCK_REALTIME
   std::int64_t pid = 0;
   std::string host = {};
+  std::string partner = {};  // its name among partners; empty: it has none
 
   // "pid 4711 on robot-pc".
   [[nodiscard]] std::string described() const;
 };
 
 // Makes a new identity for this process.
-[[nodiscard]] DaemonIdentity make_identity();
+[[nodiscard]] DaemonIdentity make_identity(std::string partner = {});
 
-// Writes and reads "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc".
-// Returns nothing if the text belongs to another program.
+// Writes and reads "clearanced id=00c0ffee... start_ns=1700000000000000000 pid=4711 host=robot-pc",
+// with " partner=left" behind it if there is one. Returns nothing if the text belongs to another
+// program.
 [[nodiscard]] std::string to_user_data(const DaemonIdentity& identity);
 [[nodiscard]] std::optional<DaemonIdentity> from_user_data(std::string_view text);
+
+// True if both publish side by side: they are partners of different names.
+[[nodiscard]] bool are_partners(const DaemonIdentity& one, const DaemonIdentity& other) noexcept;
 
 // True if `one` must stop publishing in favour of the other daemon of the cell, because it started
 // later. The ids decide between equal times, so both daemons come to the same answer.

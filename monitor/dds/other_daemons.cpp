@@ -36,9 +36,10 @@ OtherDaemons::~OtherDaemons() { dds_delete(reader_); }
 void OtherDaemons::look() {
   if (changed_.exchange(false)) note_writers();
   while (take_cdr(reader_, taken_) > 0) {
-    reports_ += taken_.size();
     for (const CdrSample& sample : taken_) {
       if (!has_met(sample.writer())) meet(sample.writer(), true);
+      if (std::ranges::find(partners_, sample.writer(), &Partner::writer) == partners_.end())
+        ++reports_;
     }
     taken_.clear();
   }
@@ -49,6 +50,7 @@ void OtherDaemons::note_writers() {
   const std::size_t gone = std::erase_if(met_, [&](dds_instance_handle_t writer) {
     return std::ranges::find(present, writer) == present.end();
   });
+  std::erase_if(partners_, [&](const Partner& partner) { return !has_met(partner.writer); });
   if (gone > 0) {
     left_ = true;
     log_line(lines::kOtherWriterLeft, topic_, met_.size());
@@ -62,11 +64,26 @@ bool OtherDaemons::has_met(dds_instance_handle_t writer) const {
   return std::ranges::find(met_, writer) != met_.end();
 }
 
+// There are two partners at most: a third one would ask both for their states again and again.
+void OtherDaemons::meet_partner(dds_instance_handle_t writer, const DaemonIdentity& partner) {
+  met_.push_back(writer);
+  partners_.push_back({writer, partner});
+  log_line(lines::kPartnerMet, partner.described(), topic_);
+  const bool is_third =
+      partners_.size() > 1 && std::ranges::all_of(partners_, [this](const Partner& each) {
+        return gives_way(own_, each.identity);
+      });
+  if (!is_third) return;
+  log_line(lines::kOtherDaemonFirst, partner.described(), topic_);
+  give_way_ = true;
+}
+
 // Ignores a writer that has left in the meantime. An older daemon counts only when it is heard.
 void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   const WriterFacts facts = writer_facts(reader_, writer);
   if (!facts.present) return;
   const auto other = from_user_data(facts.user_data);
+  if (other && are_partners(own_, *other)) return meet_partner(writer, *other);
   const bool first = other && gives_way(own_, *other);
   if (first && !heard) return;
   met_.push_back(writer);

@@ -16,7 +16,8 @@ namespace clearance {
 
 // When two daemons publish, the one that started later stops at the first report that it hears from
 // the other. A silent writer does not displace this daemon: its process may be dead, stopped or
-// hung. One thread calls look() and have_just_left(); any thread may call the rest.
+// hung. A partner publishes beside this daemon; of three partners, the one that started last stops.
+// One thread calls look() and have_just_left(); any thread may call the rest.
 class OtherDaemons {
  public:
   // `own` publishes on the distances topic of this name through this participant, whose writers are
@@ -42,6 +43,7 @@ class OtherDaemons {
  private:
   void note_writers();
   void meet(dds_instance_handle_t writer, bool heard);
+  void meet_partner(dds_instance_handle_t writer, const DaemonIdentity& partner);
   [[nodiscard]] bool has_met(dds_instance_handle_t writer) const;
 
   DaemonIdentity own_;
@@ -50,6 +52,11 @@ class OtherDaemons {
   dds_entity_t reader_;
   std::vector<CdrSample> taken_;
   std::vector<dds_instance_handle_t> met_;  // those that are still present
+  struct Partner {
+    dds_instance_handle_t writer;
+    DaemonIdentity identity;
+  };
+  std::vector<Partner> partners_;  // of those
   bool left_ = false;
   std::atomic<std::uint64_t> reports_{0}, writers_{0};
   std::atomic<bool> give_way_{false};

@@ -13,6 +13,7 @@
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/wire/convert.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
 namespace {
@@ -62,14 +63,16 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
 // The catalogue is latched, so later clients get it as well.
 ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                            const PoseReader& poses, const RecordingHealth& recording,
-                           OnHealth on_health, PublishedSamples* also)
+                           OnHealth on_health, PublishedSamples* also, DaemonIdentity identity,
+                           PartnerPort* partner)
     : participant_(participant),
       topics_(cell.topics),
       poses_(poses),
       recording_(recording),
       on_health_(std::move(on_health)),
       also_(also),
-      identity_(make_identity()),
+      identity_(std::move(identity)),
+      partner_(partner),
       distances_(make_writer(
           participant, topics_, TopicKind::kDistances,
           {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
@@ -86,7 +89,8 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
   open_topics(cell.scene);
   const auto catalogue = own_catalogue();
   check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
-  if (also_ != nullptr) also_->published(TopicKind::kCatalogue, &*catalogue);
+  leads_ = partner_ == nullptr;
+  if (also_ != nullptr && leads_) also_->published(TopicKind::kCatalogue, &*catalogue);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -209,18 +213,52 @@ bool ReportWriter::change() {
 
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
-  to_wire(queued.report, queued.sources(), dds_time(), *now_->distances);
-  const bool published = write(TopicKind::kDistances, distances_, &*now_->distances, "distances");
-  if (separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
-  if (now_->cell.scene.gradients) {
+  TickTag tag;
+  if (partner_ != nullptr) {
+    tag = partner_->tag(queued.report.cycle);
+    if (!tag.publishes) {
+      published_ = queued.report.cycle;
+      return;
+    }
+  }
+  const bool published = write_distances(queued, tag);
+  if (leads_ && separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
+  if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  write_zones(queued.report);
-  if (also_ != nullptr) also_->report_ended();
+  if (writes_zones_) write_zones(queued.report);
+  if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
+}
+
+bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& tag) {
+  clearance_msg_Distances& message = *now_->distances;
+  if (partner_ != nullptr) {
+    identity_.partner.copy(message.partner, sizeof message.partner - 1);
+    message.lineage = tag.lineage;
+    message.checksum = checksum_of(queued.report);
+    message.state_checksum = checksum_of_rest(queued.report, tag.state_checksum);
+    const bool may_write_zones = tag.standing != PartnerStanding::kApart;
+    write_zones_again_ = write_zones_again_ || (may_write_zones && !writes_zones_);
+    writes_zones_ = may_write_zones;
+    note_lead(partner_->leads());
+  }
+  to_wire(queued.report, queued.sources(), dds_time(), message);
+  const bool published = write(TopicKind::kDistances, distances_, &message, "distances");
+  if (partner_ != nullptr) partner_->published(message);
+  return published;
+}
+
+// Simple readers have the latched values of the leader before.
+void ReportWriter::note_lead(bool leads) {
+  const bool begins = leads && !leads_;
+  leads_ = leads;
+  if (!begins) return;
+  write_zones_again_ = true;
+  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -255,6 +293,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->daemon = identity_.id;
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
+  if (partner_ != nullptr) partner_->fill(sample->partner);
   write(TopicKind::kHealth, health_, &*sample, "health");
   if (on_health_) {
     on_health_(
@@ -272,7 +311,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
 bool ReportWriter::write(TopicKind kind, dds_entity_t writer, const void* sample,
                          const char* what) {
   if (others_.give_way()) return false;
-  if (also_ != nullptr) also_->published(kind, sample);
+  if (also_ != nullptr && leads_) also_->published(kind, sample);
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return true;
   // Failures at the tick rate would flood the log, so only powers of two are logged.

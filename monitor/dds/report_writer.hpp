@@ -15,6 +15,7 @@
 #include "monitor/dds/health.hpp"
 #include "monitor/dds/health_log.hpp"
 #include "monitor/dds/other_daemons.hpp"
+#include "monitor/dds/partner_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/zone_log.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
@@ -48,10 +49,12 @@ class ReportWriter {
   // Is called once a second, in the thread that writes. May be empty.
   using OnHealth = std::function<void(const MetricsSource&)>;
 
-  // Publishes the catalogue at once. Everything given must outlive this. `also` may be null.
+  // Publishes the catalogue at once. Everything given must outlive this. `also` may be null, and so
+  // may `partner`: the port of a daemon that has one, which `identity` names.
   ReportWriter(const Cell& cell, Participant& participant, ReportQueue& queue,
                const PoseReader& poses, const RecordingHealth& recording, OnHealth on_health = {},
-               PublishedSamples* also = nullptr);
+               PublishedSamples* also = nullptr, DaemonIdentity identity = make_identity(),
+               PartnerPort* partner = nullptr);
   ~ReportWriter();  // finishes
 
   // The cell has changed: closes the present queue. Once that is empty, the catalogue of this cell
@@ -68,7 +71,7 @@ class ReportWriter {
   // The number of clients that read distances now.
   [[nodiscard]] std::uint32_t distance_readers() const;
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
-  // The cycle of the last report that was published; 0: none yet.
+  // The cycle of the last report that was published, or left to the partner; 0: none yet.
   [[nodiscard]] std::uint64_t published_cycle() const noexcept { return published_.load(); }
   // Before finish(): the thread that writes.
   [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
@@ -97,6 +100,8 @@ class ReportWriter {
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
   void write_report(const QueuedReport& queued);
+  [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
+  void note_lead(bool leads);
   void write_separation(const Report& report);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
@@ -108,7 +113,8 @@ class ReportWriter {
   const RecordingHealth& recording_;
   const OnHealth on_health_;
   PublishedSamples* const also_;
-  DaemonIdentity identity_;
+  const DaemonIdentity identity_;
+  PartnerPort* const partner_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0;  // 0: no zone has had one yet
   dds_entity_t gradients_ = 0;   // 0: no scene has asked for them yet
@@ -118,6 +124,8 @@ class ReportWriter {
   ContactLog contact_log_;
   HealthLog health_log_;
   bool write_zones_again_ = false;
+  bool leads_ = true;                 // writes what has one leader
+  bool writes_zones_ = true;          // not while its partner's may be others
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};

@@ -40,13 +40,20 @@ class FormerScenes {
   // In the order in which slot() makes another list of them that is alike from then on.
   template <class Use>
   void for_each(const Use& use) {
-    const std::size_t oldest = count_ > kMost ? count_ % kMost : 0;
-    for (std::size_t i = 0; i < size(); ++i) use(entries_[(oldest + i) % kMost]);
+    for (std::size_t i = 0; i < size(); ++i) use(entries_[place(i)]);
+  }
+  template <class Use>
+  void for_each(const Use& use) const {
+    for (std::size_t i = 0; i < size(); ++i) use(entries_[place(i)]);
   }
   void clear() noexcept { count_ = 0; }
+  [[nodiscard]] std::size_t size() const noexcept { return std::min(count_, kMost); }
 
  private:
-  [[nodiscard]] std::size_t size() const noexcept { return std::min(count_, kMost); }
+  // The place of an entry, the oldest one first.
+  [[nodiscard]] std::size_t place(std::size_t i) const noexcept {
+    return ((count_ > kMost ? count_ % kMost : 0) + i) % kMost;
+  }
 
   std::array<Entry, kMost> entries_;
   std::size_t count_ = 0;  // those that are lost included

@@ -1,5 +1,6 @@
 #include "monitor/inputs/scene_ids.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace clearance {
@@ -27,8 +28,34 @@ bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
   return true;
 }
 
+void SceneIds::save_former(StateWriter& out) const {
+  out.put(has_changed_);
+  out.put(former_.size());
+  former_.for_each([&out](const auto& scene) {
+    out.put(scene.revision);
+    out.put(std::span(scene.kept.objects_now));
+    out.put(std::span(scene.kept.variables_now));
+  });
+}
+
+void SceneIds::restore_former(StateReader& in) {
+  constexpr std::size_t kMostIds = 1 << 20;
+  std::size_t scenes = 0;
+  in.take(has_changed_);
+  in.take(scenes);
+  former_.clear();
+  for (std::size_t i = 0; i < std::min(scenes, kFormerScenes); ++i) {
+    std::uint64_t revision = 0;
+    in.take(revision);
+    auto& kept = former_.slot(revision).kept;
+    in.take_list(kept.objects_now, kMostIds);
+    in.take_list(kept.variables_now, kMostIds);
+  }
+}
+
 // The ids of all former scenes are passed on to those of the changed one.
 void SceneIds::change(std::uint64_t revision, SceneMap& map) noexcept {
+  if (revision == revision_) return;
   auto& last = former_.slot(revision_);
   revision_ = revision;
   std::swap(last.kept, map);

@@ -12,6 +12,7 @@
 #include "monitor/inputs/former_scenes.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -48,7 +49,7 @@ class SceneIds {
                             std::vector<JointSample>& joints) noexcept;
 
   // The scene of this revision follows the one in force. `map` is that of the two, and is exchanged
-  // for one that is no longer needed.
+  // for one that is no longer needed. Nothing changes if both are the same scene.
   void change(std::uint64_t revision, SceneMap& map) noexcept;
 
   // Before the first batch, where scenes followed each other before: passes on the poses of a batch
@@ -56,6 +57,10 @@ class SceneIds {
   void restore(std::uint64_t revision, std::vector<std::uint32_t> objects_now) {
     former_.slot(revision).kept.objects_now = std::move(objects_now);
   }
+
+  // How the ids of former scenes are passed on, for ids of the same scene elsewhere. May allocate.
+  void save_former(StateWriter& out) const;
+  void restore_former(StateReader& in);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] SourceNumbers& sources() noexcept { return sources_; }

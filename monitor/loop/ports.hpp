@@ -9,6 +9,7 @@
 #include <span>
 
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/tick_time.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 #include "monitor/report.hpp"
 
@@ -33,6 +34,32 @@ class ReportSink {
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
+};
+
+// Decides together with another daemon when ticks are, and on which inputs they rest
+// (monitor/partners). The PoseSource of the loop then hands out what was decided. Tick thread.
+class TickPace {
+ public:
+  virtual ~TickPace() = default;
+  // The time before a deadline at which decide() is to be called.
+  [[nodiscard]] virtual std::int64_t ahead_ns() const noexcept = 0;
+  // Decides on the next tick of the scene of this revision, which will have this cycle, and sleeps
+  // until it is due. Returns its deadline, CLOCK_MONOTONIC: `deadline` or that of the partner.
+  virtual std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,
+                              std::uint64_t revision) noexcept = 0;
+  // After decide(): the time that the tick is told.
+  [[nodiscard]] virtual TickTime time() noexcept = 0;
+  // After the tick, before its report is handed over.
+  virtual void ticked(const Monitor& monitor) noexcept = 0;
+  // The tick that follows is due already: no deadline is to be skipped.
+  [[nodiscard]] virtual bool is_behind() noexcept = 0;
+
+  // A successor has begun with the state after the last tick; it was given up; the loop ticks it.
+  virtual void successor_began(bool same_scene) noexcept = 0;
+  virtual void successor_gave_up() noexcept = 0;
+  virtual void successor_followed() noexcept = 0;
+  // The loop ticks the partner's state from now on.
+  virtual void joined(std::uint64_t lineage) noexcept = 0;
 };
 
 // Three clocks: realtime for stamps that other machines compare, monotonic for deadlines, and

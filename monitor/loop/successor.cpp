@@ -19,6 +19,7 @@ Successor::Successor(const Scene& before, const Monitor& running, const Scene& s
     : scene_(scene),
       map_(scene_map(before, scene)),
       monitor_(std::make_unique<Monitor>(scene, &running)),
+      numbers_(scene),
       statistics_(scene),
       sinks_(std::move(sinks)),
       records_(records) {
@@ -30,6 +31,7 @@ void Successor::begin(const Monitor& running, SourceNumbers& numbers) noexcept {
     state_.store(State::kTooManyNames, std::memory_order_release);
     return;
   }
+  numbers_ = numbers;
   began_after_ = running.cycle();
   state_.store(State::kCatchingUp, std::memory_order_release);
 }

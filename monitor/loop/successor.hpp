@@ -60,6 +60,10 @@ class Successor {
     return {.began_after = began_after(), .from = in_force_from()};
   }
 
+  // The preparing thread, after begin() and before catch_up(): the state that it took over.
+  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+  [[nodiscard]] const SourceNumbers& numbers() const noexcept { return numbers_; }
+
   // The preparing thread: runs the ticks that wait. Returns their number.
   std::size_t catch_up() noexcept;
 
@@ -89,6 +93,7 @@ class Successor {
   const Scene& scene_;
   SceneMap map_;
   std::unique_ptr<Monitor> monitor_;
+  SourceNumbers numbers_;  // after begin()
   LoopStatistics statistics_;
   std::vector<ReportSink*> sinks_;
   TickRecords& records_;

@@ -42,7 +42,7 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   std::int64_t slept = deadline;  // the end of the last tick before a sleep
   std::uint64_t ticks = 0;
   while (!stop.load(std::memory_order_relaxed)) {
-    clock_.sleep_until(deadline);
+    deadline = wait(deadline);
     const std::int64_t started = clock_.monotonic_ns();
     tick_once();
     const std::int64_t ended = clock_.monotonic_ns();
@@ -52,7 +52,9 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
     statistics_.wakeup_second_max_ns =
         std::max(statistics_.wakeup_second_max_ns, started - deadline);
     statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
-    deadline = next_deadline(deadline, ended);
+    deadline = options_.pace != nullptr && options_.pace->is_behind()
+                   ? deadline + period_ns_
+                   : next_deadline(deadline, ended);
     if (deadline > ended) slept = ended;
     if (ended - slept > kLongestWithoutSleep) {
       clock_.sleep_until(ended + kShortSleep);
@@ -63,6 +65,18 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
     if (ticks % ticks_a_second_ == 0) hand_over_statistics();
   }
   hand_over_statistics();
+}
+
+// With partners, what changes between two ticks does so before the inputs of the next one are
+// decided on.
+std::int64_t TickLoop::wait(std::int64_t deadline) noexcept {
+  if (options_.pace == nullptr) {
+    clock_.sleep_until(deadline);
+    return deadline;
+  }
+  clock_.sleep_until(deadline - options_.pace->ahead_ns());
+  between_ticks();
+  return options_.pace->decide(deadline, monitor_->cycle() + 1, scene_->revision);
 }
 
 // Deadlines stay on the grid of the first one. Missed ones are counted and skipped: a loop that
@@ -78,10 +92,10 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 
 // Runs one tick and gives its report to every sink.
 void TickLoop::tick_once() noexcept {
-  answer_question();
-  follow_offer();
+  TickPace* const pace = options_.pace;
+  if (pace == nullptr) between_ticks();
   take_in();
-  const TickTime time = time_.read(clock_);
+  const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
   const Report& report = monitor_->tick(samples_, joints_, time);
   if (Successor* next = offered_.load(std::memory_order_acquire);
       next != nullptr && next->state() == Successor::State::kCatchingUp) {
@@ -92,6 +106,7 @@ void TickLoop::tick_once() noexcept {
   statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
+  if (pace != nullptr) pace->ticked(*monitor_);
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
 }
 
@@ -122,15 +137,38 @@ void TickLoop::answer_question() noexcept {
   question->answer({*scene_, *monitor_, statistics_});
 }
 
+bool TickLoop::offer(JoinedState& joined) noexcept {
+  JoinedState* none = nullptr;
+  return joined_.compare_exchange_strong(none, &joined, std::memory_order_acq_rel);
+}
+
+void TickLoop::between_ticks() noexcept {
+  answer_question();
+  follow_offer();
+  join();
+}
+
+// A successor that is under way has taken over from the monitor that would go.
+void TickLoop::join() noexcept {
+  JoinedState* const joined = joined_.load(std::memory_order_acquire);
+  if (joined == nullptr || busy()) return;
+  joined->join(monitor_, ids_);
+  if (joined->has_joined() && options_.pace != nullptr) options_.pace->joined(joined->lineage());
+  joined_.store(nullptr, std::memory_order_release);
+}
+
 // Between two ticks. An offer that has failed is dropped.
 void TickLoop::follow_offer() noexcept {
   Successor* const next = offered_.load(std::memory_order_acquire);
   if (next == nullptr) return;
   if (next->state() == Successor::State::kOffered) {
     next->begin(*monitor_, ids_.sources());
+    if (options_.pace != nullptr)
+      options_.pace->successor_began(next->scene().revision == scene_->revision);
   } else if (next->has_caught_up(monitor_->cycle())) {
     change_scene(*next);
   }
+  if (next->failed() && options_.pace != nullptr) options_.pace->successor_gave_up();
   if (next->state() != Successor::State::kCatchingUp)
     offered_.store(nullptr, std::memory_order_release);
 }
@@ -138,6 +176,7 @@ void TickLoop::follow_offer() noexcept {
 void TickLoop::change_scene(Successor& successor) noexcept {
   scene_ = &successor.scene();
   successor.succeed(monitor_, statistics_, sinks_, ids_);
+  if (options_.pace != nullptr) options_.pace->successor_followed();
 }
 
 // Batches are used whole: a batch that does not fit waits for the next tick.

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
+#include "monitor/loop/joined_state.hpp"
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
@@ -21,7 +22,8 @@ namespace clearance {
 struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
-      4096;  // samples that one tick can use; the rest waits for the next tick
+      4096;                  // samples that one tick can use; the rest waits for the next tick
+  TickPace* pace = nullptr;  // null: the loop alone decides when it ticks
 };
 
 // Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an
@@ -45,6 +47,17 @@ class TickLoop {
   // The preparing thread while the loop is not busy, which passes it to the constructor of a
   // successor.
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+  // The preparing thread, at any time but while the loop changes the scene: former scenes, but not
+  // the numbers of sources.
+  [[nodiscard]] const SceneIds& ids() const noexcept { return ids_; }
+
+  // Any one thread: offers the state of a partner, which the loop ticks from its next tick on.
+  // Returns false while another one waits. It must live until has_joined(), or the loop has ended.
+  bool offer(JoinedState& joined) noexcept;
+  // True once the loop has let go of the state that was offered last.
+  [[nodiscard]] bool has_joined() const noexcept {
+    return joined_.load(std::memory_order_acquire) == nullptr;
+  }
 
   // Any thread but that of the tick: asks, and waits until the tick thread has answered between two
   // ticks, without a lock and without memory. Several threads are answered one after another, one
@@ -59,7 +72,10 @@ class TickLoop {
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
+  void between_ticks() noexcept;
   void follow_offer() noexcept;
+  void join() noexcept;
+  [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
@@ -73,6 +89,7 @@ class TickLoop {
   const Scene* scene_;
   std::unique_ptr<Monitor> monitor_;
   std::atomic<Successor*> offered_{nullptr};
+  std::atomic<JoinedState*> joined_{nullptr};
   std::atomic<LoopQuestion*> asked_{nullptr};
   SceneIds ids_;
   SteadyTime time_;

@@ -67,6 +67,20 @@ void RobotInputs::take_over(const RobotInputs& before, const SceneMap& map) noex
   }
 }
 
+void RobotInputs::save(StateWriter& out) const {
+  out.put(std::span(variables_));
+  for (const bool heard : heard_) out.put(heard);
+}
+
+void RobotInputs::restore(StateReader& in) noexcept {
+  in.take(std::span(variables_));
+  for (auto heard : heard_) {
+    bool value = false;
+    in.take(value);
+    heard = value;
+  }
+}
+
 void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
   if (std::ranges::find(heard_, true) == heard_.end()) return;
   for (std::size_t i = 0; i < variables_.size(); ++i) {

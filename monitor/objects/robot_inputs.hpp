@@ -8,6 +8,7 @@
 
 #include "config/scene/scene.hpp"
 #include "config/scene/scene_map.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/tracked_variable.hpp"
 #include "monitor/objects/tracked_object.hpp"
@@ -52,6 +53,9 @@ class RobotInputs {
 
   // Goes on with the positions of the scene before, where the robots are the same.
   void take_over(const RobotInputs& before, const SceneMap& map) noexcept;
+  // The same through bytes, for the same scene.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in) noexcept;
 
   // Ends the tick's input and places the links of all robots with joint positions. The objects on
   // which robots stand must already be advanced.

@@ -30,4 +30,23 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
   now.visits.visit_all();
 }
 
+void save(const Inputs& inputs, StateWriter& out) {
+  out.put(inputs.cycle);
+  out.put(inputs.time);
+  out.put(std::span(inputs.objects));
+  inputs.robots.save(out);
+  out.put(inputs.sources);
+  out.put(inputs.rejected);
+}
+
+void restore(StateReader& in, Inputs& inputs) noexcept {
+  in.take(inputs.cycle);
+  in.take(inputs.time);
+  in.take(std::span(inputs.objects));
+  inputs.robots.restore(in);
+  in.take(inputs.sources);
+  in.take(inputs.rejected);
+  inputs.visits.visit_all();
+}
+
 }  // namespace clearance

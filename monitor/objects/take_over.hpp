@@ -2,6 +2,7 @@
 #pragma once
 
 #include "config/scene/scene_map.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/objects/ingest.hpp"
 
 namespace clearance {
@@ -12,5 +13,9 @@ namespace clearance {
 // states. `numbers` has numbered the sources of `before`. Does not allocate.
 void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
                SourceNumbers& numbers, Inputs& now) noexcept;
+
+// The same through bytes, for inputs of the same scene in another process.
+void save(const Inputs& inputs, StateWriter& out);
+void restore(StateReader& in, Inputs& inputs) noexcept;
 
 }  // namespace clearance

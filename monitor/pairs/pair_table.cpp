@@ -44,6 +44,30 @@ PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts) {
   gap.assign(part_pairs(), -kInfinity);
 }
 
+void add_pair(std::uint32_t pair, const PairTable& table, Checksum& sum) noexcept {
+  const PairEntry& entry = table.entries[pair];
+  sum.add(entry.carried_at.a);
+  sum.add(entry.carried_at.b);
+  sum.add(entry.carried_cycle);
+  sum.add(entry.least_lower);
+  sum.add(entry.lower_before);
+  sum.add(entry.evaluated_cycle);
+  sum.add(table.lower_between[pair]);
+  sum.add(table.refreshed_cycle[pair]);
+  for (std::uint32_t i = entry.first_part_pair; i < entry.end_part_pair; ++i) {
+    sum.add(table.lower[i]);
+    sum.add(table.upper[i]);
+    sum.add(table.part_pair_evaluated_cycle[i]);
+    sum.add(table.status[i]);
+    sum.add(table.gap[i]);
+    sum.add(table.closest[i].distance);
+    sum.add(table.closest[i].lower);
+    sum.add3(table.closest[i].witness_a);
+    sum.add3(table.closest[i].witness_b);
+    sum.add3(table.closest[i].normal);
+  }
+}
+
 void forget_bounds(std::uint32_t pair, PairTable& table) noexcept {
   for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
        part_pair < table.entries[pair].end_part_pair; ++part_pair) {

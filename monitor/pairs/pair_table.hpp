@@ -13,6 +13,7 @@
 #include "config/scene/scene.hpp"
 #include "core/distance.hpp"
 #include "monitor/geometry/posed_part.hpp"
+#include "monitor/inputs/checksum.hpp"
 
 namespace clearance {
 
@@ -92,6 +93,9 @@ struct PairTable {
   }
   return upper;
 }
+
+// Adds what the table holds of a pair, but the hints from which queries start.
+void add_pair(std::uint32_t pair, const PairTable& table, Checksum& sum) noexcept;
 
 // Forgets a pair's bounds, because the displacement of its objects is not known.
 void forget_bounds(std::uint32_t pair, PairTable& table) noexcept;

@@ -327,6 +327,14 @@ dds_entity_t Participant::reader_of_others(const std::string& name,
                    fmt::format("making a reader of {}", name));
 }
 
+dds_entity_t Participant::partner_reader(TopicKind kind, const std::string& name) {
+  const Topic& row = topic(kind);
+  const Qos qos = endpoint_qos(row.delivery, row.reader_depth);
+  dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
+  return check_dds(dds_create_reader(subscriber_, make_topic(*row.type, name), qos.get(), nullptr),
+                   fmt::format("making a reader of {}", name));
+}
+
 dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
                                      const dds_listener_t* listener) {
   const Qos qos = ros_qos(type, type.is_reliable, type.depth);

@@ -80,6 +80,8 @@ class Participant {
   // Reads a distances topic without the writers of this participant: best-effort, only the newest
   // sample.
   dds_entity_t reader_of_others(const std::string& name, const dds_listener_t* listener);
+  // Reads a topic without the writers of this participant, with the QoS of the topic table.
+  dds_entity_t partner_reader(TopicKind kind, const std::string& name);
   // Makes endpoints of a ROS 2 topic, "rt/joint_states", in the partition of all other endpoints;
   // ROS 2 uses the default one only. A reader of a topic that is not latched is best-effort: it
   // matches every writer.

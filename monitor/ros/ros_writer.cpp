@@ -52,7 +52,8 @@ bool writes_ros(const Cell& cell) noexcept {
 }
 
 RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
-                     const ReportQueue& published, const RecordingHealth& recording)
+                     const ReportQueue& published, const RecordingHealth& recording,
+                     RosWrites::Leads leads)
     : scene_(cell.scene),
       settings_(cell.ros),
       poses_(poses),
@@ -68,8 +69,10 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReade
       numbers_(kNumbers),
       period_ns_(std::llround(1e9 / (markers_ != 0 ? cell.ros.markers_hz : kDiagnosticReportsHz))),
       cell_diagnostics_(cell.scene),
-      distances_(make_distances(cell.scene)) {
+      distances_(make_distances(cell.scene)),
+      writes_(std::move(leads)) {
   if (planning_scene_ != 0) unwritten_scene_ = to_wire(monitored_scene(cell));
+  scene_waits_ = planning_scene_ != 0;
   thread_ = std::thread([this] { run(); });
 }
 
@@ -97,8 +100,7 @@ void RosWriter::report(const Report& report, std::span<const SourceUse> sources)
       queue_.wake();
     }
   }
-  const bool is_first = std::exchange(is_first_, false) && planning_scene_ != 0;
-  if (markers_ == 0 && diagnostics_ == 0 && !is_first) return;
+  if (markers_ == 0 && diagnostics_ == 0 && !scene_waits_) return;
   if (report.now_ns < next_ns_ && next_ns_ - report.now_ns <= period_ns_) return;
   next_ns_ = report.now_ns + period_ns_;
   queue_.report(report, sources);
@@ -118,9 +120,13 @@ void RosWriter::run() {
     write_numbers();
     while (const QueuedReport* queued = queue_.reports().front()) {
       last_ = queued->report;
-      if (unwritten_scene_) writes_.write(planning_scene_, &**unwritten_scene_);
-      unwritten_scene_.reset();
-      if (markers_ != 0) write_markers(*queued);
+      const bool leads = writes_.may_write();
+      if (unwritten_scene_ && leads) {
+        writes_.write(planning_scene_, &**unwritten_scene_);
+        unwritten_scene_.reset();
+        scene_waits_ = false;
+      }
+      if (markers_ != 0 && leads) write_markers(*queued);
       queue_.reports().pop();
     }
     while (const LoopStatistics* statistics = queue_.statistics().front()) {
@@ -131,10 +137,12 @@ void RosWriter::run() {
 }
 
 void RosWriter::write_numbers() {
+  const bool leads = writes_.may_write();
   while (const Numbers* numbers = numbers_.front()) {
     const std_msgs_msg_dds__Float64_ distance{numbers->minimum_distance};
     const std_msgs_msg_dds__Float64_ scaling{numbers->speed_scaling};
     numbers_.pop();
+    if (!leads) continue;
     if (minimum_distance_ != 0) writes_.write(minimum_distance_, &distance);
     if (speed_scaling_ != 0) writes_.write(speed_scaling_, &scaling);
   }
@@ -162,7 +170,7 @@ void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
   const auto health =
       make_health(scene_, statistics, poses_, published_.dropped_reports(), recording_);
   const auto sample = cell_diagnostics_.make(*health, last_, dds_time());
-  writes_.write(diagnostics_, &*sample);
+  if (writes_.may_write()) writes_.write(diagnostics_, &*sample);
 }
 
 }  // namespace clearance

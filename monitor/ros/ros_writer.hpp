@@ -34,9 +34,11 @@ class RosWriter final : public ReportSink {
  public:
   // Joins the topics that the scene names and starts the thread. The scaling of speeds is left out,
   // with a line in the log, if the cell has no zone. Everything given must outlive this.
-  // `published` is the queue of the reports on DDS; diagnostics name its losses.
+  // `published` is the queue of the reports on DDS; diagnostics name its losses. Nothing is written
+  // while `leads` is false.
   RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
-            const ReportQueue& published, const RecordingHealth& recording);
+            const ReportQueue& published, const RecordingHealth& recording,
+            RosWrites::Leads leads = {});
   ~RosWriter() override;
   RosWriter(const RosWriter&) = delete;
   RosWriter& operator=(const RosWriter&) = delete;
@@ -70,8 +72,8 @@ class RosWriter final : public ReportSink {
   ReportQueue queue_;
   SpscRing<Numbers> numbers_;
   std::int64_t period_ns_,
-      next_ns_ = 0;       // tick thread: the time of the next report for this thread
-  bool is_first_ = true;  // tick thread: no report has come
+      next_ns_ = 0;  // tick thread: the time of the next report for this thread
+  std::atomic<bool> scene_waits_{false};  // for a report that holds for it
 
   // Used by the thread only.
   CellDiagnostics cell_diagnostics_;

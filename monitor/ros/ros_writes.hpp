@@ -5,6 +5,8 @@
 #include <dds/dds.h>
 
 #include <cstdint>
+#include <functional>
+#include <utility>
 
 #include "monitor/app/log_lines.hpp"
 
@@ -12,6 +14,11 @@ namespace clearance {
 
 class RosWrites {
  public:
+  // Of partners, only the leader writes. Empty: this daemon always does.
+  using Leads = std::function<bool()>;
+  explicit RosWrites(Leads leads = {}) : leads_(std::move(leads)) {}
+
+  [[nodiscard]] bool may_write() const { return !leads_ || leads_(); }
   void write(dds_entity_t writer, const void* sample) {
     const dds_return_t result = dds_write(writer, sample);
     if (result == DDS_RETCODE_OK) return;
@@ -21,6 +28,7 @@ class RosWrites {
   }
 
  private:
+  Leads leads_;
   std::uint64_t failed_ = 0;
 };
 

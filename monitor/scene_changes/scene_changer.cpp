@@ -29,9 +29,19 @@ SceneChanger::Outcome SceneChanger::check(const Cell& cell) const {
 SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
                                            const std::atomic<bool>& loop_ended) {
   if (Outcome checked = check(*cell); !checked.refusal.empty()) return checked;
+  return replace(std::move(cell), loop_ended, {});
+}
+
+SceneChanger::Outcome SceneChanger::renew(const std::atomic<bool>& loop_ended, const Began& began) {
+  return replace(cell_, loop_ended, began);
+}
+
+SceneChanger::Outcome SceneChanger::replace(std::shared_ptr<const Cell> cell,
+                                            const std::atomic<bool>& loop_ended,
+                                            const Began& began) {
   const std::vector<ReportSink*> sinks = parts_.prepare(cell);
   try {
-    return succeed(std::move(cell), sinks, loop_ended);
+    return succeed(std::move(cell), sinks, loop_ended, began);
   } catch (...) {
     parts_.abandon();
     throw;
@@ -40,12 +50,13 @@ SceneChanger::Outcome SceneChanger::change(std::shared_ptr<const Cell> cell,
 
 SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
                                             const std::vector<ReportSink*>& sinks,
-                                            const std::atomic<bool>& loop_ended) {
+                                            const std::atomic<bool>& loop_ended,
+                                            const Began& began) {
   Successor::State state = Successor::State::kTooSlow;
   for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
     // It holds what the loop no longer ticks, and is deleted here.
     Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks, records_);
-    state = run(successor, loop_ended);
+    state = run(successor, loop_ended, began);
     if (state != Successor::State::kSucceeded) continue;
     std::swap(cell_, cell);
     parts_.follow(successor.in_force());
@@ -62,10 +73,16 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
 }
 
 // Waits until the loop has let go of the successor, too.
-Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& loop_ended) {
+Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& loop_ended,
+                                   const Began& began) {
   if (!loop_.offer(successor)) return Successor::State::kTooSlow;
+  bool is_new = static_cast<bool>(began);
   while (loop_.busy() && !loop_ended) {
-    if (successor.catch_up() == 0) std::this_thread::sleep_for(kLook);
+    if (is_new && successor.state() == Successor::State::kCatchingUp) {
+      is_new = false;
+      began(successor);
+    }
+    if (is_new || successor.catch_up() == 0) std::this_thread::sleep_for(kLook);
   }
   return successor.state();
 }

@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -56,13 +57,22 @@ class SceneChanger {
   [[nodiscard]] Outcome change(std::shared_ptr<const Cell> cell,
                                const std::atomic<bool>& loop_ended);
 
+  // Lets a new monitor of the same cell take over from the present one, as if the cell had changed:
+  // no bound of a pair remains. `began` is called once it has taken over, before its first tick, in
+  // the calling thread.
+  using Began = std::function<void(const Successor&)>;
+  [[nodiscard]] Outcome renew(const std::atomic<bool>& loop_ended, const Began& began);
+
   [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
 
  private:
+  [[nodiscard]] Outcome replace(std::shared_ptr<const Cell> cell,
+                                const std::atomic<bool>& loop_ended, const Began& began);
   [[nodiscard]] Outcome succeed(std::shared_ptr<const Cell> cell,
                                 const std::vector<ReportSink*>& sinks,
-                                const std::atomic<bool>& loop_ended);
-  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& loop_ended);
+                                const std::atomic<bool>& loop_ended, const Began& began);
+  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& loop_ended,
+                                     const Began& began);
 
   TickLoop& loop_;
   std::shared_ptr<const Cell> cell_;

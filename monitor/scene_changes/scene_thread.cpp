@@ -21,6 +21,10 @@ void SceneThread::run() {
   commander_.read_ahead();
   if (!enter(Phase::kChanging)) return;
   while (auto next = queue_.next()) {
+    if (next->task) {
+      next->task();
+      continue;
+    }
     if (!enter(Phase::kReading)) return;
     std::optional<CommandResult> result;
     if (next->make) result = make(*next);

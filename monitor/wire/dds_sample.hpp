@@ -9,6 +9,7 @@
 
 #include "clearance.h"
 #include "commands.h"
+#include "partners.h"
 #include "questions.h"
 
 namespace clearance {
@@ -67,6 +68,16 @@ template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<clearance_msg_CommandResult>() noexcept {
   return clearance_msg_CommandResult_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_PartnerTick>() noexcept {
+  return clearance_msg_PartnerTick_desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_PartnerState>() noexcept {
+  return clearance_msg_PartnerState_desc;
 }
 
 template <>

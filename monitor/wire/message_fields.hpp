@@ -29,6 +29,10 @@ struct DistancesMessageFields {
   static constexpr void for_each(Visit&& visit, Message&... message) {
     DeliveryFields::for_each(visit, message...);
     visit(Field{"sources", Meaning::kDelivery}, message.sources...);
+    visit(Field{"partner", Meaning::kDelivery}, message.partner...);
+    visit(Field{"lineage", Meaning::kDelivery}, message.lineage...);
+    visit(Field{"checksum", Meaning::kDelivery}, message.checksum...);
+    visit(Field{"state_checksum", Meaning::kDelivery}, message.state_checksum...);
     DistanceFields::for_each(visit, message...);
   }
 };

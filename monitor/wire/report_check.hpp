@@ -16,7 +16,8 @@ struct ReportCheck {
   std::int64_t age_ns = 0;
   bool is_old = false;           // it describes the past, not the present
   bool clocks_disagree = false;  // published later than now: its age means nothing
-  // Not of the daemon of the report before: it was started again, or two daemons publish.
+  // Not of the daemon of the report before, or of its partner: it was started again, or two daemons
+  // publish.
   bool other_daemon = false;
   // The report is of another scene than the one before it, with other ids.
   bool other_scene = false;
@@ -44,7 +45,10 @@ class ReportChecker {
     // Replays have no number of a daemon: one that goes on with another scene is the same.
     const bool other_replay = report.daemon == 0 && found.other_scene && report.cycle != cycle_ + 1;
     const bool again = report.cycle <= cycle_ || other_replay;
-    found.other_daemon = cycle_ != 0 && (report.daemon != daemon_ || again);
+    const bool has_partner = is_of_partner(report);
+    const bool is_partner = has_partner && had_partner_;
+    had_partner_ = has_partner;
+    found.other_daemon = cycle_ != 0 && ((report.daemon != daemon_ && !is_partner) || again);
     if (cycle_ != 0 && !found.other_daemon) found.missed = report.cycle - cycle_ - 1;
     daemon_ = report.daemon;
     cycle_ = report.cycle;
@@ -53,7 +57,14 @@ class ReportChecker {
   }
 
  private:
+  template <class Message>
+  [[nodiscard]] static bool is_of_partner(const Message& report) noexcept {
+    if constexpr (requires { report.partner; }) return *report.partner != '\0';
+    return false;
+  }
+
   std::int64_t limit_ns_;
+  bool had_partner_ = false;  // the report before was one of two partners
   std::uint64_t daemon_ = 0, cycle_ = 0, revision_ = 0;
 };
 

@@ -30,6 +30,8 @@ enum class TopicKind : std::uint8_t {
   kCommandResults,
   kQuestions,
   kAnswers,
+  kPartnerTicks,
+  kPartnerStates,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
@@ -76,6 +78,8 @@ inline constexpr auto kTopics = [] {
       row(kCommandResults, clearance_msg_CommandResult_desc, kLatched, 64, 64),
       row(kQuestions, clearance_msg_Question_desc, kStream, 64, 64),
       row(kAnswers, clearance_msg_Answer_desc, kStream, 64, 64),
+      row(kPartnerTicks, clearance_msg_PartnerTick_desc, kStream, 64, 256),
+      row(kPartnerStates, clearance_msg_PartnerState_desc, kStream, 1, 4),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());

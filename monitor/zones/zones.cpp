@@ -61,6 +61,13 @@ void Zones::take_over(const Zones& before, const SceneMap& map) noexcept {
   begin_tick();
 }
 
+void Zones::save(StateWriter& out) const { out.put(std::span(reports_)); }
+
+void Zones::restore(StateReader& in) noexcept {
+  in.take(std::span(reports_));
+  begin_tick();
+}
+
 void Zones::count_absent(std::span<const TrackedObject> objects) noexcept {
   for (std::size_t z = 0; z < absent_.size(); ++z) {
     absent_[z] = static_cast<std::uint32_t>(

@@ -9,6 +9,7 @@
 
 #include "config/scene/scene_map.hpp"
 #include "monitor/contacts/contacts.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/objects/tracked_object.hpp"
 #include "monitor/zones/zone_hysteresis.hpp"
 
@@ -22,6 +23,9 @@ class Zones {
   // Before the first tick: zones that the scene before had are as active as they were there. `map`
   // has the zones of both scenes.
   void take_over(const Zones& before, const SceneMap& map) noexcept;
+  // The same through bytes, for the same scene.
+  void save(StateWriter& out) const;
+  void restore(StateReader& in) noexcept;
 
   // States after the last finish(), in scene order.
   [[nodiscard]] std::span<const ZoneReport> reports() const noexcept { return reports_; }

@@ -93,6 +93,8 @@ class Sender {
       case TopicKind::kCommandResults:
       case TopicKind::kQuestions:
       case TopicKind::kAnswers:
+      case TopicKind::kPartnerTicks:
+      case TopicKind::kPartnerStates:
         break;  // recordings do not have them
     }
     return false;

@@ -49,8 +49,8 @@ class Feed {
   }
   // Null if no zone has `separation`, or if no such message of this daemon has come.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
-    return separation_->cycle != 0 && separation_->daemon == reports_->daemon ? &*separation_
-                                                                              : nullptr;
+    const bool is_of_it = separation_->daemon == reports_->daemon || has_partner();
+    return separation_->cycle != 0 && is_of_it ? &*separation_ : nullptr;
   }
   [[nodiscard]] const Smallest& smallest() const noexcept { return smallest_; }
 
@@ -67,6 +67,9 @@ class Feed {
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
   // The reason why the reports of a present daemon do not come; empty when none is known.
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
+  // The daemons are partners, whose reports are merged; and whether the two agree.
+  [[nodiscard]] bool has_partner() const noexcept { return *reports_->partner != '\0'; }
+  [[nodiscard]] const client::PartnerCheck& partner() const noexcept { return reports_.partner(); }
   // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }
 

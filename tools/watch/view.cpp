@@ -119,6 +119,18 @@ std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
   return text.empty() ? text : ": " + text;
 }
 
+// Of two partners: whether both report the same.
+Line& add_partner(Line& line, const Feed& feed) {
+  using client::PartnerState;
+  const client::PartnerCheck& check = feed.partner();
+  if (check.state == PartnerState::kAlone) return line.add("  no partner yet", Style::kDim);
+  if (check.state == PartnerState::kAgrees) return line.add("  partners agree", Style::kGood);
+  const bool is_fault =
+      check.state == PartnerState::kDifferent || check.state == PartnerState::kCorrupt;
+  return line.add(fmt::format("  partner '{}': {}", check.partner, name(check.state)),
+                  is_fault ? Style::kAlarm : Style::kWarning);
+}
+
 Line title_line(const Feed& feed, const ViewContext& context, std::size_t width) {
   Line line(width);
   line.add("clearance", Style::kBold).add("  ");
@@ -132,11 +144,12 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
                     is_refused ? Style::kAlarm : Style::kWarning);
   }
   if (!trouble(feed, context.now_ns).empty()) return line.add("not live", Style::kAlarm);
-  if (feed.publishers() > 1) {
+  if (feed.publishers() > 1 && !feed.has_partner()) {
     return line.add(fmt::format("{} daemons publish here: figures are mixed", feed.publishers()),
                     Style::kAlarm);
   }
-  return line.add("live", Style::kGood).add(fmt::format("  cycle {}", feed.distances().cycle));
+  line.add("live", Style::kGood).add(fmt::format("  cycle {}", feed.distances().cycle));
+  return feed.has_partner() ? add_partner(line, feed) : line;
 }
 
 void add_minimum(std::vector<Line>& lines, const Feed& feed, std::int64_t now_ns,

@@ -58,6 +58,8 @@ class ListedPoses final : public PoseSource {
     batch.sequence_number = sequence_number;
     batch.joints.assign(joints.begin(), joints.end());
   }
+  // The one that was added last.
+  [[nodiscard]] PoseBatch& last() { return batches_.back(); }
   const PoseBatch* next() noexcept override {
     return given_ == batches_.size() ? nullptr : &batches_[given_++];
   }

@@ -53,6 +53,7 @@ struct Report {
   py::array pairs;
   PairMessage minimum;
   ReportCheck check;
+  client::PartnerState partner;
   std::uint64_t daemon, cycle, revision;
   std::int64_t now_ns, publish_ns;
   double lower_all, swept_lower_all;
@@ -172,6 +173,7 @@ Report report_of(ReportParts& parts, const Beside& beside) {
   Report report = {.pairs = records_of(pair_dtype(), message.pairs._buffer, message.pairs._length),
                    .minimum = message.minimum,
                    .check = parts.stream.check(),
+                   .partner = parts.stream.partner().state,
                    .daemon = message.daemon,
                    .cycle = message.cycle,
                    .revision = message.scene_revision,
@@ -304,6 +306,11 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
       .def_property_readonly(
           "other_daemon", [](const Report& r) { return r.check.other_daemon; },
           "The report before is of another run of a daemon.")
+      .def_property_readonly(
+          "partner", [](const Report& r) { return client::name(r.partner); },
+          "Of two partners, whose reports are merged: 'alone', 'agrees', 'missing', 'other "
+          "inputs', "
+          "'different' or 'corrupt'.")
       .def_property_readonly(
           "other_scene", [](const Report& r) { return r.check.other_scene; },
           "The report before is of another scene, with other ids.")

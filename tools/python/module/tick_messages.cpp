@@ -175,6 +175,19 @@ py::dict health_of(const clearance_msg_Health& m) {
     item["former_source"] = py::str(one.former_source);
     item["velocities_contradict"] = one.velocities_contradict;
   });
+  py::dict partner;
+  partner["partner"] = py::str(m.partner.partner);
+  partner["other"] = py::str(m.partner.other);
+  partner["standing"] = m.partner.standing;
+  partner["leads"] = m.partner.leads;
+  partner["other_publishes"] = m.partner.other_publishes;
+  partner["agrees_from"] = m.partner.agrees_from;
+  partner["compared"] = m.partner.compared;
+  partner["different"] = m.partner.different;
+  partner["other_inputs"] = m.partner.other_inputs;
+  partner["missing"] = m.partner.missing;
+  partner["phase_ns"] = m.partner.phase_ns;
+  all["partner"] = partner;
   return all;
 }
 

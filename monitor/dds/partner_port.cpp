@@ -1,0 +1,273 @@
+#include "monitor/dds/partner_port.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "monitor/app/log_lines.hpp"
+#include "monitor/files/build_info.hpp"
+#include "monitor/inputs/checksum.hpp"
+#include "monitor/loop/realtime.hpp"
+
+namespace clearance {
+namespace {
+
+// What happens without a message is seen this often.
+constexpr std::int64_t kLookNs = 10'000'000;
+constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
+// A leader stops writing somewhat before its lease ends.
+constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
+// Clocks of two machines that are in step (PTP, NTP) differ by less.
+constexpr std::int64_t kClockErrorNs = 5'000'000;
+
+template <std::size_t N>
+void copy_text(std::string_view from, char (&to)[N]) {
+  const std::size_t length = std::min(from.size(), N - 1);
+  std::memcpy(to, from.data(), length);
+  std::memset(to + length, 0, N - length);
+}
+
+// What CLOCK_REALTIME is ahead of CLOCK_MONOTONIC.
+std::int64_t realtime_less_monotonic() {
+  SystemClock clock;
+  return clock.realtime_ns() - clock.monotonic_ns();
+}
+
+template <class T>
+bool take(dds_entity_t reader, Sample<T>& sample, dds_sample_info_t& info) {
+  void* pointer = &*sample;
+  while (dds_take(reader, &pointer, &info, 1, 1) > 0) {
+    if (info.valid_data) return true;
+  }
+  return false;
+}
+
+std::uint64_t checksum_of(std::span<const std::byte> bytes) {
+  Checksum sum;
+  std::size_t at = 0;
+  for (; at + 8 <= bytes.size(); at += 8) {
+    std::uint64_t word = 0;
+    std::memcpy(&word, bytes.data() + at, 8);
+    sum.add(word);
+  }
+  for (; at < bytes.size(); ++at) sum.add(static_cast<std::uint8_t>(bytes[at]));
+  return sum.value();
+}
+
+}  // namespace
+
+std::int64_t LeastDelay::add(std::int64_t delay_ns) noexcept {
+  if (++count_ % kWindow == 0) {
+    before_ = now_;
+    now_ = std::numeric_limits<std::int64_t>::max();
+  }
+  now_ = std::min(now_, delay_ns);
+  return std::min(now_, before_);
+}
+
+PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
+                         const DaemonIdentity& identity, TickPartner& ticks)
+    : identity_(identity),
+      ticks_(ticks),
+      ticks_writer_(participant.writer(TopicKind::kPartnerTicks, topics.partner_ticks,
+                                       {.lease_ns = kLeaderLeaseNs})),
+      states_writer_(participant.writer(TopicKind::kPartnerStates, topics.partner_states)),
+      ticks_reader_(participant.partner_reader(TopicKind::kPartnerTicks, topics.partner_ticks)),
+      states_reader_(participant.partner_reader(TopicKind::kPartnerStates, topics.partner_states)),
+      reports_reader_(participant.partner_reader(TopicKind::kDistances, topics.distances)),
+      wait_(participant, {ticks_reader_, states_reader_, reports_reader_}) {
+  reserve_sequence(written_->inputs, kMostTickInputs);
+  copy_text(identity.partner, written_->partner);
+}
+
+PartnerPort::~PartnerPort() { stop(); }
+
+void PartnerPort::start(Actions actions) {
+  actions_ = std::move(actions);
+  hearing_ = std::thread([this] { hear(); });
+  writing_ = std::thread([this] { write_notices(); });
+}
+
+void PartnerPort::stop() {
+  stop_ = true;
+  wait_.wake();
+  ticks_.wake();
+  if (hearing_.joinable()) hearing_.join();
+  if (writing_.joinable()) writing_.join();
+}
+
+std::array<std::thread::native_handle_type, 2> PartnerPort::threads() {
+  return {hearing_.native_handle(), writing_.native_handle()};
+}
+
+void PartnerPort::write_notices() {
+  name_thread("notices");
+  while (!stop_) {
+    ticks_.wait_for_notice();
+    for (; const TickNotice* notice = ticks_.notices().front(); ticks_.notices().pop()) {
+      clearance_msg_PartnerTick& out = *written_;
+      out.daemon = notice->daemon;
+      out.start_ns = notice->start_ns;
+      out.scene_revision = notice->revision;
+      out.term = notice->term;
+      out.lineage = notice->lineage;
+      out.before = notice->before;
+      out.since_cycle = notice->since_cycle;
+      out.becoming = notice->becoming;
+      out.cycle = notice->cycle;
+      out.now_ns = notice->time.now_ns;
+      out.clock_offset_ns = notice->time.clock_offset_ns;
+      out.due_ns = notice->due_ns + realtime_less_monotonic();
+      out.inputs._length = static_cast<std::uint32_t>(notice->count);
+      for (std::size_t i = 0; i < notice->count; ++i) {
+        clearance_msg_TickInput& input = out.inputs._buffer[i];
+        copy_text(notice->inputs[i].source.view(), input.source);
+        input.sequence_number = notice->inputs[i].sequence_number;
+        input.content = notice->inputs[i].content;
+      }
+      if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK)
+        written_ns_ = SystemClock().monotonic_ns();
+    }
+  }
+}
+
+void PartnerPort::hear() {
+  name_thread("partner");
+  while (!stop_) {
+    wait_.wait(kLookNs);
+    hear_notices();
+    ticks_.end_pass();
+    hear_states();
+    hear_reports();
+    look();
+  }
+}
+
+void PartnerPort::hear_notices() {
+  dds_sample_info_t info;
+  while (take(ticks_reader_, heard_, info)) {
+    const clearance_msg_PartnerTick& in = *heard_;
+    const std::int64_t delay = delay_.add(dds_time() - info.source_timestamp);
+    if (delay_.is_settled() && std::abs(delay) > kClockErrorNs && !std::exchange(clock_told_, true))
+      log_line(lines::kPartnerClock, in.partner, delay / 1'000'000);
+    notice_.daemon = in.daemon;
+    notice_.start_ns = in.start_ns;
+    notice_.revision = in.scene_revision;
+    notice_.term = in.term;
+    notice_.lineage = in.lineage;
+    notice_.before = in.before;
+    notice_.since_cycle = in.since_cycle;
+    notice_.becoming = in.becoming;
+    notice_.cycle = in.cycle;
+    notice_.time = {in.now_ns, in.clock_offset_ns};
+    notice_.due_ns = in.due_ns + delay - realtime_less_monotonic();
+    notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);
+    for (std::size_t i = 0; i < notice_.count; ++i) {
+      const clearance_msg_TickInput& input = in.inputs._buffer[i];
+      notice_.inputs[i] = {SourceName(input.source), input.sequence_number, input.content};
+    }
+    static_cast<void>(ticks_.hear(notice_));
+  }
+}
+
+// A state is for daemons of one build: its bytes have no other layout.
+void PartnerPort::hear_states() {
+  dds_sample_info_t info;
+  while (take(states_reader_, state_, info)) {
+    const clearance_msg_PartnerState& in = *state_;
+    if (std::strcmp(in.build, kBuild) != 0) {
+      if (!std::exchange(refusal_told_, true))
+        log_line(lines::kPartnerOtherBuild, in.partner, in.build, kBuild);
+      continue;
+    }
+    if (in.is_request) {
+      const bool is_answered = ticks_.standing() == PartnerStanding::kLeading &&
+                               !reports_.hears_another(in.partner) && actions_.send_state;
+      if (is_answered) actions_.send_state();
+      continue;
+    }
+    const auto bytes = std::as_bytes(std::span(in.bytes._buffer, in.bytes._length));
+    if (checksum_of(bytes) != in.checksum || !actions_.take_state) continue;
+    actions_.take_state({in.scene_revision, in.lineage, in.cycle, bytes});
+  }
+}
+
+void PartnerPort::hear_reports() {
+  dds_sample_info_t info;
+  while (take(reports_reader_, report_, info)) {
+    if (*report_->partner != '\0' && identity_.partner != report_->partner)
+      reports_.note_other(*report_);
+  }
+}
+
+void PartnerPort::look() {
+  ticks_.set_partner_present(reports_.hears_any());
+  const PartnerStanding standing = ticks_.standing();
+  const std::int64_t now = SystemClock().monotonic_ns();
+  if (standing != told_ && now - told_ns_ > kStandAgainNs) {
+    told_ = standing;
+    told_ns_ = now;
+    log_line(lines::kPartnerStands, name(standing));
+  }
+  if (!ticks_.wants_state() || (asked_ns_ != 0 && now - asked_ns_ < kAskAgainNs)) return;
+  asked_ns_ = now;
+  if (actions_.wants_state) actions_.wants_state();
+}
+
+Sample<clearance_msg_PartnerState> PartnerPort::state_message() const {
+  Sample<clearance_msg_PartnerState> sample;
+  copy_text(identity_.partner, sample->partner);
+  sample->daemon = identity_.id;
+  sample->build = dds_string_dup(kBuild);
+  return sample;
+}
+
+void PartnerPort::request_state(std::uint64_t revision) {
+  auto sample = state_message();
+  sample->scene_revision = revision;
+  sample->is_request = true;
+  write(sample, "a request to the partner");
+}
+
+void PartnerPort::send_state(const PartnerStateView& state) {
+  auto sample = state_message();
+  sample->scene_revision = state.revision;
+  sample->lineage = state.lineage;
+  sample->cycle = state.cycle;
+  sample->checksum = checksum_of(state.bytes);
+  reserve_sequence(sample->bytes, state.bytes.size());
+  std::memcpy(sample->bytes._buffer, state.bytes.data(), state.bytes.size());
+  sample->bytes._length = static_cast<std::uint32_t>(state.bytes.size());
+  write(sample, "the state for the partner");
+}
+
+void PartnerPort::write(const Sample<clearance_msg_PartnerState>& sample, const char* what) {
+  const dds_return_t result = dds_write(states_writer_, &*sample);
+  if (result != DDS_RETCODE_OK)
+    log_line(lines::kWriteFailed, what, dds_strretcode(result), lines::Count{1});
+}
+
+TickTag PartnerPort::tag(std::uint64_t cycle) noexcept {
+  while (const TickTag* front = ticks_.tags().front()) {
+    const TickTag tag = *front;
+    ticks_.tags().pop();
+    if (tag.cycle == cycle) return tag;
+  }
+  return {.cycle = cycle, .standing = ticks_.standing()};
+}
+
+bool PartnerPort::leads() const {
+  if (ticks_.standing() != PartnerStanding::kLeading) return false;
+  const std::int64_t now = SystemClock().monotonic_ns();
+  return now - ticks_.leads_since_ns() > kLeaderLeaseNs && now - written_ns_ < kOwnLeaseNs &&
+         writers_alive(ticks_reader_) == 0;
+}
+
+void PartnerPort::fill(clearance_msg_PartnerHealth& out) {
+  copy_text(identity_.partner, out.partner);
+  out.standing = static_cast<std::uint8_t>(ticks_.standing());
+  out.leads = leads();
+  reports_.fill(out);
+}
+
+}  // namespace clearance

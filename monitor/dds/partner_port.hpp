@@ -1,0 +1,108 @@
+// Joins a daemon's TickPartner with its partner on DDS: notices of ticks, states, and the reports
+// of the partner, which are compared with the daemon's own.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <thread>
+
+#include "config/cell/topics.hpp"
+#include "monitor/dds/daemon_identity.hpp"
+#include "monitor/dds/partner_reports.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/partners/tick_partner.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// The lease of what has one leader.
+inline constexpr std::int64_t kLeaderLeaseNs = 20'000'000;
+
+// A state that the partner has sent.
+struct PartnerStateView {
+  std::uint64_t revision = 0, lineage = 0, cycle = 0;
+  std::span<const std::byte> bytes;
+};
+
+// The least delay of the partner's notices: what remains of it is the error of the phase. It holds
+// for the last 512 to 1024 notices, so that it follows clocks that drift.
+class LeastDelay {
+ public:
+  std::int64_t add(std::int64_t delay_ns) noexcept;
+  // The first notices may have waited for this program.
+  [[nodiscard]] bool is_settled() const noexcept { return count_ > kWindow; }
+
+ private:
+  static constexpr std::uint32_t kWindow = 512;
+  std::int64_t now_ = std::numeric_limits<std::int64_t>::max(), before_ = now_;
+  std::uint32_t count_ = 0;
+};
+
+class PartnerPort {
+ public:
+  struct Actions {
+    std::function<void()> wants_state;  // once a second, while this daemon does not follow
+    std::function<void()> send_state;   // the partner asks for the state
+    std::function<void(const PartnerStateView&)> take_state;
+  };
+  // `identity` names the partner that this daemon is. Everything given must outlive this.
+  PartnerPort(Participant& participant, const Topics& topics, const DaemonIdentity& identity,
+              TickPartner& ticks);
+  ~PartnerPort();
+  PartnerPort(const PartnerPort&) = delete;
+  PartnerPort& operator=(const PartnerPort&) = delete;
+
+  // Starts both threads.
+  void start(Actions actions);
+  void stop();
+  // After start(): the threads, which the tick waits for.
+  [[nodiscard]] std::array<std::thread::native_handle_type, 2> threads();
+
+  // Any thread.
+  void request_state(std::uint64_t revision);
+  void send_state(const PartnerStateView& state);
+
+  // The thread that publishes. The tag of the report of this cycle, in the order of reports.
+  [[nodiscard]] TickTag tag(std::uint64_t cycle) noexcept;
+  // True if this daemon writes what has one leader: it leads, it has said so within the lease, and
+  // no other leader's lease lasts.
+  [[nodiscard]] bool leads() const;
+  void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
+  void fill(clearance_msg_PartnerHealth& out);
+
+ private:
+  void write_notices();
+  void hear();
+  void hear_notices();
+  void hear_states();
+  void hear_reports();
+  void look();
+  void write(const Sample<clearance_msg_PartnerState>& sample, const char* what);
+  [[nodiscard]] Sample<clearance_msg_PartnerState> state_message() const;
+
+  const DaemonIdentity& identity_;
+  TickPartner& ticks_;
+  Actions actions_;
+  dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_;
+  DataWait wait_;
+  PartnerReports reports_;
+  LeastDelay delay_;
+  std::atomic<std::int64_t> written_ns_{0};  // the last notice, CLOCK_MONOTONIC
+  std::int64_t asked_ns_ = 0, told_ns_ = 0;
+  bool clock_told_ = false, refusal_told_ = false;
+  PartnerStanding told_ = PartnerStanding::kStarting;
+  Sample<clearance_msg_PartnerTick> heard_, written_;
+  Sample<clearance_msg_PartnerState> state_;
+  Sample<clearance_msg_Distances> report_;
+  TickNotice notice_;
+  std::atomic<bool> stop_{false};
+  std::thread hearing_, writing_;
+};
+
+}  // namespace clearance

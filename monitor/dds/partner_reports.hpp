@@ -1,0 +1,52 @@
+// Compares the reports of this daemon with those of its partner, cycle by cycle.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Any thread. Differences are told in the log, each kind at most once a second, and counted.
+class PartnerReports {
+ public:
+  // A report that this daemon published, or that its partner did.
+  void note_own(const clearance_msg_Distances& report) { note(report, false); }
+  void note_other(const clearance_msg_Distances& report) { note(report, true); }
+  // The partner has published in the last tenth of a second.
+  [[nodiscard]] bool hears_any();
+  // A partner of another name than this has published in the last tenth of a second: a third one is
+  // not let in.
+  [[nodiscard]] bool hears_another(const std::string& partner);
+  // Fills the fields that compare the two; called once a second.
+  void fill(clearance_msg_PartnerHealth& out);
+
+ private:
+  static constexpr std::size_t kKept = 256;
+  struct Kept {
+    std::uint64_t cycle = 0, lineage = 0, checksum = 0, state_checksum = 0;
+    std::int64_t publish_ns = 0;
+  };
+  using Cycles = std::array<Kept, kKept>;
+  enum Kind : std::uint8_t { kAgrees, kOtherInputs, kDifferent, kMissing, kKinds };
+
+  void note(const clearance_msg_Distances& report, bool is_other);
+  void compare(const Kept& own, const Kept& other);
+  void look_for_missing(std::uint64_t cycle);
+  [[nodiscard]] bool may_tell(Kind kind);
+
+  std::mutex mutex_;
+  Cycles own_{}, other_{};
+  std::string name_;  // the partner's
+  std::int64_t heard_ns_ = 0;
+  std::uint64_t agrees_from_ = 0, compared_ = 0, different_ = 0, other_inputs_ = 0, missing_ = 0;
+  std::vector<std::int64_t> phases_;  // since the last fill()
+  std::int64_t phase_ns_ = 0;
+  std::array<std::int64_t, kKinds> told_ns_{};
+};
+
+}  // namespace clearance

@@ -1,0 +1,58 @@
+// What the leading one of two partners says about a tick before it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/tick_time.hpp"
+
+namespace clearance {
+
+// The largest number of batches that a tick of partners uses; more wait for the next tick.
+inline constexpr std::size_t kMostTickInputs = 64;
+
+// A batch that a tick uses.
+struct TickInput {
+  SourceName source;
+  std::uint64_t sequence_number = 0;
+  std::uint64_t content = 0;  // checksum of its samples
+};
+
+// How a daemon stands to its partner. The values are those of PartnerHealth on the wire.
+enum class PartnerStanding : std::uint8_t {
+  kAlone = 0,     // it has no partner
+  kStarting = 1,  // it publishes nothing until it has the partner's state, or hears no partner
+  kLeading = 2,   // it decides when both tick, and on which inputs
+  kFollowing = 3,
+  // It could not follow, and ticks what it has: its reports are true, and rest on other inputs than
+  // the partner's. It asks for the partner's state.
+  kApart = 4,
+};
+[[nodiscard]] constexpr const char* name(PartnerStanding standing) noexcept {
+  constexpr std::array kNames = {"alone", "starting", "leading", "following", "apart"};
+  return kNames[static_cast<std::size_t>(standing) % kNames.size()];
+}
+
+// The fields are those of PartnerTick in idl/partners.idl.
+struct TickNotice {
+  std::uint64_t daemon = 0;
+  std::int64_t start_ns = 0;
+  std::uint64_t revision = 0;
+  std::uint64_t term = 0;
+  std::uint64_t lineage = 0, before = 0, since_cycle = 0, becoming = 0;
+  std::uint64_t cycle = 0;
+  TickTime time;
+  // When it ticks. CLOCK_MONOTONIC of this machine, in a notice that was heard too.
+  std::int64_t due_ns = 0;
+  std::array<TickInput, kMostTickInputs> inputs;
+  std::size_t count = 0;
+
+  [[nodiscard]] std::span<const TickInput> used() const noexcept {
+    return std::span(inputs).first(count);
+  }
+};
+
+}  // namespace clearance

@@ -1,0 +1,298 @@
+// Each standing has a function that decides on the next tick; all of them end with the batches that
+// the store has chosen, the time of the tick and its deadline.
+#include "monitor/partners/tick_partner.hpp"
+
+#include <algorithm>
+#include <tuple>
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kWaiting = 256;
+// The interval at which a follower looks for a notice or batch that is due.
+constexpr std::int64_t kLookNs = 50'000;
+// After a sleep that was too long, the thread that hears the partner gets so much time to take in
+// what came meanwhile.
+constexpr std::int64_t kHearNs = 20'000'000;
+
+}  // namespace
+
+TickPartner::TickPartner(PoseSource& source, Clock& clock, const TickPartnerOptions& options)
+    : clock_(clock),
+      options_(options),
+      store_(source, options.batch),
+      began_ns_(clock.monotonic_ns()),
+      seed_(options.daemon),
+      known_(kKnown),
+      heard_(kWaiting),
+      notices_(kWaiting),
+      tags_(kWaiting) {
+  lineage_ = fresh();
+}
+
+bool TickPartner::hear(const TickNotice& notice) noexcept {
+  TickNotice* const slot = heard_.back();
+  if (slot == nullptr) return false;
+  *slot = notice;
+  heard_.push();
+  return true;
+}
+
+// A splitmix64 of the daemon's identity: two daemons do not come to the same lineage.
+std::uint64_t TickPartner::fresh() noexcept {
+  std::uint64_t value = 0;
+  while (value == 0) {
+    value = seed_ += 0x9e3779b97f4a7c15U;
+    value = (value ^ (value >> 30)) * 0xbf58476d1ce4e5b9U;
+    value = (value ^ (value >> 27)) * 0x94d049bb133111ebU;
+    value ^= value >> 31;
+  }
+  return value;
+}
+
+void TickPartner::stand(PartnerStanding standing) noexcept {
+  if (standing == PartnerStanding::kLeading && standing_ != standing)
+    leads_since_ns_ = clock_.monotonic_ns();
+  standing_ = standing;
+  shown_standing_ = standing;
+}
+
+void TickPartner::begin_lineage(std::uint64_t lineage, std::uint64_t before) noexcept {
+  lineage_ = lineage;
+  before_ = before;
+  since_cycle_ = cycle_;
+}
+
+void TickPartner::become(std::uint64_t lineage) noexcept {
+  becoming_ = lineage;
+  shown_becoming_ = lineage;
+}
+
+void TickPartner::listen() noexcept {
+  for (; const TickNotice* notice = heard_.front(); heard_.pop()) {
+    newest_cycle_ = notice->cycle;
+    newest_daemon_ = notice->daemon;
+    newest_revision_ = notice->revision;
+    newest_term_ = notice->term;
+    newest_start_ns_ = notice->start_ns;
+    newest_due_ns_ = notice->due_ns;
+    heard_ns_ = clock_.monotonic_ns();
+    known_[notice->cycle % kKnown] = *notice;
+  }
+}
+
+const TickNotice* TickPartner::known(std::uint64_t cycle) const noexcept {
+  const TickNotice& notice = known_[cycle % kKnown];
+  return notice.cycle == cycle && notice.daemon == newest_daemon_ ? &notice : nullptr;
+}
+
+// Both daemons come to the same answer. The one that took the lead last has the higher term; of two
+// that were alone before they met, the older one leads.
+bool TickPartner::outranks_this(const TickNotice& notice) const noexcept {
+  if (notice.term != term_) return notice.term > term_;
+  return std::tie(notice.start_ns, notice.daemon) < std::tie(options_.start_ns, options_.daemon);
+}
+
+// The leader's ticks before this one are those of this daemon.
+bool TickPartner::continues_here(const TickNotice& notice) const noexcept {
+  if (notice.revision != revision_) return false;
+  return notice.lineage == lineage_ || notice.becoming == lineage_ ||
+         (notice.before == lineage_ && notice.since_cycle == cycle_);
+}
+
+std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
+                                 std::uint64_t revision) noexcept {
+  using enum PartnerStanding;
+  cycle_ = cycle;
+  revision_ = revision;
+  store_.take_in();
+  listen();
+  const bool is_late = clock_.monotonic_ns() > deadline + options_.period_ns / 2;
+  const bool knows_more = standing_ == kFollowing && known(cycle_) != nullptr;
+  const bool is_in_step = standing_ == kLeading || standing_ == kFollowing;
+  if (is_late && partner_present_ && is_in_step && !knows_more) {
+    hear_out();
+  }
+  if (standing_ == kLeading) yield();
+  switch (standing_) {
+    case kLeading:
+      deadline = lead(deadline);
+      break;
+    case kFollowing:
+      deadline = follow(deadline);
+      break;
+    default:
+      deadline = tick_apart(deadline);
+  }
+  const bool hears_leader = heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < lost_after();
+  wants_state_ = hears_leader && newest_revision_ == revision_ &&
+                 (standing_ == kStarting || standing_ == kApart);
+  // A daemon that was stopped for long counts lower than its leader: clients would see cycles
+  // again.
+  const bool counts_lower = hears_leader && newest_cycle_ > cycle_ + 1;
+  is_silent_ = standing_ == kStarting || (standing_ == kApart && counts_lower);
+  return deadline;
+}
+
+// The whole process may have been stopped. Two passes of the other thread, of which the second one
+// began after this call, have taken in everything.
+void TickPartner::hear_out() noexcept {
+  const std::uint64_t passes = passes_.load(std::memory_order_acquire) + 2;
+  const std::int64_t end = clock_.monotonic_ns() + kHearNs;
+  while (passes_.load(std::memory_order_acquire) < passes && clock_.monotonic_ns() < end) {
+    clock_.sleep_until(clock_.monotonic_ns() + kLookNs);
+    listen();
+  }
+  store_.take_in();
+  listen();
+}
+
+// A partner that has ticked on while this daemon could not is followed from this tick on. One that
+// this daemon has ticked beside is joined.
+void TickPartner::yield() noexcept {
+  using enum PartnerStanding;
+  const TickNotice* const newest = known(newest_cycle_);
+  const bool is_recent = clock_.monotonic_ns() - heard_ns_ < options_.lost_after_ns;
+  if (newest == nullptr || heard_ns_ == 0 || !is_recent || !outranks_this(*newest)) return;
+  const TickNotice* const next = known(cycle_);
+  if (next != nullptr && continues_here(*next)) return stand(kFollowing);
+  begin_lineage(fresh(), 0);
+  stand(kApart);
+}
+
+// The time at which the tick is due, also if it begins up to half a period later: a follower that
+// had to wait for a notice tells the tick the time that its leader has told it. The time goes on
+// from that of the last leader, whatever this machine's clock says.
+TickTime TickPartner::own_time(std::int64_t due) noexcept {
+  const TickTime read = steady_.read(clock_);
+  const std::int64_t early = std::max(-options_.period_ns / 2, due - clock_.monotonic_ns());
+  const std::int64_t now = read.now_ns + early + ahead_of_own_ns_;
+  return {std::max(now, time_.now_ns + 1), offset_ns_ + read.clock_offset_ns - own_offset_ns_};
+}
+
+std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
+  store_.choose_all(false);
+  time_ = own_time(deadline);
+  if (TickNotice* const notice = notices_.back()) {
+    notice->daemon = options_.daemon;
+    notice->start_ns = options_.start_ns;
+    notice->revision = revision_;
+    notice->term = term_;
+    notice->lineage = lineage_;
+    notice->before = before_;
+    notice->since_cycle = since_cycle_;
+    notice->becoming = becoming_;
+    notice->cycle = cycle_;
+    notice->time = time_;
+    notice->due_ns = deadline;
+    notice->count = store_.chosen().size();
+    std::ranges::copy(store_.chosen(), notice->inputs.begin());
+    notices_.push();
+    noticed_.post();
+  }
+  clock_.sleep_until(deadline);
+  return deadline;
+}
+
+// `goes_on`: all ticks so far were those of the leader before, which can follow this daemon if it
+// has not ticked this one.
+std::int64_t TickPartner::take_the_lead(std::int64_t deadline, bool goes_on) noexcept {
+  term_ = std::max(term_, newest_term_) + 1;
+  if (goes_on) begin_lineage(fresh(), lineage_);
+  stand(PartnerStanding::kLeading);
+  return lead(deadline);
+}
+
+std::int64_t TickPartner::follow(std::int64_t deadline) noexcept {
+  const std::int64_t began = clock_.monotonic_ns();
+  for (;;) {
+    const TickNotice* const notice = known(cycle_);
+    if (notice != nullptr) {
+      if (!continues_here(*notice)) return part(deadline);
+      if (store_.choose(notice->used())) return follow(*notice);
+    }
+    const std::int64_t now = clock_.monotonic_ns();
+    const std::int64_t due = notice == nullptr ? deadline : notice->due_ns;
+    if (now >= std::max({due, deadline, began}) + options_.period_ns / 2) break;
+    clock_.sleep_until(now + kLookNs);
+    store_.take_in();
+    listen();
+  }
+  const bool leader_goes_on = known(cycle_) != nullptr || newest_cycle_ > cycle_;
+  return leader_goes_on ? part(deadline) : take_the_lead(deadline, true);
+}
+
+std::int64_t TickPartner::follow(const TickNotice& notice) noexcept {
+  if (notice.lineage != lineage_ && notice.becoming != lineage_) lineage_ = notice.lineage;
+  before_ = 0;
+  term_ = notice.term;
+  const TickTime own = steady_.read(clock_);
+  const std::int64_t early = notice.due_ns - clock_.monotonic_ns();
+  ahead_of_own_ns_ = notice.time.now_ns - (own.now_ns + early);
+  offset_ns_ = notice.time.clock_offset_ns;
+  own_offset_ns_ = own.clock_offset_ns;
+  time_ = notice.time;
+  clock_.sleep_until(notice.due_ns);
+  return notice.due_ns;
+}
+
+std::int64_t TickPartner::part(std::int64_t deadline) noexcept {
+  begin_lineage(fresh(), 0);
+  stand(PartnerStanding::kApart);
+  return tick_apart(deadline);
+}
+
+// A leader that stalls for a moment keeps its lead over a daemon that counts lower: clients would
+// see cycles again.
+std::int64_t TickPartner::lost_after() const noexcept {
+  return is_silent_ ? 5 * options_.lost_after_ns : options_.lost_after_ns;
+}
+
+// In phase with the leader, so that both are again when one has the state of the other.
+std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
+  const std::int64_t now = clock_.monotonic_ns();
+  const bool is_gone =
+      heard_ns_ == 0 ? now - began_ns_ > options_.alone_after_ns : now - heard_ns_ > lost_after();
+  if (is_gone) return take_the_lead(deadline, false);
+  if (heard_ns_ != 0) {
+    const std::int64_t period = options_.period_ns;
+    const std::int64_t apart = (deadline - newest_due_ns_) % period;
+    deadline -= apart > period / 2 ? apart - period : apart < -period / 2 ? apart + period : apart;
+  }
+  store_.choose_all(true);
+  time_ = own_time(deadline);
+  clock_.sleep_until(deadline);
+  return deadline;
+}
+
+void TickPartner::ticked(const Monitor& monitor) noexcept {
+  if (TickTag* const tag = tags_.back()) {
+    *tag = {cycle_, lineage_, monitor.checksum(), standing_, !is_silent_};
+    tags_.push();
+  }
+}
+
+bool TickPartner::is_behind() noexcept {
+  if (standing_ != PartnerStanding::kFollowing) return false;
+  listen();
+  const TickNotice* const next = known(cycle_ + 1);
+  return next != nullptr && next->due_ns <= clock_.monotonic_ns();
+}
+
+// A partner that gets this state follows the present lineage until this daemon ticks it, too.
+void TickPartner::successor_began(bool same_scene) noexcept { become(same_scene ? fresh() : 0); }
+
+void TickPartner::successor_followed() noexcept {
+  lineage_ = becoming_ != 0 ? becoming_ : fresh();
+  before_ = 0;
+  become(0);
+}
+
+void TickPartner::joined(std::uint64_t lineage) noexcept {
+  lineage_ = lineage;
+  before_ = 0;
+  become(0);
+  stand(PartnerStanding::kFollowing);
+}
+
+}  // namespace clearance

@@ -1,0 +1,76 @@
+// Checksums by which the reports of two daemons are compared, and a message with what it says of
+// itself.
+#pragma once
+
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "monitor/inputs/checksum.hpp"
+#include "monitor/wire/message_fields.hpp"
+
+namespace clearance {
+
+// For the lists of fields: the same for a report and for its message. Leaves out who sent it.
+class AddToChecksum {
+ public:
+  explicit AddToChecksum(Checksum& sum) : sum_(sum) {}
+
+  template <class Value>
+  void operator()(const Field& field, const Value& value) const noexcept {
+    if (field.meaning != Meaning::kDelivery) add(value);
+  }
+
+ private:
+  template <class Value>
+  requires(std::is_arithmetic_v<Value> ||
+           std::is_enum_v<Value>) void add(const Value& value) const noexcept {
+    sum_.add(value);
+  }
+  void add(const Vec3& v) const noexcept { sum_.add3(v); }
+  void add(const clearance_msg_Vector3& v) const noexcept {
+    sum_.add(v.x);
+    sum_.add(v.y);
+    sum_.add(v.z);
+  }
+  template <HasFields Value>
+  void add(const Value& value) const noexcept {
+    for_each_field(*this, value);
+  }
+  template <class Element>
+  void add(const std::vector<Element>& list) const noexcept {
+    sum_.add(list.size());
+    for (const Element& element : list) add(element);
+  }
+  template <MessageSequence Sequence>
+  void add(const Sequence& list) const noexcept {
+    sum_.add(static_cast<std::uint64_t>(list._length));
+    for (std::uint32_t i = 0; i < list._length; ++i) add(list._buffer[i]);
+  }
+
+  Checksum& sum_;
+};
+
+// Of everything in Distances that the tick determines: of a report, or of its message.
+template <class Report>
+[[nodiscard]] std::uint64_t checksum_of(const Report& report) noexcept {
+  Checksum sum;
+  DistanceFields::for_each(AddToChecksum(sum), report);
+  return sum.value();
+}
+
+// Of the rest of a report, and of the state of its tick. The counts of refused samples are left
+// out: a daemon that has joined counts from another start.
+[[nodiscard]] inline std::uint64_t checksum_of_rest(const Report& report,
+                                                    std::uint64_t state) noexcept {
+  Checksum sum;
+  const AddToChecksum add(sum);
+  add(Field{}, report.zones);
+  add(Field{}, report.separated_pairs);
+  add(Field{}, report.separated_zones);
+  add(Field{}, report.gradients);
+  sum.add(state);
+  return sum.value();
+}
+
+}  // namespace clearance

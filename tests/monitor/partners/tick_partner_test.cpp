@@ -1,0 +1,376 @@
+// Two daemons without DDS: notices and states are carried by the test, in one thread and with
+// clocks that the test moves.
+//
+// Oracle: the checksums of the other daemon's report and state.
+#include "monitor/partners/tick_partner.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "monitor/loop/joined_state.hpp"
+#include "monitor/wire/report_checksum.hpp"
+#include "tests/monitor/loop/listed_ports.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/taken_over.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kTick;
+using enum PartnerStanding;
+
+constexpr std::int64_t kAloneAfter = 20 * kTick;
+
+Scene cell() {
+  std::vector<Object> objects;
+  for (const char* name : {"a", "b", "c", "d"}) {
+    objects.push_back(test::moving(name, {test::ball(0.1), test::capsule(0.4, 0.05)}));
+    objects.back().max_speed = 5.0;
+  }
+  Scene scene = test::cell_of(std::move(objects));
+  scene.rate_hz = 1000;
+  for (ObjectPair& pair : scene.pairs) pair.publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+  scene.budget = 8;
+  return scene;
+}
+
+// One daemon, ticked as its loop does.
+class Side {
+ public:
+  Side(const Scene& scene, std::uint64_t daemon)
+      : scene_(scene),
+        ids(scene),
+        monitor(std::make_unique<Monitor>(scene)),
+        ticks(poses, clock,
+              {.daemon = daemon,
+               .start_ns = static_cast<std::int64_t>(daemon),
+               .batch = {.samples = 16},
+               .alone_after_ns = kAloneAfter}) {}
+
+  // What a source sends, in every tick another pose.
+  void get(std::uint64_t number, const char* source = "arm") {
+    poses.add(source, number, std::vector<JointSample>{});
+    poses.last().samples = samples(number);
+    poses.last().scene_revision = scene_.revision;
+  }
+  static std::vector<PoseSample> samples(std::uint64_t number) {
+    std::vector<PoseSample> list;
+    const double t = 0.001 * static_cast<double>(number);
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      list.push_back(test::sample(i, test::at(0.6 * i + 0.3 * std::sin(7 * t + i), 0.2 * t, 0),
+                                  test::kStart + static_cast<std::int64_t>(number) * kTick));
+    }
+    return list;
+  }
+
+  void tick() {
+    deadline_ += kTick;
+    clock.sleep_until(deadline_ - ticks.ahead_ns());
+    deadline_ = ticks.decide(deadline_, monitor->cycle() + 1, scene_.revision);
+    poses_.clear();
+    joints_.clear();
+    used.clear();
+    while (const PoseBatch* batch = ticks.next()) {
+      used.push_back(batch->sequence_number);
+      EXPECT_TRUE(ids.append(*batch, poses_, joints_));
+    }
+    const Report& report = monitor->tick(poses_, joints_, ticks.time());
+    cycle = report.cycle;
+    now_ns = report.now_ns;
+    ticks.ticked(*monitor);
+    tag = {};
+    if (const TickTag* front = ticks.tags().front()) {
+      tag = *front;
+      ticks.tags().pop();
+    }
+    spoke = tag.publishes;
+    checksum = checksum_of(report);
+    rest = checksum_of_rest(report, tag.state_checksum);
+  }
+  void rest_for(std::int64_t ns) {
+    clock.pass(ns);
+    deadline_ = clock.monotonic_ns();
+  }
+  // What this one said reaches the other.
+  void tell(Side& other) {
+    for (; const TickNotice* notice = ticks.notices().front(); ticks.notices().pop()) {
+      ++notices;
+      EXPECT_TRUE(other.ticks.hear(*notice));
+    }
+  }
+  void drop_notices() {
+    while (ticks.notices().front() != nullptr) ticks.notices().pop();
+  }
+  // The other one joins with the state of this one's successor, which this one ticks from then on.
+  void give_state(Side& other) {
+    monitor = test::taken_over(*monitor, scene_, scene_, ids.sources());
+    ticks.successor_began(true);
+    std::vector<std::byte> bytes;
+    save_state(ids.sources(), ids, *monitor, bytes);
+    JoinedState joined(scene_);
+    ASSERT_TRUE(joined.restore(bytes, ticks.becoming()));
+    joined.join(other.monitor, other.ids);
+    ASSERT_TRUE(joined.has_joined());
+    other.ticks.joined(joined.lineage());
+    ticks.successor_followed();
+  }
+
+ private:
+  const Scene& scene_;
+  std::vector<PoseSample> poses_;
+  std::vector<JointSample> joints_;
+  std::int64_t deadline_ = 0;
+
+ public:
+  test::TurnedClock clock;
+  test::ListedPoses poses;
+  SceneIds ids;
+  std::unique_ptr<Monitor> monitor;
+  TickPartner ticks;
+  std::vector<std::uint64_t> used;
+  TickTag tag;
+  std::uint64_t cycle = 0, checksum = 0, rest = 0;
+  std::int64_t now_ns = 0;
+  int notices = 0;
+  bool spoke = false;
+};
+
+class TickPartners : public testing::Test {
+ protected:
+  Scene scene = cell();
+  Side left{scene, 1}, right{scene, 2};
+  std::uint64_t sent = 0;
+
+  void send() {
+    ++sent;
+    left.get(sent);
+    right.get(sent);
+  }
+  // Both tick once; the one that leads first.
+  void tick_both() {
+    send();
+    Side& leader = right.ticks.standing() == kLeading ? right : left;
+    Side& other = &leader == &left ? right : left;
+    leader.tick();
+    leader.tell(other);
+    other.tick();
+    other.tell(leader);
+  }
+  void run_until_left_leads() {
+    for (int i = 0; i < 30; ++i) {
+      send();
+      left.tick();
+      left.drop_notices();
+      right.clock.pass(kTick);
+    }
+    ASSERT_EQ(left.ticks.standing(), kLeading);
+    right.rest_for(0);
+  }
+  void join() {
+    run_until_left_leads();
+    for (int i = 0; i < 3; ++i) tick_both();
+    ASSERT_TRUE(right.ticks.wants_state());
+    left.give_state(right);
+    tick_both();
+  }
+  void expect_agreement() {
+    EXPECT_EQ(left.cycle, right.cycle);
+    EXPECT_EQ(left.tag.lineage, right.tag.lineage);
+    EXPECT_EQ(left.now_ns, right.now_ns);
+    EXPECT_EQ(left.used, right.used);
+    EXPECT_EQ(left.checksum, right.checksum);
+    EXPECT_EQ(left.rest, right.rest);
+  }
+};
+
+TEST_F(TickPartners, ADaemonIsSilentUntilItKnowsThatItIsAlone) {
+  for (int i = 0; i < 10; ++i) left.tick();
+  EXPECT_EQ(left.ticks.standing(), kStarting);
+  EXPECT_FALSE(left.spoke);
+  for (int i = 0; i < 20; ++i) left.tick();
+  EXPECT_EQ(left.ticks.standing(), kLeading);
+  EXPECT_TRUE(left.spoke);
+}
+
+TEST_F(TickPartners, ADaemonThatJoinsHasTheSameBitsFromItsFirstReportOn) {
+  join();
+  EXPECT_TRUE(right.spoke);
+  EXPECT_EQ(right.ticks.standing(), kFollowing);
+  for (int i = 0; i < 100; ++i) {
+    tick_both();
+    expect_agreement();
+    if (HasFailure()) return;
+  }
+}
+
+TEST_F(TickPartners, TheFollowerUsesTheLeadersBatchesInTheLeadersOrder) {
+  join();
+  ++sent;
+  left.get(sent, "arm");
+  left.get(sent, "hand");
+  right.get(sent, "hand");
+  right.get(sent, "arm");
+  right.get(sent + 1, "arm");
+  left.tick();
+  left.tell(right);
+  right.tick();
+  expect_agreement();
+  EXPECT_EQ(right.used.size(), 2u);
+  ++sent;
+  left.get(sent, "arm");
+  left.tick();
+  left.tell(right);
+  right.tick();
+  expect_agreement();
+  EXPECT_EQ(right.used, std::vector{sent}) << "it waited for the tick of the leader";
+}
+
+TEST_F(TickPartners, ATickTakesOneMessageAndOnlyTheLeaderSendsIt) {
+  join();
+  left.notices = right.notices = 0;
+  for (int i = 0; i < 50; ++i) tick_both();
+  EXPECT_EQ(left.notices, 50);
+  EXPECT_EQ(right.notices, 0);
+}
+
+TEST_F(TickPartners, TheFollowerTakesTheLeadInTheTickThatTheLeaderDidNotAnnounce) {
+  join();
+  const std::uint64_t last = right.cycle;
+  const std::int64_t before = right.now_ns;
+  send();
+  right.tick();
+  EXPECT_EQ(right.ticks.standing(), kLeading);
+  EXPECT_EQ(right.cycle, last + 1);
+  EXPECT_GT(right.now_ns, before);
+  EXPECT_LE(right.now_ns, before + 2 * kTick);
+  EXPECT_EQ(right.used, std::vector{sent});
+}
+
+// The leader was stopped and goes on: it ticks what the other one has announced meanwhile, and then
+// has the same bits without another state.
+TEST_F(TickPartners, ALeaderThatWasStoppedFollowsTheOneThatWentOn) {
+  join();
+  for (int i = 0; i < 30; ++i) {
+    send();
+    right.tick();
+    right.tell(left);
+  }
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  left.rest_for(30 * kTick);
+  for (int i = 0; i < 30; ++i) left.tick();
+  EXPECT_EQ(left.ticks.standing(), kFollowing);
+  expect_agreement();
+  for (int i = 0; i < 20; ++i) {
+    tick_both();
+    expect_agreement();
+  }
+}
+
+// It ticked the cycle that the other one had announced otherwise.
+TEST_F(TickPartners, ADaemonThatTickedOtherInputsIsApartUntilItHasTheOthersState) {
+  join();
+  send();
+  left.tick();
+  left.drop_notices();
+  right.tick();
+  right.tell(left);
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  tick_both();
+  EXPECT_EQ(left.ticks.standing(), kApart);
+  EXPECT_TRUE(left.spoke) << "its reports are true";
+  EXPECT_NE(left.tag.lineage, right.tag.lineage);
+  EXPECT_TRUE(left.ticks.wants_state());
+  right.give_state(left);
+  tick_both();
+  expect_agreement();
+}
+
+TEST_F(TickPartners, ABatchThatHasNotComeIsWaitedForAndThenTheTickRestsOnOtherInputs) {
+  join();
+  ++sent;
+  left.get(sent);
+  left.tick();
+  left.tell(right);
+  right.tick();
+  EXPECT_EQ(right.ticks.standing(), kApart);
+  EXPECT_NE(left.tag.lineage, right.tag.lineage);
+  EXPECT_EQ(right.cycle, left.cycle);
+}
+
+// It lacks the batches of that time. Its cycles would come a second time.
+TEST_F(TickPartners, ADaemonThatCountsLowerIsSilentUntilItHasTheOthersState) {
+  join();
+  for (int i = 0; i < 30; ++i) {
+    ++sent;
+    right.get(sent);
+    right.tick();
+    right.tell(left);
+  }
+  left.rest_for(30 * kTick);
+  for (int i = 0; i < 3; ++i) tick_both();
+  EXPECT_EQ(left.ticks.standing(), kApart);
+  EXPECT_FALSE(left.spoke);
+  right.give_state(left);
+  tick_both();
+  EXPECT_TRUE(left.spoke);
+  expect_agreement();
+}
+
+TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
+  for (int i = 0; i < 30; ++i) {
+    send();
+    left.tick();
+    right.tick();
+    left.drop_notices();
+    right.drop_notices();
+  }
+  ASSERT_EQ(left.ticks.standing(), kLeading);
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  for (int i = 0; i < 3; ++i) {
+    send();
+    left.tick();
+    right.tick();
+    left.tell(right);
+    right.tell(left);
+  }
+  EXPECT_EQ(left.ticks.standing(), kLeading);
+  EXPECT_EQ(right.ticks.standing(), kApart);
+}
+
+// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation
+// overwrites it before anything has used it: all pairs are compared in that time.
+TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
+  scene.budget = 2;
+  Random random(34);
+  int found = 0, overwritten = 0;
+  for (int trial = 0; trial < 300; ++trial) {
+    Side one(scene, 1), other(scene, 2);
+    std::uint64_t number = 0;
+    const auto tick = [&] {
+      ++number;
+      const std::int64_t now = test::kStart + static_cast<std::int64_t>(number) * kTick;
+      for (Side* side : {&one, &other}) {
+        const Report& report = side->monitor->tick(Side::samples(number), now);
+        side->checksum = checksum_of(report);
+        side->rest = checksum_of_rest(report, side->monitor->checksum());
+      }
+      return one.checksum == other.checksum && one.rest == other.rest;
+    };
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick());
+    one.monitor->flip_bit(trial % 2 == 0, random.next());
+    bool same = true;
+    for (int i = 0; i < 10 && same; ++i) same = tick();
+    ++(same ? overwritten : found);
+    for (int i = 0; i < 100 && same; ++i) EXPECT_TRUE(tick()) << "nothing remained of it";
+  }
+  EXPECT_GT(found, 10 * overwritten);
+  RecordProperty("found", found);
+}
+
+}  // namespace
+}  // namespace clearance
