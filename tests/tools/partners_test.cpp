@@ -1,7 +1,7 @@
 // Two daemons that are partners, as a client meets them: processes that are killed, stopped and
 // started again while a source sends poses.
 //
-// The long campaign: CLEARANCE_KILLS=1000 daemon_tests --gtest_filter='Partners.Random*'
+// The long campaign: CLEARANCE_KILLS=1000 tools_tests --gtest_filter='Partners.Random*'
 // Another seed: CLEARANCE_KILLS_SEED=7
 #include <gtest/gtest.h>
 
