@@ -74,7 +74,7 @@ class Stream {
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
   // Tells whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
-  // Of reports of two partners, which are merged into one stream: whether the two agree. A change
+  // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
   [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
 

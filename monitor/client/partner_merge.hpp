@@ -23,7 +23,7 @@ enum class PartnerState : std::uint8_t {
 };
 [[nodiscard]] const char* name(PartnerState state) noexcept;
 
-// What is known of the partners when a report is handed out.
+// The state of the two partners when a report is handed out.
 struct PartnerCheck {
   PartnerState state = PartnerState::kAlone;
   std::uint64_t cycle = 0;   // of the report that it is about; 0: kAlone

@@ -86,7 +86,7 @@ class Daemon : private CellParts {
     std::unique_ptr<ReportQueue> queue;
     std::unique_ptr<RosWriter> ros;
   };
-  // What a daemon has that has a partner.
+  // The parts of a daemon that has a partner.
   struct OfPartner {
     TickPartner ticks;
     PartnerPort port;

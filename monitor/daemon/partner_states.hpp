@@ -1,4 +1,4 @@
-// How a daemon takes over the state of its partner, and gives it its own. Both are work of the
+// Takes over the state of a daemon's partner, and gives it its own. Both are work of the
 // scene thread, so that neither meets a change of the cell.
 #pragma once
 

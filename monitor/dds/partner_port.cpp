@@ -12,7 +12,7 @@
 namespace clearance {
 namespace {
 
-// What happens without a message is seen this often.
+// Events without a message are noticed this often.
 constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
 // A leader stops writing somewhat before its lease ends.
@@ -27,7 +27,7 @@ void copy_text(std::string_view from, char (&to)[N]) {
   std::memset(to + length, 0, N - length);
 }
 
-// What CLOCK_REALTIME is ahead of CLOCK_MONOTONIC.
+// The lead of CLOCK_REALTIME over CLOCK_MONOTONIC.
 std::int64_t realtime_less_monotonic() {
   SystemClock clock;
   return clock.realtime_ns() - clock.monotonic_ns();

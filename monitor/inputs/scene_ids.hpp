@@ -58,7 +58,7 @@ class SceneIds {
     former_.slot(revision).kept.objects_now = std::move(objects_now);
   }
 
-  // How the ids of former scenes are passed on, for ids of the same scene elsewhere. May allocate.
+  // Passes the ids of former scenes on, for ids of the same scene elsewhere. May allocate.
   void save_former(StateWriter& out) const;
   void restore_former(StateReader& in);
 

@@ -32,7 +32,7 @@ class BatchStore {
   void choose_all(bool keep) noexcept;
   // Chooses these. Returns false, and chooses none, if one has not come.
   [[nodiscard]] bool choose(std::span<const TickInput> inputs) noexcept;
-  // What was chosen last.
+  // The last choice.
   [[nodiscard]] std::span<const TickInput> chosen() const noexcept {
     return std::span(inputs_).first(count_);
   }

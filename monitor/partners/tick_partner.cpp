@@ -134,7 +134,7 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   return deadline;
 }
 
-// The whole process may have been stopped. Two passes of the other thread, of which the second one
+// The whole process may have been stopped. Two passes of the other thread, the second of which
 // began after this call, have taken in everything.
 void TickPartner::hear_out() noexcept {
   const std::uint64_t passes = passes_.load(std::memory_order_acquire) + 2;
