@@ -10,6 +10,12 @@
 namespace clearance {
 namespace {
 
+// The bodies that a sensor sees have no pose that a question could state, and no bound over time.
+std::string sees_a_cloud(const std::string& sensor) {
+  return "sensor \"" + sensor +
+         "\": a motion is not certified beside what sensors see; ask about a cell without sensors";
+}
+
 // A joint that mimics another may be stated, if it is where the other one moves it. Rad or m.
 constexpr double kMimicTolerance = 1e-6;
 
@@ -176,6 +182,7 @@ std::optional<std::string> Posture::find_free(const std::string& name,
   if (at->fixed || is_link(object)) {
     return "object \"" + name + "\" is fixed or part of a robot: its pose is known";
   }
+  if (at->is_seen()) return sees_a_cloud(name);
   if (present_[object] != 0) return "the pose of object \"" + name + "\" is stated twice";
   return std::nullopt;
 }
@@ -226,6 +233,7 @@ std::optional<std::string> Posture::open_object(const Question& question) {
   all_present_ = true;
   for (const std::uint32_t i : free_) {
     const Object& object = scene_.objects[i];
+    if (object.is_seen() && !object.absent) return sees_a_cloud(object.name);
     all_present_ = all_present_ && present_[i] != 0;
     if (present_[i] == 0 && !object.absent) {
       return "object \"" + object.name +

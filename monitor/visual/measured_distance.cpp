@@ -50,6 +50,7 @@ MeasuredDistance MeasuredDistances::between(std::uint32_t a, std::uint32_t b,
                                             const ObjectPoses& poses) {
   const std::size_t objects = first_.size() - 1;
   if (a == b || a >= objects || b >= objects) return {};
+  if (scene_.objects[a].is_seen() || scene_.objects[b].is_seen()) return {};
   if (!poses.is_on_time(a) || !poses.is_on_time(b)) return {};
   const auto placed = [&](std::uint32_t object) {
     const std::span<PosedPart> parts(parts_.data() + first_[object],

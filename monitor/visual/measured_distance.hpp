@@ -27,14 +27,15 @@ class MeasuredDistances {
  public:
   // `scene` must outlive this.
   explicit MeasuredDistances(const Scene& scene)
-      : parts_(parts_of(scene)), first_(first_parts(scene)) {}
+      : scene_(scene), parts_(parts_of(scene)), first_(first_parts(scene)) {}
 
-  // Unknown for one object alone, for numbers that the scene does not have, and while the pose of
-  // one of the objects is missing, late or contradicted.
+  // Unknown for one object alone, for what a sensor sees, for numbers that the scene does not have,
+  // and while the pose of one of the objects is missing, late or contradicted.
   [[nodiscard]] MeasuredDistance between(std::uint32_t a, std::uint32_t b,
                                          const ObjectPoses& poses);
 
  private:
+  const Scene& scene_;
   std::vector<PosedPart> parts_;
   std::vector<std::uint32_t> first_;
 };

@@ -28,7 +28,6 @@ namespace clearance::test {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 // The finger is a sphere of 0.05 m that circles at 2 m around the origin.
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
@@ -82,7 +81,7 @@ class DaemonQuestions : public testing::Test {
                            const client::QuestionOptions& options = {}) {
     std::optional<QuestionResult> result;
     EXPECT_TRUE(eventually([&] {
-      result = questions.ask(question, options, seconds(30));
+      result = questions.ask(question, options, std::chrono::seconds(30));
       return result && result->status != QuestionStatus::kNoInput;
     })) << (result ? result->reason : daemon->output());
     return result.value_or(QuestionResult{});
@@ -158,7 +157,7 @@ TEST_F(DaemonQuestions, WithInputsThatAreMissingLateOrMovingAreNeverFree) {
   const auto refused_for = [&](const std::string& name) {
     std::optional<QuestionResult> result;
     const bool came = eventually([&] {
-      result = questions.ask(swing(-1.0, -0.9), {}, seconds(30));
+      result = questions.ask(swing(-1.0, -0.9), {}, std::chrono::seconds(30));
       return result && result->status == QuestionStatus::kNoInput &&
              result->reason.find(name) != std::string::npos;
     });
@@ -174,7 +173,7 @@ TEST_F(DaemonQuestions, WithInputsThatAreMissingLateOrMovingAreNeverFree) {
   refused_for("older than its age limit");
   EXPECT_TRUE(eventually([&] {
     send(-1.0, {-5, 0, 0}, 0.3);
-    const auto result = questions.ask(swing(-1.0, -0.9), {}, seconds(30));
+    const auto result = questions.ask(swing(-1.0, -0.9), {}, std::chrono::seconds(30));
     return result && result->reason.find("elbow") != std::string::npos &&
            result->reason.find("moves") != std::string::npos;
   }));
@@ -183,7 +182,7 @@ TEST_F(DaemonQuestions, WithInputsThatAreMissingLateOrMovingAreNeverFree) {
   Question stated = swing(-1.0, -0.9);
   stated.held = {{"elbow", 0.0}, {"push", 0.0}};
   stated.poses = {{.object = "cart", .world_from_object = {.position = {-5.0, 0.0, 0.0}}}};
-  EXPECT_TRUE(questions.ask(stated, {}, seconds(30))->done());
+  EXPECT_TRUE(questions.ask(stated, {}, std::chrono::seconds(30))->done());
 }
 
 TEST_F(DaemonQuestions, AreAboutTheSceneInForce) {
@@ -193,14 +192,15 @@ TEST_F(DaemonQuestions, AreAboutTheSceneInForce) {
   send(-1.0);
   const QuestionResult before = answer_of(questions, swing(-1.0, 0.6));
   ASSERT_TRUE(before.is_free(0.1));
-  const auto placed = commands.send({Place{"pin", at(2.15, 0, 0)}}, {}, seconds(30));
+  const auto placed = commands.send({Place{"pin", at(2.15, 0, 0)}}, {}, std::chrono::seconds(30));
   ASSERT_TRUE(placed && placed->done()) << placed->reason;
   const QuestionResult after = answer_of(questions, swing(-1.0, 0.6));
   ASSERT_TRUE(after.done()) << after.reason;
   EXPECT_EQ(after.scene_revision, placed->scene_revision);
   EXPECT_FALSE(after.is_free(0.1));
-  const auto other = questions.ask(
-      swing(-1.0, 0.6), {.scene_revision = before.scene_revision, .stop = {}}, seconds(30));
+  const auto other =
+      questions.ask(swing(-1.0, 0.6), {.scene_revision = before.scene_revision, .stop = {}},
+                    std::chrono::seconds(30));
   EXPECT_EQ(other->status, QuestionStatus::kOtherRevision);
 }
 
@@ -214,7 +214,7 @@ TEST_F(DaemonQuestions, IncludeWhatIsAttached) {
   const auto changed = commands.send(
       {AddObject{"{name: part, fixed: true, sphere: {radius: 0.02}, pose: {xyz: [0, 9, 9]}}"},
        Attach{"part", "finger", at(0.15, 0, 0)}},
-      {}, seconds(30));
+      {}, std::chrono::seconds(30));
   ASSERT_TRUE(changed && changed->done()) << changed->path << changed->reason;
   const QuestionResult result = answer_of(questions, swing(-1.0, 0.6));
   ASSERT_TRUE(result.done()) << result.reason;
@@ -229,7 +229,7 @@ TEST_F(DaemonQuestions, ThatDoNotFitAreRefusedWithTheReason) {
   (void)answer_of(questions, swing(-1.0, 0.6));
   const auto refused = [&](const Question& question, QuestionStatus status,
                            const std::string& named) {
-    const auto result = questions.ask(question, {}, seconds(30));
+    const auto result = questions.ask(question, {}, std::chrono::seconds(30));
     ASSERT_TRUE(result);
     EXPECT_EQ(result->status, status) << result->reason;
     EXPECT_NE((result->path + result->reason).find(named), std::string::npos)
@@ -263,7 +263,8 @@ TEST_F(DaemonQuestions, OfAClientThatIsNotNamedAreRefusedAndOneOnTheCommandLineI
   start(20'000, {"--questions", "tool"});
   send(-1.0);
   client::Questions stranger(connection, "stranger"), tool(connection, "tool");
-  EXPECT_EQ(stranger.ask(swing(-1.0, 0.6), {}, seconds(30))->status, QuestionStatus::kNotNamed);
+  EXPECT_EQ(stranger.ask(swing(-1.0, 0.6), {}, std::chrono::seconds(30))->status,
+            QuestionStatus::kNotNamed);
   EXPECT_TRUE(answer_of(tool, swing(-1.0, 0.6)).done());
 }
 

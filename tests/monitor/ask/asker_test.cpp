@@ -172,5 +172,23 @@ TEST(Asker, KeepsItsBoundsWhenTheWorkEndsEarly) {
   EXPECT_NE(answer.margins[0].verdict, Verdict::kBelow);
 }
 
+// A sensor's object has a body, the ball of its view, which says nothing about what is seen.
+TEST(Asker, RefusesACellWithASensorAndNamesIt) {
+  Scene scene = scara_beside("sphere: {radius: 0.1}, max_speed: 1");
+  const auto seen = std::ranges::find(scene.objects, "post", &Object::name);
+  ASSERT_NE(seen, scene.objects.end());
+  seen->sensor = 0;
+  Question question = swing(-1.0, 0.6);
+  for (const bool states_a_pose : {false, true}) {
+    if (states_a_pose) question.poses = {{"post", Pose{}}};
+    const auto answer = ask(scene, question);
+    ASSERT_TRUE(std::holds_alternative<std::string>(answer));
+    EXPECT_NE(std::get<std::string>(answer).find("sensor \"post\""), std::string::npos);
+  }
+  seen->absent = true;
+  question.poses.clear();
+  EXPECT_TRUE(std::holds_alternative<Answer>(ask(scene, question)));
+}
+
 }  // namespace
 }  // namespace clearance

@@ -99,5 +99,13 @@ TEST_F(MeasuredDistanceTest, IsUnknownWithoutAPoseAndWithALateOne) {
   expect_unknown(1, 3);
 }
 
+TEST_F(MeasuredDistanceTest, OfWhatASensorSeesIsUnknown) {
+  use(at(1, 0, 0), kMs, kMs);
+  ASSERT_NE(measured.between(0, 1, poses).status, PairStatus::kUnknown);
+  scene.objects[1].sensor = 0;
+  EXPECT_EQ(measured.between(0, 1, poses).status, PairStatus::kUnknown);
+  EXPECT_EQ(measured.between(1, 0, poses).lower, -kInfinity);
+}
+
 }  // namespace
 }  // namespace clearance::test
