@@ -18,8 +18,6 @@ namespace {
 
 // The rounding of directions, velocities and support values, relative to the lengths in them.
 constexpr double kSlabRounding = 0x1p-44;
-// The relative error of a computed position of a joint.
-constexpr double kPositionRounding = 0x1p-49;
 
 // The greatest d.(x - c) over the points x of a bounded part, where c is the centre of its sphere,
 // rounded up. d: in the world, of any length.
@@ -83,8 +81,7 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
   TipMotion motion;
   motion.half = rounded_up(std::max(stretch.to - middle, middle - stretch.from));
   motion.moved = chains.displacement(bundle.chain, sphere, posture.bounds());
-  motion.rounding =
-      kPositionRounding * posture.trajectory().largest_position() * bundle.sum_of_reaches;
+  motion.rounding = posture.trajectory().position_rounding() * bundle.sum_of_reaches;
   if (!stretch.is_in_one_segment()) return motion;
   motion.has_twist = true;
   Vec3 base_origin, tip_origin;

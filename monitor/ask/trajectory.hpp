@@ -79,8 +79,9 @@ class Trajectory {
   }
   // Indices into Scene::variables of the joints that have waypoints.
   [[nodiscard]] std::span<const std::uint32_t> moved() const noexcept { return moved_; }
-  // The largest magnitude of a position, or of a velocity times the length of the motion.
-  [[nodiscard]] double largest_position() const noexcept { return largest_position_; }
+  // No computed position is farther from the exact one, rad or m. It includes what the rounding of
+  // speeds adds to a position within a stretch.
+  [[nodiscard]] double position_rounding() const noexcept { return position_rounding_; }
 
   // Returns the instant at which a stretch is examined and divided: a waypoint, or the middle.
   [[nodiscard]] double middle(const Stretch& stretch) const noexcept;
@@ -139,7 +140,9 @@ class Trajectory {
   std::vector<std::uint32_t> moved_;             // track by track
   std::vector<double> times_;                    // of the timeline: all different, rising
   std::vector<std::vector<std::int32_t>> rows_;  // by track, by segment
+  // The largest magnitude of a position, or of a velocity times the length of the motion.
   double largest_position_ = 0.0;
+  double position_rounding_ = 0.0;
 };
 
 // Returns the index of a variable by its name; nothing if there is none.
