@@ -45,13 +45,26 @@ void add_rejection(clearance_msg_Health& out, const std::string& object, const c
 // The causes of Reject, spelt for people.
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
 
+// Refused messages of sensors, by cause.
+void add_refused_frames(const Scene& scene, const std::vector<SensorStatus>& sensors,
+                        clearance_msg_Health& out) {
+  for (std::size_t i = 0; i < std::min(scene.sensors.size(), sensors.size()); ++i) {
+    for (std::size_t fault = 1; fault < kFrameFaults; ++fault) {
+      add_rejection(out, "sensor " + scene.sensors[i].name, name(static_cast<FrameFault>(fault)),
+                    sensors[i].counts[fault]);
+    }
+  }
+}
+
 // Lists refusals by source and by object. Refusals of unknown ids have no object, so they are
 // listed by cause: the totals minus the objects' counts.
 void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
                      clearance_msg_Health& out) {
   const std::vector<RefusedSource> refused = poses.refused_sources();
+  const std::vector<SensorStatus> sensors = poses.sensors();
   const std::size_t inputs = scene.objects.size() + scene.variables.size();
-  const std::size_t most = 1 + refused.size() + (inputs + 1) * kRejects;
+  const std::size_t most =
+      1 + refused.size() + (inputs + 1) * kRejects + sensors.size() * kFrameFaults;
   reserve_sequence(out.rejected, std::min<std::size_t>(most, 4096));
   for (const RefusedSource& source : refused) {
     const std::string_view of = source.source.view();
@@ -59,6 +72,7 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
     add_rejection(out, is_sum ? "other sources" : "source " + quoted(of), name(source.cause),
                   source.poses);
   }
+  add_refused_frames(scene, sensors, out);
   add_rejection(out, "sources", "batches of a writer with too many names", poses.refused_names());
   std::array<std::uint64_t, kRejects> nameless = statistics.rejected_total;
   for (std::size_t object = 0; object < scene.objects.size(); ++object) {

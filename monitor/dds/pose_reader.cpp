@@ -73,6 +73,8 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
     : topics_(&cell.topics),
       undecodable_before_(undecodable_samples()),
       where_(participant.where()),
+      sensors_(cell.scene.sensors.empty() ? nullptr
+                                          : std::make_unique<SensorReader>(cell, participant)),
       intake_(cell,
               {.admits_sources = true,
                .most_samples = samples_a_batch(cell),
@@ -93,10 +95,12 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
 }
 
 void PoseReader::start() {
+  if (sensors_) sensors_->start();
   thread_ = std::thread([this] { run(); });
 }
 
 void PoseReader::change(const Cell& cell) {
+  if (sensors_) sensors_->change(cell);
   const std::lock_guard lock(mutex_);
   topics_ = &cell.topics;
   intake_.change(cell);
@@ -230,6 +234,7 @@ void PoseReader::take_all(const Now& now) {
 bool PoseReader::hand_over(PoseBatch& batch) noexcept {
   PoseBatch* const slot = ring_.back();
   if (slot == nullptr) return false;
+  if (sensors_) sensors_->note(batch);
   std::swap(*slot, batch);
   ring_.push();
   return true;

@@ -1,10 +1,12 @@
 // The PoseSource of DDS: it reads poses, joint states and tf, from our own topics and those of ROS
 // 2. Its thread takes samples, has them decoded and admitted (intake/), and hands batches to the
-// tick thread.
+// tick thread. The sensors of the cell have another thread (sensor_reader.hpp), which gets the same
+// batches.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <string>
 #include <thread>
@@ -13,6 +15,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/ros_readers.hpp"
+#include "monitor/dds/sensor_reader.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
@@ -34,7 +37,7 @@ class PoseReader final : public PoseSource {
   PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene = {});
   ~PoseReader() override;
 
-  // Starts the thread that takes samples. Call this once, when ticks are about to begin: what
+  // Starts the threads that take samples. Call this once, when ticks are about to begin: what
   // arrives earlier would only fill the ring.
   void start();
 
@@ -43,6 +46,10 @@ class PoseReader final : public PoseSource {
   void change(const Cell& cell);
 
   const PoseBatch* next() noexcept override;
+  // For the tick thread: frames of sensors; null if the cell has none.
+  [[nodiscard]] FrameExchange* frames() noexcept {
+    return sensors_ ? &sensors_->frames() : nullptr;
+  }
 
   // After start(): the thread that takes.
   [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
@@ -54,6 +61,10 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] SourceTally departed() const;
   // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
+  // By sensor of the cell.
+  [[nodiscard]] std::vector<SensorStatus> sensors() const {
+    return sensors_ ? sensors_->statuses() : std::vector<SensorStatus>();
+  }
   // The number of samples that Cyclone could not decode since this object was made. Cyclone drops
   // them with a line in its log, where they are counted. The count includes other readers of the
   // process.
@@ -86,6 +97,7 @@ class PoseReader final : public PoseSource {
   // Guards the intake, and what `ros_` knows of other programs. The taking and the publishing
   // thread use it, never the tick thread.
   mutable std::mutex mutex_;
+  std::unique_ptr<SensorReader> sensors_;  // null: the cell has none
   Intake intake_;
   std::vector<OwnReader> own_;
   RosReaders ros_;

@@ -9,13 +9,21 @@
 #include "monitor/dds/joint_log.hpp"
 
 namespace clearance {
+namespace {
 
-// A joint is "joint NAME" in the list of refusals.
+// A joint is "joint NAME" in the list of refusals, a sensor "sensor NAME".
+std::string_view refused_of(std::string_view input) {
+  if (input.starts_with("joint ")) return "positions";
+  return input.starts_with("sensor ") ? "messages" : "poses";
+}
+
+}  // namespace
+
 void RefusalLog::add(const clearance_msg_RejectCount& entry) {
   const std::string input = entry.object, cause = entry.cause;
   const std::uint64_t grown = entry.count - std::exchange(before_[{input, cause}], entry.count);
   if (grown == 0) return;
-  Refusals& refusals = refusals_[{input.starts_with("joint "), cause}];
+  Refusals& refusals = refusals_[{refused_of(input), cause}];
   if (std::ranges::find(refusals.inputs, input) == refusals.inputs.end())
     refusals.inputs.push_back(input);
   refusals.count += grown;
@@ -43,9 +51,9 @@ std::size_t RefusalLog::update(const clearance_msg_Health& health, std::size_t m
   for (auto& [key, refusals] : refusals_) {
     if (refusals.count > 0) ++refusals.counted_s;
     if (!is_due(refusals) || due++ >= most) continue;
-    const auto& [are_joints, cause] = key;
+    const auto& [what, cause] = key;
     log_line(lines::kRefused, refusals.count,
-             (are_joints ? "positions of " : "poses of ") + listed(refusals.inputs, kNamesALine),
+             fmt::format("{} of {}", what, listed(refusals.inputs, kNamesALine)),
              refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s), cause,
              refusals.total);
     refusals.named.insert(refusals.inputs.begin(), refusals.inputs.end());

@@ -7,6 +7,7 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -25,7 +26,7 @@ class RefusalLog {
  private:
   static constexpr int kFirstPauseS = 10, kLongestPauseS = 640;
   static constexpr int kOverS = 60;  // refusals are new again after this time without one
-  // The refusals of one cause: of joints, or of objects.
+  // The refusals of one cause: of joints, of sensors, or of objects.
   struct Refusals {
     std::vector<std::string> inputs;  // refused since the last line
     std::set<std::string> named;      // in a line, since the refusals began
@@ -40,8 +41,8 @@ class RefusalLog {
   void add(const clearance_msg_RejectCount& entry);
   [[nodiscard]] static bool is_due(const Refusals& refusals);
 
-  std::map<std::pair<std::string, std::string>, std::uint64_t> before_;  // by input and cause
-  std::map<std::pair<bool, std::string>, Refusals> refusals_;            // by is-a-joint and cause
+  std::map<std::pair<std::string, std::string>, std::uint64_t> before_;    // by input and cause
+  std::map<std::pair<std::string_view, std::string>, Refusals> refusals_;  // by what and cause
 };
 
 }  // namespace clearance

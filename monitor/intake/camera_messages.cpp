@@ -105,6 +105,58 @@ const char* text(FrameFault fault) noexcept {
   return "";
 }
 
+const char* name(FrameFault fault) noexcept {
+  switch (fault) {
+    case FrameFault::kNoFault:
+      return "";
+    case FrameFault::kUndecodable:
+      return "bytes that are no frame";
+    case FrameFault::kEncoding:
+      return "neither 16UC1 nor 32FC1";
+    case FrameFault::kByteOrder:
+      return "another byte order";
+    case FrameFault::kNoPixels:
+      return "no pixels";
+    case FrameFault::kTooManyPixels:
+      return "more pixels than the cell states";
+    case FrameFault::kStep:
+      return "a step below a row";
+    case FrameFault::kShortData:
+      return "half a frame";
+    case FrameFault::kFields:
+      return "fields that are no points";
+    case FrameFault::kIntrinsics:
+      return "no pinhole camera";
+    case FrameFault::kDistorted:
+      return "not rectified";
+    case FrameFault::kNoCameraInfo:
+      return "no CameraInfo yet";
+    case FrameFault::kCameraInfoChanged:
+      return "another CameraInfo than the first";
+    case FrameFault::kSizeChanged:
+      return "another size than its CameraInfo";
+    case FrameFault::kNoStamp:
+      return "no stamp";
+    case FrameFault::kOtherClock:
+      return "a stamp of another clock";
+    case FrameFault::kOldStamp:
+      return "a stamp not newer than the last";
+    case FrameFault::kFrozen:
+      return "frozen image";
+    case FrameFault::kSecondPublisher:
+      return "a second publisher";
+    case FrameFault::kTooOften:
+      return "more often than the cell states";
+    case FrameFault::kNoPlace:
+      return "its place is not known";
+    case FrameFault::kCannotBuild:
+      return "too wide, or too many points";
+    case FrameFault::kNothingSeen:
+      return "nothing seen but the robot";
+  }
+  return "";
+}
+
 FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pixels,
                 DepthImage& out) noexcept {
   const std::string_view encoding = message.encoding;

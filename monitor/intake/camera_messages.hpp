@@ -47,6 +47,8 @@ inline constexpr std::size_t kFrameFaults = 23;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;
+// The cause as health and the log list it; empty for kNoFault.
+[[nodiscard]] const char* name(FrameFault fault) noexcept;
 
 // The points of a PointCloud2: x, y and z are float32 at these offsets of each point.
 struct PointsView {

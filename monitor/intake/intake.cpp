@@ -19,6 +19,10 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
       use_(std::move(use)),
       sources_(named_sources(cell.scene)),
       slow_(cell.scene) {
+  if (options_.only_sensors) {
+    add<SensorMessages>(cell, options_.use_sensor, *this);
+    return;
+  }
   const RosJointStatesOptions joint_states{
       .topics = options_.joint_topics,
       .other_clock = options_.is_log ? OtherClock::kReplaced : OtherClock::kTold,

@@ -40,6 +40,9 @@ struct IntakeOptions {
   // Receives the messages of the cell's sensors, and the transforms that place them. Empty: they
   // are not used.
   UseSensorMessage use_sensor = {};
+  // Only those: their readers have a thread of their own, since an image takes long to copy. There
+  // are no batches.
+  bool only_sensors = false;
   // The name of a writer in news.
   std::function<std::string(std::uint64_t)> writer_name = [](std::uint64_t writer) {
     return std::to_string(writer);
@@ -71,6 +74,7 @@ class Intake final : public Outlet {
 
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
+    if (options_.only_sensors) return hears_sensors_;
     return !scene_->variables.empty() || transforms_->any() || hears_moveit_ || hears_sensors_;
   }
 
@@ -89,6 +93,7 @@ class Intake final : public Outlet {
     return routes_[topic].counts;
   }
   [[nodiscard]] const PoseSources& sources() const noexcept { return sources_; }
+  // Not with IntakeOptions::only_sensors.
   [[nodiscard]] const RosJointStates& joint_states() const noexcept { return *joint_states_; }
   [[nodiscard]] const RosTransforms& transforms() const noexcept { return *transforms_; }
 

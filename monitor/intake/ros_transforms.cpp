@@ -12,7 +12,6 @@
 namespace clearance {
 namespace {
 
-constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 constexpr std::string_view kTf = "/tf", kStatic = "_static";
 // The number of reports for one frame. After that, the frame is known to change its parent.
 constexpr std::size_t kMostParentsSaid = 3;

@@ -39,16 +39,16 @@ bool needs_transforms(const Scene& scene) noexcept {
 
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
   if (!use_) return std::nullopt;
+  if (topic.type == kTransformsType) return wants_transforms(topic.name);
   for (const Input& input : kInputs) {
     if (topic.type != input.type) continue;
     const auto sensor = std::ranges::find_if(scene_->sensors, [&](const Sensor& each) {
       return each.kind == input.of && each.*input.topic == topic.name;
     });
     if (sensor == scene_->sensors.end()) continue;
-    const auto known = std::ranges::find(topics_, topic.name, &Topic::name);
-    const auto port = static_cast<std::uint32_t>(known - topics_.begin());
-    if (known == topics_.end()) {
-      topics_.push_back({input.message, topic.name});
+    const std::size_t before = topics_.size();
+    const std::uint32_t port = port_of({input.message, topic.name});
+    if (port == before) {
       out_.tell({.cause = News::Cause::kTopicHeard,
                  .is_warning = false,
                  .text = fmt::format("sensor '{}' on {}", sensor->name, topic.name)});
@@ -56,6 +56,20 @@ std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
     return Wanted{port, input.delivery};
   }
   return std::nullopt;
+}
+
+std::optional<Decoder::Wanted> SensorMessages::wants_transforms(const std::string& name) {
+  if (!needs_transforms(*scene_)) return std::nullopt;
+  if (name == "/tf") return Wanted{port_of({Type::kTransforms, name}), &kRosTf};
+  if (name == "/tf_static") return Wanted{port_of({Type::kStaticTransforms, name}), &kRosTfStatic};
+  return std::nullopt;
+}
+
+std::uint32_t SensorMessages::port_of(const Topic& topic) {
+  const auto known = std::ranges::find(topics_, topic.name, &Topic::name);
+  const auto port = static_cast<std::uint32_t>(known - topics_.begin());
+  if (known == topics_.end()) topics_.push_back(topic);
+  return port;
 }
 
 bool SensorMessages::decode(std::uint32_t port, const RawMessage& message, const Now&,

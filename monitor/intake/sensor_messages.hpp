@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "monitor/intake/decoder.hpp"
@@ -30,6 +31,9 @@ struct RawSensorMessage {
 };
 using UseSensorMessage = std::function<void(RawSensorMessage message)>;
 
+// The type of /tf and /tf_static. Where an intake has ros_transforms, these come through it.
+inline constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
+
 // True if a sensor of the cell stands in a frame of tf.
 [[nodiscard]] bool needs_transforms(const Scene& scene) noexcept;
 
@@ -49,6 +53,9 @@ class SensorMessages final : public Decoder {
     RawSensorMessage::Type type;
     std::string name;
   };
+  [[nodiscard]] std::optional<Wanted> wants_transforms(const std::string& name);
+  [[nodiscard]] std::uint32_t port_of(const Topic& topic);
+
   const Scene* scene_;
   UseSensorMessage use_;
   Outlet& out_;

@@ -30,6 +30,8 @@ class ReportSink {
   virtual ~ReportSink() = default;
   // A batch that the coming tick uses; calls come in the order of use.
   virtual void input(const PoseBatch& batch) noexcept = 0;
+  // The coming tick is shown the frame of this sensor with this stamp.
+  virtual void frame(std::uint32_t /*sensor*/, std::int64_t /*stamp_ns*/) noexcept {}
   // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.

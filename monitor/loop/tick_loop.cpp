@@ -95,6 +95,7 @@ void TickLoop::tick_once() noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) between_ticks();
   take_in();
+  if (options_.frames != nullptr) options_.frames->show(scene_->revision, *monitor_, sinks_);
   const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
   const Report& report = monitor_->tick(samples_, joints_, time);
   if (Successor* next = offered_.load(std::memory_order_acquire);

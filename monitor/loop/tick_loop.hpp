@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
+#include "monitor/loop/frame_exchange.hpp"
 #include "monitor/loop/joined_state.hpp"
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
@@ -24,6 +25,7 @@ struct TickLoopOptions {
   std::size_t max_samples =
       4096;                  // samples that one tick can use; the rest waits for the next tick
   TickPace* pace = nullptr;  // null: the loop alone decides when it ticks
+  FrameExchange* frames = nullptr;  // of sensors; null: there are none
 };
 
 // Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an

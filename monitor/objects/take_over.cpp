@@ -24,7 +24,9 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
   now.rejected = before.rejected;
   for (std::size_t i = 0; i < now.objects.size(); ++i) {
     const std::uint32_t old = map.objects[i];
-    if (old != SceneMap::kNone) take_over(before.objects[old], now.objects[i]);
+    // What a sensor sees is known by its next frame.
+    if (old != SceneMap::kNone && !scene.objects[i].is_seen())
+      take_over(before.objects[old], now.objects[i]);
   }
   now.robots.take_over(before.robots, map);
   now.visits.visit_all();

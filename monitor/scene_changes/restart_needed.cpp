@@ -37,6 +37,22 @@ bool same_moveit_inputs(const Cell& before, const Cell& now) {
          });
 }
 
+// Their readers and the memory of their clouds are made at the start.
+bool same_sensors(const Scene& before, const Scene& now) {
+  return std::ranges::equal(before.sensors, now.sensors, [](const Sensor& a, const Sensor& b) {
+    return a.name == b.name && a.kind == b.kind && a.topic == b.topic &&
+           a.camera_info == b.camera_info && a.columns == b.columns && a.rows == b.rows &&
+           a.most_points == b.most_points;
+  });
+}
+
+// A sensor's place may be in a frame of tf, which is then read.
+bool places_sensors_by_tf(const Scene& scene) {
+  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) {
+    return sensor.frames_by_message || !sensor.mount.frame.empty();
+  });
+}
+
 }  // namespace
 
 // Readers of topics are made when the daemon starts.
@@ -57,6 +73,9 @@ std::optional<std::string> restart_needed(const Cell& before, const Cell& now) {
   if (!has_robot(old) && has_robot(scene)) return restart("the cell gets its first robot");
   if (!follows_frames(old) && follows_frames(scene))
     return restart("an object or a robot follows a frame of tf, and none did before");
+  if (!same_sensors(old, scene)) return restart("names, topics or sizes of 'sensors' change");
+  if (!places_sensors_by_tf(old) && places_sensors_by_tf(scene))
+    return restart("a sensor stands in a frame of tf, and none did before");
   if (before.commands != now.commands) return restart("'commands' change");
   if (before.questions != now.questions) return restart("'questions' change");
   if (before.capacity != now.capacity) return restart("the 'capacity' changes");

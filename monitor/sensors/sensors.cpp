@@ -163,31 +163,27 @@ void Sensors::settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use)
         ready = i + 1;
       }
     }
-    if (ready == 0) continue;
+    const auto is_free = [&](const auto& cloud) { return !is_used(cloud.get()); };
+    const auto cloud = std::ranges::find_if(state->clouds, is_free);
+    if (ready == 0 || cloud == state->clouds.end()) continue;
     const std::unique_ptr<Waiting> frame = std::move(state->waiting[ready - 1]);
     state->status.skipped += ready - 1;
     state->waiting.erase(state->waiting.begin(),
                          state->waiting.begin() + static_cast<std::ptrdiff_t>(ready));
-    build(*state, *frame, is_used, use);
+    build(*state, *frame, **cloud, use);
   }
 }
 
-void Sensors::build(State& state, const Waiting& frame, const IsUsed& is_used, const Use& use) {
+void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
   const auto began = std::chrono::steady_clock::now();
-  const auto cloud = std::ranges::find_if(
-      state.clouds, [&](const std::unique_ptr<SeenCloud>& each) { return !is_used(each.get()); });
-  if (cloud == state.clouds.end()) {
-    ++state.status.skipped;
-    return;
-  }
-  SensorFrame out{.cloud = cloud->get(), .stamp_ns = frame.stamp_ns, .world_from_sensor = {}};
+  SensorFrame out{.cloud = &cloud, .stamp_ns = frame.stamp_ns, .world_from_sensor = {}};
   postures_.place(frame.stamp_ns);
   const PastPose place =
       mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
-  FrameFault fault = place.known ? fill(state, frame, **cloud) : FrameFault::kNoPlace;
+  FrameFault fault = place.known ? fill(state, frame, cloud) : FrameFault::kNoPlace;
   if (fault == FrameFault::kNoFault) {
-    leave_out_own(state, place, **cloud);
-    if ((*cloud)->size() == 0) fault = FrameFault::kNothingSeen;
+    leave_out_own(state, place, cloud);
+    if (cloud.size() == 0) fault = FrameFault::kNothingSeen;
   }
   if (fault != FrameFault::kNoFault) {
     ++state.not_built[static_cast<std::size_t>(fault)];
@@ -198,7 +194,7 @@ void Sensors::build(State& state, const Waiting& frame, const IsUsed& is_used, c
   SensorStatus& status = state.status;
   ++status.frames;
   status.stamp_ns = frame.stamp_ns;
-  status.elements = (*cloud)->size();
+  status.elements = cloud.size();
   status.pose_error = out.pose_error;
   status.largest_pose_error = std::max(status.largest_pose_error, out.pose_error);
   const auto took = std::chrono::steady_clock::now() - began;

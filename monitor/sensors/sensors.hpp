@@ -84,7 +84,7 @@ class Sensors {
   void add_transforms(const RawSensorMessage& message);
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
-  void build(State& state, const Waiting& frame, const IsUsed& is_used, const Use& use);
+  void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, SeenCloud& cloud);
   void leave_out_own(State& state, const PastPose& place, SeenCloud& cloud);
 

@@ -1,0 +1,127 @@
+#include "monitor/dds/sensor_reader.hpp"
+
+#include <spdlog/spdlog.h>
+
+#include <utility>
+
+#include "config/scene/scene_map.hpp"
+#include "monitor/app/log_lines.hpp"
+#include "monitor/loop/realtime.hpp"
+
+namespace clearance {
+namespace {
+
+// Batches that wait while a frame is built: 30 ms of several sources at 1 kHz.
+constexpr std::size_t kBatches = 256;
+// The longest wait, ns, so that batches do not fill their ring; and while a frame waits for joints.
+constexpr std::int64_t kIdleNs = 5'000'000, kFrameWaitsNs = 500'000;
+
+}  // namespace
+
+SensorReader::SensorReader(const Cell& cell, Participant& participant)
+    : cell_(&cell),
+      frames_(cell.scene.sensors.size()),
+      batches_(kBatches),
+      ids_(cell.scene),
+      sensors_(std::make_unique<Sensors>(cell, SensorsOptions{})),
+      intake_(cell,
+              {.use_sensor =
+                   [this](const RawSensorMessage& message) { sensors_->add(message, now_ns_); },
+               .only_sensors = true},
+              [](PoseBatch&) { return true; }),
+      ros_(participant, intake_),
+      wait_(participant, {}) {
+  wait_.add(ros_.present().reader());
+  build();
+}
+
+SensorReader::~SensorReader() {
+  stop_ = true;
+  wait_.wake();
+  if (thread_.joinable()) thread_.join();
+}
+
+void SensorReader::start() {
+  thread_ = std::thread([this] { run(); });
+}
+
+// Frames of the cell before are not shown any more (FrameExchange).
+void SensorReader::change(const Cell& cell) {
+  const std::lock_guard lock(mutex_);
+  SceneMap map = scene_map(cell_->scene, cell.scene);
+  ids_.change(cell.scene.revision, map);
+  sensors_ = std::make_unique<Sensors>(cell, *sensors_);
+  intake_.change(cell);
+  cell_ = &cell;
+}
+
+void SensorReader::note(const PoseBatch& batch) {
+  PoseBatch* const slot = batches_.back();
+  if (slot == nullptr) return;
+  *slot = batch;
+  batches_.push();
+}
+
+std::vector<SensorStatus> SensorReader::statuses() const {
+  const std::lock_guard lock(status_mutex_);
+  return statuses_;
+}
+
+void SensorReader::run() {
+  name_thread("sensors");
+  SystemClock clock;
+  for (std::int64_t patience = kIdleNs; !stop_;) {
+    wait_.wait(patience);
+    if (stop_) return;
+    const std::lock_guard lock(mutex_);
+    now_ns_ = clock.monotonic_ns();
+    try {
+      look();
+      take_all();
+    } catch (const DdsError& error) {
+      log_line(lines::kInputsFailed, error.what());
+    }
+    build();
+    log_news();
+    patience = sensors_->any_waiting() ? kFrameWaitsNs : kIdleNs;
+  }
+}
+
+// Makes readers for topics that have appeared.
+void SensorReader::look() {
+  static_cast<void>(ros_.look());
+  const std::vector<RosReaders::Reader>& readers = ros_.readers();
+  for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);
+}
+
+// Joints and poses come first: they may be those at the stamp of a frame.
+void SensorReader::take_all() {
+  poses_.clear();
+  joints_.clear();
+  for (; PoseBatch* const batch = batches_.front(); batches_.pop())
+    static_cast<void>(ids_.append(*batch, poses_, joints_));
+  sensors_->add(poses_, joints_);
+  const Now now{.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = now_ns_};
+  for (const RosReaders::Reader& reader : ros_.readers())
+    take_into(intake_, reader.topic, reader.handle, now, taken_);
+}
+
+void SensorReader::build() {
+  sensors_->settle(
+      now_ns_, [this](const SeenCloud* cloud) { return frames_.is_used(cloud); },
+      [this](std::uint32_t sensor, const SensorFrame& frame) {
+        frames_.put(sensor, frame, cell_->scene.revision);
+      });
+  const std::lock_guard lock(status_mutex_);
+  statuses_.resize(cell_->scene.sensors.size());
+  for (std::uint32_t i = 0; i < statuses_.size(); ++i) statuses_[i] = sensors_->status(i);
+}
+
+void SensorReader::log_news() {
+  for (const News& news : intake_.take_news()) {
+    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{} [{}]", news.text,
+                code(news.cause));
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,78 @@
+// Reads the sensors of a cell from DDS, and makes their frames for the tick.
+//
+// A thread takes images, CameraInfo, points and transforms, and builds a frame of the newest of
+// them. It has readers of its own, so that no joint or pose waits behind an image, and ordinary
+// priority. The tick takes a frame when it is built (loop/frame_exchange.hpp).
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/dds/ros_readers.hpp"
+#include "monitor/inputs/scene_ids.hpp"
+#include "monitor/intake/intake.hpp"
+#include "monitor/loop/frame_exchange.hpp"
+#include "monitor/loop/spsc_ring.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/sensors/sensors.hpp"
+
+namespace clearance {
+
+class SensorReader {
+ public:
+  // Allocates the memory of all clouds. The participant must outlive this, and the cell until
+  // change() is called.
+  SensorReader(const Cell& cell, Participant& participant);
+  ~SensorReader();
+  SensorReader(const SensorReader&) = delete;
+  SensorReader& operator=(const SensorReader&) = delete;
+
+  // Starts the thread. Call this once.
+  void start();
+  // The loop ticks another cell, with the same sensors but for what they state of their places and
+  // errors. Waits until a frame that is being built is done. The cell must outlive this.
+  void change(const Cell& cell);
+
+  // For one thread, that which takes poses and joints: a batch that the tick will get. A batch that
+  // finds no free slot is left out: places are then known less well.
+  void note(const PoseBatch& batch);
+
+  // For the tick.
+  [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
+
+  // Any thread: as of the last frame or second.
+  [[nodiscard]] std::vector<SensorStatus> statuses() const;
+
+ private:
+  void run();
+  void look();
+  void take_all();
+  void build();
+  void log_news();
+
+  const Cell* cell_;
+  FrameExchange frames_;
+  SpscRing<PoseBatch> batches_;
+  std::mutex mutex_;  // guards what follows, but for the statuses
+  SceneIds ids_;
+  std::unique_ptr<Sensors> sensors_;
+  Intake intake_;
+  RosReaders ros_;
+  DataWait wait_;
+  std::size_t waited_for_ = 0;  // number of readers of ROS 2's topics in `wait_`
+  std::vector<CdrSample> taken_;
+  std::vector<PoseSample> poses_;
+  std::vector<JointSample> joints_;
+  std::int64_t now_ns_ = 0;  // CLOCK_MONOTONIC
+  mutable std::mutex status_mutex_;
+  std::vector<SensorStatus> statuses_;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace clearance

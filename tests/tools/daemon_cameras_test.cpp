@@ -1,0 +1,211 @@
+// The daemon reads cameras over real DDS.
+//
+// Oracles: closed forms for a made scene, of which tests/shared/ros_camera.hpp renders pictures.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <string>
+
+#include "tests/shared/ros_camera.hpp"
+#include "tests/shared/ros_frames.hpp"
+#include "tests/shared/ros_joints.hpp"
+#include "tests/tools/watched_daemon.hpp"
+
+namespace clearance::test {
+namespace {
+
+constexpr double kError = 0.002;  // of the depth, m
+constexpr double kRadius = 0.1;   // of the objects before the camera, m
+constexpr double kHeight = 3.0;   // of the camera above the origin of the world, m
+constexpr int kPeriodMs = 20;
+
+const std::string kImage =
+    "depth_image: /cam/image, size: [65, 49], depth_error: {constant: 0.002}, range: [0.3, 4]";
+const std::string kPoints =
+    "points: /cam/points, most_points: 4000, depth_error: {constant: 0.002}, range: [0.3, 4]";
+// It looks down along the z axis of the world.
+const std::string kAbove = ", mount: {pose: {xyz: [0, 0, 3], rpy: [3.141592653589793, 0, 0]}}";
+
+// A ball fixed 1 m below the camera, and the arm of scara.urdf at the origin.
+class DaemonCameras : public WatchedDaemon {
+ protected:
+  void start(const std::string& sensor, const std::vector<std::string>& more = {},
+             const std::string& ball = "pose: {xyz: [0, 0, 2]}") {
+    watch(
+        "name: cameras\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+        "ros2: {world_frame: map}\n"
+        "robots: [{name: arm, urdf: scara.urdf}]\n"
+        "objects: [{name: ball, fixed: true, sphere: {radius: 0.1}, " +
+            ball + "}]\nsensors: [{name: eye, " + sensor +
+            "}]\npairs: [{between: [ball, eye]}, {between: [arm, eye]}]\n",
+        more);
+  }
+  // The one pair of the ball.
+  const clearance_msg_PairDistance& ball_pair() { return pair("ball"); }
+  bool is_measured() { return is("ball", PairStatus::kConverged); }
+
+  MadeScene scene_of_wall{.wall = 2.5, .ball = {}};
+};
+
+// The slabs of the pixels cover the wall up to its depth less the error, everywhere below the ball.
+TEST_F(DaemonCameras, GivesTheExactDistanceToAWallInADepthImage) {
+  start(kImage + kAbove);
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_image(scene_of_wall); }, [&] { return is_measured(); }))
+      << daemon->output();
+  const double exact = static_cast<double>(2.5F) - kError - 1.0 - kRadius;
+  EXPECT_LE(ball_pair().lower, exact + 1e-12);
+  EXPECT_GE(ball_pair().upper, exact - 1e-12);
+  EXPECT_LT(ball_pair().upper - ball_pair().lower, 1e-8);
+  EXPECT_TRUE(daemon->told("topic-heard", {"'eye'", "/cam/image"})) << daemon->output();
+}
+
+// A sphere beside the axis: its surface is nearer than that of the wall.
+TEST_F(DaemonCameras, GivesALowerBoundOfTheDistanceToASphereThatIsCloseToIt) {
+  start(kImage + kAbove);
+  RosCamera camera(client, {});
+  camera.encoding = "16UC1";
+  ASSERT_TRUE(camera.is_heard());
+  MadeScene scene = scene_of_wall;
+  scene.ball = {{0.1, 0.05, 1.8}, 0.25};
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_image(scene); }, [&] { return is_measured(); }))
+      << daemon->output();
+  // The ball of the cell is at z = 1 in the camera's frame.
+  const double exact = (scene.ball->centre - Vec3(0, 0, 1)).norm() - scene.ball->radius - kRadius;
+  EXPECT_LE(ball_pair().lower, exact);
+  EXPECT_GT(ball_pair().lower, exact - 0.006) << "the error twice, and rounding to millimetres";
+}
+
+TEST_F(DaemonCameras, GivesTheExactDistanceToTheBallsOfPoints) {
+  start(kPoints + kAbove);
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_points(scene_of_wall); }, [&] { return is_measured(); }))
+      << daemon->output();
+  double exact = 1e9;
+  for (std::uint32_t v = 0; v < camera.made.height; ++v) {
+    for (std::uint32_t u = 0; u < camera.made.width; ++u) {
+      const Vec3 point = (2.5 * camera.made.ray(u, v)).cast<float>().cast<double>();
+      const double radius = kError * point.norm() / point.z();
+      exact = std::min(exact, (point - Vec3(0, 0, 1)).norm() - radius - kRadius);
+    }
+  }
+  EXPECT_LE(ball_pair().lower, exact);
+  EXPECT_NEAR(ball_pair().upper, exact, 1e-8) << "radii are rounded up to float32";
+  EXPECT_LT(ball_pair().upper - ball_pair().lower, 1e-8);
+}
+
+// The camera hangs on a frame that moves past the ball. Each report is that of a frame whose place
+// was at its stamp, wherever the camera is now.
+TEST_F(DaemonCameras, PlacesAFrameByTfAtItsStamp) {
+  start(kImage);
+  RosCamera camera(client, {});
+  RosFrames frames(client), fixed(client, RosFrames::Kind::kStatic);
+  ASSERT_TRUE(camera.is_heard() && frames.is_heard() && fixed.is_heard());
+  // Rotation by pi about x.
+  fixed.send({{"rail", "camera", Vec3::Zero(), {1, 0, 0, 0}}});
+  const auto height = [](std::int64_t stamp_ns) {
+    return kHeight + 0.2 * std::sin(1e-9 * static_cast<double>(stamp_ns % 100'000'000'000));
+  };
+  std::int64_t stamp = dds_time();
+  const auto step = [&] {
+    stamp = dds_time();
+    frames.send_at(stamp, {{"map", "rail", {0, 0, height(stamp)}}});
+    camera.send_image(scene_of_wall, stamp);
+  };
+  ASSERT_TRUE(step_until(kPeriodMs, step, [&] { return is_measured(); })) << daemon->output();
+  for (int i = 0; i < 30; ++i) {
+    step_until(kPeriodMs, step, [] { return true; });
+    if (!is_measured()) continue;
+    const auto of_frame = report->oldest_pose_ns;
+    const double exact = static_cast<double>(2.5F) - kError - (height(of_frame) - 2.0) - kRadius;
+    EXPECT_LE(ball_pair().lower, exact + 1e-9);
+    EXPECT_GE(ball_pair().upper, exact - 1e-9);
+  }
+}
+
+// The arm lies along x in front of the camera, which sees its upper side and the wall behind it.
+TEST_F(DaemonCameras, LeavesOutTheRobotsOwnImage) {
+  start(kImage + ", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}", {},
+        "pose: {xyz: [0.5, 3, 1]}");
+  RosCamera camera(client, {});
+  RosJoints joints(client);
+  ASSERT_TRUE(camera.is_heard() && joints.is_heard());
+  const auto send_joints = [&] { joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1}); };
+  camera.change_image = [&](sensor_msgs_msg_dds__Image_& image) {
+    auto* const depth = reinterpret_cast<float*>(image.data._buffer);
+    for (std::uint32_t v = 0; v < image.height; ++v) {
+      for (std::uint32_t u = 0; u < image.width; ++u) {
+        const Vec3 on_arm = 1.95 * camera.made.ray(u, v);
+        if (std::abs(on_arm.y()) < 0.05 && std::abs(on_arm.x()) < 0.4)
+          depth[v * image.width + u] = 1.95F;
+      }
+    }
+  };
+  const MadeScene floor{.wall = 3.0, .ball = {}};
+  const auto step = [&] {
+    send_joints();
+    camera.send_image(floor);
+    send_joints();
+  };
+  ASSERT_TRUE(step_until(5, step, [&] { return is("upper", PairStatus::kConverged); }))
+      << daemon->output();
+  // From the lower side of the arm to the floor, which is seen on both of its sides.
+  EXPECT_GT(pair("upper").lower, 0.5);
+  EXPECT_LT(pair("upper").lower, 1.0 - 0.05 - kError);
+  // The picture of a robot that is elsewhere is an obstacle.
+  const auto turned = [&] {
+    joints.send({"shoulder", "elbow", "push"}, {1.5, 0, 0.1});
+    camera.send_image(floor);
+    joints.send({"shoulder", "elbow", "push"}, {1.5, 0, 0.1});
+  };
+  EXPECT_TRUE(step_until(5, turned, [&] {
+    return is("upper", PairStatus::kConverged) && pair("upper").lower < 0.3;
+  })) << daemon->output();
+}
+
+// Without a stated speed of what it sees, nothing is known after the age limit.
+TEST_F(DaemonCameras, KnowsNothingBeforeTheFirstFrameAndAfterTheLast) {
+  start(kImage + kAbove);
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [] {}, [&] { return report->pairs._length > 0; }));
+  EXPECT_EQ(ball_pair().status, static_cast<std::uint8_t>(PairStatus::kUnknown));
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_image(scene_of_wall); }, [&] { return is_measured(); }))
+      << daemon->output();
+  EXPECT_TRUE(step_until(
+      kPeriodMs, [] {}, [&] { return is("ball", PairStatus::kUnknown); }))
+      << daemon->output();
+}
+
+// A changed cell knows nothing of what is seen until its first frame.
+TEST_F(DaemonCameras, GoesOnWhenTheCellChanges) {
+  start(kImage + kAbove);
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  const auto send = [&] { camera.send_image(scene_of_wall); };
+  ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
+  std::string text = read_text(cell);
+  text.replace(text.find("radius: 0.1"), 11, "radius: 0.2");
+  write_text(cell, text);
+  daemon->signal(SIGHUP);
+  EXPECT_TRUE(step_until(kPeriodMs, send, [&] {
+    return is_measured() && std::abs(ball_pair().lower - (2.5 - kError - 1.0 - 0.2)) < 1e-6;
+  })) << daemon->output();
+  // Another topic takes another reader.
+  text.replace(text.find("/cam/image"), 10, "/eye/image");
+  write_text(cell, text);
+  daemon->signal(SIGHUP);
+  EXPECT_TRUE(step_until(kPeriodMs, send, told("scene-refused", {"sensors"}))) << daemon->output();
+  EXPECT_TRUE(is_measured());
+}
+
+}  // namespace
+}  // namespace clearance::test
