@@ -101,6 +101,16 @@ inline constexpr LogLine<Count, Text, Text, Text, Count> kRefused{
 inline constexpr LogLine<Text> kMoreLeftOut{"more-left-out", kWarn,
                                             "{} about refusals and late inputs left out"};
 
+// ---- Sensors
+
+inline constexpr LogLine<Text, std::int64_t> kFramesLate{
+    "frames-late", kWarn,
+    "the last usable frame of sensor {} is {} ms old: its pairs are stale, or unknown without "
+    "max_speed"};
+inline constexpr LogLine<Text> kFramesBack{"frames-back", kInfo, "frames of sensor {} are back"};
+inline constexpr LogLine<Text, Text> kFramesSilent{"frames-silent", kWarn,
+                                                   "no usable frame of sensor {} has come: {}"};
+
 // ---- Joints
 
 inline constexpr LogLine<Text, Text, Text> kJointsHeard{"joints-heard", kInfo,
@@ -285,6 +295,9 @@ inline constexpr std::tuple kAll{kStarted,
                                  kVelocitiesContradict,
                                  kRefused,
                                  kMoreLeftOut,
+                                 kFramesLate,
+                                 kFramesBack,
+                                 kFramesSilent,
                                  kJointsHeard,
                                  kJointsBack,
                                  kJointsLate,

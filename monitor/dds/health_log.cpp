@@ -15,15 +15,6 @@ namespace {
 // The most lines of one update; it then logs how many it left out.
 constexpr std::size_t kLinesAtOnce = 5;
 
-// Says why the object's pairs are stale.
-void log_stale(const clearance_msg_InputAge& input) {
-  if (input.contradicted) {
-    log_line(lines::kPosesContradict, input.name);
-  } else {
-    log_line(lines::kPosesLate, input.name, input.age_ns / 1'000'000);
-  }
-}
-
 // Logs by how much a count has grown.
 template <class... Noun>
 void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t now,
@@ -34,6 +25,28 @@ void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t no
 
 }  // namespace
 
+HealthLog::HealthLog(const Scene& scene) : joints_(scene) { note_sensors(scene); }
+
+void HealthLog::note_sensors(const Scene& scene) {
+  for (const Sensor& sensor : scene.sensors) poses_[sensor.name].is_of_sensor = true;
+}
+
+// Says that an input is late, and why; or that it is back.
+void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) {
+  const std::int64_t age_ms = input.age_ns / 1'000'000;
+  if (now.is_of_sensor && now.stale) {
+    log_line(lines::kFramesLate, input.name, age_ms);
+  } else if (now.is_of_sensor) {
+    log_line(lines::kFramesBack, input.name);
+  } else if (!now.stale) {
+    log_line(lines::kPosesBack, input.name);
+  } else if (input.contradicted) {
+    log_line(lines::kPosesContradict, input.name);
+  } else {
+    log_line(lines::kPosesLate, input.name, age_ms);
+  }
+}
+
 void HealthLog::change(const Scene& scene) {
   refusals_.begin_counts_anew();
   joints_.change(scene);
@@ -43,6 +56,7 @@ void HealthLog::change(const Scene& scene) {
   const auto is_gone = [&](const auto& entry) { return !inputs.contains(entry.first); };
   std::erase_if(poses_, is_gone);
   std::erase_if(notes_, is_gone);
+  note_sensors(scene);
 }
 
 // The change of the offset is the sum of all steps.
@@ -84,14 +98,8 @@ void HealthLog::update(const clearance_msg_Health& health,
     // An object that was never known is no news. For links, the log of joints reports lateness.
     const bool stale = input.stale && input.age_ns >= 0 && !input.follows_joints;
     Poses& before = poses_[input.name];  // first without poses, which is not late
-    if (stale != before.stale && logged++ < kLinesAtOnce) {
-      if (stale) {
-        log_stale(input);
-      } else {
-        log_line(lines::kPosesBack, input.name);
-      }
-    }
-    before.stale = stale;
+    if (std::exchange(before.stale, stale) != stale && logged++ < kLinesAtOnce)
+      log_late(input, before);
     if (before.other_source != input.other_source && logged++ < kLinesAtOnce) {
       log_line(lines::kTwoSources, input.name, input.source, input.other_source);
     }

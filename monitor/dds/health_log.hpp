@@ -17,7 +17,7 @@ namespace clearance {
 class HealthLog {
  public:
   // The scene must outlive this, or its use until the next call of change().
-  explicit HealthLog(const Scene& scene) : joints_(scene) {}
+  explicit HealthLog(const Scene& scene);
   // The following samples are of this scene. What has been told of an input is not told again under
   // the same name.
   void change(const Scene& scene);
@@ -33,8 +33,11 @@ class HealthLog {
   RefusalLog refusals_;
   struct Poses {
     bool stale = false;
+    bool is_of_sensor = false;
     std::string other_source;
   };
+  void note_sensors(const Scene& scene);
+  static void log_late(const clearance_msg_InputAge& input, const Poses& now);
   std::map<std::string, Poses> poses_;  // by object
   // By input: the takeovers, and whether its velocities were told of.
   struct Note {

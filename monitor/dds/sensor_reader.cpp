@@ -1,7 +1,9 @@
 #include "monitor/dds/sensor_reader.hpp"
 
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "config/scene/scene_map.hpp"
@@ -15,6 +17,8 @@ namespace {
 constexpr std::size_t kBatches = 256;
 // The longest wait, ns, so that batches do not fill their ring; and while a frame waits for joints.
 constexpr std::int64_t kIdleNs = 5'000'000, kFrameWaitsNs = 500'000;
+// A sensor without a frame for this long after the start is reported once.
+constexpr std::int64_t kSilentNs = 5'000'000'000;
 
 }  // namespace
 
@@ -30,7 +34,9 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
                .only_sensors = true},
               [](PoseBatch&) { return true; }),
       ros_(participant, intake_),
-      wait_(participant, {}) {
+      wait_(participant, {}),
+      where_(participant.where()),
+      silence_said_(cell.scene.sensors.size()) {
   wait_.add(ros_.present().reader());
   build();
 }
@@ -70,6 +76,7 @@ std::vector<SensorStatus> SensorReader::statuses() const {
 void SensorReader::run() {
   name_thread("sensors");
   SystemClock clock;
+  started_ns_ = clock.monotonic_ns();
   for (std::int64_t patience = kIdleNs; !stop_;) {
     wait_.wait(patience);
     if (stop_) return;
@@ -89,7 +96,11 @@ void SensorReader::run() {
 
 // Makes readers for topics that have appeared.
 void SensorReader::look() {
-  static_cast<void>(ros_.look());
+  if (ros_.look()) {
+    std::vector<std::uint64_t> writers = ros_.writers();
+    std::ranges::sort(writers);
+    sensors_->keep(writers);
+  }
   const std::vector<RosReaders::Reader>& readers = ros_.readers();
   for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);
 }
@@ -122,6 +133,41 @@ void SensorReader::log_news() {
     spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{} [{}]", news.text,
                 code(news.cause));
   }
+  tell_of_silence();
+}
+
+void SensorReader::tell_of_silence() {
+  if (now_ns_ - started_ns_ < kSilentNs) return;
+  for (std::uint32_t i = 0; i < silence_said_.size(); ++i) {
+    const SensorStatus status = sensors_->status(i);
+    if (silence_said_[i] || status.frames > 0) continue;
+    silence_said_[i] = true;
+    const Sensor& sensor = cell_->scene.sensors[i];
+    log_line(lines::kFramesSilent, sensor.name, why_silent(sensor, status));
+  }
+}
+
+std::string SensorReader::why_silent(const Sensor& sensor, const SensorStatus& status) const {
+  std::uint64_t refused = 0;
+  for (std::size_t fault = 1; fault < kFrameFaults; ++fault) refused += status.counts[fault];
+  if (refused > 0) return fmt::format("{} of its messages were refused, as health lists", refused);
+  for (const std::string& topic : {sensor.topic, sensor.camera_info}) {
+    if (topic.empty()) continue;
+    const std::string name = ros_dds_name(topic);
+    const auto& writers = ros_.present().writers();
+    const auto writer = std::ranges::find_if(
+        writers, [&](const auto& entry) { return entry.second.topic == name; });
+    if (writer == writers.end())
+      return fmt::format("there is no publisher of {} on {}; there is: {}", name, where_,
+                         ros_.present().listed());
+    const std::string& partition = writer->second.partition;
+    if (topic == sensor.topic && status.counts[0] == 0) {
+      return fmt::format("{} is published in {} as {}, and no message has come", name,
+                         partition.empty() ? "the default partition" : "partition " + partition,
+                         writer->second.type);
+    }
+  }
+  return "no image has come since its CameraInfo";
 }
 
 }  // namespace clearance

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <thread>
 #include <vector>
 
@@ -54,6 +55,8 @@ class SensorReader {
   void take_all();
   void build();
   void log_news();
+  void tell_of_silence();
+  [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
 
   const Cell* cell_;
   FrameExchange frames_;
@@ -68,7 +71,9 @@ class SensorReader {
   std::vector<CdrSample> taken_;
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
-  std::int64_t now_ns_ = 0;  // CLOCK_MONOTONIC
+  std::int64_t now_ns_ = 0, started_ns_ = 0;  // CLOCK_MONOTONIC
+  std::string where_;
+  std::vector<bool> silence_said_;  // by sensor
   mutable std::mutex status_mutex_;
   std::vector<SensorStatus> statuses_;
   std::atomic<bool> stop_{false};

@@ -10,6 +10,9 @@
 namespace clearance {
 namespace {
 
+// Two publishers whose places differ by no more agree, m and rad.
+constexpr double kSame = 1e-6;
+
 double angle_between(const Pose& a, const Pose& b) noexcept {
   return rounded_up(a.orientation.angularDistance(b.orientation));
 }
@@ -19,8 +22,13 @@ double way_between(const Pose& a, const Pose& b) noexcept {
 
 }  // namespace
 
+bool FrameHistory::is_disputed(const Frame& frame, std::int64_t stamp_ns) noexcept {
+  return frame.rival && (frame.rival_is_static || elapsed(frame.rival_ns, stamp_ns) <= kLostNs);
+}
+
 void FrameHistory::add(const std::string& child, const std::string& parent,
-                       const Pose& parent_from_child, std::int64_t stamp_ns, bool is_static) {
+                       const Pose& parent_from_child, std::int64_t stamp_ns, bool is_static,
+                       std::uint64_t writer) {
   const Eigen::Quaterniond& turn = parent_from_child.orientation;
   const bool is_pose = parent_from_child.position.allFinite() && turn.coeffs().allFinite() &&
                        std::abs(turn.norm() - 1.0) <= kSampleUnitTolerance;
@@ -28,18 +36,54 @@ void FrameHistory::add(const std::string& child, const std::string& parent,
   const auto known = frames_.find(child);
   if (known == frames_.end() && frames_.size() >= kMostFrames) return;
   Frame& frame = frames_[child];
+  const Pose pose{parent_from_child.position, turn.normalized()};
+  const bool has_owner =
+      frame.writer && !frame.poses.empty() &&
+      (frame.is_static || elapsed(frame.poses.last().stamp_ns, stamp_ns) <= kLostNs);
+  if (has_owner && *frame.writer != writer) {
+    const auto place = place_of(frame, stamp_ns);
+    const bool agrees = place && frame.parent == parent &&
+                        way_between(place->parent_from_child, pose) <= place->shift_error + kSame &&
+                        angle_between(place->parent_from_child, pose) <= place->turn_error + kSame;
+    if (!agrees) {
+      frame.rival = writer;
+      frame.rival_ns = stamp_ns;
+      frame.rival_is_static = is_static;
+    } else if (frame.rival == writer) {
+      frame.rival.reset();
+    }
+    return;
+  }
+  frame.writer = writer;
   if (known == frames_.end() || frame.parent != parent || frame.is_static != is_static) {
-    frame = {parent, is_static, StampedSeries<Pose>(is_static ? 1 : kKept)};
+    frame.parent = parent;
+    frame.is_static = is_static;
+    frame.poses = StampedSeries<Pose>(is_static ? 1 : kKept);
   }
   if (is_static) frame.poses.clear();
-  frame.poses.add(is_static ? 1 : stamp_ns, {parent_from_child.position, turn.normalized()});
+  frame.poses.add(is_static ? 1 : stamp_ns, pose);
+}
+
+void FrameHistory::keep(std::span<const std::uint64_t> writers) {
+  const auto drop = [&](std::optional<std::uint64_t>& writer) {
+    if (writer && !std::ranges::binary_search(writers, *writer)) writer.reset();
+  };
+  for (auto& [name, frame] : frames_) {
+    drop(frame.writer);
+    drop(frame.rival);
+  }
 }
 
 std::optional<FrameHistory::Step> FrameHistory::step(const std::string& child,
                                                      std::int64_t stamp_ns) const {
   const auto found = frames_.find(child);
   if (found == frames_.end() || found->second.poses.empty()) return std::nullopt;
-  const Frame& frame = found->second;
+  if (is_disputed(found->second, stamp_ns)) return std::nullopt;
+  return place_of(found->second, stamp_ns);
+}
+
+std::optional<FrameHistory::Step> FrameHistory::place_of(const Frame& frame,
+                                                         std::int64_t stamp_ns) {
   Step step{.parent = frame.parent, .parent_from_child = frame.poses.last().value};
   if (frame.is_static) return step;
   const auto [before, after] = frame.poses.around(stamp_ns);

@@ -4,11 +4,15 @@
 // off is taken to be at most half of that motion. After the last one, a frame is taken to stay, to
 // within the speed of its last two transforms. That is an assumption: tf states no speed limit. A
 // frame that stands still has no such error.
+//
+// A frame belongs to its first publisher, as long as that one exists and is not silent. While
+// another one contradicts it, either may be right: the frame has no transform.
 #pragma once
 
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/pose.hpp"
@@ -23,9 +27,12 @@ class FrameHistory {
   // A frame that was not heard for this long is lost, ns.
   static constexpr std::int64_t kLostNs = 1'000'000'000;
 
-  // Transforms that are no poses, and those of too many frames, are left out.
+  // Transforms that are no poses, and those of too many frames, are left out. `writer` is the
+  // number of the publisher; in a log, all have the same.
   void add(const std::string& child, const std::string& parent, const Pose& parent_from_child,
-           std::int64_t stamp_ns, bool is_static);
+           std::int64_t stamp_ns, bool is_static, std::uint64_t writer = 0);
+  // `writers` are those that still exist; sorted.
+  void keep(std::span<const std::uint64_t> writers);
 
   struct Step {
     std::string parent;
@@ -40,7 +47,13 @@ class FrameHistory {
     std::string parent;
     bool is_static = false;
     StampedSeries<Pose> poses{1};
+    std::optional<std::uint64_t> writer;  // nothing: it has left
+    std::optional<std::uint64_t> rival;   // that contradicts it
+    std::int64_t rival_ns = 0;            // of its last contradiction
+    bool rival_is_static = false;
   };
+  [[nodiscard]] static bool is_disputed(const Frame& frame, std::int64_t stamp_ns) noexcept;
+  [[nodiscard]] static std::optional<Step> place_of(const Frame& frame, std::int64_t stamp_ns);
   std::map<std::string, Frame> frames_;  // by child
 };
 

@@ -15,6 +15,9 @@ constexpr std::int64_t kSilentNs = 1'000'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
 
+// Two sources whose values differ by no more agree, rad or m.
+constexpr double kSameValue = 1e-6;
+
 // Whether the sample is of the source in use. A silent one is replaced.
 template <class Series>
 bool is_of_source(std::uint32_t source, std::int64_t stamp_ns, const Series& series,
@@ -29,12 +32,21 @@ double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return static_cast<double>(elapsed(from_ns, to_ns)) * 1e-9;
 }
 
+// Seconds between two times, whichever is later.
+double time_between(std::int64_t a_ns, std::int64_t b_ns) noexcept {
+  return std::max(seconds_between(a_ns, b_ns), seconds_between(b_ns, a_ns));
+}
+
 Pose between(const Pose& a, const Pose& b, double share) noexcept {
   return {(1.0 - share) * a.position + share * b.position,
           a.orientation.slerp(share, b.orientation).normalized()};
 }
 
 }  // namespace
+
+bool PostureHistory::Disputed::at(std::int64_t time_ns) const noexcept {
+  return ever && elapsed(stamp_ns, time_ns) <= kSilentNs && elapsed(time_ns, stamp_ns) <= kSilentNs;
+}
 
 double PastPose::error(double radius) const noexcept {
   return rounded_up(shift_error + turn_error * radius);
@@ -61,7 +73,15 @@ PostureHistory::PostureHistory(const Scene& scene)
 void PostureHistory::add(const JointSample& sample) {
   if (sample.variable >= joints_.size() || !(std::abs(sample.position) <= kLargestJoint)) return;
   Joint& joint = joints_[sample.variable];
-  if (!is_of_source(sample.source, sample.stamp_ns, joint.positions, joint.source)) return;
+  if (!is_of_source(sample.source, sample.stamp_ns, joint.positions, joint.source)) {
+    const JointVariable& of = scene_.variables[sample.variable];
+    const auto& last = joint.positions.last();
+    const double within = of.plausible_speed() * time_between(last.stamp_ns, sample.stamp_ns);
+    double way = sample.position - last.value;
+    if (of.wraps) way = std::remainder(way, 2.0 * std::numbers::pi);
+    if (!(std::abs(way) <= within + kSameValue)) joint.disputed = {true, sample.stamp_ns};
+    return;
+  }
   joint.positions.add(sample.stamp_ns, sample.position);
 }
 
@@ -73,7 +93,13 @@ void PostureHistory::add(const PoseSample& sample) {
                        std::abs(pose.orientation.norm() - 1.0) <= kSampleUnitTolerance;
   if (object.fixed || object.is_seen() || !is_pose) return;
   Body& body = bodies_[sample.object];
-  if (!is_of_source(sample.source, sample.stamp_ns, body.poses, body.source)) return;
+  if (!is_of_source(sample.source, sample.stamp_ns, body.poses, body.source)) {
+    const auto& last = body.poses.last();
+    const double within = object.plausible_speed() * time_between(last.stamp_ns, sample.stamp_ns);
+    if (!((pose.position - last.value.position).norm() <= within + kSameValue))
+      body.disputed = {true, sample.stamp_ns};
+    return;
+  }
   body.poses.add(sample.stamp_ns, {pose.position, pose.orientation.normalized()});
 }
 
@@ -92,8 +118,9 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns) {
   TrackedVariable& state = variables_[variable];
   state.may_have_moved = 0.0;
   const auto [before, after] = joints_[variable].positions.around(stamp_ns);
-  state.input.has_value = before != nullptr;  // before the first position, nothing is known
-  if (before == nullptr) return;
+  // Before the first position, nothing is known.
+  state.input.has_value = before != nullptr && !joints_[variable].disputed.at(stamp_ns);
+  if (!state.input.has_value) return;
   const double speed = of.plausible_speed();
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   state.position = before->value;
@@ -117,7 +144,7 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) co
   const Object& of = scene_.objects[object];
   if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
   const auto body = bodies_.find(object);
-  if (body == bodies_.end()) return past;
+  if (body == bodies_.end() || body->second.disputed.at(stamp_ns)) return past;
   const auto [before, after] = body->second.poses.around(stamp_ns);
   if (before == nullptr) return past;
   past.known = true;

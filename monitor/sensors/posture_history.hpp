@@ -37,7 +37,7 @@ class PostureHistory {
   explicit PostureHistory(const Scene& scene);
 
   // Samples in the order in which they came. Those of a second source are left out while the first
-  // one sends.
+  // one sends. If it sends what the input cannot have reached, the input has no value then.
   void add(const JointSample& sample);
   void add(const PoseSample& sample);
 
@@ -50,14 +50,21 @@ class PostureHistory {
   [[nodiscard]] PastPose object(std::uint32_t object) const noexcept;
 
  private:
+  // The last sample of another source that contradicted the one in use.
+  struct Disputed {
+    bool ever = false;
+    std::int64_t stamp_ns = 0;
+    [[nodiscard]] bool at(std::int64_t time_ns) const noexcept;
+  };
   struct Joint {
     StampedSeries<double> positions{kKept};
     std::uint32_t source = kNoSource;
-    bool is_heard = false;
+    Disputed disputed;
   };
   struct Body {
     StampedSeries<Pose> poses{kKept};
     std::uint32_t source = kNoSource;
+    Disputed disputed;
   };
 
   void place_joint(std::size_t variable, std::int64_t stamp_ns);

@@ -101,7 +101,7 @@ void Sensors::add_transforms(const RawSensorMessage& message) {
     const std::int64_t stamp = stamp_ns(each.header);
     frames_.add(frame_name(each.child_frame_id), frame_name(each.header.frame_id),
                 pose_of(each.transform), stamp == 0 ? message.sent_ns : stamp,
-                message.type == Type::kStaticTransforms);
+                message.type == Type::kStaticTransforms, message.writer);
   }
 }
 

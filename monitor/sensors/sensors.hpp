@@ -63,6 +63,9 @@ class Sensors {
   // `now_ns`: the caller's time.
   void add(const RawSensorMessage& message, std::int64_t now_ns);
 
+  // The publishers that still exist; sorted. Names of frames become free that others had.
+  void keep(std::span<const std::uint64_t> writers) { frames_.keep(writers); }
+
   // The receiver of a frame. Its cloud stays as it is while `is_used` says so.
   using Use = std::function<void(std::uint32_t sensor, const SensorFrame& frame)>;
   using IsUsed = std::function<bool(const SeenCloud* cloud)>;

@@ -55,8 +55,8 @@ class RosCamera {
  public:
   // Each frame differs from the one before in the depth of its last pixel, which is behind the
   // wall.
-  RosCamera(Participant& participant, const MadeCamera& made, const std::string& ns = "/cam")
-      : made(made),
+  RosCamera(Participant& participant, const MadeCamera& the_made, const std::string& ns = "/cam")
+      : made(the_made),
         image_(participant.ros_writer(kRosImage, ros_dds_name(ns + "/image"))),
         info_(participant.ros_writer(kRosCameraInfo, ros_dds_name(ns + "/camera_info"))),
         points_(participant.ros_writer(kRosPointCloud2, ros_dds_name(ns + "/points"))) {}

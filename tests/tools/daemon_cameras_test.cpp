@@ -15,9 +15,10 @@
 namespace clearance::test {
 namespace {
 
-constexpr double kError = 0.002;  // of the depth, m
-constexpr double kRadius = 0.1;   // of the objects before the camera, m
-constexpr double kHeight = 3.0;   // of the camera above the origin of the world, m
+constexpr double kError = 0.002;      // of the depth, m
+constexpr double kRadius = 0.1;       // of the objects before the camera, m
+constexpr double kHeight = 3.0;       // of the camera above the origin of the world, m
+constexpr double kRounding = 2.5e-7;  // of float32 between 2 and 4 m, in which depths are kept
 constexpr int kPeriodMs = 20;
 
 const std::string kImage =
@@ -58,7 +59,7 @@ TEST_F(DaemonCameras, GivesTheExactDistanceToAWallInADepthImage) {
       << daemon->output();
   const double exact = static_cast<double>(2.5F) - kError - 1.0 - kRadius;
   EXPECT_LE(ball_pair().lower, exact + 1e-12);
-  EXPECT_GE(ball_pair().upper, exact - 1e-12);
+  EXPECT_GE(ball_pair().upper, exact - kRounding);
   EXPECT_LT(ball_pair().upper - ball_pair().lower, 1e-8);
   EXPECT_TRUE(daemon->told("topic-heard", {"'eye'", "/cam/image"})) << daemon->output();
 }
@@ -69,13 +70,13 @@ TEST_F(DaemonCameras, GivesALowerBoundOfTheDistanceToASphereThatIsCloseToIt) {
   RosCamera camera(client, {});
   camera.encoding = "16UC1";
   ASSERT_TRUE(camera.is_heard());
-  MadeScene scene = scene_of_wall;
-  scene.ball = {{0.1, 0.05, 1.8}, 0.25};
+  MadeScene seen = scene_of_wall;
+  seen.ball = {{0.1, 0.05, 1.8}, 0.25};
   ASSERT_TRUE(step_until(
-      kPeriodMs, [&] { camera.send_image(scene); }, [&] { return is_measured(); }))
+      kPeriodMs, [&] { camera.send_image(seen); }, [&] { return is_measured(); }))
       << daemon->output();
   // The ball of the cell is at z = 1 in the camera's frame.
-  const double exact = (scene.ball->centre - Vec3(0, 0, 1)).norm() - scene.ball->radius - kRadius;
+  const double exact = (seen.ball->centre - Vec3(0, 0, 1)).norm() - seen.ball->radius - kRadius;
   EXPECT_LE(ball_pair().lower, exact);
   EXPECT_GT(ball_pair().lower, exact - 0.006) << "the error twice, and rounding to millimetres";
 }
@@ -125,7 +126,7 @@ TEST_F(DaemonCameras, PlacesAFrameByTfAtItsStamp) {
     const auto of_frame = report->oldest_pose_ns;
     const double exact = static_cast<double>(2.5F) - kError - (height(of_frame) - 2.0) - kRadius;
     EXPECT_LE(ball_pair().lower, exact + 1e-9);
-    EXPECT_GE(ball_pair().upper, exact - 1e-9);
+    EXPECT_GE(ball_pair().upper, exact - kRounding);
   }
 }
 
@@ -156,8 +157,9 @@ TEST_F(DaemonCameras, LeavesOutTheRobotsOwnImage) {
   ASSERT_TRUE(step_until(5, step, [&] { return is("upper", PairStatus::kConverged); }))
       << daemon->output();
   // From the lower side of the arm to the floor, which is seen on both of its sides.
-  EXPECT_GT(pair("upper").lower, 0.5);
-  EXPECT_LT(pair("upper").lower, 1.0 - 0.05 - kError);
+  const double below = 1.0 - 0.05 - kError;
+  EXPECT_GE(pair("upper").lower, below - 1e-9);
+  EXPECT_LT(pair("upper").lower, below + 0.01);
   // The picture of a robot that is elsewhere is an obstacle.
   const auto turned = [&] {
     joints.send({"shoulder", "elbow", "push"}, {1.5, 0, 0.1});

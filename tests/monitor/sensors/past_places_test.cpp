@@ -98,5 +98,63 @@ TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove)
   EXPECT_FALSE(frames.step("nonsense", kStart));
 }
 
+// A second source of a joint or an object, whose values the first one cannot have.
+TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
+  const Scene scene = test::scara_cell();
+  PostureHistory history(scene);
+  const auto add = [&](double position, std::uint32_t source, std::int64_t stamp_ns) {
+    for (JointSample sample : test::joints(position, 0.0, 0.0, stamp_ns)) {
+      sample.source = source;
+      history.add(sample);
+    }
+  };
+  add(0.0, 1, kStart);
+  add(0.01, 2, kStart + 10 * kMs);  // 2 rad/s for 10 ms allow that
+  history.place(kStart + 20 * kMs);
+  EXPECT_TRUE(history.link(0, 1).known);
+  add(0.5, 2, kStart + 20 * kMs);
+  history.place(kStart + 20 * kMs);
+  EXPECT_FALSE(history.link(0, 1).known);
+  EXPECT_TRUE(history.link(0, 0).known) << "nothing moves the foot";
+  for (int i = 1; i <= 120; ++i) add(0.0, 1, kStart + i * 10 * kMs);
+  history.place(kStart + 900 * kMs);
+  EXPECT_FALSE(history.link(0, 1).known);
+  history.place(kStart + 1200 * kMs);
+  EXPECT_TRUE(history.link(0, 1).known) << "the second source has been silent for a second";
+
+  const auto pose = [&](double x, std::uint32_t source, std::int64_t stamp_ns) {
+    PoseSample sample = test::sample(1, test::at(x, 0, 0), stamp_ns);
+    sample.source = source;
+    history.add(sample);
+  };
+  pose(0.0, 1, kStart);
+  pose(50.0, 2, kStart + kMs);
+  history.place(kStart + kMs);
+  EXPECT_FALSE(history.object(1).known);
+}
+
+TEST(PastPlaces, OfAFrameThatTwoPublishersContradictAreUnknown) {
+  FrameHistory frames;
+  const Pose here = test::at(1, 0, 0), there = test::at(2, 0, 0);
+  frames.add("mast", "map", here, kStart, true, 1);
+  frames.add("mast", "map", here, kStart, true, 2);
+  EXPECT_TRUE(frames.step("mast", kStart)) << "both say the same";
+  frames.add("mast", "map", there, kStart, true, 2);
+  EXPECT_FALSE(frames.step("mast", kStart));
+  frames.keep(std::vector<std::uint64_t>{1});
+  ASSERT_TRUE(frames.step("mast", kStart)) << "the second one has left";
+  EXPECT_EQ(frames.step("mast", kStart)->parent_from_child.position.x(), 1.0);
+  frames.keep({});
+  frames.add("mast", "map", there, kStart, true, 3);
+  EXPECT_EQ(frames.step("mast", kStart)->parent_from_child.position.x(), 2.0) << "a new owner";
+
+  frames.add("cart", "map", here, kStart, false, 1);
+  frames.add("cart", "map", there, kStart + kMs, false, 2);
+  frames.add("cart", "map", here, kStart + 2 * kMs, false, 1);
+  EXPECT_FALSE(frames.step("cart", kStart + 2 * kMs));
+  for (int i = 1; i < 20; ++i) frames.add("cart", "map", here, kStart + i * 100 * kMs, false, 1);
+  EXPECT_TRUE(frames.step("cart", kStart + 1900 * kMs)) << "the rival has been silent for a second";
+}
+
 }  // namespace
 }  // namespace clearance::past_places_test
