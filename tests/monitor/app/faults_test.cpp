@@ -9,6 +9,7 @@
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/intake/camera_messages.hpp"
 #include "monitor/intake/news.hpp"
 #include "monitor/intake/pose_sources.hpp"
 #include "tests/shared/places.hpp"
@@ -67,6 +68,9 @@ TEST(Faults, NameEachCauseOfARefusal) {
   };
   for (int cause = 0; cause < static_cast<int>(Reject::kCount); ++cause) {
     expect_row(name(static_cast<Reject>(cause)));
+  }
+  for (std::size_t fault = 1; fault < kFrameFaults; ++fault) {
+    expect_row(name(static_cast<FrameFault>(fault)));
   }
   for (const SourceRefusal cause :
        {SourceRefusal::kTooMany, SourceRefusal::kOtherWriter, SourceRefusal::kNoName}) {
