@@ -66,9 +66,8 @@ std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cel
 
 // ROS 2 knows the default partition only.
 void warn_of_partition(const Cell& cell, const DdsOptions& options) {
-  const bool wants_ros =
-      writes_ros(cell) || !cell.ros.outputs.messages.empty() || TrackedFrames(cell).any() ||
-      !cell.scene.sensors.empty();
+  const bool wants_ros = writes_ros(cell) || !cell.ros.outputs.messages.empty() ||
+                         TrackedFrames(cell).any() || !cell.scene.sensors.empty();
   if (options.partition.empty() || !wants_ros) return;
   log_line(lines::kPartitionWithoutRos, options.partition);
 }
