@@ -37,6 +37,7 @@
 #include "monitor/objects/ingest.hpp"
 #include "monitor/objects/presence.hpp"
 #include "monitor/objects/take_over.hpp"
+#include "monitor/pairs/hidden_places.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/schedule/scheduler.hpp"
 #include "monitor/separation/separations.hpp"
@@ -91,6 +92,7 @@ struct Monitor::State {
   };
   std::vector<Shown> shown;
   std::unique_ptr<CloudPairs> clouds;  // ingest and evaluate; null: the scene has no sensors
+  HiddenPlaces hidden;                 // ingest
 
   State(const Scene& the_scene, const KnownHulls& known_hulls);
 
@@ -361,7 +363,8 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
       contacts(the_scene),
       zones(the_scene, zone_levels, contacts),
       separations(the_scene, zone_levels),
-      differentiation(the_scene) {
+      differentiation(the_scene),
+      hidden(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
   for (std::size_t i = 0; i < spheres.size(); ++i)
     inputs.objects[i].bounding_radius = spheres[i].bounding_radius;
@@ -373,6 +376,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
   for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
   report.zones.assign(zones.reports().begin(), zones.reports().end());
   report.contacts.assign(contacts.reports().begin(), contacts.reports().end());
+  report.hidden.assign(hidden.reports().begin(), hidden.reports().end());
   separations.prepare(report);
   report.gradients = unknown_gradients(differentiation.rows());
 }
@@ -386,6 +390,7 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.rejected = inputs.rejected;
   std::ranges::copy(zones.reports(), report.zones.begin());
   std::ranges::copy(contacts.reports(), report.contacts.begin());
+  std::ranges::copy(hidden.reports(), report.hidden.begin());
 
   report.queries = queries;
   report.oldest_evaluation_cycles = inputs.cycle - evaluated.oldest_refresh;
@@ -415,6 +420,7 @@ void Monitor::State::take_frames() noexcept {
     }
     culling.forget_object(object, table);
     clouds->set(sensor, {frame.cloud, frame.pose_error});
+    hidden.take(sensor, *frame.cloud);
     inputs.visits.visit(object);
   }
 }

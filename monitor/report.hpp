@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -190,6 +191,20 @@ struct ContactReport {
   std::int64_t ended_ns = 0;
 };
 
+// What the frame in use of a sensor cannot show near a link, at the stamp of the frame.
+struct HiddenReport {
+  std::uint32_t pair = 0;      // index into Scene::pairs: the sensor, and a link or what it carries
+  std::uint32_t elements = 0;  // of the frame, left out as the link's own image
+  // The blind shell, m: anything within this of the link may be left out with its own image, and
+  // the pair's distance is then not that of it. Infinity: no frame is in use.
+  double thickness = kInfinity;
+  // A lower bound of the distance to the nearest place in the picture that the frame has not seen
+  // (monitor/clouds/README.md), and about where that is, in the world, m. -infinity and NaN: not
+  // known, or the sensor's `unseen` is not asked for. Infinity and NaN: there is no such place.
+  double unseen = -kInfinity;
+  Vec3 unseen_at = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+};
+
 // Whether the closest points of a pair are the only ones. If they are not, its distance has no
 // gradient: the rates are one of several, and may jump.
 enum class GradientStatus : std::uint8_t {
@@ -258,6 +273,8 @@ struct Report {
   // contact_pairs() of the scene, in ascending order of pairs; sized once. `minimum` and
   // `lower_all` include these pairs: an entry here says whether the contact is allowed.
   std::vector<ContactReport> contacts;
+  // The pairs of a sensor and a link, or what it carries, in ascending order; sized once.
+  std::vector<HiddenReport> hidden;
   std::array<std::uint64_t, kRejects> rejected{};  // totals since the start
 };
 

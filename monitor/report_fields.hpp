@@ -137,6 +137,18 @@ struct ContactFields {
   }
 };
 
+// HiddenReport, and HiddenState on the wire.
+struct HiddenFields {
+  template <class Visit, class... Hidden>
+  static constexpr void for_each(Visit&& visit, Hidden&... hidden) {
+    visit(Field{"pair", Meaning::kPair}, hidden.pair...);
+    visit(Field{"elements"}, hidden.elements...);
+    visit(Field{"thickness"}, hidden.thickness...);
+    visit(Field{"unseen"}, hidden.unseen...);
+    visit(Field{"unseen_at"}, hidden.unseen_at...);
+  }
+};
+
 // GradientAlternative, in the report and on the wire.
 struct GradientAlternativeFields {
   template <class Visit, class... Alternative>
@@ -191,6 +203,7 @@ struct DistanceFields {
     visit(Field{"swept_lower_all"}, report.swept_lower_all...);
     visit(Field{"pairs"}, report.pairs...);
     visit(Field{"contacts"}, report.contacts...);
+    visit(Field{"hidden"}, report.hidden...);
   }
 };
 struct ReportFields {
@@ -218,6 +231,8 @@ template <>
 struct FieldsOf<ZoneSeparation> : ZoneSeparationFields {};
 template <>
 struct FieldsOf<ContactReport> : ContactFields {};
+template <>
+struct FieldsOf<HiddenReport> : HiddenFields {};
 template <>
 struct FieldsOf<GradientAlternative> : GradientAlternativeFields {};
 template <>
@@ -271,6 +286,7 @@ static_assert(fields_detail::kListIsComplete<ZoneReport>);
 static_assert(fields_detail::kListIsComplete<PairSeparation>);
 static_assert(fields_detail::kListIsComplete<ZoneSeparation>);
 static_assert(fields_detail::kListIsComplete<ContactReport>);
+static_assert(fields_detail::kListIsComplete<HiddenReport>);
 static_assert(fields_detail::kListIsComplete<GradientAlternative>);
 static_assert(fields_detail::kListIsComplete<Gradients>);
 static_assert(fields_detail::kListIsComplete<Report>);

@@ -243,9 +243,10 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     cell.simulation = read_simulation(*simulation_node, list, quantities);
   cell.scene.pairs = std::move(pairs.pairs);
   cell.scene.objects = std::move(list.objects);
-  cell.scene.sensors = std::move(sensors.sensors);
+  cell.scene.sensors = sensors.sensors;
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
+  crop_sensors(sensors, diagnostics_, cell.scene);
 }
 
 // Reads the top level. Units come first, since every other section needs them.

@@ -7,9 +7,11 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "config/cell/robot_base_reader.hpp"
 #include "config/cell/ros_reader.hpp"
+#include "config/scene/robot_reach.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/scalar.hpp"
 #include "core/shapes.hpp"
@@ -22,6 +24,8 @@ constexpr std::int64_t kAgeLimitNs = 100'000'000;
 constexpr std::int64_t kMostColumns = 65535;                              // monitor/clouds
 constexpr std::int64_t kMostPoints = 4'000'000;                           // 200 MB of memory
 constexpr Range kDepths{.least = 0.0, .most = 1e4, .above_least = true};  // m, monitor/clouds
+constexpr std::int64_t kMostFrames = 16;                                  // a megabyte each
+constexpr double kMapRange = 20.0;  // m, from the origin of an octomap
 constexpr Range kSpacings{.least = 0.0, .most = 0.1};
 
 class SensorReader {
@@ -38,6 +42,7 @@ class SensorReader {
   void read_range(const YamlNode& node, Sensor& sensor) const;
   void read_capacity(MapReader& map, Sensor& sensor) const;
   void read_points(MapReader& map, Sensor& sensor) const;
+  void read_persistence(const YamlNode& node, Sensor& sensor) const;
   void refuse_large_error(const YamlNode& node, const Sensor& sensor) const;
   void read_object(MapReader& map, Object& object, bool& groups_known) const;
 
@@ -60,15 +65,20 @@ std::string SensorReader::read_topic(const YamlNode& node) const {
 void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sensor) {
   const YamlNode* image = map.optional("depth_image");
   const YamlNode* points = map.optional("points");
+  const YamlNode* octomap = map.optional("octomap");
   const YamlNode* info = map.optional("camera_info");
-  if ((image == nullptr) == (points == nullptr)) {
-    diagnostics_.add(node, fmt::format("found {} of 'depth_image' and 'points'; expected one of "
-                                       "the two, with a topic of ROS 2",
-                                       image == nullptr ? "none" : "both"));
+  const int named = (image != nullptr) + (points != nullptr) + (octomap != nullptr);
+  if (named != 1) {
+    diagnostics_.add(node,
+                     fmt::format("found {} of 'depth_image', 'points' and 'octomap'; expected "
+                                 "one of them, with a topic of ROS 2",
+                                 named == 0 ? "none" : "several"));
     return;
   }
-  const YamlNode& topic = image != nullptr ? *image : *points;
-  sensor.kind = image != nullptr ? SensorKind::kDepthImage : SensorKind::kPoints;
+  const YamlNode& topic = image != nullptr ? *image : points != nullptr ? *points : *octomap;
+  sensor.kind = image != nullptr    ? SensorKind::kDepthImage
+                : points != nullptr ? SensorKind::kPoints
+                                    : SensorKind::kOctomap;
   sensor.topic = read_topic(topic);
   if (const auto [same, is_new] = lines_.emplace(sensor.topic, topic.line);
       !is_new && !sensor.topic.empty()) {
@@ -78,7 +88,7 @@ void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sen
   }
   if (image == nullptr) {
     if (info != nullptr)
-      diagnostics_.add(*info, "found 'camera_info' of points; expected it of depth images only");
+      diagnostics_.add(*info, "found 'camera_info'; expected it of depth images only");
     return;
   }
   sensor.camera_info = info != nullptr
@@ -180,12 +190,11 @@ void SensorReader::read_capacity(MapReader& map, Sensor& sensor) const {
 void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
   const YamlNode* spacing = map.optional("spacing");
   const YamlNode* along = map.optional("depth_along");
-  if (sensor.kind == SensorKind::kDepthImage) {
+  if (sensor.kind != SensorKind::kPoints) {
     for (const YamlNode* of_points : {spacing, along}) {
       if (of_points == nullptr) continue;
-      diagnostics_.add(*of_points,
-                       fmt::format("found '{}' of a depth image; expected it of points only",
-                                   of_points == spacing ? "spacing" : "depth_along"));
+      diagnostics_.add(*of_points, fmt::format("found '{}'; expected it of points only",
+                                               of_points == spacing ? "spacing" : "depth_along"));
     }
     return;
   }
@@ -202,6 +211,18 @@ void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
                                          *axis));
   }
   sensor.along_ray = axis == "ray";
+}
+
+void SensorReader::read_persistence(const YamlNode& node, Sensor& sensor) const {
+  MapReader map(node, "'persist' of a sensor", diagnostics_);
+  const YamlNode* frames = map.required("frames");
+  const YamlNode* of = map.required("of");
+  map.refuse_unknown_keys();
+  if (frames == nullptr || of == nullptr) return;
+  const auto most = read_integer(*of, 1, kMostFrames, "frames", diagnostics_);
+  sensor.persist_of = static_cast<std::uint32_t>(most.value_or(kMostFrames));
+  sensor.persist_frames = static_cast<std::uint32_t>(
+      read_integer(*frames, 1, sensor.persist_of, "of these frames", diagnostics_).value_or(1));
 }
 
 // The object of a sensor has the limits of any object.
@@ -232,16 +253,41 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
       name_node == nullptr ? std::nullopt : read_name(*name_node, "a sensor's name", diagnostics_);
   bool groups_known = true;
   read_topics(node, map, sensor);
-  read_error(map, sensor);
-  if (const YamlNode* range = map.required("range")) read_range(*range, sensor);
-  refuse_large_error(node, sensor);
+  if (sensor.kind == SensorKind::kOctomap) {
+    sensor.greatest_depth = kMapRange;
+    if (const YamlNode* range = map.optional("range")) {
+      sensor.greatest_depth =
+          std::min(quantities_.length(*range, "the range of a map", kPositive).value_or(kMapRange),
+                   kDepths.most);
+    }
+  } else {
+    read_error(map, sensor);
+    if (const YamlNode* range = map.required("range")) read_range(*range, sensor);
+    refuse_large_error(node, sensor);
+  }
   read_capacity(map, sensor);
   read_points(map, sensor);
   if (const YamlNode* shell = map.optional("own_shell")) {
     sensor.own_shell =
         quantities_.length(*shell, "the shell around the robot", kNotNegative).value_or(0.0);
   }
+  if (const YamlNode* unseen = map.optional("unseen")) {
+    sensor.unseen = read_flag(*unseen, diagnostics_).value_or(false);
+    if (sensor.unseen && sensor.kind != SensorKind::kDepthImage)
+      diagnostics_.add(*unseen, "found 'unseen'; expected it of depth images only");
+  }
+  if (const YamlNode* reach = map.optional("reach")) {
+    sensor.reach = quantities_.length(*reach, "the reach of the links", kNotNegative).value_or(0.0);
+  }
+  list.reaches.push_back(map.optional("reach"));
+  const YamlNode* persist = map.optional("persist");
+  if (persist != nullptr) read_persistence(*persist, sensor);
   read_object(map, object, groups_known);
+  if (persist != nullptr && object.max_speed == kInfinity) {
+    diagnostics_.add(*persist,
+                     "found 'persist' without 'max_speed'; expected both: how far may "
+                     "something move from one frame to the next?");
+  }
   list.mounts.push_back(map.optional("mount"));
   map.refuse_unknown_keys();
   sensor.name = object.name = name.value_or("");
@@ -311,6 +357,26 @@ void mount_sensors(const RobotList& robots, const ObjectList& objects, const Qua
   for (std::size_t i = 0; i < list.sensors.size(); ++i) {
     if (list.mounts[i] != nullptr)
       mount(*list.mounts[i], robots, objects, quantities, list.sensors[i]);
+  }
+}
+
+void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene) {
+  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
+    Sensor& sensor = scene.sensors[i];
+    if (list.reaches[i] == nullptr) continue;
+    const auto reach = robots_reach(scene);
+    if (const auto* const reason = std::get_if<std::string>(&reach)) {
+      diagnostics.add(
+          *list.reaches[i],
+          fmt::format("found 'reach', but {}; expected robots that stand still", *reason));
+      return;
+    }
+    const Object& object = scene.objects[sensor.object];
+    const double moves = object.max_speed < kInfinity
+                             ? object.max_speed * 1e-9 * static_cast<double>(object.age_limit_ns)
+                             : 0.0;
+    sensor.crop_centre = std::get<ReachBall>(reach).centre;
+    sensor.crop_radius = std::get<ReachBall>(reach).radius + sensor.reach + moves;
   }
 }
 

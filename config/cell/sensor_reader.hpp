@@ -16,6 +16,7 @@ inline constexpr std::size_t kMaxSensors = 16;
 struct SensorList {
   std::vector<Sensor> sensors;
   std::vector<const YamlNode*> mounts;
+  std::vector<const YamlNode*> reaches;  // the key `reach`; null: none
 };
 
 // Reads `sensors:`. What each of them sees becomes an object of the list, so this comes before the
@@ -26,5 +27,8 @@ struct SensorList {
 // Reads where the sensors are mounted, once all robots and attached objects are known.
 void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
                    SensorList& list);
+
+// Computes the balls outside of which sensors crop, once the scene has all else.
+void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene);
 
 }  // namespace clearance

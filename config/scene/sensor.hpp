@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "config/scene/robot.hpp"
 
@@ -12,6 +14,7 @@ namespace clearance {
 enum class SensorKind : std::uint8_t {
   kDepthImage,  // sensor_msgs/Image with CameraInfo: each pixel is a slab of its cone
   kPoints,      // sensor_msgs/PointCloud2: each point is a ball
+  kOctomap,  // octomap_msgs/Octomap, or MoveIt's in a PlanningScene: each occupied leaf is a cube
 };
 
 // A depth camera sees at most this far to each side of its axis, per metre of depth: the tangent of
@@ -24,8 +27,8 @@ struct Sensor {
   std::string name;  // also of its object
   SensorKind kind = SensorKind::kDepthImage;
   std::uint32_t object = 0;  // index into Scene::objects
-  std::string topic;         // of the images or points, in ROS 2's spelling
-  std::string camera_info;   // of CameraInfo; empty for points
+  std::string topic;         // of the images, points or maps, in ROS 2's spelling
+  std::string camera_info;   // of CameraInfo; of depth images only
 
   // The place of its frame, which has z forward, x right, y down for a camera. With
   // `frames_by_message`, the frame of tf that each message names; else `mount` states a frame of
@@ -38,7 +41,9 @@ struct Sensor {
   // z, or for points with `along_ray` the distance from the sensor.
   double error_constant = 0.0, error_quadratic = 0.0;
   bool along_ray = false;
-  double least_depth = 0.0, greatest_depth = 0.0;  // m; others count as missing
+  // m; others count as missing. Of a map, the greatest distance from the origin of its frame; what
+  // is beyond is only known to be there.
+  double least_depth = 0.0, greatest_depth = 0.0;
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
   double spacing = 0.0;
@@ -51,11 +56,26 @@ struct Sensor {
   // m. The error of the part's pose is added.
   double own_shell = 0.0;
 
+  // Elements stay only if this many of the last frames have one near it (1: all stay).
+  std::uint32_t persist_frames = 1, persist_of = 1;
+
+  // Elements beyond this from everywhere that links can come to are cropped, m; infinity: none are.
+  double reach = std::numeric_limits<double>::infinity();
+  // Hence the ball in the world outside of which they are, with the motion of what is seen within
+  // the age limit.
+  Vec3 crop_centre = Vec3::Zero();
+  double crop_radius = std::numeric_limits<double>::infinity();
+
+  // Reports say how near each link is to a place in the picture that the frame has not seen. Of
+  // depth images only.
+  bool unseen = false;
+
   [[nodiscard]] double error_at(double depth) const noexcept {
     return error_constant + error_quadratic * depth * depth;
   }
   // No element is farther from the sensor than this, m: the body of its object is that ball.
   [[nodiscard]] double extent() const noexcept {
+    if (kind == SensorKind::kOctomap) return 2.0 * greatest_depth;
     const double error = error_at(greatest_depth);
     const double farthest = kLongestRay * (greatest_depth + error);
     return kind == SensorKind::kDepthImage
@@ -63,5 +83,13 @@ struct Sensor {
                : 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
   }
 };
+
+// What a person should know of a sensor at the start, a sentence each.
+[[nodiscard]] std::vector<std::string> notes_of(const Sensor& sensor);
+
+struct Scene;
+// The published pairs of a sensor and a link, or what it carries: their own image is left out of
+// the sensor's frames. Indices into Scene::pairs, ascending.
+[[nodiscard]] std::vector<std::uint32_t> hidden_pairs(const Scene& scene);
 
 }  // namespace clearance

@@ -61,6 +61,7 @@ inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
 inline constexpr LogLine<Text, Text> kDescriptionKept{
     "description-kept", kInfo, "the robot's description from {} is kept as {}"};
 inline constexpr LogLine<Text, Text> kRobotNote{"robot-note", kInfo, "robot '{}': {}"};
+inline constexpr LogLine<Text, Text> kSensorNote{"sensor-note", kInfo, "sensor '{}': {}"};
 
 // ---- The daemon's own recording
 
@@ -280,6 +281,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kWaitingForDescription,
                                  kDescriptionKept,
                                  kRobotNote,
+                                 kSensorNote,
                                  kRecordingRenamed,
                                  kRecordingWithoutFiles,
                                  kRecordingContinues,

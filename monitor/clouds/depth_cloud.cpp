@@ -240,6 +240,100 @@ DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& imag
   } else {
     fill_blocks<Metres>(image, error, range);
   }
+  finish();
+  return DepthBuild::kBuilt;
+}
+
+bool DepthCloud::build_unseen(const DepthCloud& seen, const DepthRange& range) noexcept {
+  const PinholeCamera& camera = seen.camera_;
+  const bool good_range = range.least > 0.0 && range.least <= range.greatest &&
+                          range.greatest <= kGreatestDepth;
+  if (camera.width == 0 || camera.width > most_columns_ || camera.height > most_rows_ ||
+      !good_range) {
+    return false;
+  }
+  set_camera(camera);
+  near_ = rounded_down(range.least);
+  far_ = rounded_up(range.greatest);
+  levels_ = tree_levels_;
+  size_ = 0;
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    Block& tile = tiles_[b / kFanOut];
+    float &least = tile.low[b % kFanOut], &greatest = tile.high[b % kFanOut];
+    least = kEmptyLow;
+    greatest = -kEmptyLow;
+    const std::uint32_t column = places_[b].column, row = places_[b].row;
+    if (column >= camera.width || row >= camera.height) continue;
+    const Block& before = seen.blocks_[b];
+    Block& block = blocks_[b];
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      const bool is_inside = column + lane % 4 < camera.width && row + lane / 4 < camera.height;
+      const bool is_seen = before.low[lane] <= before.high[lane];
+      // What is behind begins where the slab of the pixel ends, so no place is between the two.
+      const float low = is_seen ? std::max(near_, before.high[lane]) : near_;
+      const bool is_there = is_inside && low < far_;
+      block.low[lane] = is_there ? low : kEmptyLow;
+      block.high[lane] = is_there ? far_ : -kEmptyLow;
+      if (!is_there) continue;
+      least = std::min(least, low);
+      greatest = far_;
+      ++size_;
+    }
+  }
+  missing_ = std::size_t{camera.width} * camera.height - size_;
+  finish();
+  return true;
+}
+
+void DepthCloud::leave_out_behind(const DepthCloud& seen) noexcept {
+  for (std::size_t b = 0; b < count_[0]; ++b) {
+    if (places_[b].column >= camera_.width || places_[b].row >= camera_.height) continue;
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      const bool was_seen = blocks_[b].low[lane] > near_;
+      if (was_seen && seen.blocks_[b].low[lane] > seen.blocks_[b].high[lane]) remove(b, lane);
+    }
+  }
+  refit();
+}
+
+void DepthCloud::leave_open(std::size_t block, std::size_t lane) noexcept {
+  if (levels_ == 0) return;  // no place was unseen, which a picture that is full to its end may have
+  if (blocks_[block].low[lane] > blocks_[block].high[lane]) ++size_;
+  blocks_[block].low[lane] = near_;
+  blocks_[block].high[lane] = far_;
+  tiles_[block / kFanOut].low[block % kFanOut] = near_;
+  tiles_[block / kFanOut].high[block % kFanOut] = far_;
+}
+
+std::size_t DepthCloud::crop(const Vec3& centre, double radius) noexcept {
+  const auto is_outside = [&](const Slab& slab) {
+    return (slab.middle() - centre).norm() - slab.diameter() > radius * (1.0 + 0x1p-40);
+  };
+  const auto pixels = [&](const auto& visit) {
+    for (std::size_t b = 0; levels_ > 0 && b < count_[0]; ++b) {
+      if (is_empty(node(0, b))) continue;
+      const bool all_outside = is_outside(slab(0, b));
+      for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+        if (blocks_[b].low[lane] > blocks_[b].high[lane]) continue;
+        if (!visit(b, lane, all_outside || is_outside(pixel_slab(b, lane)))) return;
+      }
+    }
+  };
+  bool any_stays = false;
+  pixels([&](std::size_t, std::size_t, bool outside) {
+    any_stays = !outside;
+    return outside;
+  });
+  const std::size_t before = size_;
+  if (!any_stays) return 0;
+  pixels([&](std::size_t b, std::size_t lane, bool outside) {
+    if (outside) remove(b, lane);
+    return true;
+  });
+  return before - size_;
+}
+
+void DepthCloud::finish() noexcept {
   add_levels();
   revision_ = next_revision();
   const Node all = node(levels_ - 1, 0);
@@ -252,7 +346,6 @@ DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& imag
     const double y = widest(row_edges_[0], row_edges_[camera_.height]);
     extent_ = all.high * std::sqrt(1.0 + x * x + y * y) * (1.0 + 0x1p-40);
   }
-  return DepthBuild::kBuilt;
 }
 
 template <class Pixel>

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -104,6 +105,13 @@ class DepthCloud {
       const double z = (corner & 4U) != 0 ? high : low;
       return {((corner & 1U) != 0 ? x1 : x0) * z, ((corner & 2U) != 0 ? y1 : y0) * z, z};
     }
+    // No two of its points are farther apart: a convex function of two points is largest at two
+    // vertices.
+    [[nodiscard]] double diameter() const noexcept {
+      const double x = std::max(std::abs(x0), std::abs(x1)) * (high - low) + (x1 - x0) * high;
+      const double y = std::max(std::abs(y0), std::abs(y1)) * (high - low) + (y1 - y0) * high;
+      return std::hypot(x, y, high - low) * (1.0 + 0x1p-40);
+    }
     [[nodiscard]] Vec3 middle() const noexcept {
       const double z = 0.5 * (low + high);
       return {0.5 * (x0 + x1) * z, 0.5 * (y0 + y1) * z, z};
@@ -118,11 +126,23 @@ class DepthCloud {
   [[nodiscard]] DepthBuild build(const PinholeCamera& camera, const DepthImage& image,
                                  const DepthError& error, const DepthRange& range) noexcept;
 
+  // Replaces the cloud by the places of another one's picture that it has not seen: behind each of
+  // its pixels, and the whole cone of a pixel that it does not have, both within the range. Returns
+  // false, and changes nothing, if the picture is larger than the capacity, or the range is bad.
+  [[nodiscard]] bool build_unseen(const DepthCloud& seen, const DepthRange& range) noexcept;
+  // After that: leaves out the places behind the pixels that `seen` has lost since.
+  void leave_out_behind(const DepthCloud& seen) noexcept;
+  // After that: the whole cone of this pixel is unseen. Call refit() afterwards.
+  void leave_open(std::size_t block, std::size_t lane) noexcept;
+
   // Leaves out a pixel from now on. The tiles above stay as they are, so bounds stay true, but
   // queries look into them in vain until refit().
   void remove(std::size_t block, std::size_t lane) noexcept;
   // Fits all tiles to the pixels that are left.
   void refit() noexcept;
+  // Leaves out the pixels whose slabs lie outside of the ball, unless that were all. Returns how
+  // many. Call refit() afterwards.
+  std::size_t crop(const Vec3& centre, double radius) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }        // pixels with a slab
   [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // or out of range
@@ -169,6 +189,7 @@ class DepthCloud {
   void fill_blocks(const DepthImage& image, const DepthError& error,
                    const DepthRange& range) noexcept;
   void add_levels() noexcept;
+  void finish() noexcept;
 
   std::uint32_t most_columns_, most_rows_;
   PinholeCamera camera_;
@@ -183,6 +204,8 @@ class DepthCloud {
   std::size_t size_ = 0, missing_ = 0;
   std::uint64_t revision_ = 0;
   double extent_ = 0.0;
+  // Of unseen places, m: where they begin if their pixel was not seen, and where they end.
+  float near_ = 0.0F, far_ = 0.0F;
 };
 
 }  // namespace clearance

@@ -16,10 +16,34 @@ namespace clearance {
 // Lengths that are computed here are at most this factor too small.
 inline constexpr double kLengthRoundedUp = 1.0 + 0x1p-40;
 
-// The balls of a PointCloud.
-class Balls {
+// The vertex of a small body is mostly its nearest point, or its deepest one. Then a query of that
+// point answers: its distance is an upper bound for the body, its plane gives a lower one, and the
+// two agree, or the body is left out. Returns false if a query of the body itself has to answer.
+template <class Body, class Search>
+[[nodiscard]] bool query_vertex(const Body& body, const Vec3& along, Search& search,
+                                DistanceResult& r) noexcept {
+  // The bounds of a body by its vertex differ by rounding, or the vertex is not the nearest point,
+  // m.
+  constexpr double kTightVertex = 1e-10;
+  unsigned corner = body.corner_along(search.in_cloud(along));
+  for (int i = 0; i < 3; ++i) {
+    r = search.query(body.vertex(corner), {});
+    if (r.status != DistanceStatus::kConverged && r.status != DistanceStatus::kOverlapping)
+      return false;
+    const Vec3 n = search.in_cloud(r.normal);
+    r.lower = std::min(r.lower, search.bound_by_newest(body.least_along(n)));
+    if (r.upper - r.lower <= kTightVertex || search.is_left_out(r.lower)) return true;
+    const unsigned next = body.corner_along(n);
+    if (next == corner) return false;
+    corner = next;
+  }
+  return false;
+}
+
+// The points of a PointCloud, whatever is around them.
+class CentredElements {
  public:
-  explicit Balls(const PointCloud& cloud) noexcept : cloud_(cloud) {}
+  explicit CentredElements(const PointCloud& cloud) noexcept : cloud_(cloud) {}
 
   [[nodiscard]] const PointCloud& cloud() const noexcept { return cloud_; }
   [[nodiscard]] const ConvexBody& origin() const noexcept { return cloud_.origin(); }
@@ -33,20 +57,6 @@ class Balls {
     return cloud_.block(b).source[lane];
   }
 
-  // The bounds of the eight children of a node, or of the elements of a block for level 0.
-  template <class Planes>
-  void bound(std::size_t level, std::size_t i, const Planes& planes, const PlaneBounds& by,
-             BoundLanes& out) const noexcept {
-    if (level > 0) {
-      by.of(cloud_.children(level, i), planes, out);
-      return;
-    }
-    const PointCloud::Block& block = cloud_.block(i);
-    by.of(block, planes, out);
-    for (std::size_t k = 0; block.removed != 0 && k < out.size(); ++k) {
-      if (!block.is_present(k)) out[k] = kInfinity;
-    }
-  }
   // A point of the node's box that is near `a`.
   [[nodiscard]] Vec3 towards(std::size_t level, std::size_t i, const Vec3& a) const noexcept {
     const PointCloud::Node node = cloud_.node(level, i);
@@ -70,6 +80,35 @@ class Balls {
     return (std::sqrt(squared) + node.radius) * kLengthRoundedUp;
   }
 
+ protected:
+  template <class Bodies, class Planes>
+  void bound_with(const Bodies& bodies, std::size_t level, std::size_t i, const Planes& planes,
+                  const PlaneBounds& by, BoundLanes& out) const noexcept {
+    if (level > 0) {
+      by.of(cloud_.children(level, i), planes, out);
+      return;
+    }
+    const PointCloud::Block& block = cloud_.block(i);
+    by.of(bodies, planes, out);
+    for (std::size_t k = 0; block.removed != 0 && k < out.size(); ++k) {
+      if (!block.is_present(k)) out[k] = kInfinity;
+    }
+  }
+
+  const PointCloud& cloud_;
+};
+
+class Balls : public CentredElements {
+ public:
+  using CentredElements::CentredElements;
+
+  // The bounds of the eight children of a node, or of the elements of a block for level 0.
+  template <class Planes>
+  void bound(std::size_t level, std::size_t i, const Planes& planes, const PlaneBounds& by,
+             BoundLanes& out) const noexcept {
+    bound_with(cloud_.block(level > 0 ? 0 : i), level, i, planes, by, out);
+  }
+
   // A ball's signed distance is that of its centre less its radius.
   template <class Search>
   [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane, const Vec3&,
@@ -85,8 +124,26 @@ class Balls {
 
  private:
   static double outward(double x, double sign) noexcept { return x + sign * 0x1p-52 * std::abs(x); }
+};
 
-  const PointCloud& cloud_;
+class Cubes : public CentredElements {
+ public:
+  using CentredElements::CentredElements;
+
+  template <class Planes>
+  void bound(std::size_t level, std::size_t i, const Planes& planes, const PlaneBounds& by,
+             BoundLanes& out) const noexcept {
+    bound_with(PlaneBounds::Cubes{cloud_.block(level > 0 ? 0 : i)}, level, i, planes, by, out);
+  }
+
+  template <class Search>
+  [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane, const Vec3& along,
+                                        Search& search) const noexcept {
+    const Cube cube = cloud_.cube(b, lane);
+    DistanceResult r;
+    if (query_vertex(cube, along, search, r)) return r;
+    return search.query(cloud_.cube_at_origin(cube.half), cube.centre, cube);
+  }
 };
 
 // The slabs of a DepthCloud.
@@ -129,32 +186,16 @@ class Slabs {
     return std::sqrt(x * x + y * y + z * z) * kLengthRoundedUp;
   }
 
-  // A slab is small, so a vertex of it is mostly the nearest point, or the deepest one. Then a
-  // query of that point answers: its distance is an upper bound for the slab, its plane gives a
-  // lower one, and the two agree. Otherwise the slab is a body.
   template <class Search>
   [[nodiscard]] DistanceResult evaluate(std::size_t b, std::size_t lane, const Vec3& along,
                                         Search& search) const noexcept {
     const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
-    unsigned corner = slab.corner_along(search.in_cloud(along));
-    for (int i = 0; i < 3; ++i) {
-      DistanceResult r = search.query(slab.vertex(corner), {});
-      if (r.status != DistanceStatus::kConverged && r.status != DistanceStatus::kOverlapping) break;
-      const Vec3 n = search.in_cloud(r.normal);
-      r.lower = std::min(r.lower, search.bound_by_newest(slab.least_along(n)));
-      if (r.upper - r.lower <= kTightVertex || search.is_left_out(r.lower)) return r;
-      const unsigned next = slab.corner_along(n);
-      if (next == corner) break;
-      corner = next;
-    }
-    return search.query(body_.of(slab), slab);
+    DistanceResult r;
+    if (query_vertex(slab, along, search, r)) return r;
+    return search.query(body_.of(slab), Vec3::Zero(), slab);
   }
 
  private:
-  // The bounds of a slab by its vertex differ by rounding, or the vertex is not the nearest point,
-  // m.
-  static constexpr double kTightVertex = 1e-10;
-
   const DepthCloud& cloud_;
   SlabBody& body_;
 };

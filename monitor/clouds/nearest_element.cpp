@@ -80,12 +80,16 @@ class Search {
     keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
   }
-  // The part and a slab, whose body is in the cloud's frame.
-  DistanceResult query(const ConvexBody& body, const DepthCloud::Slab& slab) noexcept {
+  // The part and an element, whose body is placed at p in the cloud's frame.
+  template <class Element>
+  DistanceResult query(const ConvexBody& body, const Vec3& p, const Element& element) noexcept {
+    RelativePose at = pose_;
+    at.translation += pose_.rotation * p;
+    at.translation_error = moved_;
     ++best_.queries;
-    const DistanceResult r = distance(part_, body, pose_, tracking_.body_features);
+    const DistanceResult r = distance(part_, body, at, tracking_.body_features);
     keep_plane(r, [&] {
-      return slab.least_along(in_cloud(r.normal)) + r.normal.dot(pose_.translation) + error_;
+      return element.least_along(in_cloud(r.normal)) + r.normal.dot(pose_.translation) + error_;
     });
     return r;
   }
@@ -363,6 +367,8 @@ NearestElement nearest_element(const ConvexBody& part, const PointCloud& cloud,
                                const RelativePose& part_from_cloud,
                                CloudTracking& tracking) noexcept {
   if (cloud.size() == 0) return {};
+  if (cloud.shape() == ElementShape::kCube)
+    return Search(part, Cubes(cloud), part_from_cloud, tracking).run();
   return Search(part, Balls(cloud), part_from_cloud, tracking).run();
 }
 

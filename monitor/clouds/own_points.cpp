@@ -12,15 +12,6 @@ namespace {
 // A bound of the errors in lengths that are computed here, relative to them.
 constexpr double kRoundedUp = 1.0 + 0x1p-40;
 
-// The longest diagonal of a slab: a convex function of two points is largest at two vertices.
-double diameter(const DepthCloud::Slab& s) noexcept {
-  const double x =
-      std::max(std::abs(s.x0), std::abs(s.x1)) * (s.high - s.low) + (s.x1 - s.x0) * s.high;
-  const double y =
-      std::max(std::abs(s.y0), std::abs(s.y1)) * (s.high - s.low) + (s.y1 - s.y0) * s.high;
-  return std::hypot(x, y, s.high - s.low) * kRoundedUp;
-}
-
 class SlabShelf {
  public:
   SlabShelf(const ConvexBody& part, const RelativePose& pose, double shell, DepthCloud& cloud,
@@ -78,7 +69,7 @@ class SlabShelf {
       if (!has_near_middle(slab) && !is_near(slab)) continue;
       cloud_.remove(b, lane);
       ++blind_.elements;
-      blind_.thickness = std::max(blind_.thickness, shell_ + diameter(slab));
+      blind_.thickness = std::max(blind_.thickness, shell_ + slab.diameter());
     }
   }
 
@@ -110,14 +101,25 @@ class BallShelf {
   }
 
  private:
-  // Does the ball of this radius around the point come near?
-  [[nodiscard]] bool is_near(const Vec3& p, double radius) noexcept {
-    RelativePose at;
+  [[nodiscard]] RelativePose at(const Vec3& p) const noexcept {
+    RelativePose at = pose_;
     at.translation = pose_.rotation * p + pose_.translation;
     at.translation_error = pose_.translation_error + pose_.rotation_error * p.norm() +
                            0x1p-49 * (p.norm() + pose_.translation.norm());
-    const DistanceResult r = distance(part_, cloud_.origin(), at, features_, {.depth = false});
+    return at;
+  }
+
+  // Does the ball of this radius around the point come near?
+  [[nodiscard]] bool is_near(const Vec3& p, double radius) noexcept {
+    const DistanceResult r = distance(part_, cloud_.origin(), at(p), features_, {.depth = false});
     return r.status != DistanceStatus::kBadPose && r.lower <= (shell_ + radius) * kRoundedUp;
+  }
+  // The ball around a cube decides for most of them.
+  [[nodiscard]] bool is_near(const Cube& cube) noexcept {
+    if (!is_near(cube.centre, kCubeRadius * cube.half)) return false;
+    const DistanceResult r = distance(part_, cloud_.cube_at_origin(cube.half), at(cube.centre),
+                                      cube_features_, {.depth = false});
+    return r.status != DistanceStatus::kBadPose && r.lower <= shell_ * kRoundedUp;
   }
 
   void descend(std::size_t level, std::size_t i) noexcept {
@@ -142,9 +144,14 @@ class BallShelf {
     const PointCloud::Block& block = cloud_.block(b);
     for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
       if (!block.is_present(lane)) continue;
-      if (!is_near({block.x[lane], block.y[lane], block.z[lane]}, block.radius[lane])) continue;
+      const bool is_cube = cloud_.shape() == ElementShape::kCube;
+      const double radius = (is_cube ? kCubeRadius : 1.0) * block.radius[lane];
+      if (is_cube ? !is_near(cloud_.cube(b, lane))
+                  : !is_near({block.x[lane], block.y[lane], block.z[lane]}, radius)) {
+        continue;
+      }
       blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
-      blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * block.radius[lane]);
+      blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * radius);
     }
   }
 
@@ -152,7 +159,7 @@ class BallShelf {
   const RelativePose& pose_;
   double shell_;
   PointCloud& cloud_;
-  TrackingState features_;
+  TrackingState features_, cube_features_;
   BlindShell blind_;
 };
 

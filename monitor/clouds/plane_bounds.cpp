@@ -103,6 +103,19 @@ HWY_INLINE hn::Mask<D> is_empty(const PointCloud::Block&, std::size_t) {
   return hn::FirstN(kDoubles, 0);
 }
 
+HWY_INLINE Numbers least_along(const PlaneBounds::Cubes& cubes, const Planes& plane,
+                               std::size_t lane) {
+  const PointCloud::Block& of = cubes.block;
+  const Numbers sides = plus(plus(hn::Abs(plane.x), hn::Abs(plane.y)), hn::Abs(plane.z));
+  return hn::Sub(
+      plus(plus(times(plane.x, load(of.x.data() + lane)), times(plane.y, load(of.y.data() + lane))),
+           times(plane.z, load(of.z.data() + lane))),
+      times(sides, load(of.radius.data() + lane)));
+}
+HWY_INLINE hn::Mask<D> is_empty(const PlaneBounds::Cubes&, std::size_t) {
+  return hn::FirstN(kDoubles, 0);
+}
+
 template <class Bodies, class Source>
 HWY_INLINE void bounds(const Bodies& bodies, const Source& planes, double error, BoundLanes& out) {
   for (std::size_t lane = 0; lane < kCloudLanes; lane += hn::Lanes(kDoubles)) {
@@ -125,6 +138,7 @@ HWY_INLINE void bounds(const Bodies& bodies, const Source& planes, double error,
 CLEARANCE_BOUNDS(slabs, DepthCloud::Lanes)
 CLEARANCE_BOUNDS(boxes, PointCloud::Boxes)
 CLEARANCE_BOUNDS(points, PointCloud::Block)
+CLEARANCE_BOUNDS(cubes, PlaneBounds::Cubes)
 #undef CLEARANCE_BOUNDS
 
 }  // namespace
@@ -149,6 +163,7 @@ namespace clearance {
 CLEARANCE_BOUNDS(slabs, DepthCloud::Lanes)
 CLEARANCE_BOUNDS(boxes, PointCloud::Boxes)
 CLEARANCE_BOUNDS(points, PointCloud::Block)
+CLEARANCE_BOUNDS(cubes, PlaneBounds::Cubes)
 #undef CLEARANCE_BOUNDS
 
 }  // namespace clearance

@@ -56,6 +56,12 @@ struct PlaneBounds {
   void of(const DepthCloud::Lanes& slabs, const PartPlane& plane, BoundLanes& out) const noexcept;
   void of(const PointCloud::Boxes& boxes, const PlaneLanes& planes, BoundLanes& out) const noexcept;
   void of(const PointCloud::Boxes& boxes, const PartPlane& plane, BoundLanes& out) const noexcept;
+  // The cubes of a block.
+  struct Cubes {
+    const PointCloud::Block& block;
+  };
+  void of(const Cubes& cubes, const PlaneLanes& planes, BoundLanes& out) const noexcept;
+  void of(const Cubes& cubes, const PartPlane& plane, BoundLanes& out) const noexcept;
   // A lane of a removed point counts like all others.
   void of(const PointCloud::Block& points, const PlaneLanes& planes,
           BoundLanes& out) const noexcept;

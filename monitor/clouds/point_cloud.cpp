@@ -55,6 +55,32 @@ PointCloud::PointCloud(std::size_t capacity)
 
 CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
                              const CloudCrop& crop) noexcept {
+  return build(points, crop, ElementShape::kBall);
+}
+
+CloudBuild PointCloud::build_cubes(std::span<const MeasuredPoint> cubes, const CloudCrop& crop) {
+  std::vector<SizedCube> sizes;
+  for (const MeasuredPoint& cube : cubes) {
+    const double half = cube.radius;
+    if (!(half >= 0.0 && std::isfinite(half))) return CloudBuild::kBadRadius;
+    if (std::ranges::find(sizes, half, &SizedCube::half) != sizes.end()) continue;
+    if (sizes.size() == kMostSizes) return CloudBuild::kBadRadius;
+    const auto known = std::ranges::find(cubes_, half, &SizedCube::half);
+    if (known != cubes_.end()) {
+      sizes.push_back(*known);
+      continue;
+    }
+    auto made = half > 0.0 ? box(Vec3::Constant(half)) : point(Vec3::Zero(), 0.0);
+    if (!std::holds_alternative<ConvexBody>(made)) return CloudBuild::kBadRadius;
+    sizes.push_back({half, std::get<ConvexBody>(std::move(made))});
+  }
+  const CloudBuild result = build(cubes, crop, ElementShape::kCube);
+  if (result == CloudBuild::kBuilt) cubes_.swap(sizes);
+  return result;
+}
+
+CloudBuild PointCloud::build(std::span<const MeasuredPoint> points, const CloudCrop& crop,
+                             ElementShape shape) noexcept {
   // The negated comparisons refuse NaN.
   if (!(crop.radius >= 0.0) ||
       !(crop.centre.cwiseAbs().maxCoeff() + crop.radius <= kLargestCloudCoordinate)) {
@@ -75,7 +101,8 @@ CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
     const Vec3 at(p.x, p.y, p.z), from_low = at - low;
     // The rounding of the two sides is far below 2^-40 of either, so no ball that meets the crop is
     // dropped.
-    if ((at - crop.centre).norm() > (crop.radius + p.radius) * (1.0 + 0x1p-40) + 0x1p-30) {
+    const double radius = shape == ElementShape::kCube ? kCubeRadius * p.radius : p.radius;
+    if ((at - crop.centre).norm() > (crop.radius + radius) * (1.0 + 0x1p-40) + 0x1p-30) {
       ++cropped;
       continue;
     }
@@ -83,8 +110,10 @@ CloudBuild PointCloud::build(std::span<const MeasuredPoint> points,
     keys_[kept++] = {spread(cell(from_low.x(), scale)) | spread(cell(from_low.y(), scale)) << 1 |
                          spread(cell(from_low.z(), scale)) << 2,
                      static_cast<std::uint32_t>(i)};
-    extent2 = std::max(extent2, at.squaredNorm());
+    const double farthest = shape == ElementShape::kCube ? at.norm() + radius : at.norm();
+    extent2 = std::max(extent2, farthest * farthest);
   }
+  shape_ = shape;
   size_ = built_ = kept;
   missing_ = missing;
   cropped_ = cropped;
@@ -132,10 +161,25 @@ void PointCloud::fill_blocks(std::span<const MeasuredPoint> points) noexcept {
       block.z[lane] = p.z;
       block.radius[lane] = p.radius;
       block.source[lane] = source;
-      include(node, {{p.x, p.y, p.z}, {p.x, p.y, p.z}, p.radius});
+      include(node, around(b, lane));
     }
     set_node(0, b, node);
   }
+}
+
+// The sides of a cube are rounded outward.
+PointCloud::Node PointCloud::around(std::size_t block, std::size_t lane) const noexcept {
+  const Block& of = blocks_[block];
+  Node node{{of.x[lane], of.y[lane], of.z[lane]}, {of.x[lane], of.y[lane], of.z[lane]}, 0.0F};
+  if (shape_ == ElementShape::kBall) {
+    node.radius = of.radius[lane];
+    return node;
+  }
+  for (std::size_t k = 0; k < 3; ++k) {
+    node.low[k] = std::nextafter(node.low[k] - of.radius[lane], -kEndless);
+    node.high[k] = std::nextafter(node.high[k] + of.radius[lane], kEndless);
+  }
+  return node;
 }
 
 bool PointCloud::remove(std::size_t block, std::size_t lane) noexcept {
@@ -154,8 +198,7 @@ void PointCloud::refit() noexcept {
     Node node = kEmpty;
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       if (!block.is_present(lane)) continue;
-      const std::array<float, 3> at{block.x[lane], block.y[lane], block.z[lane]};
-      include(node, {at, at, block.radius[lane]});
+      include(node, around(b, lane));
     }
     set_node(0, b, node);
   }

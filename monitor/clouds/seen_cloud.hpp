@@ -1,14 +1,30 @@
 // The content of one frame of a sensor, a depth image or points, behind one query.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <variant>
+#include <vector>
 
 #include "monitor/clouds/nearest_element.hpp"
 #include "monitor/clouds/own_points.hpp"
 
 namespace clearance {
+
+// What a frame cannot show near a body whose own image was left out of it, at the frame's stamp.
+struct HiddenNear {
+  std::uint32_t object = 0;  // the caller's number of the body
+  // Its thickness includes the error of the body's pose: anything that close to the exact body may
+  // be left out.
+  BlindShell shell;
+  // A lower bound of the distance to the nearest unseen place, and about where it is, in the world,
+  // m. -infinity and NaN: not known.
+  double unseen = -kInfinity;
+  Vec3 unseen_at = Vec3::Constant(std::numeric_limits<double>::quiet_NaN());
+};
 
 // All memory is allocated at the start. It is built by one thread, and may then be read by any.
 class SeenCloud {
@@ -32,12 +48,50 @@ class SeenCloud {
     return depth() != nullptr ? depth()->size() : points()->size();
   }
 
-  // `body` is scratch memory of the caller.
+  // `body` is scratch memory of the caller. Elements that were cropped count: `lower` is a bound of
+  // their distance, too.
   [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,
                                        SlabBody& body, CloudTracking& tracking) const noexcept {
-    if (const DepthCloud* const slabs = depth())
-      return nearest_element(part, *slabs, body, part_from_cloud, tracking);
-    return nearest_element(part, *points(), part_from_cloud, tracking);
+    NearestElement found = depth() != nullptr
+                               ? nearest_element(part, *depth(), body, part_from_cloud, tracking)
+                               : nearest_element(part, *points(), part_from_cloud, tracking);
+    if (crop_.radius < kInfinity && found.answer == CloudAnswer::kNearest)
+      found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
+    return found;
+  }
+  // From now on, the elements outside of this ball, in the frame of the cloud, may have been left
+  // out. Infinity: none were, as after a build.
+  void note_crop(const CloudCrop& crop) noexcept { crop_ = crop; }
+  [[nodiscard]] const CloudCrop& crop() const noexcept { return crop_; }
+
+  // Visits all elements: visit(block, lane, centre, radius of a ball around it that contains it).
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    if (const DepthCloud* const slabs = depth()) {
+      for (std::size_t b = 0; b < slabs->blocks(); ++b) {
+        if (DepthCloud::is_empty(slabs->node(0, b))) continue;
+        for (std::size_t lane = 0; lane < DepthCloud::kFanOut; ++lane) {
+          if (slabs->block(b).low[lane] > slabs->block(b).high[lane]) continue;
+          const DepthCloud::Slab slab = slabs->pixel_slab(b, lane);
+          visit(b, lane, slab.middle(), slab.diameter());
+        }
+      }
+      return;
+    }
+    for (std::size_t b = 0; b < points()->blocks(); ++b) {
+      const PointCloud::Block& block = points()->block(b);
+      for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
+        if (block.is_present(lane))
+          visit(b, lane, Vec3(block.x[lane], block.y[lane], block.z[lane]),
+                points()->shape() == ElementShape::kCube ? kCubeRadius * block.radius[lane]
+                                                         : double{block.radius[lane]});
+      }
+    }
+  }
+  // See DepthCloud::remove() and PointCloud::remove().
+  void remove(std::size_t block, std::size_t lane) noexcept {
+    if (DepthCloud* const slabs = depth()) return slabs->remove(block, lane);
+    static_cast<void>(points()->remove(block, lane));
   }
   // See own_points.hpp. Call refit() after the last part.
   [[nodiscard]] BlindShell shelve(const ConvexBody& part, const RelativePose& part_from_cloud,
@@ -46,15 +100,33 @@ class SeenCloud {
       return shelve_own_points(part, part_from_cloud, shell, *slabs, body);
     return shelve_own_points(part, part_from_cloud, shell, *points());
   }
+  // By the caller, in ascending order of objects.
+  [[nodiscard]] std::span<const HiddenNear> hidden() const noexcept { return hidden_; }
+  [[nodiscard]] std::vector<HiddenNear>& hidden() noexcept { return hidden_; }
+
   void refit() noexcept {
     if (DepthCloud* const slabs = depth()) return slabs->refit();
     points()->refit();
   }
 
  private:
+  // No point outside of the crop's ball is nearer to the part than this, m.
+  [[nodiscard]] double to_cropped(const ConvexBody& part,
+                                  const RelativePose& part_from_cloud) const noexcept {
+    const Vec3 origin = -(part_from_cloud.rotation.transpose() * part_from_cloud.translation);
+    const double lengths =
+        origin.norm() + crop_.centre.norm() + crop_.radius + part.bounding_radius + part.radius;
+    const double error = part_from_cloud.translation_error +
+                         part_from_cloud.rotation_error * origin.norm() + 0x1p-46 * lengths;
+    return crop_.radius - (origin - crop_.centre).norm() - part.bounding_radius - part.radius -
+           part.position_error - error;
+  }
+
   explicit SeenCloud(std::variant<DepthCloud, PointCloud> cloud) : cloud_(std::move(cloud)) {}
 
   std::variant<DepthCloud, PointCloud> cloud_;
+  std::vector<HiddenNear> hidden_;
+  CloudCrop crop_{.centre = Vec3::Zero(), .radius = kInfinity};
 };
 
 }  // namespace clearance

@@ -167,6 +167,10 @@ void Daemon::run(StopSignal& signal) {
   for (const Robot& robot : scene.robots) {
     for (const std::string& note : robot.notes) log_line(lines::kRobotNote, robot.name, note);
   }
+  for (const Sensor& sensor : scene.sensors) {
+    for (const std::string& note : notes_of(sensor))
+      log_line(lines::kSensorNote, sensor.name, note);
+  }
   warn_of_partition(*now_.cell, options_.dds);
 
   std::atomic<bool> done{false};

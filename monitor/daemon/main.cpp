@@ -152,6 +152,10 @@ void print_summary(const Scene& scene) {
       print(stderr, "robot '{}': {}\n", robot.name, note);
     }
   }
+  for (const Sensor& sensor : scene.sensors) {
+    for (const std::string& note : notes_of(sensor))
+      print(stderr, "sensor '{}': {}\n", sensor.name, note);
+  }
   print(stdout, "{}\n", summary(scene));
 }
 

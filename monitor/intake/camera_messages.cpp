@@ -101,6 +101,8 @@ const char* text(FrameFault fault) noexcept {
       return "its picture is too wide, or has more points within the range than the cell states";
     case FrameFault::kNothingSeen:
       return "nothing is seen within the range but the robot itself: that is not clear";
+    case FrameFault::kOctree:
+      return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
   }
   return "";
 }
@@ -153,6 +155,8 @@ const char* name(FrameFault fault) noexcept {
       return "too wide, or too many points";
     case FrameFault::kNothingSeen:
       return "nothing seen but the robot";
+    case FrameFault::kOctree:
+      return "a map that cannot be read";
   }
   return "";
 }
@@ -197,6 +201,16 @@ FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t mo
   found.row_step = step;
   found.bytes = bytes;
   out = found;
+  return FrameFault::kNoFault;
+}
+
+FrameFault view(const octomap_msgs_msg_dds__Octomap_& message, OctomapView& out) noexcept {
+  if (!(message.resolution > 0.0 && message.resolution <= kLargestResolution))
+    return FrameFault::kOctree;
+  out = {.is_binary = message.binary,
+         .id = message.id,
+         .resolution = message.resolution,
+         .bytes = std::as_bytes(std::span(message.data._buffer, message.data._length))};
   return FrameFault::kNoFault;
 }
 

@@ -10,8 +10,10 @@
 #include <string>
 
 #include "monitor/clouds/depth_cloud.hpp"
+#include "monitor/intake/octomap_tree.hpp"
 #include "monitor/wire/camera_types.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 
@@ -42,8 +44,9 @@ enum class FrameFault : std::uint8_t {
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
   kCannotBuild,  // a picture too wide, or more points within the range than the cell states
   kNothingSeen,  // no pixel or point within the range but the robot's own
+  kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
 };
-inline constexpr std::size_t kFrameFaults = 23;
+inline constexpr std::size_t kFrameFaults = 24;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;
@@ -65,5 +68,7 @@ struct PointsView {
                               std::size_t most_points, PointsView& out) noexcept;
 [[nodiscard]] FrameFault view(const sensor_msgs_msg_dds__CameraInfo_& message,
                               PinholeCamera& out) noexcept;
+[[nodiscard]] FrameFault view(const octomap_msgs_msg_dds__Octomap_& message,
+                              OctomapView& out) noexcept;
 
 }  // namespace clearance

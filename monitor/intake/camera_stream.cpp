@@ -97,6 +97,17 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__PointCloud2_& message,
   return counted(fault);
 }
 
+FrameFault CameraStream::take(const octomap_msgs_msg_dds__Octomap_& message,
+                              const FrameOrigin& origin, OctomapView& out) noexcept {
+  OctomapView map;
+  FrameFault fault = view(message, map);
+  if (fault == FrameFault::kNoFault) fault = judge(origin);
+  if (fault != FrameFault::kNoFault) return counted(fault);
+  last_ = origin;
+  out = map;
+  return counted(FrameFault::kNoFault);
+}
+
 FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
   if (origin.stamp_ns == 0) return FrameFault::kNoStamp;
   if (time_between(origin.stamp_ns, origin.sent_ns) >

@@ -39,6 +39,9 @@ class CameraStream {
                                 const FrameOrigin& origin, DepthImage& out) noexcept;
   [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__PointCloud2_& message,
                                 const FrameOrigin& origin, PointsView& out) noexcept;
+  // A map that nothing has changed may come again as it was.
+  [[nodiscard]] FrameFault take(const octomap_msgs_msg_dds__Octomap_& message,
+                                const FrameOrigin& origin, OctomapView& out) noexcept;
   // Counts bytes that could not be decoded.
   void refuse() noexcept { static_cast<void>(counted(FrameFault::kUndecodable)); }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "monitor/wire/camera_types.hpp"
+#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 namespace {
@@ -21,12 +22,16 @@ struct Input {
   const RosType* delivery;
   Type message;
 };
-constexpr std::array<Input, 3> kInputs = {{
+constexpr std::array<Input, 5> kInputs = {{
     {&Sensor::topic, SensorKind::kDepthImage, "sensor_msgs/msg/Image", &kRosImage, Type::kImage},
     {&Sensor::camera_info, SensorKind::kDepthImage, "sensor_msgs/msg/CameraInfo", &kRosCameraInfo,
      Type::kCameraInfo},
     {&Sensor::topic, SensorKind::kPoints, "sensor_msgs/msg/PointCloud2", &kRosPointCloud2,
      Type::kPoints},
+    {&Sensor::topic, SensorKind::kOctomap, "octomap_msgs/msg/Octomap", &kRosOctomap,
+     Type::kOctomap},
+    {&Sensor::topic, SensorKind::kOctomap, "moveit_msgs/msg/PlanningScene", &kRosPlanningScene,
+     Type::kPlanningScene},
 }};
 
 }  // namespace

@@ -19,6 +19,8 @@ struct RawSensorMessage {
     kImage,
     kCameraInfo,
     kPoints,
+    kOctomap,
+    kPlanningScene,  // of MoveIt, with an octomap
     kTransforms,
     kStaticTransforms,
   };

@@ -28,6 +28,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
                                        [](const ObjectPair& pair) { return pair.publish; });
   const SeparatedCount separated = separated_count(scene);
   const std::size_t contacts = contact_pairs(scene).size();
+  const std::size_t hidden = hidden_pairs(scene).size();
   const Gradients gradients = unknown_gradients(gradient_rows(scene));
   reports_.prepare([&](QueuedReport& slot) {
     slot.report.pairs.resize(static_cast<std::size_t>(published));
@@ -36,6 +37,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.report.separated_pairs.resize(separated.pairs);
     slot.report.gradients = gradients;
     slot.report.contacts.resize(contacts);
+    slot.report.hidden.resize(hidden);
   });
   statistics_.prepare([&](LoopStatistics& slot) { slot = LoopStatistics(scene); });
   if (keeps_inputs_) {

@@ -89,6 +89,8 @@ KnownScene known_scene(const Cell& cell) {
     }
   }
   known.watched = watched_pairs(scene);
+  known.has_octomap_sensor = std::ranges::any_of(
+      scene.sensors, [](const Sensor& sensor) { return sensor.kind == SensorKind::kOctomap; });
   const auto read = parse_yaml(cell.yaml);
   const auto* tree = std::get_if<YamlNode>(&read);
   if (tree == nullptr) return known;

@@ -50,8 +50,9 @@ struct KnownScene {
   std::set<NamePair> exceptions;                     // that follow MoveIt's collision matrix
   std::set<std::string> margins;                     // links with an entry of `margins`
   LengthUnit unit = LengthUnit::kMetre;
-  std::string world;  // the frame that is the cell's world
-  std::string group;  // of objects that MoveIt has added
+  std::string world;                // the frame that is the cell's world
+  std::string group;                // of objects that MoveIt has added
+  bool has_octomap_sensor = false;  // a sensor of the cell takes the octomaps of scenes
 };
 
 [[nodiscard]] NamePair name_pair(const std::string& a, const std::string& b);

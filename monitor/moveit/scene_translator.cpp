@@ -106,7 +106,8 @@ void MessageTranslator::translate(const PlanningScene& message) {
   }
   for (std::size_t i = 0; i < message.collision_objects.size(); ++i)
     translate(message.collision_objects[i], fmt::format("world.collision_objects[{}].", i));
-  if (message.has_octomap) result_.not_understood.emplace_back("world.octomap");
+  if (message.has_octomap && !scene_.has_octomap_sensor)
+    result_.not_understood.emplace_back("world.octomap");
   drop_gone();
 }
 

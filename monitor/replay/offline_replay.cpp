@@ -345,7 +345,11 @@ void Replay::note_sensors() {
                                           status.counts[fault],
                                           text(static_cast<FrameFault>(fault))));
     }
-    const auto thickest = std::ranges::max_element(status.own, {}, &OwnImage::thickest);
+    if (!scene.sensors[i].unseen) {
+      result_.notes.push_back(
+          fmt::format("sensor '{}': places that it has not seen were not looked for", name));
+    }
+    const auto thickest = std::ranges::max_element(status.own, {}, &OwnImageStatus::thickest);
     if (thickest == status.own.end() || thickest->thickest == 0.0) continue;
     result_.notes.push_back(
         fmt::format("sensor '{}': the robot's own image was left out; what is within {:.4f} m of "

@@ -84,7 +84,7 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   follow(scene);
   rows_ = "tick,now_ns,object_a,object_b";
   for_each_column({}, [this](const std::string& column, const auto&) { rows_ += "," + column; });
-  rows_ += ",scene_revision,contact,contact_status,contact_depth\n";
+  rows_ += ",scene_revision,contact,contact_status,contact_depth,blind_shell,unseen\n";
 }
 
 void ReportCsv::follow(const Scene& scene) {
@@ -123,6 +123,7 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   });
   rows_.append(",").append(revision_);
   add_contact(report, pair.pair);
+  add_hidden(report, pair.pair);
   rows_ += '\n';
 }
 
@@ -136,6 +137,19 @@ void ReportCsv::add_contact(const Report& report, std::uint32_t pair) {
   rows_.append(",").append(contacts_[found->contact]).append(",").append(name(found->status));
   rows_ += ',';
   put(rows_, found->depth);
+}
+
+// The columns are empty unless the pair is of a sensor and a link.
+void ReportCsv::add_hidden(const Report& report, std::uint32_t pair) {
+  const auto found = std::ranges::lower_bound(report.hidden, pair, {}, &HiddenReport::pair);
+  if (found == report.hidden.end() || found->pair != pair) {
+    rows_ += ",,";
+    return;
+  }
+  rows_ += ',';
+  put(rows_, found->thickness);
+  rows_ += ',';
+  put(rows_, found->unseen);
 }
 
 // After an error the rows are dropped: the file is incomplete anyway.

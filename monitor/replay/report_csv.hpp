@@ -34,6 +34,7 @@ class ReportCsv {
   void follow(const Scene& scene);
   void add_row(const Report& report, const PairReport& pair);
   void add_contact(const Report& report, std::uint32_t pair);
+  void add_hidden(const Report& report, std::uint32_t pair);
   void write();
 
   std::filesystem::path path_;

@@ -3,28 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "monitor/motion/directed_rounding.hpp"
-
 namespace clearance {
-namespace {
-
-// The rounding of a product of two poses, relative to the lengths that take part.
-constexpr double kComposed = 0x1p-48;
-
-PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,
-                 double turn_error) noexcept {
-  const double arm = parent_from_child.position.norm();
-  PastPose child = parent;
-  child.world_from_body = compose(parent.world_from_body, parent_from_child);
-  child.world_from_body.orientation.normalize();
-  const double rounding = kComposed * (arm + parent.world_from_body.position.norm());
-  child.shift_error =
-      rounded_up(parent.shift_error + parent.turn_error * arm + shift_error + rounding);
-  child.turn_error = rounded_up(parent.turn_error + turn_error + kComposed);
-  return child;
-}
-
-}  // namespace
 
 Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_root) {
   const Scene& scene = cell.scene;

@@ -14,6 +14,8 @@ namespace {
 constexpr std::int64_t kSilentNs = 1'000'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
+// The rounding of a product of two poses, relative to the lengths that take part.
+constexpr double kComposed = 0x1p-48;
 
 // Two sources whose values differ by no more agree, rad or m.
 constexpr double kSameValue = 1e-6;
@@ -50,6 +52,19 @@ bool PostureHistory::Disputed::at(std::int64_t time_ns) const noexcept {
 
 double PastPose::error(double radius) const noexcept {
   return rounded_up(shift_error + turn_error * radius);
+}
+
+PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,
+                 double turn_error) noexcept {
+  const double arm = parent_from_child.position.norm();
+  PastPose child = parent;
+  child.world_from_body = compose(parent.world_from_body, parent_from_child);
+  child.world_from_body.orientation.normalize();
+  const double rounding = kComposed * (arm + parent.world_from_body.position.norm());
+  child.shift_error =
+      rounded_up(parent.shift_error + parent.turn_error * arm + shift_error + rounding);
+  child.turn_error = rounded_up(parent.turn_error + turn_error + kComposed);
+  return child;
 }
 
 // The value is within speed times the time of both ends, and the line has come mean times the time.

@@ -28,6 +28,11 @@ struct PastPose {
   [[nodiscard]] double error(double radius) const noexcept;
 };
 
+// The place of what a body carries at this pose, which is off by the two errors (m, rad). Rounding
+// is included.
+[[nodiscard]] PastPose carried(const PastPose& parent, const Pose& parent_from_child,
+                               double shift_error, double turn_error) noexcept;
+
 class PostureHistory {
  public:
   // At 1 kHz, two seconds.

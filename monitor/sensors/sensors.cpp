@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/tf_tree.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/sensors/measured_points.hpp"
+#include "monitor/sensors/persistence.hpp"
 #include "monitor/wire/camera_types.hpp"
+#include "monitor/wire/moveit_types.hpp"
 #include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
@@ -21,14 +26,43 @@ SeenCloud cloud_of(const Sensor& sensor) {
                                                 : SeenCloud::of_points(sensor.most_points);
 }
 
+SensorKind kind_of(Type type) noexcept {
+  switch (type) {
+    case Type::kPoints:
+      return SensorKind::kPoints;
+    case Type::kOctomap:
+    case Type::kPlanningScene:
+      return SensorKind::kOctomap;
+    case Type::kImage:
+    case Type::kCameraInfo:
+    case Type::kTransforms:
+    case Type::kStaticTransforms:
+      return SensorKind::kDepthImage;
+  }
+  return SensorKind::kDepthImage;
+}
+
+// The ball of the cell's robots in the frame of the sensor. Its place is off by the error of the
+// sensor's, which counts as the error of every element.
+CloudCrop crop_of(const Sensor& sensor, const PastPose& place) noexcept {
+  const Pose& world_from_sensor = place.world_from_body;
+  return {.centre = world_from_sensor.orientation.conjugate() *
+                    (sensor.crop_centre - world_from_sensor.position),
+          .radius = sensor.crop_radius};
+}
+
 }  // namespace
 
 // A frame that was judged and is not built yet. The views are of the sample's memory.
 struct Sensors::Waiting {
   Sample<sensor_msgs_msg_dds__Image_> image_sample;
   Sample<sensor_msgs_msg_dds__PointCloud2_> points_sample;
+  Sample<octomap_msgs_msg_dds__Octomap_> map_sample;
+  Sample<moveit_msgs_msg_dds__PlanningScene_> scene_sample;
   DepthImage image;
   PointsView points;
+  OctomapView map;
+  Pose frame_from_sensor;  // of a map of MoveIt
   PinholeCamera camera;
   std::string frame;  // of tf
   std::int64_t stamp_ns = 0, came_ns = 0;
@@ -37,17 +71,23 @@ struct Sensors::Waiting {
   [[nodiscard]] auto& sample(const sensor_msgs_msg_dds__PointCloud2_*) noexcept {
     return points_sample;
   }
+  [[nodiscard]] auto& sample(const octomap_msgs_msg_dds__Octomap_*) noexcept { return map_sample; }
+  [[nodiscard]] auto& sample(const moveit_msgs_msg_dds__PlanningScene_*) noexcept {
+    return scene_sample;
+  }
   [[nodiscard]] DepthImage& view(const sensor_msgs_msg_dds__Image_*) noexcept { return image; }
   [[nodiscard]] PointsView& view(const sensor_msgs_msg_dds__PointCloud2_*) noexcept {
     return points;
   }
+  [[nodiscard]] OctomapView& view(const octomap_msgs_msg_dds__Octomap_*) noexcept { return map; }
 };
 
 struct Sensors::State {
-  State(std::uint32_t the_index, const Sensor& the_sensor)
+  State(std::uint32_t the_index, const Sensor& the_sensor, double max_speed)
       : index(the_index), sensor(the_sensor), stream({.most_pixels = the_sensor.most_points}) {
     for (std::size_t i = 0; i < kClouds; ++i)
       clouds.push_back(std::make_unique<SeenCloud>(cloud_of(sensor)));
+    if (sensor.persist_frames > 1) persistence.emplace(sensor, max_speed);
   }
   std::uint32_t index;
   const Sensor& sensor;
@@ -57,21 +97,22 @@ struct Sensors::State {
   // The last image before the first CameraInfo: drivers publish the info of a frame after its
   // image.
   RawSensorMessage without_info;
+  std::optional<Persistence> persistence;  // none: all elements stay
   std::array<std::uint64_t, kFrameFaults> not_built{};
   SensorStatus status;
 };
 
 Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
-    : cell_(cell), options_(options), postures_(cell.scene), mounts_(cell, options.is_log) {
+    : cell_(cell),
+      options_(options),
+      postures_(cell.scene),
+      mounts_(cell, options.is_log),
+      own_image_(cell.scene) {
   const Scene& scene = cell.scene;
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
-    states_.push_back(std::make_unique<State>(i, scene.sensors[i]));
-    for (const Robot& robot : scene.robots) {
-      for (const RobotLink& link : robot.links) {
-        if (link.object != RobotLink::kNoObject)
-          states_.back()->status.own.push_back({.object = link.object});
-      }
-    }
+    states_.push_back(std::make_unique<State>(i, scene.sensors[i],
+                                              scene.objects[scene.sensors[i].object].max_speed));
+    states_.back()->status.own.resize(own_image_.links());
   }
 }
 Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.options_) {
@@ -110,12 +151,33 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   auto frame = std::make_unique<Waiting>();
   Sample<Message>& sample = frame->sample(static_cast<const Message*>(nullptr));
   if (!decoder_.decode(message.cdr, sample, message.bytes)) return state.stream.refuse();
-  frame->stamp_ns = stamp_ns(sample->header);
   frame->came_ns = now_ns;
-  frame->frame = frame_name(sample->header.frame_id);
-  const FrameOrigin origin{frame->stamp_ns, message.sent_ns, message.writer};
-  const FrameFault fault =
-      state.stream.take(*sample, origin, frame->view(static_cast<const Message*>(nullptr)));
+  FrameFault fault = FrameFault::kNoFault;
+  if constexpr (std::is_same_v<Message, moveit_msgs_msg_dds__PlanningScene_>) {
+    const octomap_msgs_msg_dds__OctomapWithPose_& map = sample->world.octomap;
+    if (map.octomap.data._length == 0) return;  // a change of something else
+    // MoveIt leaves the stamp at 0.
+    const std::int64_t stamp = stamp_ns(map.header);
+    frame->stamp_ns = stamp == 0 ? message.sent_ns : stamp;
+    frame->frame = frame_name(map.header.frame_id);
+    const auto& [position, orientation] = map.origin;
+    frame->frame_from_sensor.position = {position.x, position.y, position.z};
+    frame->frame_from_sensor.orientation.coeffs() << orientation.x, orientation.y, orientation.z,
+        orientation.w;
+    // The negated comparison refuses NaN.
+    if (!(std::abs(frame->frame_from_sensor.orientation.norm() - 1.0) <= kSampleUnitTolerance &&
+          frame->frame_from_sensor.position.allFinite())) {
+      ++state.not_built[static_cast<std::size_t>(FrameFault::kNoPlace)];
+      return;
+    }
+    fault = state.stream.take(map.octomap, {frame->stamp_ns, message.sent_ns, message.writer},
+                              frame->map);
+  } else {
+    frame->stamp_ns = stamp_ns(sample->header);
+    frame->frame = frame_name(sample->header.frame_id);
+    fault = state.stream.take(*sample, {frame->stamp_ns, message.sent_ns, message.writer},
+                              frame->view(static_cast<const Message*>(nullptr)));
+  }
   if (fault == FrameFault::kNoCameraInfo) state.without_info = message;
   if (fault != FrameFault::kNoFault) return;
   if (state.stream.camera()) frame->camera = *state.stream.camera();
@@ -142,12 +204,15 @@ void Sensors::add(const RawSensorMessage& message, std::int64_t now_ns) {
         const RawSensorMessage first = std::exchange(state->without_info, {});
         add_frame<sensor_msgs_msg_dds__Image_>(first, *state, now_ns);
       }
-    } else if (sensor.topic != message.topic || is_image != (message.type == Type::kImage)) {
-      continue;
-    } else if (is_image) {
-      add_frame<sensor_msgs_msg_dds__Image_>(message, *state, now_ns);
-    } else {
-      add_frame<sensor_msgs_msg_dds__PointCloud2_>(message, *state, now_ns);
+    } else if (sensor.topic == message.topic && sensor.kind == kind_of(message.type)) {
+      if (message.type == Type::kImage)
+        add_frame<sensor_msgs_msg_dds__Image_>(message, *state, now_ns);
+      if (message.type == Type::kPoints)
+        add_frame<sensor_msgs_msg_dds__PointCloud2_>(message, *state, now_ns);
+      if (message.type == Type::kOctomap)
+        add_frame<octomap_msgs_msg_dds__Octomap_>(message, *state, now_ns);
+      if (message.type == Type::kPlanningScene)
+        add_frame<moveit_msgs_msg_dds__PlanningScene_>(message, *state, now_ns);
     }
   }
 }
@@ -178,11 +243,12 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   const auto began = std::chrono::steady_clock::now();
   SensorFrame out{.cloud = &cloud, .stamp_ns = frame.stamp_ns, .world_from_sensor = {}};
   postures_.place(frame.stamp_ns);
-  const PastPose place =
-      mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
-  FrameFault fault = place.known ? fill(state, frame, cloud) : FrameFault::kNoPlace;
+  PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+  if (state.sensor.kind == SensorKind::kOctomap)
+    place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
+  FrameFault fault = place.known ? fill(state, frame, place, cloud) : FrameFault::kNoPlace;
   if (fault == FrameFault::kNoFault) {
-    leave_out_own(state, place, cloud);
+    leave_out(state, place, frame.stamp_ns, cloud);
     if (cloud.size() == 0) fault = FrameFault::kNothingSeen;
   }
   if (fault != FrameFault::kNoFault) {
@@ -203,8 +269,10 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   use(state.index, out);
 }
 
-FrameFault Sensors::fill(State& state, const Waiting& frame, SeenCloud& cloud) {
+FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& place,
+                         SeenCloud& cloud) {
   const Sensor& sensor = state.sensor;
+  cloud.note_crop({.centre = Vec3::Zero(), .radius = kInfinity});
   if (DepthCloud* const depth = cloud.depth()) {
     const DepthBuild built =
         depth->build(frame.camera, frame.image,
@@ -212,40 +280,63 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, SeenCloud& cloud) {
                      {.least = sensor.least_depth, .greatest = sensor.greatest_depth});
     return built == DepthBuild::kBuilt ? FrameFault::kNoFault : FrameFault::kCannotBuild;
   }
-  measured_points(frame.points, sensor, points_);
-  const CloudBuild built =
-      cloud.points()->build(points_, {.centre = Vec3::Zero(), .radius = sensor.extent()});
-  return built == CloudBuild::kBuilt ? FrameFault::kNoFault : FrameFault::kCannotBuild;
+  const bool is_map = sensor.kind == SensorKind::kOctomap;
+  if (is_map) {
+    const OctomapFault fault = occupied_cubes(frame.map, sensor.most_points, points_);
+    if (fault != OctomapFault::kNoFault) {
+      return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
+    }
+  } else {
+    measured_points(frame.points, sensor, points_);
+  }
+  PointCloud& points = *cloud.points();
+  const auto built = [&](const CloudCrop& crop) {
+    return is_map ? points.build_cubes(points_, crop) : points.build(points_, crop);
+  };
+  // Of a map, what is beyond the range is not dropped but cropped.
+  const CloudCrop whole{.centre = Vec3::Zero(),
+                        .radius = is_map ? sensor.greatest_depth : sensor.extent()};
+  CloudCrop crop = sensor.crop_radius < kInfinity ? crop_of(sensor, place) : whole;
+  CloudBuild result = built(crop);
+  // If all points are beyond the links' reach, none are cropped: the frame shows something.
+  if (result == CloudBuild::kBuilt && points.size() == 0 && points.cropped() > 0) {
+    crop = whole;
+    result = built(crop);
+  }
+  if (result != CloudBuild::kBuilt || points.extent() > sensor.extent())
+    return FrameFault::kCannotBuild;
+  state.status.cropped = points.cropped();
+  if (points.cropped() > 0) cloud.note_crop(crop);
+  return FrameFault::kNoFault;
 }
 
-// A link whose pose at the stamp is not known is not left out: its image counts as an obstacle.
-void Sensors::leave_out_own(State& state, const PastPose& place, SeenCloud& cloud) {
-  const Scene& scene = cell_.scene;
-  auto own = state.status.own.begin();
-  const double place_error = place.error(state.sensor.extent());
-  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
-    const std::vector<RobotLink>& links = scene.robots[robot].links;
-    for (std::uint32_t link = 0; link < links.size(); ++link) {
-      if (links[link].object == RobotLink::kNoObject) continue;
-      OwnImage& image = *own++;
-      image.elements = 0;
-      image.thickness = 0.0;
-      const PastPose past = postures_.link(robot, link);
-      if (!past.known) continue;
-      for (const Part& part : scene.objects[links[link].object].parts) {
-        const double radius = part.object_from_part.position.norm() + part.shape.bounding_radius +
-                              part.shape.radius + part.shape.position_error;
-        const double shell = rounded_up(state.sensor.own_shell + place_error + past.error(radius));
-        const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
-        const BlindShell blind = cloud.shelve(
-            part.shape, relative_pose(world_from_part, place.world_from_body), shell, body_);
-        image.elements += blind.elements;
-        image.thickness = std::max(image.thickness, blind.thickness);
-      }
-      image.thickest = std::max(image.thickest, image.thickness);
-    }
+// Leaves out what is no obstacle, or none that matters, and notes what may be hidden by that.
+void Sensors::leave_out(State& state, const PastPose& place, std::int64_t stamp_ns,
+                        SeenCloud& cloud) {
+  const Sensor& sensor = state.sensor;
+  own_image_.leave_out(sensor, place, postures_, cloud, body_);
+  if (state.persistence) {
+    DepthCloud* const unseen = own_image_.unseen(sensor);
+    state.status.hidden = state.persistence->hide(cloud, place.world_from_body,
+                                                  place.error(sensor.extent()), stamp_ns, unseen);
+    if (unseen != nullptr) unseen->refit();
+  }
+  own_image_.find_unseen(sensor, place, postures_, cloud, body_);
+  if (DepthCloud* const depth = cloud.depth(); depth != nullptr && sensor.crop_radius < kInfinity) {
+    const CloudCrop crop = crop_of(sensor, place);
+    state.status.cropped = depth->crop(crop.centre, crop.radius);
+    if (state.status.cropped > 0) cloud.note_crop(crop);
   }
   cloud.refit();
+  std::vector<OwnImageStatus>& own = state.status.own;
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    const HiddenNear& near = cloud.hidden()[i];
+    own[i] = {.object = near.object,
+              .elements = near.shell.elements,
+              .thickness = near.shell.thickness,
+              .thickest = std::max(own[i].thickest, near.shell.thickness),
+              .unseen = near.unseen};
+  }
 }
 
 bool Sensors::any_waiting() const noexcept {

@@ -17,6 +17,7 @@
 #include "monitor/intake/sensor_messages.hpp"
 #include "monitor/monitor.hpp"
 #include "monitor/sensors/mounts.hpp"
+#include "monitor/sensors/own_image.hpp"
 
 namespace clearance {
 
@@ -29,11 +30,12 @@ struct SensorsOptions {
 
 // The part of the robot's surroundings that a frame cannot show, because it is left out with the
 // robot's own image.
-struct OwnImage {
+struct OwnImageStatus {
   std::uint32_t object = 0;  // a link
   std::size_t elements = 0;  // of the last frame
   double thickness = 0.0;    // m: anything this close to the link may be left out with it
   double thickest = 0.0;     // the largest of all frames
+  double unseen = -kInfinity;  // m: lower bound to the nearest unseen place, if asked for
 };
 
 struct SensorStatus {
@@ -41,12 +43,14 @@ struct SensorStatus {
   std::uint64_t skipped = 0;  // good ones that a newer one overtook
   std::int64_t stamp_ns = 0;  // of the last frame that was built
   std::size_t elements = 0;   // of it
+  std::size_t hidden = 0;     // of it, since too few frames had them (persist)
+  std::size_t cropped = 0;    // of it, since they are beyond the links' reach
   double pose_error = 0.0;    // m, of it
   double largest_pose_error = 0.0;
   std::int64_t longest_build_ns = 0;
   // Messages that were used (kNoFault) or refused, by cause.
   std::array<std::uint64_t, kFrameFaults> counts{};
-  std::vector<OwnImage> own;
+  std::vector<OwnImageStatus> own;
 };
 
 class Sensors {
@@ -88,14 +92,16 @@ class Sensors {
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
-  [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, SeenCloud& cloud);
-  void leave_out_own(State& state, const PastPose& place, SeenCloud& cloud);
+  [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, const PastPose& place,
+                                SeenCloud& cloud);
+  void leave_out(State& state, const PastPose& place, std::int64_t stamp_ns, SeenCloud& cloud);
 
   const Cell& cell_;
   SensorsOptions options_;
   FrameHistory frames_;
   PostureHistory postures_;
   Mounts mounts_;
+  OwnImage own_image_;
   std::vector<std::unique_ptr<State>> states_;  // by sensor
   CdrDecoder decoder_;
   SlabBody body_;

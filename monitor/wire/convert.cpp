@@ -76,6 +76,7 @@ Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   reserve_sequence(sample->pairs, static_cast<std::size_t>(published));
   reserve_sequence(sample->sources, clearance_msg_kMaxSources);
   reserve_sequence(sample->contacts, contact_pairs(scene).size());
+  reserve_sequence(sample->hidden, hidden_pairs(scene).size());
   return sample;
 }
 

@@ -111,6 +111,10 @@ struct FieldsOf<clearance_msg_ContactState> : ContactFields {
   static constexpr std::string_view kType = "ContactState";
 };
 template <>
+struct FieldsOf<clearance_msg_HiddenState> : HiddenFields {
+  static constexpr std::string_view kType = "HiddenState";
+};
+template <>
 struct FieldsOf<clearance_msg_Distances> : DistancesMessageFields {
   static constexpr std::string_view kType = "Distances";
 };

@@ -24,6 +24,12 @@ topic_descriptor<moveit_msgs_msg_dds__PlanningScene_>() noexcept {
 
 template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<octomap_msgs_msg_dds__Octomap_>() noexcept {
+  return octomap_msgs_msg_dds__Octomap__desc;
+}
+
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<trajectory_msgs_msg_dds__JointTrajectory_>() noexcept {
   return trajectory_msgs_msg_dds__JointTrajectory__desc;
 }
@@ -51,6 +57,11 @@ inline constexpr RosType kRosPlanningScene{
     256,
     16,
     true};
+
+// Maps are large and come seldom, and servers of maps publish them reliably.
+inline constexpr RosType kRosOctomap{
+    &octomap_msgs_msg_dds__Octomap__desc,
+    "typehash=RIHS01_9891a19a05b70ec20aa8f45db3f8300b9ab80afff32c61c549d25087da9625b0;", false, 2};
 
 // The scene that a daemon publishes: a late reader gets the present one.
 inline constexpr RosType kRosMonitoredScene{kRosPlanningScene.descriptor,

@@ -1,10 +1,7 @@
 // Rows of monitor/clouds: building a cloud from a frame, and the element nearest to a box.
 #include <benchmark/benchmark.h>
 
-#include <cmath>
 #include <cstdint>
-#include <memory>
-#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -12,83 +9,40 @@
 #include "core/shapes.hpp"
 #include "monitor/clouds/nearest_element.hpp"
 #include "tools/bench/clocks.hpp"
-#include "tools/bench/random.hpp"
+#include "tools/bench/cloud_frame.hpp"
+#include "tools/bench/peers/cloud_peers.hpp"
 #include "tools/bench/rows.hpp"
 
 namespace clearance::bench {
 namespace {
 
-constexpr PinholeCamera kCamera{640, 480, 571.7, 568.9, 320.9, 238.7};
-constexpr DepthError kError{0.001, 0.0025};
-constexpr DepthRange kRange{0.25, 4.0};
-constexpr float kBallRadius = 0.004F;  // m
-
-// A floor 0.8 m below the camera, a wall 2.5 m away, a disc and a slanted step in front of it, with
-// noise of 80 % of the stated error.
-struct Frame {
-  std::vector<float> metres;
-  std::vector<std::uint16_t> millimetres;
-  std::vector<MeasuredPoint> points;
-
-  [[nodiscard]] DepthImage image(DepthImage::Format format) const {
-    const bool is_metres = format == DepthImage::Format::kMetres32;
-    return {format, kCamera.width, kCamera.height, kCamera.width * (is_metres ? 4U : 2U),
-            is_metres ? std::as_bytes(std::span(metres)) : std::as_bytes(std::span(millimetres))};
-  }
-};
-
-double depth_of(double x, double y) {
-  double z = y > 0.0 ? std::min(2.5, 0.8 / y) : 2.5;
-  if (std::hypot(x - 0.1, y + 0.05) < 0.1) z = 1.2;
-  return x < -0.2 && y > -0.1 ? std::min(z, 1.6 + x) : z;
-}
-
-const Frame& frame() {
-  static const Frame made = [] {
-    Frame out;
-    Random random(1);
-    for (std::uint32_t v = 0; v < kCamera.height; ++v) {
-      for (std::uint32_t u = 0; u < kCamera.width; ++u) {
-        const double x = (u - kCamera.cx) / kCamera.fx, y = (v - kCamera.cy) / kCamera.fy;
-        const double exact = depth_of(x, y);
-        const double z = exact + 0.8 * kError.at(exact) * random.uniform(-1.0, 1.0);
-        out.metres.push_back(static_cast<float>(z));
-        out.millimetres.push_back(static_cast<std::uint16_t>(std::lround(1000.0 * z)));
-        out.points.push_back({static_cast<float>(x * z), static_cast<float>(y * z),
-                              static_cast<float>(z), kBallRadius});
-      }
-    }
-    return out;
-  }();
-  return made;
-}
-
 void build_slabs(benchmark::State& state, DepthImage::Format format) {
-  DepthCloud cloud(kCamera.width, kCamera.height);
+  DepthCloud cloud(kCloudCamera.width, kCloudCamera.height);
   for (auto _ : state) {
-    if (cloud.build(kCamera, frame().image(format), kError, kRange) != DepthBuild::kBuilt) {
+    if (cloud.build(kCloudCamera, cloud_frame().image(format), kCloudError, kCloudRange) !=
+        DepthBuild::kBuilt) {
       state.SkipWithError("refused");
     }
   }
-  state.counters["pixels"] = kCamera.width * kCamera.height;
+  state.counters["pixels"] = kCloudCamera.width * kCloudCamera.height;
 }
 
 void build_balls(benchmark::State& state) {
-  PointCloud cloud(frame().points.size());
+  PointCloud cloud(cloud_frame().points.size());
   for (auto _ : state) {
-    if (cloud.build(frame().points, {{0, 0, 2}, 10.0}) != CloudBuild::kBuilt) {
+    if (cloud.build(cloud_frame().points, {{0, 0, 2}, 10.0}) != CloudBuild::kBuilt) {
       state.SkipWithError("refused");
     }
   }
-  state.counters["pixels"] = static_cast<double>(frame().points.size());
+  state.counters["pixels"] = static_cast<double>(cloud_frame().points.size());
 }
 
 struct SlabQuery {
-  DepthCloud cloud{kCamera.width, kCamera.height};
+  DepthCloud cloud{kCloudCamera.width, kCloudCamera.height};
   SlabBody body;
   SlabQuery() {
-    static_cast<void>(
-        cloud.build(kCamera, frame().image(DepthImage::Format::kMetres32), kError, kRange));
+    static_cast<void>(cloud.build(kCloudCamera, cloud_frame().image(DepthImage::Format::kMetres32),
+                                  kCloudError, kCloudRange));
   }
   NearestElement operator()(const ConvexBody& part, const RelativePose& pose,
                             CloudTracking& tracking) {
@@ -96,8 +50,8 @@ struct SlabQuery {
   }
 };
 struct BallQuery {
-  PointCloud cloud{frame().points.size()};
-  BallQuery() { static_cast<void>(cloud.build(frame().points, {{0, 0, 2}, 10.0})); }
+  PointCloud cloud{cloud_frame().points.size()};
+  BallQuery() { static_cast<void>(cloud.build(cloud_frame().points, {{0, 0, 2}, 10.0})); }
   NearestElement operator()(const ConvexBody& part, const RelativePose& pose,
                             CloudTracking& tracking) {
     return nearest_element(part, cloud, pose, tracking);
@@ -110,7 +64,7 @@ struct BruteForce {
     NearestElement least;
     TrackingState features;
     RelativePose at;
-    for (const MeasuredPoint& p : frame().points) {
+    for (const MeasuredPoint& p : cloud_frame().points) {
       at.translation = pose.rotation * Vec3(p.x, p.y, p.z) + pose.translation;
       const DistanceResult r = distance(part, origin, at, features);
       least.lower = std::min(least.lower, r.lower - p.radius);
@@ -127,13 +81,9 @@ template <class Query>
 void query(benchmark::State& state, bool tracked) {
   constexpr std::size_t kStarts = 200, kSteps = 20;
   Query ask;
-  const ConvexBody part = std::get<ConvexBody>(box({0.05, 0.06, 0.12}));
-  Random random(2);
+  const ConvexBody part = std::get<ConvexBody>(box(kCloudBox));
   std::vector<RelativePose> poses;
-  for (std::size_t i = 0; i < kStarts; ++i) {
-    Pose pose;
-    pose.position = Vec3(0, 0, 1) + random.uniform(0.1, 0.5) * random.direction();
-    pose.orientation = random.turn();
+  for (Pose pose : cloud_places(kStarts)) {
     for (std::size_t step = 0; step <= kSteps; ++step) {
       poses.push_back(relative_pose(pose, {}));
       pose.position += Vec3(0.0003, 0.0002, -0.0001);
@@ -181,6 +131,13 @@ void register_clouds() {
       query<BallQuery>(s, tracked);
     })->UseManualTime();
   }
+  register_cloud_ticks();
+#ifdef CLEARANCE_BENCH_NANOFLANN
+  register_nanoflann_clouds();
+#endif
+#if defined(CLEARANCE_BENCH_OCTOMAP) && defined(CLEARANCE_BENCH_FCL)
+  register_octomap_clouds();
+#endif
   add("brute_force/balls", [](benchmark::State& s) {
     query<BruteForce>(s, false);
   })->UseManualTime();

@@ -60,7 +60,9 @@ Rows:
   tick/NAME/plain    the same with every pair evaluated; tick/NAME/fcl: the minimum alone, by FCL's
                      DynamicAABBTreeCollisionManager
   cloud/build/...    a depth image of 640 x 480 pixels as slabs (16UC1, 32FC1) or balls; cloud/cold/slabs, cloud/tracked/slabs:
-                     the slab nearest to a box; also balls; cloud/brute_force/balls: every ball, one by one
+                     the slab nearest to a box; also balls; cloud/brute_force/balls: every ball, one by one. cloud/tick/with, cloud/tick/without: a tick
+                     of an arm of 20 parts with and without such a camera. cloud/PEER/build, cloud/PEER/cold: nanoflann,
+                     nanoflann-spheres, octomap-15mm, octomap-25mm (FCL); counters max_error, mean_error, m
   parts/NAME         splitting a mesh into convex parts; counters parts, error_mm, triangles; CPU time of all threads
   sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), and of other numbers of
                      objects; counters objects, speed (m/s) and density (objects a cubic metre)

@@ -32,6 +32,11 @@ void register_robots(const std::vector<std::filesystem::path>& cells);
 // query. Counters: pixels; queries, the mean number of the core's; widest_gap, m.
 void register_clouds();
 
+// cloud/tick/with and cloud/tick/without: one tick of an arm of seven links (20 boxes) with and
+// without the pairs of a camera, whose frames of 307,200 slabs come at 30 Hz. Counters, us: p50,
+// p99, p999, max; queries a tick.
+void register_cloud_ticks();
+
 // parts/NAME: splitting a mesh into convex parts, for drawn meshes and for these files, STL, OBJ,
 // PLY or DAE in metres. Counters: parts, error_mm (certified) and triangles; the time is that of
 // all threads. Returns false if a file cannot be read, and says why.

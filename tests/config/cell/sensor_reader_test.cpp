@@ -111,6 +111,21 @@ TEST(SensorsOfACell, ConvertTheirErrorFromTheUnitOfTheCell) {
   EXPECT_DOUBLE_EQ(sensor.greatest_depth, 4.0);
 }
 
+TEST(SensorsOfACell, StateWhatIsLeftOutAndLookedFor) {
+  const Sensor plain = scene_of(with_sensor(kDepth)).sensors[0];
+  EXPECT_EQ(plain.persist_frames, 1u);
+  EXPECT_FALSE(plain.unseen);
+  EXPECT_EQ(plain.crop_radius, kInfinity);
+  EXPECT_EQ(notes_of(plain).size(), 1u) << "unseen places are not looked for";
+  const Sensor sensor =
+      scene_of(with_sensor(kDepth + ", unseen: true, max_speed: 1, persist: {frames: 3, of: 5}"))
+          .sensors[0];
+  EXPECT_EQ(sensor.persist_frames, 3u);
+  EXPECT_EQ(sensor.persist_of, 5u);
+  EXPECT_TRUE(sensor.unseen);
+  EXPECT_EQ(notes_of(sensor).size(), 1u) << "what comes into view is hidden at first";
+}
+
 TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   const auto refuses = [](const std::string& keys, const std::string& word) {
     EXPECT_THAT(errors_of(with_sensor(keys)), in_line(5, word)) << keys;
@@ -118,7 +133,7 @@ TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   const std::string rest = ", depth_error: {constant: 0.001}, range: [0.25, 4]";
   refuses("depth_image: cam" + rest, "'cam'");
   refuses("depth_error: {constant: 0.001}, range: [0.25, 4]", "none");
-  refuses("depth_image: /a, points: /b" + rest, "both");
+  refuses("depth_image: /a, points: /b" + rest, "several");
   refuses("points: /b, camera_info: /a" + rest, "'camera_info'");
   refuses("points: /b, size: [2, 2]" + rest, "'size'");
   refuses("depth_image: /b, most_points: 7" + rest, "'most_points'");
@@ -130,6 +145,11 @@ TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   refuses("depth_image: /b, depth_error: {constant: 0.1}, range: [4, 2]", "least");
   refuses("depth_image: /b, depth_error: {constant: 0.1}, range: 4", "[0.3, 4]");
   refuses(kDepth + ", shell: 1", "'shell'");
+  refuses(kPoints + ", unseen: true", "'unseen'");
+  refuses(kDepth + ", persist: {frames: 2, of: 3}", "'max_speed'");
+  refuses(kDepth + ", max_speed: 1, persist: {frames: 4, of: 3}", "4");
+  refuses(kDepth + ", max_speed: 1, persist: {frames: 1, of: 17}", "17");
+  refuses(kDepth + ", reach: 0.5", "no robot");
   EXPECT_THAT(errors_of(cell_text("sensors:\n  - {name: a, " + kDepth + "}\n  - {name: b, " +
                                   kDepth + "}\n" + kBoxes)),
               in_line(6, "'/cam/depth/image'", "line 5"));

@@ -129,6 +129,47 @@ std::vector<ConvexBody> parts() {
   return out;
 }
 
+// Every point of the picture's pyramid within the range is in front of the slab of its pixel, in
+// it, or in the unseen cloud, which has nothing else.
+TEST(DepthCloud, UnseenPlacesAreThoseBehindSlabsAndInConesOfMissingPixels) {
+  int behind = 0, missing = 0;
+  for (int seed = 0; seed < 30; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed) * 7919 + 5);
+    const PinholeCamera c = camera(static_cast<std::uint32_t>(random.integer(5, 30)),
+                                   static_cast<std::uint32_t>(random.integer(3, 20)));
+    const std::vector<float> pixels = drawn(random, c);
+    const DepthCloud cloud = built(picture(c, pixels));
+    DepthCloud unseen(c.width, c.height);
+    ASSERT_TRUE(unseen.build_unseen(cloud, kRange));
+    SlabBody body;
+    CloudTracking tracking;
+    const ConvexBody probe = made(point(Vec3::Zero(), 0.0));
+    for (int i = 0; i < 200; ++i) {
+      const double u = random.uniform(-0.5, c.width - 0.5),
+                   v = random.uniform(-0.5, c.height - 0.5);
+      const double z = random.uniform(kRange.least, kRange.greatest);
+      const Vec3 p((u - c.cx) / c.fx * z, (v - c.cy) / c.fy * z, z);
+      const double measured = pixels[static_cast<std::size_t>(std::lround(v)) * c.width +
+                                     static_cast<std::size_t>(std::lround(u))];
+      const bool is_missing = !(measured >= kRange.least && measured <= kRange.greatest);
+      const double end = is_missing ? 0.0 : measured + kError.at(measured);
+      if (std::abs(z - end) < 1e-4) continue;
+      const NearestElement found = nearest_element(
+          probe, unseen, body, relative_pose({p, Eigen::Quaterniond::Identity()}, {}), tracking);
+      (is_missing ? missing : behind) += z > end ? 1 : 0;
+      if (z > end) {
+        EXPECT_LT(found.lower, 1e-9) << seed << " " << i;
+      } else {
+        EXPECT_GT(found.upper, 1e-9) << seed << " " << i;
+      }
+    }
+    // Without elements that were seen, everything is unseen.
+    ASSERT_FALSE(unseen.build_unseen(cloud, {0.0, 4.0}));
+  }
+  EXPECT_GT(behind, 500);
+  EXPECT_GT(missing, 500);
+}
+
 TEST(DepthCloud, BoundsAreThoseOfBruteForceForEveryKindOfPart) {
   const std::vector<ConvexBody> all = parts();
   int contacts = 0;

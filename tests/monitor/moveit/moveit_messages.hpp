@@ -81,7 +81,8 @@ inline void put(RosCdr& cdr, const FixedFrame& frame) {
 inline void put(RosCdr& cdr, const LinkNumber& number) {
   cdr.text(number.link_name).number(number.value);
 }
-inline void put(RosCdr& cdr, const PlanningScene& scene) {
+// The bytes of a binary octomap with cubes of 0.1 m, or nothing that can be decoded.
+inline void put(RosCdr& cdr, const PlanningScene& scene, const std::string& octomap = {}) {
   constexpr std::uint32_t kNone = 0, kOne = 1;
   cdr.text(scene.name);
   cdr.header(0, "map").number(kOne).text("swing").numbers({0.5}).numbers({}).numbers({});
@@ -101,8 +102,10 @@ inline void put(RosCdr& cdr, const PlanningScene& scene) {
   cdr.header(0, "map");
   put(cdr, Pose{});
   cdr.header(0, "map").number(std::uint8_t{1}).text("OcTree").number(0.1);
-  cdr.number(scene.has_octomap ? std::uint32_t{3} : kNone);
-  for (int i = 0; scene.has_octomap && i < 3; ++i) cdr.number(static_cast<std::int8_t>(1 - i));
+  const std::string bytes =
+      octomap.empty() && scene.has_octomap ? std::string("\1\0\xFF", 3) : octomap;
+  cdr.number(static_cast<std::uint32_t>(bytes.size()));
+  for (const char byte : bytes) cdr.number(byte);
   cdr.number(static_cast<std::uint8_t>(scene.is_diff));
 }
 

@@ -154,9 +154,9 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
     EXPECT_THAT(
         text,
         HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles,scene_revision,contact,contact_status,"
-                  "contact_depth\n"));
+                  "contact_depth,blind_shell,unseen\n"));
     EXPECT_THAT(text, HasSubstr("\n1,1700000000000000000,hand,tool,converged,"));
-    EXPECT_THAT(text, HasSubstr(",0,0000000000000029,,,\n5,"))
+    EXPECT_THAT(text, HasSubstr(",0,0000000000000029,,,,,\n5,"))
         << "published pairs are refreshed in every tick";
   }
 }

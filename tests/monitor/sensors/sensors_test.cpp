@@ -10,88 +10,11 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <map>
-#include <memory>
 
-#include "tests/monitor/intake/camera_texts.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/sensors/small_camera.hpp"
 
 namespace clearance::sensors_test {
 namespace {
-
-using test::camera::CloudText;
-using test::camera::ImageText;
-using test::camera::InfoText;
-using Type = RawSensorMessage::Type;
-
-constexpr std::int64_t kStart = test::camera::kStart, kFrame = test::camera::kFrame;
-
-Cell cell_with(const std::string& sensor, const std::string& ros = "") {
-  const test::ScratchFolder folder;
-  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-  return read_good(
-      "name: test\nunits: {length: m, angle: rad}\n" + ros +
-          "robots: [{name: arm, urdf: scara.urdf}]\nobjects: [{name: cart, sphere: {radius: "
-          "0.1}}]\nsensors:\n  - {name: eye, " +
-          sensor + "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
-      folder / "cell.yaml");
-}
-const std::string kImage =
-    "depth_image: /cam/image, size: [8, 6], depth_error: {constant: 0.01}, range: [0.3, 4]";
-const std::string kPoints = "points: /cam/points, depth_error: {constant: 0.01}, range: [0.3, 4]";
-// It looks down from 2 m above the origin of the world.
-const std::string kAbove = ", mount: {pose: {xyz: [0, 0, 2], rpy: [3.141592653589793, 0, 0]}}";
-
-// All pixels have this depth, mm.
-ImageText flat(int number, std::uint16_t depth) {
-  ImageText text;
-  text.stamp_ns += number * kFrame;
-  for (std::size_t i = 0; i < text.data.size(); i += 2) {
-    text.data[i] = static_cast<std::uint8_t>(depth & 0xFF);
-    text.data[i + 1] = static_cast<std::uint8_t>(depth >> 8);
-  }
-  return text;
-}
-
-class SensorsTest : public testing::Test {
- protected:
-  void make(const std::string& sensor, const std::string& ros = "") {
-    cell = cell_with(sensor, ros);
-    sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
-  }
-  void add(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns,
-           std::uint64_t writer = 1) {
-    static const std::map<Type, std::string> topics = {{Type::kImage, "/cam/image"},
-                                                       {Type::kCameraInfo, "/cam/camera_info"},
-                                                       {Type::kPoints, "/cam/points"}};
-    const auto topic = topics.find(type);
-    sensors->add({.type = type,
-                  .topic = topic == topics.end() ? "" : topic->second,
-                  .sent_ns = sent_ns,
-                  .writer = writer,
-                  .cdr = cdr},
-                 sent_ns);
-  }
-  void add(const ImageText& image) { add(Type::kImage, image.cdr(), image.stamp_ns + 1000); }
-  void add_joints(double shoulder, std::int64_t stamp_ns) {
-    sensors->add({}, test::joints(shoulder, 0.0, 0.0, stamp_ns));
-  }
-  // Returns the frames that are built by this time.
-  std::vector<SensorFrame> settle(std::int64_t now_ns) {
-    std::vector<SensorFrame> frames;
-    sensors->settle(
-        now_ns, [](const SeenCloud*) { return false; },
-        [&](std::uint32_t, const SensorFrame& frame) { frames.push_back(frame); });
-    return frames;
-  }
-  [[nodiscard]] std::uint64_t count(FrameFault fault) const {
-    return sensors->status(0).counts[static_cast<std::size_t>(fault)];
-  }
-
-  Cell cell;
-  std::unique_ptr<Sensors> sensors;
-};
 
 TEST_F(SensorsTest, MakeAFrameOfAnImageWithThePlaceThatTheCellStates) {
   make(kImage + kAbove);
@@ -175,8 +98,8 @@ TEST_F(SensorsTest, LeaveOutTheRobotWhereItWasAtTheStampAndNotWhereItIsNow) {
   EXPECT_TRUE(settle(kStart + 1'000'000'000).empty());
   EXPECT_EQ(count(FrameFault::kNothingSeen), 1u);
   const auto own = sensors->status(0).own;
-  EXPECT_EQ(std::ranges::max(own, {}, &OwnImage::elements).elements, 48u);
-  EXPECT_GT(std::ranges::max(own, {}, &OwnImage::elements).thickness, 0.01);
+  EXPECT_EQ(std::ranges::max(own, {}, &OwnImageStatus::elements).elements, 48u);
+  EXPECT_GT(std::ranges::max(own, {}, &OwnImageStatus::elements).thickness, 0.01);
   // Seen when it has turned away, the same picture is that of something else.
   ImageText later = flat(0, 1950);
   later.stamp_ns = kStart + 1'000'000'000;

@@ -1,0 +1,55 @@
+// Leaves the robots' own image out of a frame, and says what the frame cannot show near each link.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/sensors/posture_history.hpp"
+
+namespace clearance {
+
+class OwnImage {
+ public:
+  // Links, and what they carry. The scene must outlive this.
+  explicit OwnImage(const Scene& scene);
+
+  [[nodiscard]] std::size_t links() const noexcept { return links_.size(); }
+
+  // A frame of the sensor, before any element is left out. The postures are placed at its stamp.
+  // Writes the blind shells of SeenCloud::hidden(), too. A link whose pose at the stamp is not
+  // known is not left out: its image counts as an obstacle. Call refit() of the cloud afterwards.
+  void leave_out(const Sensor& sensor, const PastPose& place, const PostureHistory& postures,
+                 SeenCloud& cloud, SlabBody& body);
+  // The places that this frame has not seen, after leave_out(); null: they are not asked for.
+  [[nodiscard]] DepthCloud* unseen(const Sensor& sensor) noexcept;
+  // After that: writes the unseen places of SeenCloud::hidden().
+  void find_unseen(const Sensor& sensor, const PastPose& place, const PostureHistory& postures,
+                   SeenCloud& cloud, SlabBody& body);
+
+ private:
+  struct Link {
+    std::uint32_t object = 0, robot = 0, link = 0;
+  };
+  // Allocated for the first sensor that asks for it.
+  struct Unseen {
+    Unseen(std::uint32_t columns, std::uint32_t rows) : cloud(columns, rows) {}
+    DepthCloud cloud;
+    CloudTracking tracking;
+    bool is_built = false;
+  };
+
+  [[nodiscard]] Unseen* of_sensor(const Sensor& sensor) noexcept {
+    return unseen_[scene_.objects[sensor.object].sensor].get();
+  }
+  void find_unseen(const Link& of, const PastPose& past, const PastPose& place, double place_error,
+                   SlabBody& body, Unseen& unseen, HiddenNear& near) const;
+
+  const Scene& scene_;
+  std::vector<Link> links_;                       // in ascending order of objects
+  std::vector<std::unique_ptr<Unseen>> unseen_;  // by sensor; null: not asked for
+};
+
+}  // namespace clearance

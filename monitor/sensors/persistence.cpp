@@ -1,0 +1,115 @@
+#include "monitor/sensors/persistence.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/inputs/elapsed.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr std::size_t kMarkBits = std::size_t{1} << 23;
+constexpr std::size_t kKnownBoxes = 16384;
+// A frame that would need more cells on each side than this counts as one with an element near.
+constexpr int kMostCells = 4;
+// The side of a cell, m, or the time in which it is passed at the largest speed, s.
+constexpr double kLeastSide = 0.02, kSideTime = 0.02;
+
+std::size_t hash(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
+  std::uint64_t h = static_cast<std::uint32_t>(x) * 0x9E3779B97F4A7C15ULL;
+  h = (h ^ h >> 32 ^ static_cast<std::uint32_t>(y)) * 0xBF58476D1CE4E5B9ULL;
+  h = (h ^ h >> 32 ^ static_cast<std::uint32_t>(z)) * 0x94D049BB133111EBULL;
+  return static_cast<std::size_t>(h ^ h >> 32);
+}
+
+// Visits the bits of a box of cells that is larger by some cells on each side, until `visit`
+// returns true, and then returns true.
+template <class Cells, class Visit>
+bool visit_bits(const Cells& cells, int more, const Visit& visit) noexcept {
+  for (std::int32_t x = cells.low[0] - more; x <= cells.high[0] + more; ++x) {
+    for (std::int32_t y = cells.low[1] - more; y <= cells.high[1] + more; ++y) {
+      for (std::int32_t z = cells.low[2] - more; z <= cells.high[2] + more; ++z) {
+        const std::size_t bit = hash(x, y, z) % kMarkBits;
+        if (visit(bit / 64, std::uint64_t{1} << bit % 64)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+Persistence::Persistence(const Sensor& sensor, double max_speed)
+    : frames_(sensor.persist_frames),
+      of_(sensor.persist_of),
+      max_speed_(max_speed),
+      side_(std::max(kLeastSide, kSideTime * max_speed)),
+      earlier_(std::max<std::size_t>(of_, 2) - 1),
+      known_(kKnownBoxes) {
+  for (Marks& marks : earlier_) marks.bits.resize(kMarkBits / 64);
+  newest_.bits.resize(kMarkBits / 64);
+}
+
+Persistence::Cells Persistence::touched(const Vec3& centre, double radius) const noexcept {
+  Cells cells;
+  for (int k = 0; k < 3; ++k) {
+    const auto number = [&](double x) {
+      return static_cast<std::int32_t>(std::clamp(std::floor(x / side_), -1e9, 1e9));
+    };
+    cells.low[static_cast<std::size_t>(k)] = number(centre[k] - radius);
+    cells.high[static_cast<std::size_t>(k)] = number(centre[k] + radius);
+  }
+  return cells;
+}
+
+// By the earlier frames.
+bool Persistence::stays(const Cells& cells, double error, std::int64_t stamp_ns) const noexcept {
+  std::uint32_t found = 1;
+  const std::size_t kept = std::min<std::size_t>(count_, earlier_.size());
+  for (std::size_t i = 0; i < kept && found < frames_; ++i) {
+    const Marks& marks = earlier_[i];
+    const double seconds = 1e-9 * static_cast<double>(elapsed(marks.stamp_ns, stamp_ns));
+    const double apart = max_speed_ * std::max(0.0, seconds) + error + marks.error;
+    // The cells of two points that are this far apart differ by no more along an axis.
+    const double more = std::ceil(apart / side_ * (1.0 + 0x1p-40));
+    const bool is_near =
+        !(more <= kMostCells) ||
+        visit_bits(cells, static_cast<int>(more), [&](std::size_t word, std::uint64_t bit) {
+          return (marks.bits[word] & bit) != 0;
+        });
+    found += is_near ? 1 : 0;
+  }
+  return found >= frames_;
+}
+
+std::size_t Persistence::hide(SeenCloud& cloud, const Pose& world_from_sensor, double error,
+                              std::int64_t stamp_ns, DepthCloud* unseen) {
+  std::ranges::fill(newest_.bits, 0);
+  newest_.stamp_ns = stamp_ns;
+  newest_.error = error;
+  std::size_t hidden = 0;
+  const std::uint64_t frame = count_ + 1;
+  const Mat3 turn = world_from_sensor.orientation.toRotationMatrix();
+  cloud.for_each([&](std::size_t block, std::size_t lane, const Vec3& centre, double radius) {
+    const Cells cells = touched(turn * centre + world_from_sensor.position, radius);
+    Known& known = known_[hash(cells.low[0] + cells.high[0], cells.low[1] + cells.high[1],
+                               cells.low[2] + cells.high[2]) %
+                          kKnownBoxes];
+    if (known.frame != frame || !(known.cells == cells)) {
+      visit_bits(cells, 0, [&](std::size_t word, std::uint64_t bit) {
+        newest_.bits[word] |= bit;
+        return false;
+      });
+      known = {cells, frame, stays(cells, error, stamp_ns)};
+    }
+    if (known.stays) return;
+    ++hidden;
+    cloud.remove(block, lane);
+    if (unseen != nullptr) unseen->leave_open(block, lane);
+  });
+  std::swap(earlier_[count_ % earlier_.size()], newest_);
+  ++count_;
+  return hidden;
+}
+
+}  // namespace clearance

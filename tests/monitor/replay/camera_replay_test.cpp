@@ -1,0 +1,175 @@
+// A bag with depth images and joints becomes distances.
+//
+// Oracle: the scene that is rendered into the images, by closed forms for boxes, spheres and the
+// points where rays meet them.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "monitor/monitor.hpp"
+#include "monitor/replay/offline_replay.hpp"
+#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/clouds/rendered_scene.hpp"
+#include "tests/monitor/scara_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+constexpr std::int64_t kBagStart = 1'700'000'000'000'000'000, kStep = 10'000'000, kFrameSteps = 10;
+constexpr int kSteps = 60;
+const PinholeCamera kView{80, 60, 60.0, 61.0, 39.7, 29.2};
+constexpr DepthError kError{0.002, 0.001};
+const std::vector<std::string> kLinks{"foot", "upper", "lower", "finger"};
+
+std::array<double, 3> positions(int step) {
+  return {-0.4 + 0.01 * step, 0.6 - 0.015 * step, 0.001 * step};
+}
+
+// The bodies of the links where the joints place them, numbered from 0, and the surroundings from
+// 10 on: a floor, a box and a ball.
+std::vector<RenderedBody> scene_at(const std::array<double, 3>& q) {
+  const auto turn = [](double angle) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+  };
+  const Vec3 elbow = turn(q[0]) * Vec3::UnitX();
+  const Eigen::Quaterniond forearm = turn(q[0] + q[1]);
+  std::vector<RenderedBody> out;
+  out.push_back(rendered_box({0, 0, -1}, {0.1, 0.1, 0.1}, 0));
+  out.push_back(rendered_box(turn(q[0]) * Vec3(0.5, 0, 0), {0.4, 0.05, 0.05}, 1));
+  out.back().world_from_body.orientation = turn(q[0]);
+  out.push_back(rendered_box(elbow + forearm * Vec3(0.5, 0, 0), {0.4, 0.05, 0.05}, 2));
+  out.back().world_from_body.orientation = forearm;
+  out.push_back(rendered_sphere(elbow + forearm * Vec3(1.0 + q[2], 0, 0), 0.05, 3));
+  out.push_back(rendered_box({0, 0, -1.6}, {5, 5, 0.1}, 10));
+  out.push_back(rendered_box({0.6, -0.7, 0.1}, {0.1, 0.15, 0.2}, 11));
+  out.push_back(rendered_sphere({1.3, 0.75, 0.05}, 0.15, 12));
+  return out;
+}
+
+Pose camera_place() {
+  Pose place;
+  place.position = {0.9, 0.0, 2.2};
+  place.orientation = Eigen::Quaterniond(0, 1, 0, 0);  // it looks down
+  return place;
+}
+
+double distance_to(const RenderedBody& body, const Vec3& point) {
+  const Vec3 local =
+      body.world_from_body.orientation.conjugate() * (point - body.world_from_body.position);
+  if (body.radius > 0.0) return local.norm() - body.radius;
+  return (local.cwiseAbs() - body.half).cwiseMax(0.0).norm();
+}
+
+RosMessage image(std::int64_t stamp, const std::vector<float>& depth) {
+  RosCdr cdr;
+  cdr.header(stamp, "optical").number(kView.height).number(kView.width).text("32FC1");
+  cdr.number(std::uint8_t{0}).number(kView.width * 4);
+  cdr.number(static_cast<std::uint32_t>(depth.size() * 4));
+  for (const float z : depth) {
+    std::array<std::uint8_t, 4> bytes{};
+    std::memcpy(bytes.data(), &z, 4);
+    for (const std::uint8_t byte : bytes) cdr.number(byte);
+  }
+  return {"/cam/depth", "sensor_msgs/msg/Image", stamp, cdr.bytes()};
+}
+RosMessage camera_info(std::int64_t stamp) {
+  RosCdr cdr;
+  cdr.header(stamp, "optical").number(kView.height).number(kView.width).text("plumb_bob");
+  cdr.numbers({0, 0, 0, 0, 0});
+  for (const double k : {kView.fx, 0.0, kView.cx, 0.0, kView.fy, kView.cy, 0.0, 0.0, 1.0})
+    cdr.number(k);
+  for (const double r : {1, 0, 0, 0, 1, 0, 0, 0, 1}) cdr.number(static_cast<double>(r));
+  for (const double p :
+       {kView.fx, 0.0, kView.cx, 0.0, 0.0, kView.fy, kView.cy, 0.0, 0.0, 0.0, 1.0, 0.0})
+    cdr.number(p);
+  cdr.number(std::uint32_t{0}).number(std::uint32_t{0});
+  for (int i = 0; i < 4; ++i) cdr.number(std::uint32_t{0});
+  cdr.number(std::uint8_t{0});
+  return {"/cam/camera_info", "sensor_msgs/msg/CameraInfo", stamp, cdr.bytes()};
+}
+
+// A point that a pixel has seen, and the size of the slab around it.
+struct SeenPoint {
+  Vec3 at;
+  double size;
+};
+
+TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const Cell cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n"
+      "sensors:\n  - {name: eye, depth_image: /cam/depth, size: [80, 60], depth_error: {constant: "
+      "0.002, quadratic: 0.001}, range: [0.3, 5], own_shell: 0.005, age_limit_ms: 150, mount: "
+      "{pose: {xyz: [0.9, 0, 2.2], rpy: [3.141592653589793, 0, 0]}}}\n"
+      "pairs:\n  - {between: [arm, eye]}\n",
+      folder / "cell.yaml");
+  std::vector<RosMessage> bag{camera_info(kBagStart)};
+  std::map<std::int64_t, std::vector<SeenPoint>> frames;  // by stamp: what is not the robot
+  Random random(5);
+  for (int step = 0; step < kSteps; ++step) {
+    const std::int64_t stamp = kBagStart + step * kStep;
+    const auto q = positions(step);
+    bag.push_back(
+        joint_state(stamp, stamp, {{"shoulder", "elbow", "push"}, {q[0], q[1], q[2]}, {}, {}}));
+    if (step % kFrameSteps != 0) continue;
+    const std::vector<RenderedPixel> pixels = render(scene_at(q), kView, camera_place());
+    const std::vector<float> depth = measured(pixels, kError, 0.9, random);
+    bag.push_back(image(stamp, depth));
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      if (pixels[i].number < 10 || std::isnan(depth[i])) continue;
+      const double z = depth[i], e = kError.at(z);
+      // Its corners are at most a pixel apart across, 1.4 m a metre along the corner ray.
+      const double size = 1.3 * (2.0 * e + 1.5 * (z + e) / kView.fx);
+      frames[stamp].push_back({pixels[i].in_world, size});
+    }
+  }
+  write_mcap_bag(folder / "run.mcap", bag);
+
+  int rows = 0, near = 0, shells = 0;
+  std::int64_t newest = 0;
+  const OfflineReplay replay = replay_offline(
+      cell, folder / "run.mcap", {.tick_hz = 0.0, .evaluate_all = true},
+      [&](const ReplayedTick& tick) {
+        const std::int64_t now = tick.report.now_ns;
+        if ((now - kBagStart) % (kStep * kFrameSteps) == 0) newest = now;
+        const auto step = static_cast<int>((now - kBagStart) / kStep);
+        const std::vector<RenderedBody> bodies = scene_at(positions(step));
+        for (const PairReport& pair : tick.report.pairs) {
+          if (pair.status == PairStatus::kUnknown) continue;
+          const ObjectPair& objects = tick.cell.scene.pairs[pair.pair];
+          const std::string& name =
+              tick.cell.scene
+                  .objects[tick.cell.scene.objects[objects.first].is_seen() ? objects.second
+                                                                            : objects.first]
+                  .name;
+          const auto link =
+              static_cast<std::size_t>(std::ranges::find(kLinks, name) - kLinks.begin());
+          ASSERT_LT(link, kLinks.size());
+          double exact = kInfinity, least = kInfinity;
+          for (const SeenPoint& point : frames.at(newest)) {
+            const double d = distance_to(bodies[link], point.at);
+            exact = std::min(exact, d);
+            least = std::min(least, d - point.size);
+          }
+          ++rows;
+          near += exact < 0.5 ? 1 : 0;
+          EXPECT_LE(pair.lower, exact + 1e-9) << name << " " << step;
+          EXPECT_GE(pair.lower, least - 1e-9) << name << " " << step;
+        }
+        for (const HiddenReport& hidden : tick.report.hidden) {
+          if (hidden.elements == 0 || !std::isfinite(hidden.thickness)) continue;
+          ++shells;
+          EXPECT_GT(hidden.thickness, 0.005);
+          EXPECT_LT(hidden.thickness, 0.2);
+        }
+      });
+  EXPECT_TRUE(replay.ok()) << replay.text();
+  EXPECT_GT(rows, 4 * 50);
+  EXPECT_GT(near, 50);
+  EXPECT_GT(shells, 50);
+}
+
+}  // namespace
+}  // namespace clearance::test

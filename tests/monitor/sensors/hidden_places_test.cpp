@@ -1,0 +1,137 @@
+// What a frame cannot show near a link: the blind shell, and places that it has not seen.
+//
+// Oracles: closed forms for boxes and planes that the test puts in.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/monitor/sensors/small_camera.hpp"
+
+namespace clearance::sensors_test {
+namespace {
+
+// All pixels look at the upper arm if it lies along x: its upper face is 1.95 m below.
+constexpr const char* kOverTheArm =
+    ", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}";
+class HiddenPlacesTest : public SensorsTest {
+ protected:
+  // Shows the frames that are built by then to a monitor, whose joints are those at kStart.
+  const Report& tick(double shoulder) {
+    if (monitor == nullptr) monitor = std::make_unique<Monitor>(cell.scene);
+    for (const SensorFrame& frame : settle(kStart + 50'000'000)) {
+      shown.push_back(frame);
+      EXPECT_TRUE(monitor->show(0, frame));
+    }
+    return monitor->tick({}, test::joints(shoulder, 0.0, 0.0, kStart), kStart + 1'000'000);
+  }
+  [[nodiscard]] const HiddenReport& near(const Report& report, const std::string& link) const {
+    const auto found = std::ranges::find_if(report.hidden, [&](const HiddenReport& each) {
+      const ObjectPair& pair = cell.scene.pairs[each.pair];
+      return cell.scene.objects[pair.first].name == link ||
+             cell.scene.objects[pair.second].name == link;
+    });
+    EXPECT_NE(found, report.hidden.end());
+    return *found;
+  }
+  std::unique_ptr<Monitor> monitor;
+  std::vector<SensorFrame> shown;
+};
+
+TEST_F(HiddenPlacesTest, ReportsSayForEachLinkHowThickTheBlindShellIs) {
+  make(kImage + ", own_shell: 0.02" + kOverTheArm);
+  const Report& before = tick(0.0);
+  EXPECT_EQ(before.hidden.size(), 4u) << "links, and not the cart";
+  for (const HiddenReport& each : before.hidden) EXPECT_EQ(each.thickness, kInfinity);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  // Half of the pixels see the arm, and half of them something that is 0.5 m above it.
+  ImageText image = flat(0, 1950);
+  const ImageText other = flat(0, 1450);
+  std::copy(other.data.begin(), other.data.begin() + 48, image.data.begin());
+  add(image);
+  const Report& report = tick(0.0);
+  ASSERT_EQ(shown.size(), 1u);
+  EXPECT_EQ(near(report, "upper").elements, 24u);
+  // The slab of a pixel is 20 mm long and 5 mm wide, and comes within 20 mm of the arm.
+  EXPECT_GT(near(report, "upper").thickness, 0.04);
+  EXPECT_LT(near(report, "upper").thickness, 0.05);
+  EXPECT_EQ(near(report, "lower").elements, 0u);
+  EXPECT_EQ(near(report, "lower").thickness, 0.0);
+  EXPECT_EQ(near(report, "upper").unseen, -kInfinity) << "it was not asked for";
+}
+
+// A hand that is nearer to the arm than the blind shell is left out with it; one that is farther
+// away is an obstacle. The pixels of the hand are all that is seen besides the arm and the floor.
+TEST_F(HiddenPlacesTest, ABodyWithinTheBlindShellIsLeftOutAndOneBeyondItIsNot) {
+  for (const bool is_within : {true, false}) {
+    make(kImage + ", own_shell: 0.02" + kOverTheArm);
+    monitor = nullptr;
+    add(Type::kCameraInfo, narrow().cdr(), kStart);
+    add_joints(0.0, kStart);
+    ImageText image = flat(0, 1950);
+    const ImageText far = flat(0, 1000);
+    std::copy(far.data.begin(), far.data.begin() + 16, image.data.begin());  // the first row
+    const ImageText hand = flat(0, is_within ? 1925 : 1890);
+    std::copy(hand.data.begin() + 16, hand.data.begin() + 18, image.data.begin() + 16);
+    add(image);
+    const Report& report = tick(0.0);
+    const HiddenReport& shell = near(report, "upper");
+    EXPECT_EQ(shell.elements, is_within ? 40u : 39u);
+    const PairReport& pair = *std::ranges::find(report.pairs, shell.pair, &PairReport::pair);
+    // The face of the hand's slab is 10 mm below its depth.
+    EXPECT_NEAR(pair.lower, is_within ? 0.94 : 0.05, 0.001);
+    // The face of the hand is nearer than the shell is thick exactly if the hand is left out.
+    EXPECT_EQ(1.95 - 1.925 < shell.thickness, true);
+    EXPECT_EQ(1.95 - 1.89 < shell.thickness, false);
+  }
+}
+
+// The camera looks along -z from 2 m. The arm's upper side is at z = 0.05, its lower at -0.05.
+TEST_F(HiddenPlacesTest, UnseenIsBehindWhatIsSeenAndTheWholeConeOfAMissingPixel) {
+  make(kImage + ", unseen: true" + kOverTheArm);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(3.0, kStart);  // the arm is elsewhere: 0.05 m thick sides, beside the picture
+  add(flat(0, 1000));
+  const Report& report = tick(3.0);
+  // Behind the plane at 1 m, which is at most 10 mm wrong: z = 0.99 and below, down to 4 m.
+  const HiddenReport& upper = near(report, "upper");
+  EXPECT_EQ(upper.elements, 0u);
+  // The sides of the picture's pyramid are 4 pixels of 400 away from its axis: at z = 0, 2 m from
+  // the camera, x is 0.48 to 0.52 and y is -0.015 to 0.015.
+  const double sine = std::sin(3.0), cosine = std::cos(3.0);
+  const Vec3 nearest(0.48, 0.0, 0.0);
+  const Vec3 in_link(cosine * nearest.x(), -sine * nearest.x(), 0.0);
+  const double gap = std::hypot(0.1 - in_link.x(), std::max(0.0, std::abs(in_link.y()) - 0.05));
+  EXPECT_NEAR(upper.unseen, gap, 0.02);
+  EXPECT_LT(upper.unseen, (upper.unseen_at - Vec3(0.1 * cosine, 0.1 * sine, 0)).norm());
+}
+
+TEST_F(HiddenPlacesTest, WhatTheRobotItselfHidesIsNotCountedAsUnseen) {
+  make(kImage + ", unseen: true" + kOverTheArm);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  ImageText image = flat(0, 1950);
+  const ImageText near_camera = flat(0, 500);
+  std::copy(near_camera.data.begin(), near_camera.data.begin() + 16, image.data.begin());
+  add(image);
+  {
+    const HiddenReport& upper = near(tick(0.0), "upper");
+    EXPECT_EQ(upper.elements, 40u);
+    EXPECT_LT(upper.unseen, 0.0) << "what is behind the first row contains a part of the arm";
+  }
+  // Without that row, all pixels see the arm, and nothing but a missing pixel is unseen.
+  make(kImage + ", unseen: true" + kOverTheArm);
+  monitor = nullptr;
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  ImageText gap = flat(0, 1950);
+  gap.data[0] = gap.data[1] = 0;
+  const ImageText step = flat(0, 3900);
+  std::copy(step.data.begin() + 94, step.data.end(), gap.data.begin() + 94);
+  add(gap);
+  EXPECT_LT(near(tick(0.0), "upper").unseen, 0.0) << "the cone of the missing pixel meets the arm";
+}
+
+}  // namespace
+}  // namespace clearance::sensors_test

@@ -1,0 +1,223 @@
+// Elements that are left out of a frame: speckle that too few frames have, and what is beyond the
+// reach of the links.
+//
+// Oracles: the pixels that the test puts in; the core's query of every single element that was
+// there before.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/shapes.hpp"
+#include "monitor/sensors/persistence.hpp"
+#include "tests/monitor/sensors/small_camera.hpp"
+#include "tests/shared/made.hpp"
+#include "tests/shared/poses.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance::sensors_test {
+namespace {
+
+const std::string kPersist = ", max_speed: 0.5, persist: {frames: 2, of: 3}";
+
+// A pixel of another depth, mm.
+void put(ImageText& image, std::size_t pixel, std::uint16_t depth) {
+  image.data[2 * pixel] = static_cast<std::uint8_t>(depth & 0xFF);
+  image.data[2 * pixel + 1] = static_cast<std::uint8_t>(depth >> 8);
+}
+
+class LeftOutTest : public SensorsTest {
+ protected:
+  // The elements of the frame that is made of an image; 0: no frame.
+  std::size_t elements(const ImageText& image) {
+    add(image);
+    const auto frames = settle(image.stamp_ns + 25'000'000);
+    return frames.empty() ? 0 : frames[0].cloud->size();
+  }
+};
+
+TEST_F(LeftOutTest, SpeckleIsHiddenUntilEnoughFramesHaveIt) {
+  make(kImage + kPersist + kAbove);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  EXPECT_EQ(elements(flat(0, 1500)), 0u) << "one frame is not two of three";
+  EXPECT_EQ(elements(flat(1, 1501)), 48u);
+  ImageText speckled = flat(2, 1502);
+  put(speckled, 20, 700);
+  EXPECT_EQ(elements(speckled), 47u);
+  EXPECT_EQ(sensors->status(0).hidden, 1u);
+  // It is there again after one frame without it: two of three.
+  EXPECT_EQ(elements(flat(3, 1503)), 48u);
+  ImageText again = flat(4, 1504);
+  put(again, 20, 701);
+  EXPECT_EQ(elements(again), 48u);
+  // After two frames without it, it is new.
+  EXPECT_EQ(elements(flat(5, 1505)), 48u);
+  EXPECT_EQ(elements(flat(6, 1506)), 48u);
+  ImageText late = flat(7, 1507);
+  put(late, 20, 702);
+  EXPECT_EQ(elements(late), 47u);
+}
+
+TEST_F(LeftOutTest, ABodyThatMovesNoFasterThanStatedIsHiddenForItsFirstFrameOnly) {
+  for (const bool is_too_fast : {false, true}) {
+    make(kImage + kPersist + kAbove);
+    add(Type::kCameraInfo, narrow().cdr(), kStart);
+    static_cast<void>(elements(flat(0, 3500)));
+    for (int i = 1; i < 8; ++i) {
+      // 16 mm in a frame, and 0.45 m: more than cells and errors add to the speed.
+      ImageText image = flat(i, static_cast<std::uint16_t>(3500 + i));
+      put(image, 20, static_cast<std::uint16_t>(700 + i * (is_too_fast ? 250 : 16)));
+      EXPECT_EQ(elements(image), i == 1 || is_too_fast ? 47u : 48u) << i;
+    }
+  }
+}
+
+TEST_F(LeftOutTest, TheConeOfAHiddenPixelIsUnseen) {
+  make(kImage + kPersist + ", unseen: true" + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add_joints(0.0, kStart);
+  const auto unseen = [&](const ImageText& image) {
+    add_joints(0.0, image.stamp_ns);
+    static_cast<void>(elements(image));
+    double least = kInfinity;
+    for (const OwnImageStatus& link : sensors->status(0).own) least = std::min(least, link.unseen);
+    return least;
+  };
+  static_cast<void>(unseen(flat(0, 3900)));
+  const double before = unseen(flat(1, 3901));
+  ImageText speckled = flat(2, 3902);
+  for (std::size_t pixel = 0; pixel < 48; ++pixel) put(speckled, pixel, 700);
+  EXPECT_LT(unseen(speckled), before - 0.1);
+}
+
+TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
+  Sensor sensor;
+  sensor.persist_frames = 2;
+  sensor.persist_of = 4;
+  sensor.greatest_depth = 4.0;
+  const double speed = 1.5;
+  std::size_t hidden = 0, kept = 0;
+  for (int seed = 0; seed < 30; ++seed) {
+    Random random(static_cast<std::uint64_t>(seed) * 31 + 7);
+    Persistence persistence(sensor, speed);
+    std::vector<std::vector<Vec3>> frames;  // in the world
+    std::vector<std::int64_t> stamps;
+    std::int64_t stamp = 1'000'000'000;
+    for (int frame = 0; frame < 6; ++frame) {
+      stamp += random.integer(1, 100) * 1'000'000;
+      Pose place = random.pose(1.0);
+      std::vector<MeasuredPoint> points;
+      std::vector<Vec3> in_world;
+      for (int i = 0; i < 200; ++i) {
+        const Vec3 p = 2.0 * random.direction();
+        points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
+                          static_cast<float>(p.z()), 0.01F});
+        in_world.push_back(place.orientation *
+                               Vec3(points.back().x, points.back().y, points.back().z) +
+                           place.position);
+      }
+      SeenCloud cloud = SeenCloud::of_points(1000);
+      ASSERT_EQ(cloud.points()->build(points, {Vec3::Zero(), 5.0}), CloudBuild::kBuilt);
+      std::vector<bool> stays(points.size());
+      hidden += persistence.hide(cloud, place, 0.005, stamp, nullptr);
+      for (std::size_t b = 0; b < cloud.points()->blocks(); ++b) {
+        const PointCloud::Block& block = cloud.points()->block(b);
+        for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
+          if (block.is_present(lane)) stays[block.source[lane]] = true;
+        }
+      }
+      for (std::size_t i = 0; i < in_world.size(); ++i) {
+        int found = 1;
+        for (std::size_t k = frames.size() >= 3 ? frames.size() - 3 : 0; k < frames.size(); ++k) {
+          const double apart = speed * 1e-9 * static_cast<double>(stamp - stamps[k]) + 0.01;
+          const bool is_near = std::ranges::any_of(
+              frames[k], [&](const Vec3& p) { return (p - in_world[i]).norm() <= apart; });
+          found += is_near ? 1 : 0;
+        }
+        if (found < 2) continue;
+        ++kept;
+        EXPECT_TRUE(stays[i]) << seed << " " << frame << " " << i;
+      }
+      frames.push_back(in_world);
+      stamps.push_back(stamp);
+    }
+  }
+  EXPECT_GT(hidden, 500u);
+  EXPECT_GT(kept, 1000u);
+}
+
+// The scara's links come to 2.25 m from its foot: two links of 1 m, and a finger that slides 0.2 m
+// and has a radius of 0.05 m. Its foot is 1 m below.
+TEST_F(LeftOutTest, ReachFollowsFromTheChainOfJointsAndTheMotionOfWhatIsSeen) {
+  make(kImage + ", reach: 0.5, max_speed: 2" + kAbove);
+  const Sensor& sensor = cell.scene.sensors[0];
+  EXPECT_NEAR(sensor.crop_radius, 2.25 + 0.5 + 0.2, 0.01) << "with 2 m/s for 100 ms";
+  EXPECT_EQ(sensor.crop_centre, Vec3::Zero());
+}
+
+// An element beyond the reach is left out, but the distance is never said to be larger than that of
+// what may be there.
+TEST_F(LeftOutTest, BoundsHoldForWhatWasCropped) {
+  std::size_t cropped = 0, limited = 0;
+  for (const bool of_points : {false, true}) {
+    for (int seed = 0; seed < 25; ++seed) {
+      Random random(static_cast<std::uint64_t>(seed) * 101 + 3);
+      const CloudCrop crop{.centre = Vec3(0, 0, 1) + 0.3 * random.direction(),
+                           .radius = random.uniform(0.3, 0.8)};
+      const PinholeCamera camera{16, 12, 15.0, 15.0, 7.5, 5.5};
+      std::vector<float> depth(camera.width * camera.height);
+      std::vector<MeasuredPoint> points;
+      for (std::size_t i = 0; i < depth.size(); ++i) {
+        depth[i] = static_cast<float>(random.uniform(0.4, 3.0));
+        const Vec3 p = depth[i] * random.direction();
+        points.push_back({static_cast<float>(p.x()), static_cast<float>(p.y()),
+                          static_cast<float>(p.z()), 0.02F});
+      }
+      SeenCloud whole = of_points ? SeenCloud::of_points(1000) : SeenCloud::of_images(16, 12);
+      SeenCloud cloud = of_points ? SeenCloud::of_points(1000) : SeenCloud::of_images(16, 12);
+      if (of_points) {
+        ASSERT_EQ(whole.points()->build(points, {Vec3::Zero(), 9.0}), CloudBuild::kBuilt);
+        ASSERT_EQ(cloud.points()->build(points, crop), CloudBuild::kBuilt);
+      } else {
+        const DepthImage image{DepthImage::Format::kMetres32, camera.width, camera.height,
+                               camera.width * 4, std::as_bytes(std::span(depth))};
+        ASSERT_EQ(whole.depth()->build(camera, image, {0.01, 0.0}, {0.3, 4.0}), DepthBuild::kBuilt);
+        ASSERT_EQ(cloud.depth()->build(camera, image, {0.01, 0.0}, {0.3, 4.0}), DepthBuild::kBuilt);
+        cloud.depth()->crop(crop.centre, crop.radius);
+        cloud.refit();
+      }
+      if (cloud.size() == 0 || cloud.size() == whole.size()) continue;
+      cropped += whole.size() - cloud.size();
+      cloud.note_crop(crop);
+      const ConvexBody part = test::made(box({0.2, 0.1, 0.15}));
+      for (int query = 0; query < 20; ++query) {
+        Pose place = random.pose(0.7);
+        place.position += crop.centre;
+        const RelativePose pose = relative_pose(place, {});
+        SlabBody body;
+        CloudTracking of_whole, of_cloud;
+        const NearestElement exact = whole.nearest(part, pose, body, of_whole);
+        const NearestElement found = cloud.nearest(part, pose, body, of_cloud);
+        EXPECT_LE(found.lower, exact.upper);
+        EXPECT_GE(found.upper, exact.lower);
+        limited += found.lower < found.upper - 1e-6 ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(cropped, 1000u);
+  EXPECT_GT(limited, 50u);
+}
+
+TEST_F(LeftOutTest, AFrameThatIsBeyondTheReachAsAWholeIsKept) {
+  make(kImage + ", reach: 0, own_shell: 0, mount: {pose: {xyz: [0, 0, 6], rpy: [3.14159, 0, 0]}}");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  EXPECT_EQ(elements(flat(0, 1000)), 48u);
+  EXPECT_EQ(sensors->status(0).cropped, 0u);
+  // One row comes near: the others are cropped.
+  ImageText image = flat(1, 1000);
+  for (std::size_t pixel = 0; pixel < 8; ++pixel) put(image, pixel, 3999);
+  EXPECT_EQ(elements(image), 8u);
+  EXPECT_EQ(sensors->status(0).cropped, 40u);
+}
+
+}  // namespace
+}  // namespace clearance::sensors_test

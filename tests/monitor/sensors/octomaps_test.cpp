@@ -1,0 +1,141 @@
+// Octomaps as sensors, by octomap_msgs and in MoveIt's planning scenes.
+//
+// Oracle: the place of the cubes that the test puts in.
+#include <gtest/gtest.h>
+
+#include "tests/monitor/moveit/moveit_messages.hpp"
+#include "tests/monitor/sensors/small_camera.hpp"
+
+namespace clearance::sensors_test {
+namespace {
+
+constexpr double kResolution = 0.1;
+const std::string kMap = "octomap: /map, range: 10, age_limit_ms: 2000";
+
+// A binary tree with one occupied leaf at these numbers of cubes from the middle, each 0 or more:
+// the child 7 of the root, and so on.
+std::string one_cube(std::array<unsigned, 3> at) {
+  std::string bytes;
+  for (int depth = 1; depth <= 16; ++depth) {
+    unsigned child = 0;
+    for (unsigned k = 0; k < 3; ++k) child |= ((at[k] + 32768U) >> (16 - depth) & 1U) << k;
+    const unsigned two_bits = (depth == 16 ? 2U : 3U) << 2 * child;
+    bytes += static_cast<char>(two_bits & 0xFF);
+    bytes += static_cast<char>(two_bits >> 8);
+  }
+  return bytes;
+}
+
+std::vector<std::byte> map_message(const std::string& bytes, std::int64_t stamp_ns,
+                                   const std::string& id = "OcTree") {
+  test::RosCdr out;
+  out.header(stamp_ns, "camera").number(std::uint8_t{1}).text(id).number(kResolution);
+  out.number(static_cast<std::uint32_t>(bytes.size()));
+  for (const char byte : bytes) out.number(byte);
+  return out.bytes();
+}
+
+class OctomapsTest : public SensorsTest {
+ protected:
+  void add_map(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns) {
+    sensors->add({.type = type, .topic = "/map", .sent_ns = sent_ns, .writer = 1, .cdr = cdr},
+                 sent_ns);
+  }
+  // The pair of the cart, a ball of 0.1 m at the origin.
+  PairReport cart(const std::vector<SensorFrame>& frames, std::int64_t now_ns) {
+    Monitor monitor(cell.scene);
+    for (const SensorFrame& frame : frames) EXPECT_TRUE(monitor.show(0, frame));
+    const Report& report = monitor.tick(std::vector{test::sample(0, {}, now_ns)}, now_ns);
+    for (const PairReport& pair : report.pairs) {
+      if (cell.scene.pairs[pair.pair].first == 0) return pair;
+    }
+    ADD_FAILURE() << "no pair of the cart";
+    return {};
+  }
+};
+
+TEST_F(OctomapsTest, AreCubesOfTheirResolutionAtThePlaceThatTheCellStates) {
+  make(kMap + ", mount: {pose: {xyz: [0.5, 0, 0]}}");
+  // The cube from (1, 0, 0) to (1.1, 0.1, 0.1) of the map's frame.
+  add_map(Type::kOctomap, map_message(one_cube({10, 0, 0}), kStart), kStart);
+  const auto frames = settle(kStart + 1000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 1u);
+  const PairReport pair = cart(frames, kStart + 1'000'000);
+  EXPECT_NEAR(pair.lower, 1.5 - 0.1, 1e-6);
+  EXPECT_LE(pair.lower, 1.4);
+  EXPECT_NEAR(pair.upper, 1.4, 1e-6);
+  // The same map under a newer stamp is that of a map that nothing has changed.
+  add_map(Type::kOctomap, map_message(one_cube({10, 0, 0}), kStart + kFrame), kStart + kFrame);
+  EXPECT_EQ(settle(kStart + kFrame + 1000).size(), 1u);
+}
+
+TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {
+  make(kMap, "ros2: {world_frame: map}\n");
+  test::RosCdr with_map, without;
+  clearance::moveit::PlanningScene scene;
+  scene.is_diff = true;
+  clearance::moveit::put(without, scene);
+  scene.has_octomap = true;
+  clearance::moveit::put(with_map, scene, one_cube({0, 0, 7}));
+  add_map(Type::kPlanningScene, without.bytes(), kStart);
+  EXPECT_TRUE(settle(kStart + 30'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kOctree), 0u) << "a change of something else";
+  // Its stamp is 0: the time of sending counts.
+  add_map(Type::kPlanningScene, with_map.bytes(), kStart + kFrame);
+  const auto frames = settle(kStart + kFrame + 30'000'000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].stamp_ns, kStart + kFrame);
+  EXPECT_NEAR(cart(frames, kStart + kFrame + 30'000'000).lower, 0.7 - 0.1, 1e-6);
+}
+
+TEST_F(OctomapsTest, AreRefusedByCauseIfTheyAreDamagedOrEmpty) {
+  make(kMap + kAbove);
+  std::int64_t stamp = kStart;
+  const auto refuses = [&](const std::string& bytes, const std::string& id, FrameFault fault) {
+    const std::uint64_t before = count(fault);
+    stamp += kFrame;
+    add_map(Type::kOctomap, map_message(bytes, stamp, id), stamp);
+    EXPECT_TRUE(settle(stamp + 1000).empty());
+    EXPECT_EQ(count(fault), before + 1) << text(fault);
+  };
+  const std::string good = one_cube({1, 2, 3});
+  refuses(good.substr(0, 9), "OcTree", FrameFault::kOctree);
+  refuses(good, "SemanticOcTree", FrameFault::kOctree);
+  refuses("", "OcTree", FrameFault::kNothingSeen);
+  refuses(one_cube({1000, 0, 0}).substr(0, 30) + std::string(2, '\0'), "OcTree",
+          FrameFault::kNothingSeen);
+  refuses(std::string("\x00\x80", 2), "OcTree", FrameFault::kCannotBuild);  // an eighth of the tree
+}
+
+// A cube that is 100 m away is beyond the range of 10 m. It is not dropped: the distance is at
+// least that to the range's end.
+TEST_F(OctomapsTest, BeyondTheRangeAreKnownToBeThere) {
+  make(kMap + ", mount: {pose: {xyz: [0, 0, 0]}}");
+  // Two children of the root: a near cube, and one far away along z. Depth first, in order.
+  const std::string near = one_cube({90, 0, 0}), far = one_cube({90, 0, 1000});
+  std::size_t same = 0;
+  while (near.substr(2 * same, 2) == far.substr(2 * same, 2)) ++same;
+  std::string both = near.substr(0, 2 * same);
+  both += static_cast<char>(near[2 * same] | far[2 * same]);
+  both += static_cast<char>(near[2 * same + 1] | far[2 * same + 1]);
+  both += near.substr(2 * same + 2) + far.substr(2 * same + 2);
+  add_map(Type::kOctomap, map_message(both, kStart), kStart);
+  const auto frames = settle(kStart + 1000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 1u);
+  EXPECT_EQ(sensors->status(0).cropped, 1u);
+  Monitor monitor(cell.scene);
+  EXPECT_TRUE(monitor.show(0, frames[0]));
+  // At 9.5 m along z, the ball of 0.1 m is 0.4 m from the end of the range.
+  const Report& report =
+      monitor.tick(std::vector{test::sample(0, test::at(0, 0, 9.5), kStart)}, kStart + 1'000'000);
+  const auto pair = std::ranges::find_if(
+      report.pairs, [&](const PairReport& each) { return cell.scene.pairs[each.pair].first == 0; });
+  ASSERT_NE(pair, report.pairs.end());
+  EXPECT_NEAR(pair->lower, 0.4, 1e-6);
+  EXPECT_GT(pair->upper, 9.0);
+}
+
+}  // namespace
+}  // namespace clearance::sensors_test
