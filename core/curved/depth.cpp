@@ -18,6 +18,7 @@ constexpr double kTolerance = 0x1p-49;
 constexpr double kCoarser[] = {1e-1, 1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13};
 constexpr double kNearAxisSquare = 0x1p-32;   // of the sine
 constexpr double kNearlySymmetric = 0x1p-20;  // of the pair's size
+constexpr double kPointsOff = 0x1p-40;  // of the pair's size, along the direction of the depth
 constexpr std::size_t kDeepest = 400;
 // The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
 constexpr double kRingAngle = 1.4, kLargeCap = 2.0;
@@ -305,10 +306,27 @@ class DepthSearch {
   std::size_t count_ = 0;
 };
 
+// The deepest points are those of a search that ended at the best direction. If another direction
+// turned out to be better meanwhile, they belong to a former one: then a search from there finds
+// them, or the support points are taken, which are as far from each other along it.
+int find_deepest_points(CurvedPair& pair) noexcept {
+  const auto off = [&] {
+    return std::abs(pair.bounds.normal.dot(pair.bounds.deepest.gap()) - pair.bounds.lower);
+  };
+  if (off() <= kPointsOff * pair.size) return 0;
+  ActiveParts active;
+  const int supports = search_direction(pair, pair.bounds.normal, active);
+  if (!(off() <= kPointsOff * pair.size))
+    pair.bounds.deepest = pair.support_along(pair.bounds.normal).points;
+  return supports + 1;
+}
+
 }  // namespace
 
 DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept {
-  return DepthSearch(pair, active).run();
+  DepthBounds found = DepthSearch(pair, active).run();
+  if (found.lower > 0.0) found.supports += find_deepest_points(pair);
+  return found;
 }
 
 }  // namespace clearance

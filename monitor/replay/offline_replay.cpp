@@ -345,6 +345,12 @@ void Replay::note_sensors() {
                                           status.counts[fault],
                                           text(static_cast<FrameFault>(fault))));
     }
+    if (status.hidden + status.cropped > 0) {
+      result_.notes.push_back(fmt::format(
+          "sensor '{}': of the last frame, {} elements were hidden because too few frames have "
+          "them, and {} were cropped because no link reaches them",
+          name, status.hidden, status.cropped));
+    }
     if (!scene.sensors[i].unseen) {
       result_.notes.push_back(
           fmt::format("sensor '{}': places that it has not seen were not looked for", name));
