@@ -62,8 +62,8 @@ std::variant<ReachBall, std::string> robots_reach(const Scene& scene) {
     reach[i][0] = root;
     for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
       const RobotJoint& of = robot.joints[joint];
-      reach[i][joint + 1] = reach[i][of.parent] + of.parent_from_joint.position.norm() +
-                            travel(of, scene.variables);
+      reach[i][joint + 1] =
+          reach[i][of.parent] + of.parent_from_joint.position.norm() + travel(of, scene.variables);
     }
     for (std::size_t link = 0; link < robot.links.size(); ++link) {
       if (robot.links[link].object == RobotLink::kNoObject) continue;
@@ -73,9 +73,10 @@ std::variant<ReachBall, std::string> robots_reach(const Scene& scene) {
         continue;
       }
       if (robot.is_attached) continue;  // to an object that moves: no robot carries it
-      return fmt::format("'{}' of robot '{}' can go anywhere: its base moves, or a joint slides "
-                         "without limits",
-                         robot.links[link].name, robot.name);
+      return fmt::format(
+          "'{}' of robot '{}' can go anywhere: its base moves, or a joint slides "
+          "without limits",
+          robot.links[link].name, robot.name);
     }
   }
   if (!has_centre) return "the cell has no robot whose base stands still";

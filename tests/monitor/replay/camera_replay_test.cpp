@@ -13,8 +13,10 @@
 #include "tests/monitor/clouds/rendered_scene.hpp"
 #include "tests/monitor/scara_cell.hpp"
 
-namespace clearance::test {
+namespace clearance::camera_replay_test {
 namespace {
+
+using namespace test;  // NOLINT(google-build-using-namespace)
 
 constexpr std::int64_t kBagStart = 1'700'000'000'000'000'000, kStep = 10'000'000, kFrameSteps = 10;
 constexpr int kSteps = 60;
@@ -172,4 +174,4 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
 }
 
 }  // namespace
-}  // namespace clearance::test
+}  // namespace clearance::camera_replay_test

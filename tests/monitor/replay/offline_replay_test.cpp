@@ -173,7 +173,8 @@ TEST_F(OfflineReplayTest, TableHasTheContactsOfTheirPairs) {
   for (std::size_t at = 0; (at = text.find(",\"lift, \"\"1\"\"\",allowed,", at)) != text.npos;
        ++at) {
     ++rows;
-    const double depth = std::stod(text.substr(text.rfind(',', text.find('\n', at)) + 1));
+    const std::size_t end = text.find(",,\n", at);  // no columns of sensors
+    const double depth = std::stod(text.substr(text.rfind(',', end - 1) + 1));
     EXPECT_LE(depth, 0.02);
     touching += depth > 0.0;
   }
