@@ -5,8 +5,11 @@
 
 #include <cmath>
 #include <csignal>
+#include <cstring>
 #include <string>
 
+#include "monitor/wire/moveit_types.hpp"
+#include "tests/shared/one_cube.hpp"
 #include "tests/shared/ros_camera.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
@@ -99,6 +102,32 @@ TEST_F(DaemonCameras, GivesTheExactDistanceToTheBallsOfPoints) {
   EXPECT_LE(ball_pair().lower, exact);
   EXPECT_NEAR(ball_pair().upper, exact, 1e-8) << "radii are rounded up to float32";
   EXPECT_LT(ball_pair().upper - ball_pair().lower, 1e-8);
+}
+
+// A cube of 0.1 m below the ball, whose upper side is at z = 0.8.
+TEST_F(DaemonCameras, GivesTheExactDistanceToTheCubesOfAnOctomap) {
+  start("octomap: /map, age_limit_ms: 1000, mount: {pose: {xyz: [0, 0, 0]}}");
+  const dds_entity_t writer = client.ros_writer(kRosOctomap, ros_dds_name("/map"));
+  ASSERT_TRUE(eventually([&] { return matched_readers(writer) > 0; })) << daemon->output();
+  const std::string tree = one_cube({0, 0, 7});
+  const auto send = [&] {
+    Sample<octomap_msgs_msg_dds__Octomap_> message;
+    const std::int64_t stamp = dds_time();
+    message->header.stamp.sec = static_cast<std::int32_t>(stamp / 1'000'000'000);
+    message->header.stamp.nanosec = static_cast<std::uint32_t>(stamp % 1'000'000'000);
+    message->header.frame_id = dds_string_dup("map");
+    message->binary = true;
+    message->id = dds_string_dup("OcTree");
+    message->resolution = 0.1;
+    reserve_sequence(message->data, tree.size());
+    message->data._length = static_cast<std::uint32_t>(tree.size());
+    std::memcpy(message->data._buffer, tree.data(), tree.size());
+    ASSERT_EQ(dds_write(writer, &*message), DDS_RETCODE_OK);
+  };
+  ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
+  EXPECT_LE(ball_pair().lower, 2.0 - 0.8 - kRadius);
+  EXPECT_NEAR(ball_pair().upper, 2.0 - 0.8 - kRadius, 1e-6) << "cubes contain the exact ones";
+  dds_delete(writer);
 }
 
 // The camera hangs on a frame that moves past the ball. Each report is that of a frame whose place

@@ -5,26 +5,15 @@
 
 #include "tests/monitor/moveit/moveit_messages.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
+#include "tests/shared/one_cube.hpp"
 
 namespace clearance::sensors_test {
 namespace {
 
+using test::one_cube;
+
 constexpr double kResolution = 0.1;
 const std::string kMap = "octomap: /map, range: 10, age_limit_ms: 2000";
-
-// A binary tree with one occupied leaf at these numbers of cubes from the middle, each 0 or more:
-// the child 7 of the root, and so on.
-std::string one_cube(std::array<unsigned, 3> at) {
-  std::string bytes;
-  for (int depth = 1; depth <= 16; ++depth) {
-    unsigned child = 0;
-    for (unsigned k = 0; k < 3; ++k) child |= ((at[k] + 32768U) >> (16 - depth) & 1U) << k;
-    const unsigned two_bits = (depth == 16 ? 2U : 3U) << 2 * child;
-    bytes += static_cast<char>(two_bits & 0xFF);
-    bytes += static_cast<char>(two_bits >> 8);
-  }
-  return bytes;
-}
 
 std::vector<std::byte> map_message(const std::string& bytes, std::int64_t stamp_ns,
                                    const std::string& id = "OcTree") {
