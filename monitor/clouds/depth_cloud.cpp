@@ -246,8 +246,8 @@ DepthBuild DepthCloud::build(const PinholeCamera& camera, const DepthImage& imag
 
 bool DepthCloud::build_unseen(const DepthCloud& seen, const DepthRange& range) noexcept {
   const PinholeCamera& camera = seen.camera_;
-  const bool good_range = range.least > 0.0 && range.least <= range.greatest &&
-                          range.greatest <= kGreatestDepth;
+  const bool good_range =
+      range.least > 0.0 && range.least <= range.greatest && range.greatest <= kGreatestDepth;
   if (camera.width == 0 || camera.width > most_columns_ || camera.height > most_rows_ ||
       !good_range) {
     return false;
@@ -297,7 +297,8 @@ void DepthCloud::leave_out_behind(const DepthCloud& seen) noexcept {
 }
 
 void DepthCloud::leave_open(std::size_t block, std::size_t lane) noexcept {
-  if (levels_ == 0) return;  // no place was unseen, which a picture that is full to its end may have
+  if (levels_ == 0)
+    return;  // no place was unseen, which a picture that is full to its end may have
   if (blocks_[block].low[lane] > blocks_[block].high[lane]) ++size_;
   blocks_[block].low[lane] = near_;
   blocks_[block].high[lane] = far_;

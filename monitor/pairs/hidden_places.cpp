@@ -10,13 +10,14 @@ HiddenPlaces::HiddenPlaces(const Scene& scene) {
   for (const std::uint32_t pair : hidden_pairs(scene)) {
     const std::uint32_t first = scene.pairs[pair].first, second = scene.pairs[pair].second;
     const bool first_is_seen = scene.objects[first].is_seen();
-    places_.push_back({scene.objects[first_is_seen ? first : second].sensor,
-                       first_is_seen ? second : first});
+    places_.push_back(
+        {scene.objects[first_is_seen ? first : second].sensor, first_is_seen ? second : first});
     reports_.push_back({.pair = pair});
   }
 }
 
-// A body that the frame does not list was not left out of it, and nothing is known of unseen places.
+// A body that the frame does not list was not left out of it, and nothing is known of unseen
+// places.
 void HiddenPlaces::take(std::uint32_t sensor, const SeenCloud& cloud) noexcept {
   const std::span<const HiddenNear> hidden = cloud.hidden();
   for (std::size_t i = 0; i < places_.size(); ++i) {

@@ -70,8 +70,7 @@ void OwnImage::find_unseen(const Sensor& sensor, const PastPose& place,
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const PastPose past = postures.link(links_[i].robot, links_[i].link);
     if (past.known)
-      find_unseen(links_[i], past, place, place_error, body, *of_sensor(sensor),
-                  cloud.hidden()[i]);
+      find_unseen(links_[i], past, place, place_error, body, *of_sensor(sensor), cloud.hidden()[i]);
   }
 }
 
@@ -89,7 +88,8 @@ void OwnImage::find_unseen(const Link& of, const PastPose& past, const PastPose&
     const double lower = rounded_down(found.lower - place_error - past.error(radius_of(part)));
     if (!(lower < near.unseen)) continue;
     near.unseen = lower;
-    near.unseen_at = world_from_part.orientation * found.point_on_element + world_from_part.position;
+    near.unseen_at =
+        world_from_part.orientation * found.point_on_element + world_from_part.position;
   }
 }
 

@@ -48,7 +48,7 @@ class OwnImage {
                    SlabBody& body, Unseen& unseen, HiddenNear& near) const;
 
   const Scene& scene_;
-  std::vector<Link> links_;                       // in ascending order of objects
+  std::vector<Link> links_;                      // in ascending order of objects
   std::vector<std::unique_ptr<Unseen>> unseen_;  // by sensor; null: not asked for
 };
 

@@ -31,10 +31,10 @@ struct SensorsOptions {
 // The part of the robot's surroundings that a frame cannot show, because it is left out with the
 // robot's own image.
 struct OwnImageStatus {
-  std::uint32_t object = 0;  // a link
-  std::size_t elements = 0;  // of the last frame
-  double thickness = 0.0;    // m: anything this close to the link may be left out with it
-  double thickest = 0.0;     // the largest of all frames
+  std::uint32_t object = 0;    // a link
+  std::size_t elements = 0;    // of the last frame
+  double thickness = 0.0;      // m: anything this close to the link may be left out with it
+  double thickest = 0.0;       // the largest of all frames
   double unseen = -kInfinity;  // m: lower bound to the nearest unseen place, if asked for
 };
 
