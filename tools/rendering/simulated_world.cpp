@@ -1,0 +1,93 @@
+#include "tools/rendering/simulated_world.hpp"
+
+#include <utility>
+
+namespace clearance {
+
+SimulatedWorld::SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<Person> people)
+    : cell_(cell),
+      joints_(std::move(joints)),
+      people_(std::move(people)),
+      variables_(cell.scene.variables.size()),
+      bases_(cell.scene.robots.size()),
+      kinematics_(cell.scene.robots),
+      objects_(cell.scene.objects.size()),
+      of_robot_(cell.scene.objects.size(), false) {
+  for (const Robot& robot : cell.scene.robots) {
+    for (const RobotLink& link : robot.links) {
+      if (link.object != RobotLink::kNoObject) of_robot_[link.object] = true;
+    }
+  }
+}
+
+void SimulatedWorld::place(double t_s) {
+  const std::vector<Object>& objects = cell_.scene.objects;
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    objects_[i].reset();
+    if (objects[i].fixed) objects_[i] = objects[i].world_from_object;
+  }
+  poses_at(cell_.simulation, t_s, simulated_);
+  for (const PoseAt& each : simulated_) objects_[each.object] = each.world_from_object;
+  if (!cell_.scene.robots.empty()) place_robots(t_s);
+  for (Person& person : people_) person.place(t_s);
+  add_bodies();
+}
+
+void SimulatedWorld::place_robots(double t_s) {
+  const Scene& scene = cell_.scene;
+  if (!variables_.empty()) joints_(t_s, samples_);
+  for (const JointSample& sample : samples_) {
+    variables_[sample.variable].input.has_value = true;
+    variables_[sample.variable].position = sample.position;
+  }
+  for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
+    const RobotBase& base = scene.robots[robot].base;
+    if (base.kind != RobotBase::Kind::kObject) continue;
+    bases_[robot] = {};
+    bases_[robot].known = objects_[base.object].has_value();
+    if (bases_[robot].known) bases_[robot].pose = *objects_[base.object];
+  }
+  kinematics_.place(variables_, bases_);
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    const std::vector<RobotLink>& links = scene.robots[robot].links;
+    for (std::size_t i = 0; i < links.size(); ++i) {
+      const LinkState& state = kinematics_.links(robot)[i];
+      if (links[i].object != RobotLink::kNoObject && state.known)
+        objects_[links[i].object] = state.pose;
+    }
+  }
+}
+
+void SimulatedWorld::add_bodies() {
+  bodies_.clear();
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) {
+    const Object& object = cell_.scene.objects[i];
+    if (!objects_[i] || object.absent || object.is_seen()) continue;
+    for (const Part& part : object.parts)
+      bodies_.push_back({&part.shape, compose(*objects_[i], part.object_from_part), i});
+  }
+  for (const Person& person : people_) {
+    for (const Person::Limb& limb : person.limbs())
+      bodies_.push_back({&limb.shape, limb.world_from_limb, kPerson});
+  }
+}
+
+std::optional<Pose> SimulatedWorld::sensor(const Sensor& sensor) const noexcept {
+  if (sensor.frames_by_message || !sensor.mount.frame.empty()) return std::nullopt;
+  const RobotBase& mount = sensor.mount;
+  switch (mount.kind) {
+    case RobotBase::Kind::kWorld:
+      return mount.base_from_root;
+    case RobotBase::Kind::kObject:
+      if (!objects_[mount.object]) return std::nullopt;
+      return compose(*objects_[mount.object], mount.base_from_root);
+    case RobotBase::Kind::kLink: {
+      const LinkState& link = kinematics_.links(mount.robot)[mount.link];
+      if (!link.known) return std::nullopt;
+      return compose(link.pose, mount.base_from_root);
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace clearance

@@ -1,0 +1,62 @@
+// All bodies of a simulation at one time, as its cameras see them.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/kinematics/forward_kinematics.hpp"
+#include "tools/rendering/depth_renderer.hpp"
+#include "tools/rendering/person.hpp"
+
+namespace clearance {
+
+// Returns the positions of all variables of a cell's robots at a time after the start, s.
+using JointMotion = std::function<void(double t_s, std::vector<JointSample>& joints)>;
+
+// The fixed objects of the cell, those that its simulation moves, its robots by forward kinematics,
+// and people whom the cell does not know. Other moving objects are nowhere.
+class SimulatedWorld {
+ public:
+  static constexpr std::uint32_t kPerson = std::numeric_limits<std::uint32_t>::max() - 1;
+
+  // The cell must outlive this.
+  SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<Person> people);
+
+  void place(double t_s);
+
+  // Labels are ids of objects, or kPerson. Valid until the next place().
+  [[nodiscard]] std::span<const rendering::PlacedBody> bodies() const noexcept { return bodies_; }
+  // World from object: of a link, too. Nothing for objects that are nowhere.
+  [[nodiscard]] const std::optional<Pose>& object(std::uint32_t id) const noexcept {
+    return objects_[id];
+  }
+  // World from sensor, if the cell states the sensor's pose on what is placed.
+  [[nodiscard]] std::optional<Pose> sensor(const Sensor& sensor) const noexcept;
+  // True for links, and for what is attached to them.
+  [[nodiscard]] bool is_of_robot(std::uint32_t object) const noexcept {
+    return object < of_robot_.size() && of_robot_[object];
+  }
+
+ private:
+  void place_robots(double t_s);
+  void add_bodies();
+
+  const Cell& cell_;
+  JointMotion joints_;
+  std::vector<Person> people_;
+  std::vector<PoseAt> simulated_;
+  std::vector<JointSample> samples_;
+  std::vector<TrackedVariable> variables_;
+  std::vector<LinkState> bases_;  // by robot
+  ForwardKinematics kinematics_;
+  std::vector<std::optional<Pose>> objects_;
+  std::vector<bool> of_robot_;
+  std::vector<rendering::PlacedBody> bodies_;
+};
+
+}  // namespace clearance
