@@ -1,6 +1,7 @@
 // clearance-robot: a simulated robot. At a fixed rate it publishes the poses of a cell's
-// `simulation:` section and the joints of its robots. The joints move through their ranges or along
-// a log. On request it measures the latency of the daemon's answer.
+// `simulation:` section, the joints of its robots, and what its cameras see. The joints move
+// through their ranges or along a log. On request it measures the latency of the daemon's answer,
+// or compares the distances to what cameras see with the truth.
 #include <fmt/format.h>
 
 #include <spdlog/spdlog.h>
@@ -10,8 +11,13 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
@@ -27,9 +33,13 @@
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
+#include "tools/rendering/person.hpp"
+#include "tools/robot/camera_truth.hpp"
 #include "tools/robot/joint_log_motion.hpp"
 #include "tools/robot/latency_meter.hpp"
+#include "tools/robot/simulated_cameras.hpp"
 #include "tools/robot/simulated_robot.hpp"
+#include "tools/robot/simulation_time.hpp"
 #include "tools/shared/joint_sweep.hpp"
 
 namespace clearance {
@@ -47,28 +57,110 @@ Example:
   clearance-robot --urdf panda.urdf --srdf panda.srdf --ros --interface default
   clearance-robot cell.yaml --joints joints.csv.gz
 
+A person walks up to the robot, seen by the cameras of a cell, and the distances are judged:
+  clearance-robot config/cells/camera.yaml --partition lab --swing 0.3 --person 3.2,-0.6:1.45,-0.15 --truth
+
 Latency at every phase between the robot's cycle and the daemon's (997 Hz drifts against 1000 Hz):
   clearance-robot config/cells/two_arms.yaml --partition lab --seconds 60 --rate 997 --latency)";
 
 constexpr const char* kRosJointStates = "/joint_states";
+constexpr std::uint64_t kFollowEvery = 64;  // batches between two looks at the clocks
 
 struct Arguments {
   CellArguments cell;
   std::string joints;  // a log; empty: sweep
+  double swing = JointSweep::kUsualShare;
   double rate_hz = 1000.0;
   double seconds = 0.0;
   SimulatedRobotOptions robot;
   bool latency = false;
+  SimulatedCameraOptions cameras;
+  std::string camera_size = "320x240";
+  bool camera_is_float = false;
+  std::vector<std::string> people;  // their paths
+  double person_speed = 0.6;
+  bool truth = false;
   int priority = 0;
   std::string log_level = "info";
   DdsArguments dds;
 };
+
+// "320x240"; nothing for another text.
+std::optional<std::pair<std::uint32_t, std::uint32_t>> size_of(const std::string& text) {
+  unsigned columns = 0, rows = 0;
+  int read = 0;
+  const int found = std::sscanf(text.c_str(), "%5ux%5u%n", &columns, &rows, &read);
+  if (found != 2 || static_cast<std::size_t>(read) != text.size() || columns == 0 || rows == 0)
+    return std::nullopt;
+  return std::pair(columns, rows);
+}
+
+void add_camera_options(CLI::App& app, Arguments& arguments) {
+  SimulatedCameraOptions& cameras = arguments.cameras;
+  const char* const kCameras = "Cameras (the cell's `sensors`)";
+  app.add_option("--camera-rate", cameras.rate_hz, "Frames per second; 0: no camera is simulated")
+      ->check(finite_number())
+      ->check(CLI::Range(0.0, 1000.0))
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_option("--camera-size", arguments.camera_size, "Columns and rows of their pictures")
+      ->check([](const std::string& text) {
+        return size_of(text) ? std::string()
+                             : fmt::format("found '{}'; expected COLUMNSxROWS: 640x480", text);
+      })
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_option("--camera-view", cameras.view_deg,
+                 "Degrees between the left and the right side of a picture. Points that state a "
+                 "`spacing` have the view that follows from it")
+      ->check(CLI::Range(1.0, 102.0))
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_flag("--camera-float", arguments.camera_is_float,
+               "Send depth images as 32FC1, in m, instead of 16UC1, in mm")
+      ->group(kCameras);
+  app.add_option("--camera-noise", cameras.noise_share,
+                 "Noise as a share of the depth_error that the cell states")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_option("--camera-missing", cameras.missing_share, "Share of the pixels that are missing")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_option("--camera-seed", cameras.seed, "Of noise and missing pixels")
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_option("--person", arguments.people,
+                 "A person whom the cell does not know walks along these points in the world, m, "
+                 "reaches out a hand at the last one, and walks back: X,Y:X,Y or X,Y,Z:X,Y,Z with "
+                 "the height Z of the floor; repeatable")
+      ->allow_extra_args(false)
+      ->check([](const std::string& text) {
+        const auto path = read_walking_path(text);
+        const auto* const fault = std::get_if<std::string>(&path);
+        return fault != nullptr ? *fault : std::string();
+      })
+      ->group(kCameras);
+  app.add_option("--person-speed", arguments.person_speed, "Of walking, m/s")
+      ->check(CLI::Range(0.05, 5.0))
+      ->capture_default_str()
+      ->group(kCameras);
+  app.add_flag("--truth", arguments.truth,
+               "Read the reports too, and compare the bounds of published pairs with a camera with "
+               "the distance of the surface that the camera truly saw")
+      ->group(kCameras);
+}
 
 void add_options(CLI::App& app, Arguments& arguments) {
   arguments.cell.add_to(app);
   app.add_option("--joints", arguments.joints,
                  "Robots follow this CSV: t_ns, and a column a joint, rad or m; plain or gzip. "
                  "Otherwise every joint swings through its range");
+  app.add_option("--swing", arguments.swing,
+                 "Share of its range through which every joint swings, without --joints")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
   app.add_option("--ros", arguments.robot.ros_topic,
                  "Send joints as ROS 2 does, on this topic; --ros alone: /joint_states")
       ->expected(0, 1)
@@ -105,6 +197,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag(
       "--latency", arguments.latency,
       "Read the reports too, and print the delay from a batch to the first report that uses it");
+  add_camera_options(app, arguments);
   app.add_option("--priority", arguments.priority, "Run under SCHED_FIFO")
       ->check(CLI::Range(1, 99));
   arguments.dds.add_to(app);
@@ -113,20 +206,20 @@ void add_options(CLI::App& app, Arguments& arguments) {
 }
 
 // Sends at absolute deadlines until it is stopped; returns the delays of its wake-ups.
-Histogram send_all(SimulatedRobot& robot, const Arguments& arguments,
+Histogram send_all(SimulatedRobot& robot, const Arguments& arguments, SimulationTime& time,
                    const std::atomic<bool>& stop) {
   name_thread("send");
   SystemClock clock;
   Histogram lateness;
   const std::int64_t period_ns = std::llround(1e9 / arguments.rate_hz);
   const auto batches = static_cast<std::uint64_t>(arguments.seconds * arguments.rate_hz);
-  const std::int64_t start = clock.monotonic_ns();
-  std::int64_t deadline = start;
+  std::int64_t deadline = clock.monotonic_ns();
   while (!stop && (arguments.seconds == 0.0 || robot.sent() < batches)) {
     clock.sleep_until(deadline);
     const std::int64_t now = clock.monotonic_ns();
     lateness.add(now - deadline);
-    robot.send(1e-9 * static_cast<double>(now - start));
+    robot.send(time.seconds(now), time.stamp(now));
+    if (robot.sent() % kFollowEvery == 0) time.follow();
     deadline += period_ns * std::max<std::int64_t>(1, (now - deadline) / period_ns);
   }
   return lateness;
@@ -139,6 +232,56 @@ std::string inputs_of(const SimulatedRobot& robot) {
   return poses + (poses.empty() || joints.empty() ? "" : " and ") + joints;
 }
 
+// Cameras that are simulated, or none.
+class Cameras {
+ public:
+  Cameras(const Cell& cell, client::Connection& connection, const Arguments& arguments,
+          const JointMotion& motion, const SimulationTime& time) {
+    if (cell.scene.sensors.empty() || arguments.cameras.rate_hz == 0.0) return;
+    if (const std::string fault = fault_of(cell, arguments.cameras); !fault.empty()) {
+      spdlog::warn("no camera is simulated: {}", fault);
+      return;
+    }
+    const SimulatedWorld world(cell, motion, people_of(cell, arguments));
+    if (arguments.truth) truth_.emplace(cell, connection, world, time, arguments.rate_hz);
+    cameras_.emplace(cell, connection.participant(), world, time, arguments.cameras,
+                     [this](const SentFrame& frame) {
+                       if (truth_) truth_->sent(frame);
+                     });
+    spdlog::info("{} of {} x {} pixels at {} Hz", counted(cell.scene.sensors.size(), "camera"),
+                 arguments.cameras.columns, arguments.cameras.rows, arguments.cameras.rate_hz);
+  }
+
+  void tell() {
+    if (!cameras_) return;
+    cameras_->stop();
+    print(stdout, "{} sent, {} failed\n", counted(cameras_->sent(), "frame"), cameras_->failed());
+    print(stdout, "frame    {}  exposure to rendered\n", percentiles(cameras_->rendered()));
+    print(stdout, "         {}  exposure to written\n", percentiles(cameras_->written()));
+    if (truth_) truth_->tell();
+  }
+
+ private:
+  static std::vector<Person> people_of(const Cell& cell, const Arguments& arguments) {
+    std::vector<Person> people;
+    for (const std::string& text : arguments.people) {
+      people.emplace_back(std::get<WalkingPath>(read_walking_path(text)), arguments.person_speed);
+      const double fastest = people.back().max_speed();
+      spdlog::info("a person walks; no point of it is faster than {:.2f} m/s", fastest);
+      for (const Sensor& sensor : cell.scene.sensors) {
+        const double stated = cell.scene.objects[sensor.object].max_speed;
+        if (stated < fastest)
+          spdlog::warn("{} states a max_speed of {} m/s, which this person exceeds", sensor.name,
+                       stated);
+      }
+    }
+    return people;
+  }
+
+  std::optional<CameraTruth> truth_;
+  std::optional<SimulatedCameras> cameras_;  // calls the above
+};
+
 int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
               StopSignal& signal) {
   use_precise_timers();
@@ -150,16 +293,18 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   }
   route_dds_log();
   client::Connection connection(arguments.dds.resolve(cell), cell.topics);
-  SimulatedRobot robot(cell, connection, arguments.robot, std::move(motion));
+  SimulationTime time;
+  SimulatedRobot robot(cell, connection, arguments.robot, motion);
   std::optional<LatencyMeter> latency;
   if (arguments.latency) latency.emplace(connection);
   spdlog::info("source '{}' sends {} at {} Hz on {}", arguments.robot.source, inputs_of(robot),
                arguments.rate_hz, connection.where());
+  Cameras cameras(cell, connection, arguments, motion, time);
 
   std::atomic<bool> stop{false}, done{false};
   Histogram lateness;
   std::thread sending([&] {
-    lateness = send_all(robot, arguments, stop);
+    lateness = send_all(robot, arguments, time, stop);
     done = true;
   });
   while (!done && !signal.wait(50)) {
@@ -169,6 +314,7 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   print(stdout, "{} of {} sent, {} failed\n", counted(robot.sent(), "batch", "batches"),
         inputs_of(robot), robot.failed());
   print(stdout, "wake-up  {}\n", percentiles(lateness));
+  cameras.tell();
   if (latency) latency->tell(connection.where());
   return kOk;
 }
@@ -178,20 +324,25 @@ int run(int argc, char** argv, StopSignal& signal) {
   Arguments arguments;
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
+  std::tie(arguments.cameras.columns, arguments.cameras.rows) = *size_of(arguments.camera_size);
+  if (arguments.camera_is_float) arguments.cameras.format = DepthImage::Format::kMetres32;
   start_log("clearance-robot", arguments.log_level);
   const auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;
-  if (cell->simulation.empty() && cell->scene.variables.empty()) {
-    print(stderr,
-          "{} has no `simulation:` section and no robot with joints: nothing says how its objects "
-          "move\n",
-          arguments.cell.name());
+  if (cell->simulation.empty() && cell->scene.variables.empty() && cell->scene.sensors.empty()) {
+    print(
+        stderr,
+        "{} has no `simulation:` section, no robot with joints and no camera: nothing says how its "
+        "objects move\n",
+        arguments.cell.name());
     return kBadCell;
   }
   if (arguments.joints.empty()) {
     return run_robot(
         *cell, arguments,
-        [sweep = JointSweep(cell->scene)](double t_s, auto& joints) { sweep.at(t_s, joints); },
+        [sweep = JointSweep(cell->scene, arguments.swing)](double t_s, auto& joints) {
+          sweep.at(t_s, joints);
+        },
         signal);
   }
   JointLogMotion log(arguments.joints, cell->scene);
@@ -204,7 +355,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);
   }
   return run_robot(
-      *cell, arguments, [&log](double t_s, auto& joints) { log.at(t_s, joints); }, signal);
+      *cell, arguments, [log](double t_s, auto& joints) mutable { log.at(t_s, joints); }, signal);
 }
 
 }  // namespace

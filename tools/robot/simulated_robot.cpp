@@ -47,11 +47,10 @@ void SimulatedRobot::make_ros_message() {
   }
 }
 
-void SimulatedRobot::send(double t_s) {
-  const std::int64_t stamp = clock_.realtime_ns();
+void SimulatedRobot::send(double t_s, std::int64_t stamp_ns) {
   ++sent_;
-  if (pose_writer_) send_poses(t_s, stamp);
-  if (!scene_.variables.empty()) send_joints(t_s, stamp);
+  if (pose_writer_) send_poses(t_s, stamp_ns);
+  if (!scene_.variables.empty()) send_joints(t_s, stamp_ns);
 }
 
 // The cell of another daemon, which has another name, is not followed.

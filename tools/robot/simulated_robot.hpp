@@ -2,21 +2,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
-#include "monitor/loop/ports.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/convert.hpp"
+#include "tools/rendering/simulated_world.hpp"
 
 namespace clearance {
-
-// Returns the positions of all variables of a cell's robots at a time after the start, s.
-using JointMotion = std::function<void(double t_s, std::vector<JointSample>& joints)>;
 
 struct SimulatedRobotOptions {
   std::string source = "robot";
@@ -39,8 +35,8 @@ class SimulatedRobot {
   [[nodiscard]] std::size_t objects() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t joints() const noexcept { return scene_.variables.size(); }
 
-  // Sends the state `t_s` seconds after the start, stamped with the time of sending.
-  void send(double t_s);
+  // Sends the state `t_s` seconds after the start under this stamp.
+  void send(double t_s, std::int64_t stamp_ns);
 
   [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
@@ -55,7 +51,6 @@ class SimulatedRobot {
   const Scene& scene_;
   const Simulation& simulation_;
   JointMotion motion_;
-  SystemClock clock_;
   std::vector<PoseAt> poses_;
   std::vector<clearance_msg_ObjectPose> sent_poses_;
   std::vector<JointSample> joint_samples_;

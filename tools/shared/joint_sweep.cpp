@@ -13,7 +13,7 @@ constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 constexpr double kSlide = 0.2;
 // The largest frequency, however small the amplitude.
 constexpr double kHighest = 0.3;  // Hz
-constexpr double kOfRange = 0.45, kOfSpeed = 0.5;
+constexpr double kOfSpeed = 0.5;
 // The golden ratio spreads frequencies and phases, so that no two joints move alike for long.
 constexpr double kGolden = 0.6180339887498949;
 
@@ -21,11 +21,12 @@ bool is_bounded(const JointVariable& variable) noexcept {
   return std::isfinite(variable.lower) && std::isfinite(variable.upper);
 }
 
-Swing swing_of(const JointVariable& variable, double free_amplitude, std::size_t number) {
+Swing swing_of(const JointVariable& variable, double share, double free_amplitude,
+               std::size_t number) {
   Swing swing;
   swing.centre = is_bounded(variable) ? 0.5 * (variable.lower + variable.upper) : 0.0;
   swing.amplitude =
-      is_bounded(variable) ? kOfRange * (variable.upper - variable.lower) : free_amplitude;
+      is_bounded(variable) ? 0.5 * share * (variable.upper - variable.lower) : free_amplitude;
   const double speed =
       kOfSpeed * (std::isfinite(variable.max_speed) ? variable.max_speed : kUsualSpeed);
   const double fraction = std::fmod(kGolden * static_cast<double>(number + 1), 1.0);
@@ -50,9 +51,9 @@ JointSample moving_joint(std::size_t variable, double position, double velocity)
 
 // The last of the seven positions of a floating joint is the real part of its quaternion. It stays
 // 1: no rotation.
-JointSweep::JointSweep(const Scene& scene) {
+JointSweep::JointSweep(const Scene& scene, double share) {
   for (const JointVariable& variable : scene.variables) {
-    swings_.push_back(swing_of(variable, kQuarterTurn, swings_.size()));
+    swings_.push_back(swing_of(variable, share, kQuarterTurn, swings_.size()));
   }
   for (const Robot& robot : scene.robots) {
     for (const RobotJoint& joint : robot.joints) {
@@ -61,7 +62,7 @@ JointSweep::JointSweep(const Scene& scene) {
       for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t at = joint.variable + i;
         const bool slides = i < (joint.type == JointType::kPlanar ? 2u : 3u);
-        if (slides) swings_[at] = swing_of(scene.variables[at], kSlide, at);
+        if (slides) swings_[at] = swing_of(scene.variables[at], share, kSlide, at);
         if (joint.type == JointType::kFloating && !slides)
           swings_[at] = {.centre = i == 6 ? 1.0 : 0.0};
       }

@@ -14,12 +14,14 @@ namespace clearance {
 [[nodiscard]] JointSample moving_joint(std::size_t variable, double position, double velocity);
 
 // Every position swings about the middle of its limits with a frequency of its own. It moves
-// through nine tenths of its range, at most at half its velocity limit. A joint without limits
+// through a share of its range, at most at half its velocity limit. A joint without limits
 // swings through a quarter turn to either side.
 class JointSweep {
  public:
-  // The scene must outlive this.
-  explicit JointSweep(const Scene& scene);
+  static constexpr double kUsualShare = 0.9;
+
+  // The scene must outlive this. `share`: of the ranges, 0 to 1.
+  explicit JointSweep(const Scene& scene, double share = kUsualShare);
   // Positions and velocities of all variables, `t_s` after the start, in their order.
   void at(double t_s, std::vector<JointSample>& joints) const;
 

@@ -1,0 +1,200 @@
+#include "tools/robot/camera_truth.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <utility>
+
+#include "core/distance.hpp"
+#include "core/shapes.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "monitor/report.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kLongArm = 1.0;                 // m: a joint turns points that are this far away
+constexpr std::int64_t kSameNs = 1'000;          // stamps that differ by less are equal
+constexpr double kRounding = 1e-9;               // m, of the truth itself
+constexpr std::chrono::milliseconds kPause{50};  // between comparisons
+
+const ConvexBody& a_point() {
+  static const ConvexBody body = std::get<ConvexBody>(point(Vec3::Zero(), 0.0));
+  return body;
+}
+
+// The part's distance to a point of the world, m.
+double distance_of(const Part& part, const Pose& world_from_part, const Vec3& at,
+                   TrackingState& state) {
+  return distance(part.shape, a_point(), world_from_part, {at, {1, 0, 0, 0}}, state).upper;
+}
+double radius_of(const Part& part) { return part.shape.bounding_radius + part.shape.radius; }
+
+double median(std::vector<float> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return double{*middle};
+}
+
+}  // namespace
+
+CameraTruth::CameraTruth(const Cell& cell, client::Connection& connection, SimulatedWorld world,
+                         const SimulationTime& time, double joint_rate_hz)
+    : cell_(cell),
+      time_(time),
+      reports_(connection),
+      world_(std::move(world)),
+      frames_(cell.scene.sensors.size()) {
+  for (const JointVariable& variable : cell.scene.variables)
+    joint_motion_ += 2.0 / joint_rate_hz * variable.plausible_speed() * kLongArm;
+  thread_ = std::thread([this] { run(); });
+}
+
+CameraTruth::~CameraTruth() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+}
+
+// An element that the daemon leaves out comes within the shell, and its farthest point is its own
+// size farther away.
+double CameraTruth::blind_shell(const Sensor& sensor, double depth, double pixel) const {
+  return sensor.own_shell + joint_motion_ + kLongestRay * 2.0 * sensor.error_at(depth) +
+         2.0 * pixel * depth;
+}
+
+// The parts of robots where they are in the world.
+std::vector<CameraTruth::PlacedPart> CameraTruth::own_parts(const SimulatedWorld& world) const {
+  std::vector<PlacedPart> parts;
+  for (std::uint32_t i = 0; i < cell_.scene.objects.size(); ++i) {
+    if (!world.is_of_robot(i) || !world.object(i)) continue;
+    for (const Part& part : cell_.scene.objects[i].parts)
+      parts.push_back({&part, compose(*world.object(i), part.object_from_part)});
+  }
+  return parts;
+}
+
+bool CameraTruth::is_in_shell(std::span<const PlacedPart> parts, const Vec3& point, double shell) {
+  return std::ranges::any_of(parts, [&](const PlacedPart& each) {
+    const double reach = radius_of(*each.part) + shell;
+    if ((point - each.place.position).squaredNorm() > reach * reach) return false;
+    TrackingState state;
+    return distance_of(*each.part, each.place, point, state) <= shell;
+  });
+}
+
+void CameraTruth::sent(const SentFrame& sent) {
+  const Sensor& sensor = cell_.scene.sensors[sent.sensor];
+  Frame frame{.stamp_ns = sent.stamp_ns, .points = {}};
+  const Mat3 turn = rotation_matrix(sent.world_from_sensor.orientation);
+  const double pixel = 1.0 / sent.truth.camera().fx;
+  const std::vector<PlacedPart> own = own_parts(sent.world);
+  for (std::size_t i = 0; i < sent.is_sent.size(); ++i) {
+    if (!sent.is_sent[i] || sent.world.is_of_robot(sent.truth.labels()[i])) continue;
+    const Vec3 at = sent.world_from_sensor.position + turn * sent.truth.point(i);
+    if (is_in_shell(own, at, blind_shell(sensor, sent.truth.depth()[i], pixel))) {
+      ++frame.blind;
+    } else {
+      frame.points.push_back(at);
+    }
+  }
+  const std::lock_guard lock(mutex_);
+  most_blind_ = std::max(most_blind_, frame.blind);
+  frames_[sent.sensor].push_back(std::move(frame));
+  if (frames_[sent.sensor].size() > kKept) frames_[sent.sensor].pop_front();
+}
+
+void CameraTruth::run() {
+  name_thread("truth");
+  while (!stop_) {
+    if (reports_.newest(kPause) && reports_->scene_revision == cell_.scene.revision)
+      compare(*reports_);
+    SystemClock clock;
+    clock.sleep_until(clock.monotonic_ns() + std::chrono::nanoseconds(kPause).count());
+  }
+}
+
+void CameraTruth::compare(const clearance_msg_Distances& report) {
+  for (std::uint32_t i = 0; i < report.pairs._length; ++i) compare(report.pairs._buffer[i], report);
+}
+
+void CameraTruth::compare(const clearance_msg_PairDistance& pair,
+                          const clearance_msg_Distances& report) {
+  const ObjectPair& objects = cell_.scene.pairs[pair.pair];
+  const bool is_first = cell_.scene.objects[objects.first].is_seen();
+  const std::uint32_t seen = is_first ? objects.first : objects.second;
+  const std::uint32_t body = is_first ? objects.second : objects.first;
+  const std::uint32_t sensor = cell_.scene.objects[seen].sensor;
+  const bool is_known =
+      std::isfinite(pair.lower) && pair.status <= static_cast<std::uint8_t>(PairStatus::kStale);
+  if (sensor == Object::kNoSensor || !is_known || cell_.scene.objects[body].is_seen()) return;
+  const std::int64_t now_ns = report.now_ns + report.clock_offset_ns;
+  const std::int64_t frame_ns = now_ns - (is_first ? pair.age_a_ns : pair.age_b_ns);
+  const std::int64_t body_ns = now_ns - (is_first ? pair.age_b_ns : pair.age_a_ns);
+  const std::lock_guard lock(mutex_);
+  const auto frame = std::ranges::find_if(frames_[sensor], [&](const Frame& each) {
+    return std::llabs(each.stamp_ns - frame_ns) <= kSameNs;
+  });
+  if (frame == frames_[sensor].end()) {
+    ++unknown_;
+    return;
+  }
+  world_.place(time_.seconds_of_stamp(body_ns));
+  const double truth = distance_to(body, frame->points);
+  if (truth == kInfinity) return;
+  Found& found = found_[pair.pair];
+  ++found.compared;
+  found.least = std::min(found.least, truth);
+  found.worst = std::max(found.worst, pair.lower - truth);
+  found.above += pair.lower > truth + kRounding;
+  found.gaps.push_back(static_cast<float>(truth - pair.lower));
+}
+
+// The spheres of the parts order the points: most are farther than the nearest one found.
+double CameraTruth::distance_to(std::uint32_t object, const std::vector<Vec3>& points) const {
+  double least = kInfinity;
+  if (!world_.object(object)) return least;
+  for (const Part& part : cell_.scene.objects[object].parts) {
+    const Pose place = compose(*world_.object(object), part.object_from_part);
+    const double radius = radius_of(part);
+    const auto nearest = std::ranges::min_element(
+        points, {}, [&](const Vec3& at) { return (at - place.position).squaredNorm(); });
+    TrackingState state;
+    if (nearest != points.end()) least = std::min(least, distance_of(part, place, *nearest, state));
+    for (const Vec3& at : points) {
+      const double reach = radius + std::max(least, 0.0);
+      if ((at - place.position).squaredNorm() > reach * reach) continue;
+      least = std::min(least, distance_of(part, place, at, state));
+    }
+  }
+  return least;
+}
+
+void CameraTruth::tell() {
+  stop_ = true;
+  if (thread_.joinable()) thread_.join();
+  if (found_.empty()) {
+    print(stdout,
+          "truth    not compared: no report has a known pair with a camera that is published, and "
+          "the frame that it used\n");
+    return;
+  }
+  for (const auto& [pair, found] : found_) {
+    const ObjectPair& objects = cell_.scene.pairs[pair];
+    print(
+        stdout,
+        "truth    {} - {}: {} reports, least true distance {:.4f} m, lower bounds {:.1f} mm below "
+        "the truth (median), {} above it{}\n",
+        cell_.scene.objects[objects.first].name, cell_.scene.objects[objects.second].name,
+        found.compared, found.least, 1e3 * median(found.gaps), found.above,
+        found.above == 0 ? "" : fmt::format(", by up to {:.3g} m", found.worst));
+  }
+  print(stdout,
+        "         of the surface that is visible, without {} pixels at most in the blind shell\n",
+        most_blind_);
+  if (unknown_ > 0) print(stdout, "         {} reports used frames that are not kept\n", unknown_);
+}
+
+}  // namespace clearance

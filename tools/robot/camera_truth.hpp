@@ -1,0 +1,85 @@
+// Compares the daemon's bounds of pairs with a camera with what the camera has truly seen.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <deque>
+#include <map>
+#include <mutex>
+#include <span>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/client/client.hpp"
+#include "tools/rendering/simulated_world.hpp"
+#include "tools/robot/simulated_cameras.hpp"
+
+namespace clearance {
+
+// The truth is the visible surface without noise: a point of it for each pixel that was sent. The
+// reports name the frame and the joints that they used by their ages. Points that show the robot
+// itself are left out, and so are points so near to it that the daemon may have left them out with
+// its image: those in the blind shell.
+class CameraTruth {
+ public:
+  // `world`: of its own, at the times of the reports. `joint_rate_hz`: of the joints that are sent.
+  // Everything outlives this.
+  CameraTruth(const Cell& cell, client::Connection& connection, SimulatedWorld world,
+              const SimulationTime& time, double joint_rate_hz);
+  ~CameraTruth();
+  CameraTruth(const CameraTruth&) = delete;
+  CameraTruth& operator=(const CameraTruth&) = delete;
+
+  // Called by the thread of the cameras.
+  void sent(const SentFrame& frame);
+
+  // Ends the comparison and says what it found, a line for each pair.
+  void tell();
+
+ private:
+  struct Frame {
+    std::int64_t stamp_ns = 0;
+    std::vector<Vec3> points;  // in the world, m
+    std::size_t blind = 0;     // left out
+  };
+  // Of one pair.
+  struct Found {
+    std::uint64_t compared = 0, above = 0;
+    double least = kInfinity;   // true distance, m
+    double worst = -kInfinity;  // lower less truth, m
+    std::vector<float> gaps;    // truth less lower, m
+  };
+  static constexpr std::size_t kKept = 12;  // frames
+
+  void run();
+  void compare(const clearance_msg_Distances& report);
+  void compare(const clearance_msg_PairDistance& pair, const clearance_msg_Distances& report);
+  [[nodiscard]] double blind_shell(const Sensor& sensor, double depth, double pixel) const;
+  struct PlacedPart {
+    const Part* part;
+    Pose place;  // in the world
+  };
+  [[nodiscard]] std::vector<PlacedPart> own_parts(const SimulatedWorld& world) const;
+  [[nodiscard]] static bool is_in_shell(std::span<const PlacedPart> parts, const Vec3& point,
+                                        double shell);
+  // The distance of an object to the points, m; infinite without any.
+  [[nodiscard]] double distance_to(std::uint32_t object, const std::vector<Vec3>& points) const;
+
+  const Cell& cell_;
+  const SimulationTime& time_;
+  client::Reports reports_;
+  SimulatedWorld world_;
+  double joint_motion_ = 0.0;              // m: of a link between two joint states, at most
+  std::mutex mutex_;                       // of `frames_`
+  std::vector<std::deque<Frame>> frames_;  // by sensor
+  std::map<std::uint32_t, Found> found_;   // by pair
+  std::uint64_t unknown_ = 0;              // reports without the frame that they used
+  std::size_t most_blind_ = 0;
+  std::atomic<bool> stop_{false};
+  std::thread thread_;
+};
+
+}  // namespace clearance
