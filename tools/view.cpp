@@ -263,6 +263,7 @@ view::Content content_of(const Cell& cell, Source& source, Drawn& drawn,
                                                            const std::string& query) {
                 if (path == "/history.json") return history(source, query);
                 if (path == "/distance.json") return distance(source, query);
+                if (path == "/sensors.json") return resource("application/json", source.sensors());
                 if (path == "/visuals.bin") return drawn.visuals();
                 if (path == "/scene.json") return drawn.scene();
                 const auto entry = found.find(path);

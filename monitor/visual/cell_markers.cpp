@@ -33,10 +33,11 @@ ros::Marker part_marker(const Object& object, const Part& part, std::int32_t id)
   return marker;
 }
 
-// The parts of all objects, in the order of the scene.
+// The parts of all objects, in the order of the scene. What sensors see has no body.
 std::vector<ros::Marker> part_markers(const Scene& scene) {
   std::vector<ros::Marker> markers;
   for (const Object& object : scene.objects) {
+    if (object.is_seen()) continue;  // its part is the ball of the sensor's view
     for (const Part& part : object.parts) {
       markers.push_back(part_marker(object, part, static_cast<std::int32_t>(markers.size())));
     }
@@ -102,6 +103,7 @@ Sample<ros::MarkerArray> bodies_message_for_tf(const Scene& scene, const std::st
   std::vector<ros::Marker> markers = part_markers(scene);
   auto marker = markers.begin();
   for (const Object& object : scene.objects) {
+    if (object.is_seen()) continue;
     for (std::size_t part = 0; part < object.parts.size(); ++part, ++marker) {
       if (!object.frame.empty()) marker->frame = object.frame;
       if (!object.fixed) continue;

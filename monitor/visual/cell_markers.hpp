@@ -23,6 +23,7 @@ inline constexpr const char* kClosestTopic = "/clearance/closest";
                                                                std::int64_t stamp_ns);
 
 // Contains all parts, in the frames of their objects. A half-space is drawn as a large thin slab.
+// What sensors see is left out (seen_points.hpp).
 [[nodiscard]] Sample<ros::MarkerArray> bodies_message(const Scene& scene);
 
 // The same markers for a ROS 2 system. Its tf has the frames that objects follow and the frames of

@@ -3,6 +3,7 @@
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/visual/ros_types.hpp"
+#include "monitor/visual/seen_points.hpp"
 
 namespace clearance::view {
 
@@ -14,6 +15,7 @@ std::vector<Channel> channels_of(const Topics& topics) {
   channels.push_back({kTransformsTopic, ros::transforms_schema()});
   channels.push_back({kBodiesTopic, ros::markers_schema()});
   channels.push_back({kClosestTopic, ros::markers_schema()});
+  channels.push_back({kSeenTopic, seen_points_schema()});
   return channels;
 }
 

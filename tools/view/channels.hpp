@@ -15,7 +15,8 @@ using ChannelId = std::uint32_t;
 
 // Our topics have the ids of their TopicKind; these ids follow.
 inline constexpr ChannelId kTransforms = kRecordedTopics.size(), kBodies = kTransforms + 1,
-                           kClosest = kTransforms + 2, kChannels = kTransforms + 3;
+                           kClosest = kTransforms + 2, kSeen = kTransforms + 3,
+                           kChannels = kTransforms + 4;
 [[nodiscard]] constexpr ChannelId channel(TopicKind kind) noexcept {
   return static_cast<ChannelId>(index(kind));
 }

@@ -39,6 +39,7 @@ std::uint32_t Frame::key_of(TopicKind kind, std::span<const std::byte> cdr) {
   if (batch == nullptr) return 0;
   const auto next = static_cast<std::uint32_t>(sources_.size());
   const std::uint32_t key = sources_.try_emplace(batch->source.c_str(), next).first->second;
+  if (hear_) hear_(*batch);
   poses_.take(std::move(*batch), ObjectPoses::Numbers::kOfSender);
   return key;
 }

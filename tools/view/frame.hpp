@@ -5,6 +5,7 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <span>
@@ -21,13 +22,17 @@ namespace clearance::view {
 
 class Frame {
  public:
-  explicit Frame(const Scene& scene) : scene_(scene), poses_(scene), own_(scene) {}
+  // `hear` gets each batch of poses and joints that is taken; it may be empty.
+  using Hear = std::function<void(const PoseBatch& batch)>;
+  explicit Frame(const Scene& scene, Hear hear = {})
+      : scene_(scene), hear_(std::move(hear)), poses_(scene), own_(scene) {}
 
   // Takes one message of our topics. It only keeps the bytes of a report and the numbers of poses
   // and joints, which is cheap for every message of a fast stream.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
   // Poses or joints of a topic of ROS 2.
   void take_from_ros(PoseBatch batch) {
+    if (hear_) hear_(batch);
     poses_.take(std::move(batch), ObjectPoses::Numbers::kUnnumbered);
   }
 
@@ -56,6 +61,7 @@ class Frame {
   void publish_if_wanted(Server& server, ChannelId channel, std::int64_t time_ns, const Make& make);
 
   const Scene& scene_;
+  Hear hear_;
   ObjectPoses poses_;
   std::optional<MeasuredDistances> measured_;  // made when it is first asked for
   OwnBatches own_;

@@ -9,6 +9,7 @@
 #include <variant>
 
 #include "monitor/loop/ports.hpp"
+#include "tools/view/sensors_json.hpp"
 
 namespace clearance::view {
 namespace {
@@ -37,8 +38,9 @@ LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
     : cell_(std::move(cell)),
       topics_(cell_->topics),
       participant_(dds),
-      frame_(std::make_unique<Frame>(cell_->scene)),
-      intake_(*cell_, {},
+      seen_(cell_->scene.sensors.empty() ? nullptr : std::make_unique<SeenFrames>(*cell_, false)),
+      frame_(make_frame()),
+      intake_(*cell_, {.use_sensor = [this](const RawSensorMessage& message) { hear(message); }},
               [this](PoseBatch& batch) {
                 frame_->take_from_ros(std::move(batch));
                 return true;
@@ -47,6 +49,32 @@ LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
+}
+
+std::unique_ptr<Frame> LiveSource::make_frame() {
+  return std::make_unique<Frame>(cell_->scene, [this](const PoseBatch& batch) {
+    if (seen_) seen_->hear(batch);
+  });
+}
+
+// Images are large: they are decoded only while a viewer shows them.
+void LiveSource::hear(const RawSensorMessage& message) {
+  const bool is_transform = message.type == RawSensorMessage::Type::kTransforms ||
+                            message.type == RawSensorMessage::Type::kStaticTransforms;
+  if (seen_ && (is_transform || is_seen_wanted_))
+    seen_->hear(message, SystemClock().monotonic_ns());
+}
+
+void LiveSource::show_what_is_seen(Server& server, std::int64_t steady_ns) {
+  seen_->settle(steady_ns, [&server](std::uint32_t sensor, std::int64_t stamp_ns,
+                                     std::span<const std::byte> cdr) {
+    server.publish({kSeen, sensor, stamp_ns,
+                    std::make_shared<const std::vector<std::byte>>(cdr.begin(), cdr.end())});
+  });
+}
+
+std::string LiveSource::sensors() const {
+  return sensors_json(seen_ ? seen_->states() : std::vector<SeenState>());
 }
 
 void LiveSource::advance(Server& server) {
@@ -68,6 +96,8 @@ void LiveSource::advance(Server& server) {
   tell_of_the_daemon(server, now_ns);
   server.set_time(now_ns);
   frame_->publish(server);
+  is_seen_wanted_ = server.is_wanted(kSeen);
+  if (seen_) show_what_is_seen(server, steady_ns);
 }
 
 void LiveSource::join(TopicKind kind) {
@@ -86,6 +116,7 @@ void LiveSource::leave(Server& server) {
   }
   server.forget(kTransforms);
   server.forget(kClosest);
+  server.forget(kSeen);
   heard_ = false;
 }
 
@@ -131,7 +162,15 @@ void LiveSource::follow_the_catalogue(Server& server) {
   // The cell before must outlive the frame and the intake that refer to it.
   const std::shared_ptr<const Cell> before = cell_;
   cell_ = std::make_shared<const Cell>(std::move(*cell));
-  frame_ = std::make_unique<Frame>(cell_->scene);
+  if (cell_->scene.sensors.empty()) {
+    seen_ = nullptr;
+  } else if (seen_) {
+    seen_->change(*cell_);
+  } else {
+    seen_ = std::make_unique<SeenFrames>(*cell_, false);
+  }
+  server.forget(kSeen);
+  frame_ = make_frame();
   intake_.change(*cell_);
   server.parameters_changed();
 }

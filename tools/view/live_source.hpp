@@ -11,6 +11,7 @@
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/visual/seen_frames.hpp"
 #include "tools/view/cell_changes.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
@@ -30,12 +31,16 @@ class LiveSource final : public Source {
   [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override {
     return frame_->distance_json(a, b);
   }
+  [[nodiscard]] std::string sensors() const override;
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
   // reports.
   void advance(Server& server) override;
 
  private:
+  [[nodiscard]] std::unique_ptr<Frame> make_frame();
+  void hear(const RawSensorMessage& message);
+  void show_what_is_seen(Server& server, std::int64_t steady_ns);
   void join(TopicKind kind);
   void leave(Server& server);
   void take(TopicKind kind);
@@ -50,6 +55,8 @@ class LiveSource final : public Source {
   Participant participant_;
   std::array<dds_entity_t, kRecordedTopics.size()> readers_{};  // 0: there is none
   std::vector<CdrSample> taken_;
+  std::unique_ptr<SeenFrames> seen_;  // null: the cell has no sensors
+  bool is_seen_wanted_ = false;       // by a viewer
   std::unique_ptr<Frame> frame_;
   Intake intake_;                    // of ROS 2's topics
   std::future<CellResult> reading_;  // not valid: no cell is being read

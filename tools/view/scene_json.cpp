@@ -26,6 +26,7 @@ constexpr double kMostFine = 30.0, kCoarsest = 0.6;
 // plate's shell has arcs at all edges and corners, so that fine ones cost ten times the cell's
 // bodies.
 constexpr double kShellStep = 0.8;
+constexpr double kBlindShell = 0.01;  // m
 
 // Six digits: micrometres in a cell of a metre. The text is a third as long.
 double rounded(double value) { return std::round(value * 1e6) * 1e-6; }
@@ -115,6 +116,7 @@ json objects_json(const Scene& scene) {
 json parts_json(const Scene& scene, Meshes& meshes) {
   json list = json::array();
   for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+    if (scene.objects[i].is_seen()) continue;  // its part is the ball of the sensor's view
     for (const Part& part : scene.objects[i].parts) {
       json entry = {{"object", i}, {"pose", pose_json(part.object_from_part)}};
       if (part.shape.is_half_space()) {
@@ -159,6 +161,33 @@ json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
     }
   }
   return list;
+}
+
+// The sensors, and the bodies of robots enlarged by kBlindShell, which the page moves to the shell
+// of a frame along their normals.
+json sensors_json(const Scene& scene) {
+  json list = json::array();
+  for (const Sensor& sensor : scene.sensors) {
+    list.push_back({{"object", sensor.object},
+                    {"name", sensor.name},
+                    {"age_limit_ns", scene.objects[sensor.object].age_limit_ns}});
+  }
+  return list;
+}
+json blind_shells_json(const Scene& scene, Meshes& meshes) {
+  json list = json::array();
+  if (scene.sensors.empty()) return {{"offset", kBlindShell}, {"parts", list}};
+  for (const Robot& robot : scene.robots) {
+    for (const RobotLink& link : robot.links) {
+      if (link.object == RobotLink::kNoObject) continue;
+      for (const Part& part : scene.objects[link.object].parts) {
+        list.push_back({{"object", link.object},
+                        {"pose", pose_json(part.object_from_part)},
+                        {"mesh", meshes.number_of_shell(part.shape, kBlindShell)}});
+      }
+    }
+  }
+  return {{"offset", kBlindShell}, {"parts", list}};
 }
 
 json zones_json(const Scene& scene, Meshes& meshes) {
@@ -212,6 +241,8 @@ std::string scene_json(const Cell& cell) {
               {"objects", objects_json(scene)},
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},
+              {"sensors", sensors_json(scene)},
+              {"blind_shells", blind_shells_json(scene, meshes)},
               {"zones", zones_json(scene, meshes)},
               {"contacts", contacts_json(scene)},
               {"zone_causes",

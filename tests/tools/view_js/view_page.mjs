@@ -270,7 +270,47 @@ const causes = () => page.evaluate(() => {
   return { object: state.scene.objects[0].name, texts: [0, 1, 2, 3, 4, 5, 6, 7].map((cause) => state.causeOf({ cause, cause_object: 0 })) };
 });
 
-const known = { causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+// What a camera sees: the bodies and points that are drawn, the pixels in their colour, the thickest shell, the row of the
+// camera, and what is left in each mode.
+async function seen() {
+  await page.waitForFunction(() => {
+    const { seen: { sensors, status } } = window.clearance.view;
+    return sensors[0].ns > 0 && status[0]?.frames > 2 && Object.keys(status[0].shells).length > 0;
+  });
+  await page.waitForFunction(() => /^[0-9]/.test(document.querySelector("#sensors tbody tr")?.cells[1].textContent ?? ""));
+  const found = await page.evaluate(() => {
+    const { view } = window.clearance, { seen: shown, renderer } = view, [{ points }] = shown.sensors;
+    const pixels = () => {
+      view.redraw();
+      const gl = renderer.getContext(), { drawingBufferWidth: width, drawingBufferHeight: height } = gl, all = new Uint8Array(4 * width * height);
+      gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
+      const text = getComputedStyle(document.documentElement).getPropertyValue("--seen").trim();
+      const [red, green, blue] = [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+      let count = 0;
+      for (let i = 0; i < all.length; i += 4) count += Math.abs(all[i] - red) + Math.abs(all[i + 1] - green) + Math.abs(all[i + 2] - blue) < 12;
+      return count;
+    };
+    const drawn = pixels();
+    points.visible = false;
+    const without = pixels();
+    points.visible = true;
+    return {
+      places: [...points.geometry.getAttribute("position").array], drawn, without,
+      bodies: shown.cell.parts.filter(({ object }) => shown.cell.sensors.some((sensor) => sensor.object === object)).length,
+      shells: Object.fromEntries(Object.entries(shown.status[0].shells).map(([object, thickness]) => [shown.cell.objects[object].name, thickness])),
+      pose: shown.status[0].pose, row: [...document.querySelector("#sensors tbody tr").cells].map(({ textContent }) => textContent),
+    };
+  });
+  const modes = [];
+  for (let i = 0; i < 3; ++i) {
+    await page.keyboard.press("p");
+    await frames(3);
+    modes.push(await page.evaluate(() => ({ all: window.clearance.view.seen.visible, shells: window.clearance.view.seen.shells.visible })));
+  }
+  return { ...found, modes };
+}
+
+const known = { seen, causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
 try {
   await page.goto(url);
   await ready();

@@ -1,7 +1,8 @@
 // A client of Foxglove's WebSocket protocol, version 1, which reconnects when the connection is lost.
-import { decoder, transforms } from "./messages.js";
+import { decoder, seenPoints, transforms } from "./messages.js";
 
 const AGAIN_MS = 1000;
+const OF_ROS = { "tf2_msgs/msg/TFMessage": transforms, "sensor_msgs/msg/PointCloud2": seenPoints };
 
 export class Connection {
   // `topics` are subscribed to. Callbacks: message(topic, value, timeNs), time(ns), status(id, level, text),
@@ -51,7 +52,7 @@ export class Connection {
 
   subscribe(channels) {
     for (const channel of channels.filter(({ topic }) => this.topics.includes(topic))) {
-      const decode = channel.schemaEncoding === "omgidl" ? decoder(channel.schema, channel.schemaName) : transforms;
+      const decode = channel.schemaEncoding === "omgidl" ? decoder(channel.schema, channel.schemaName) : OF_ROS[channel.schemaName];
       this.subscriptions.push({ topic: channel.topic, channelId: channel.id, decode });
     }
     this.send({ op: "subscribe", subscriptions: this.subscriptions.map(({ channelId }, id) => ({ id, channelId })) });

@@ -19,6 +19,7 @@ const KEYS = [
   ["3", "from the side", (actions) => actions.look("side")],
   ["z", "zones as shells", (actions) => actions.shells()],
   ["b", "robots: the bodies that are compared, their looks, or both", (actions) => actions.visuals()],
+  ["p", "what cameras see: points and blind shells, points, or nothing", (actions) => actions.seen()],
   ["o", "list of objects and groups, to hide them", (actions) => actions.objects()],
   ["h", "hide or show the chosen objects", (actions) => actions.hide()],
   ["d", "measure the distance of two bodies by two clicks", (actions) => actions.measure()],

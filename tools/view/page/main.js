@@ -12,6 +12,8 @@ import { Plots } from "./plots.js";
 import { drawLegend, drawReadouts } from "./readouts.js";
 import { ContactRows } from "./contact_rows.js";
 import { SeparationRows } from "./separation_rows.js";
+import { SEEN_MODES } from "./seen.js";
+import { SensorRows } from "./sensor_rows.js";
 import { SceneView } from "./scene_view.js";
 import { save, tableCsv } from "./table_csv.js";
 import { Timeline } from "./timeline.js";
@@ -41,6 +43,7 @@ const view = new SceneView(scene, { pairChosen: (pair) => choose(pair, false), p
 const table = new PairTable(choose, look, changed);
 const separations = new SeparationRows(choose);
 const contacts = new ContactRows(choose, chooseObject);
+const sensors = new SensorRows(scene, view.seen, (object) => chooseObject(object));
 const plots = new Plots();
 const measuring = new Measuring(state, {
   marked: (objects) => mark(objects),
@@ -54,7 +57,7 @@ const hidden = new HiddenObjects(scene, (objects) => {
   changed();
 });
 const topics = scene.topics;
-const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf"], {
+const connection = new Connection(`ws://${location.host}/`, [topics.distances, topics.zones, topics.health, topics.separation, "/tf", ...(scene.sensors.length ? ["/clearance/seen"] : [])], {
   open: () => {
     state.connected = true;
     if (asked.time !== undefined && timeline) connection.set("playback.time", asked.time);
@@ -71,6 +74,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
   message: (topic, value, ns) => {
     if (isOfAnotherCell(value)) return;
     if (topic === "/tf") view.moved(value);
+    else if (topic === "/clearance/seen") view.takeSeen(value, ns);
     else if (topic === topics.distances) state.takeReport(value, ns);
     else if (topic === topics.zones) state.zones.set(value.zone, value);
     else if (topic === topics.separation) state.separation = value;
@@ -202,6 +206,13 @@ const actions = {
     if (view.visuals.leftOut.length) toast(`Not drawn: ${view.visuals.leftOut.join("; ")}`);
     else if (!view.visuals.children.length) toast("The URDF has no visual shapes");
   },
+  seen: () => {
+    if (!scene.sensors.length) return;
+    view.seen.mode = SEEN_MODES[(SEEN_MODES.indexOf(view.seen.mode) + 1) % SEEN_MODES.length];
+    ++view.seen.changes;
+    element("seen").setAttribute("aria-pressed", view.seen.mode !== "nothing");
+    toast(`Drawn of what cameras see: ${view.seen.mode}`);
+  },
   objects: () => hidden.toggleList(),
   hide: () => {
     for (const object of marked.length ? marked : [...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b])) hidden.toggle(object);
@@ -231,10 +242,11 @@ const actions = {
   },
   help: () => (element("keys").open ? element("keys").close() : element("keys").showModal()),
 };
-for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help", "measure", "csv"]) element(id).onclick = actions[id];
+for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help", "measure", "csv", "seen"]) element(id).onclick = actions[id];
 element("object-button").onclick = actions.objects;
 element("look").onclick = lookAtChosen;
 element("visuals").hidden = !scene.has_robots;
+element("seen").hidden = !scene.sensors.length;
 element("shells").hidden = element("zones").hidden = !scene.zones.length;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
 dark.addEventListener("change", () => {
@@ -255,6 +267,7 @@ function frame(nowMs) {
   table.draw(state, chosen, nowMs);
   contacts.draw(state, frozen, nowMs);
   separations.draw(state, frozen, nowMs);
+  sensors.draw(state, frozen, nowMs);
   plots.draw(state, chosen, nowMs);
   measuring.draw(state, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());

@@ -4,6 +4,7 @@ import { OrbitControls } from "orbit";
 import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
+import { Seen } from "./seen.js";
 import { Visuals } from "./visuals.js";
 import { ZoneShells } from "./zone_shells.js";
 import { css } from "./format.js";
@@ -52,8 +53,9 @@ export class SceneView {
     this.shells = new ZoneShells(scene);
     this.lines = new PairLines(document.getElementById("labels"), on.pairChosen, on.pairLookedAt);
     this.visuals = new Visuals(this.bodies);
+    this.seen = new Seen(scene, this.bodies);
     this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
-    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.lines);
+    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.seen, this.lines);
     this.clicks(canvas);
     this.changes = 0;
     new ResizeObserver(() => this.resizeSoon()).observe(this.element);
@@ -164,6 +166,16 @@ export class SceneView {
     this.follows = undefined;
   }
 
+  // The points of a sensor. The first ones widen the view to what is seen around moving bodies.
+  takeSeen(message, ns) {
+    const isFirst = this.seen.sensors.every((sensor) => !sensor.ns);
+    this.seen.take(message, ns);
+    const moving = this.movingBounds();
+    if (!isFirst || !this.follows || moving.isEmpty()) return;
+    this.reached.union(this.seen.boundsNear(moving.getCenter(new THREE.Vector3())));
+    this.fit(this.follows.side, this.follows.moving);
+  }
+
   moved(transforms) {
     if (!this.bodies.move(transforms) && this.fitted) return;
     if (this.follows) this.fit(this.follows.side, this.follows.moving);
@@ -173,11 +185,12 @@ export class SceneView {
   // Draws only after a change: a recording that stands still costs nothing.
   draw(state, chosen, frozen, nowMs) {
     this.keepInView(nowMs);
+    this.seen.ask(nowMs);
     this.controls.update();
     this.camera.updateMatrixWorld();
     this.noteCamera();
     this.fadeHiding([state.reportNs, this.cameraChanges].join(), nowMs);
-    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.bodies.stillChanges, this.cameraChanges].join();
+    const key = [state.reportNs, frozen, ...chosen, this.shells.visible, this.changes, this.bodies.stillChanges, this.cameraChanges, this.seen.changes].join();
     if (key === this.drawnKey) return (this.drawnMs = undefined);
     this.drawnKey = key;
     this.drawn = (this.drawn ?? 0) + 1;
@@ -186,6 +199,7 @@ export class SceneView {
     this.bodies.setLate(frozen || !state.lateObjects ? new Map() : state.lateObjects);
     this.visuals.update();
     this.shells.update(this.bodies, state.zoneStates());
+    this.seen.update(state.timeNs);
     if (state.report) this.lines.update(state, chosen, this.camera, this.size, this.bodies);
     const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
     this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));

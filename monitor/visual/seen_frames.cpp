@@ -1,0 +1,80 @@
+#include "monitor/visual/seen_frames.hpp"
+
+#include "monitor/sensors/sensors.hpp"
+#include "monitor/visual/seen_points.hpp"
+
+namespace clearance {
+namespace {
+
+bool is_frame(const RawSensorMessage& message) {
+  return message.type == RawSensorMessage::Type::kImage ||
+         message.type == RawSensorMessage::Type::kPoints;
+}
+
+}  // namespace
+
+SeenFrames::SeenFrames(const Cell& cell, bool is_log)
+    : cell_(&cell),
+      numbers_(cell.scene),
+      sensors_(std::make_unique<Sensors>(cell, SensorsOptions{.is_log = is_log})),
+      shown_(cell.scene.sensors.size()) {}
+SeenFrames::~SeenFrames() = default;
+
+void SeenFrames::change(const Cell& cell) {
+  sensors_ = std::make_unique<Sensors>(cell, *sensors_);
+  numbers_ = SourceNumbers(cell.scene);
+  shown_.assign(cell.scene.sensors.size(), {});
+  cell_ = &cell;
+}
+
+void SeenFrames::hear(const PoseBatch& batch) {
+  poses_.clear();
+  joints_.clear();
+  numbers_.append(batch, poses_, joints_);
+  sensors_->add(poses_, joints_);
+}
+
+void SeenFrames::hear(const RawSensorMessage& message, std::int64_t now_ns) {
+  if (is_frame(message)) {
+    const auto [last, is_first] = heard_ns_.try_emplace(message.topic, now_ns);
+    const std::int64_t since = now_ns - last->second;
+    if (!is_first && since >= 0 && since < kLeastIntervalNs) return;
+    last->second = now_ns;
+  }
+  sensors_->add(message, now_ns);
+}
+
+// A cloud is read before the next one is built, so none is in use.
+void SeenFrames::settle(std::int64_t now_ns, const Use& use) {
+  sensors_->settle(
+      now_ns, [](const SeenCloud*) { return false; },
+      [&](std::uint32_t sensor, const SensorFrame& frame) {
+        shown_[sensor] = {frame.stamp_ns, frame.world_from_sensor};
+        const auto message = seen_points_message(*frame.cloud, frame.world_from_sensor, sensor,
+                                                 frame.stamp_ns, kMostPoints);
+        use(sensor, frame.stamp_ns, encoder_.encode(*message));
+      });
+}
+
+std::vector<SeenState> SeenFrames::states() const {
+  std::vector<SeenState> all;
+  for (std::uint32_t i = 0; i < shown_.size(); ++i) {
+    const SensorStatus status = sensors_->status(i);
+    SeenState& state = all.emplace_back();
+    state.object = cell_->scene.sensors[i].object;
+    state.stamp_ns = shown_[i].stamp_ns;
+    state.world_from_sensor = shown_[i].world_from_sensor;
+    state.elements = status.elements;
+    state.frames = status.frames;
+    for (std::size_t cause = 1; cause < status.counts.size(); ++cause) {
+      if (status.counts[cause] > 0)
+        state.refused.emplace_back(text(static_cast<FrameFault>(cause)), status.counts[cause]);
+    }
+    for (const OwnImage& image : status.own) {
+      if (image.elements > 0) state.shells.emplace_back(image.object, image.thickness);
+    }
+  }
+  return all;
+}
+
+}  // namespace clearance
