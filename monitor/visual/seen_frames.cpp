@@ -44,6 +44,8 @@ void SeenFrames::hear(const RawSensorMessage& message, std::int64_t now_ns) {
   sensors_->add(message, now_ns);
 }
 
+void SeenFrames::keep(std::span<const std::uint64_t> writers) { sensors_->keep(writers); }
+
 // A cloud is read before the next one is built, so none is in use.
 void SeenFrames::settle(std::int64_t now_ns, const Use& use) {
   sensors_->settle(
@@ -70,7 +72,7 @@ std::vector<SeenState> SeenFrames::states() const {
       if (status.counts[cause] > 0)
         state.refused.emplace_back(text(static_cast<FrameFault>(cause)), status.counts[cause]);
     }
-    for (const OwnImage& image : status.own) {
+    for (const auto& image : status.own) {
       if (image.elements > 0) state.shells.emplace_back(image.object, image.thickness);
     }
   }

@@ -51,6 +51,9 @@ class SeenFrames {
   // A frame that comes too soon is left out. `now_ns`: of any clock, always the same one.
   void hear(const RawSensorMessage& message, std::int64_t now_ns);
 
+  // The publishers that still exist; sorted.
+  void keep(std::span<const std::uint64_t> writers);
+
   // Receives a message of kSeenTopic. The bytes are valid during the call.
   using Use = std::function<void(std::uint32_t sensor, std::int64_t stamp_ns,
                                  std::span<const std::byte> cdr)>;

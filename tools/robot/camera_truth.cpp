@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <span>
 #include <utility>
 
 #include "core/distance.hpp"
@@ -58,50 +59,23 @@ CameraTruth::~CameraTruth() {
   if (thread_.joinable()) thread_.join();
 }
 
-// An element that the daemon leaves out comes within the shell, and its farthest point is its own
-// size farther away.
-double CameraTruth::blind_shell(const Sensor& sensor, double depth, double pixel) const {
-  return sensor.own_shell + joint_motion_ + kLongestRay * 2.0 * sensor.error_at(depth) +
-         2.0 * pixel * depth;
-}
-
-// The parts of robots where they are in the world.
-std::vector<CameraTruth::PlacedPart> CameraTruth::own_parts(const SimulatedWorld& world) const {
-  std::vector<PlacedPart> parts;
-  for (std::uint32_t i = 0; i < cell_.scene.objects.size(); ++i) {
-    if (!world.is_of_robot(i) || !world.object(i)) continue;
-    for (const Part& part : cell_.scene.objects[i].parts)
-      parts.push_back({&part, compose(*world.object(i), part.object_from_part)});
-  }
-  return parts;
-}
-
-bool CameraTruth::is_in_shell(std::span<const PlacedPart> parts, const Vec3& point, double shell) {
-  return std::ranges::any_of(parts, [&](const PlacedPart& each) {
-    const double reach = radius_of(*each.part) + shell;
-    if ((point - each.place.position).squaredNorm() > reach * reach) return false;
-    TrackingState state;
-    return distance_of(*each.part, each.place, point, state) <= shell;
-  });
-}
-
+// The size of the slab or ball around a point: its depth's error along the ray, and half a pixel to
+// each side.
 void CameraTruth::sent(const SentFrame& sent) {
   const Sensor& sensor = cell_.scene.sensors[sent.sensor];
-  Frame frame{.stamp_ns = sent.stamp_ns, .points = {}};
+  Frame frame{.stamp_ns = sent.stamp_ns, .points = {}, .sizes = {}};
   const Mat3 turn = rotation_matrix(sent.world_from_sensor.orientation);
-  const double pixel = 1.0 / sent.truth.camera().fx;
-  const std::vector<PlacedPart> own = own_parts(sent.world);
+  const double pixel = std::max(1.0 / sent.truth.camera().fx, sensor.spacing);
   for (std::size_t i = 0; i < sent.is_sent.size(); ++i) {
     if (!sent.is_sent[i] || sent.world.is_of_robot(sent.truth.labels()[i])) continue;
-    const Vec3 at = sent.world_from_sensor.position + turn * sent.truth.point(i);
-    if (is_in_shell(own, at, blind_shell(sensor, sent.truth.depth()[i], pixel))) {
-      ++frame.blind;
-    } else {
-      frame.points.push_back(at);
-    }
+    const Vec3 at = sent.truth.point(i);
+    const double measured = at.z() + sensor.error_at(at.z());  // at most
+    const double ray = at.norm() / at.z();
+    frame.points.push_back(sent.world_from_sensor.position + turn * at);
+    frame.sizes.push_back(
+        static_cast<float>(2.0 * ray * sensor.error_at(measured) + 1.5 * pixel * measured));
   }
   const std::lock_guard lock(mutex_);
-  most_blind_ = std::max(most_blind_, frame.blind);
   frames_[sent.sensor].push_back(std::move(frame));
   if (frames_[sent.sensor].size() > kKept) frames_[sent.sensor].pop_front();
 }
@@ -109,40 +83,82 @@ void CameraTruth::sent(const SentFrame& sent) {
 void CameraTruth::run() {
   name_thread("truth");
   while (!stop_) {
-    if (reports_.newest(kPause) && reports_->scene_revision == cell_.scene.revision)
-      compare(*reports_);
+    if (reports_.newest(kPause) && reports_->scene_revision == cell_.scene.revision) {
+      for (std::uint32_t i = 0; i < frames_.size(); ++i) compare(i, *reports_);
+    }
     SystemClock clock;
     clock.sleep_until(clock.monotonic_ns() + std::chrono::nanoseconds(kPause).count());
   }
 }
 
-void CameraTruth::compare(const clearance_msg_Distances& report) {
-  for (std::uint32_t i = 0; i < report.pairs._length; ++i) compare(report.pairs._buffer[i], report);
-}
-
-void CameraTruth::compare(const clearance_msg_PairDistance& pair,
-                          const clearance_msg_Distances& report) {
-  const ObjectPair& objects = cell_.scene.pairs[pair.pair];
-  const bool is_first = cell_.scene.objects[objects.first].is_seen();
-  const std::uint32_t seen = is_first ? objects.first : objects.second;
-  const std::uint32_t body = is_first ? objects.second : objects.first;
-  const std::uint32_t sensor = cell_.scene.objects[seen].sensor;
-  const bool is_known =
-      std::isfinite(pair.lower) && pair.status <= static_cast<std::uint8_t>(PairStatus::kStale);
-  if (sensor == Object::kNoSensor || !is_known || cell_.scene.objects[body].is_seen()) return;
-  const std::int64_t now_ns = report.now_ns + report.clock_offset_ns;
-  const std::int64_t frame_ns = now_ns - (is_first ? pair.age_a_ns : pair.age_b_ns);
-  const std::int64_t body_ns = now_ns - (is_first ? pair.age_b_ns : pair.age_a_ns);
+std::optional<CameraTruth::Frame> CameraTruth::frame_of(std::uint32_t sensor,
+                                                        std::int64_t stamp_ns) {
   const std::lock_guard lock(mutex_);
   const auto frame = std::ranges::find_if(frames_[sensor], [&](const Frame& each) {
-    return std::llabs(each.stamp_ns - frame_ns) <= kSameNs;
+    return std::llabs(each.stamp_ns - stamp_ns) <= kSameNs;
   });
-  if (frame == frames_[sensor].end()) {
-    ++unknown_;
-    return;
+  return frame == frames_[sensor].end() ? std::nullopt : std::optional(*frame);
+}
+
+// All pairs of a report with the sensor have one frame.
+void CameraTruth::compare(std::uint32_t sensor, const clearance_msg_Distances& report) {
+  const std::uint32_t seen = cell_.scene.sensors[sensor].object;
+  const std::int64_t now_ns = report.now_ns + report.clock_offset_ns;
+  std::optional<std::vector<Vec3>> points;
+  for (const clearance_msg_PairDistance& pair :
+       std::span(report.pairs._buffer, report.pairs._length)) {
+    const ObjectPair& objects = cell_.scene.pairs[pair.pair];
+    const bool is_known =
+        std::isfinite(pair.lower) && pair.status <= static_cast<std::uint8_t>(PairStatus::kStale);
+    if ((objects.first != seen && objects.second != seen) || !is_known) continue;
+    const bool is_first = objects.first == seen;
+    if (!points) {
+      const auto frame = frame_of(sensor, now_ns - (is_first ? pair.age_a_ns : pair.age_b_ns));
+      if (!frame) {
+        ++unknown_;
+        return;
+      }
+      points = outside_of_shells(sensor, *frame);
+      most_blind_ = std::max(most_blind_, frame->points.size() - points->size());
+    }
+    compare(pair, now_ns - (is_first ? pair.age_b_ns : pair.age_a_ns), *points);
   }
+}
+
+std::vector<Vec3> CameraTruth::outside_of_shells(std::uint32_t sensor, const Frame& frame) {
+  world_.place(time_.seconds_of_stamp(frame.stamp_ns));
+  std::vector<OwnPart> own;
+  for (std::uint32_t i = 0; i < cell_.scene.objects.size(); ++i) {
+    if (!world_.is_of_robot(i) || !world_.object(i)) continue;
+    for (const Part& part : cell_.scene.objects[i].parts) {
+      own.push_back({&part, compose(*world_.object(i), part.object_from_part),
+                     cell_.scene.sensors[sensor].own_shell + joint_motion_});
+    }
+  }
+  std::vector<Vec3> outside;
+  for (std::size_t i = 0; i < frame.points.size(); ++i) {
+    if (!is_in_shell(own, frame.points[i], double{frame.sizes[i]}))
+      outside.push_back(frame.points[i]);
+  }
+  return outside;
+}
+
+bool CameraTruth::is_in_shell(std::span<const OwnPart> parts, const Vec3& point, double size) {
+  return std::ranges::any_of(parts, [&](const OwnPart& each) {
+    const double shell = each.shell + size, reach = radius_of(*each.part) + shell;
+    if ((point - each.place.position).squaredNorm() > reach * reach) return false;
+    TrackingState state;
+    return distance_of(*each.part, each.place, point, state) <= shell;
+  });
+}
+
+void CameraTruth::compare(const clearance_msg_PairDistance& pair, std::int64_t body_ns,
+                          const std::vector<Vec3>& points) {
+  const ObjectPair& objects = cell_.scene.pairs[pair.pair];
+  const std::uint32_t body =
+      cell_.scene.objects[objects.first].is_seen() ? objects.second : objects.first;
   world_.place(time_.seconds_of_stamp(body_ns));
-  const double truth = distance_to(body, frame->points);
+  const double truth = distance_to(body, points);
   if (truth == kInfinity) return;
   Found& found = found_[pair.pair];
   ++found.compared;
@@ -194,7 +210,8 @@ void CameraTruth::tell() {
   print(stdout,
         "         of the surface that is visible, without {} pixels at most in the blind shell\n",
         most_blind_);
-  if (unknown_ > 0) print(stdout, "         {} reports used frames that are not kept\n", unknown_);
+  if (unknown_ > 0)
+    print(stdout, "         {} reports were not compared: their frames are not kept\n", unknown_);
 }
 
 }  // namespace clearance

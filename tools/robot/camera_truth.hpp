@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <string>
 #include <thread>
@@ -40,10 +41,11 @@ class CameraTruth {
   void tell();
 
  private:
+  // The foreign points of a frame, in the world, m.
   struct Frame {
     std::int64_t stamp_ns = 0;
-    std::vector<Vec3> points;  // in the world, m
-    std::size_t blind = 0;     // left out
+    std::vector<Vec3> points;
+    std::vector<float> sizes;  // m: no element that contains the point extends farther from it
   };
   // Of one pair.
   struct Found {
@@ -52,19 +54,23 @@ class CameraTruth {
     double worst = -kInfinity;  // lower less truth, m
     std::vector<float> gaps;    // truth less lower, m
   };
+  // A part of a robot, and the thickness of the shell around it that may have been left out.
+  struct OwnPart {
+    const Part* part;
+    Pose place;  // in the world
+    double shell;
+  };
   static constexpr std::size_t kKept = 12;  // frames
 
   void run();
-  void compare(const clearance_msg_Distances& report);
-  void compare(const clearance_msg_PairDistance& pair, const clearance_msg_Distances& report);
-  [[nodiscard]] double blind_shell(const Sensor& sensor, double depth, double pixel) const;
-  struct PlacedPart {
-    const Part* part;
-    Pose place;  // in the world
-  };
-  [[nodiscard]] std::vector<PlacedPart> own_parts(const SimulatedWorld& world) const;
-  [[nodiscard]] static bool is_in_shell(std::span<const PlacedPart> parts, const Vec3& point,
-                                        double shell);
+  void compare(std::uint32_t sensor, const clearance_msg_Distances& report);
+  void compare(const clearance_msg_PairDistance& pair, std::int64_t body_ns,
+               const std::vector<Vec3>& points);
+  [[nodiscard]] std::optional<Frame> frame_of(std::uint32_t sensor, std::int64_t stamp_ns);
+  // The points of the frame that are not in the blind shell of the robots at its stamp.
+  [[nodiscard]] std::vector<Vec3> outside_of_shells(std::uint32_t sensor, const Frame& frame);
+  [[nodiscard]] static bool is_in_shell(std::span<const OwnPart> parts, const Vec3& point,
+                                        double size);
   // The distance of an object to the points, m; infinite without any.
   [[nodiscard]] double distance_to(std::uint32_t object, const std::vector<Vec3>& points) const;
 
@@ -76,7 +82,7 @@ class CameraTruth {
   std::mutex mutex_;                       // of `frames_`
   std::vector<std::deque<Frame>> frames_;  // by sensor
   std::map<std::uint32_t, Found> found_;   // by pair
-  std::uint64_t unknown_ = 0;              // reports without the frame that they used
+  std::uint64_t unknown_ = 0;              // frames that reports used and that are not kept
   std::size_t most_blind_ = 0;
   std::atomic<bool> stop_{false};
   std::thread thread_;

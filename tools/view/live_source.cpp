@@ -136,7 +136,12 @@ void LiveSource::take(TopicKind kind) {
 // the daemon's log has it.
 void LiveSource::take_from_ros(const Now& now) {
   if (!intake_.hears_ros()) return;
-  if (ros_.look()) intake_.keep(ros_.writers());
+  if (ros_.look()) {
+    std::vector<std::uint64_t> writers = ros_.writers();
+    intake_.keep(writers);
+    std::ranges::sort(writers);
+    if (seen_) seen_->keep(writers);
+  }
   for (const RosReaders::Reader& reader : ros_.readers()) {
     take_into(intake_, reader.topic, reader.handle, now, taken_);
   }

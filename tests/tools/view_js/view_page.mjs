@@ -278,8 +278,15 @@ async function seen() {
     return sensors[0].ns > 0 && status[0]?.frames > 2 && Object.keys(status[0].shells).length > 0;
   });
   await page.waitForFunction(() => /^[0-9]/.test(document.querySelector("#sensors tbody tr")?.cells[1].textContent ?? ""));
+  // The line to the nearest element of the pair that is chosen.
+  await page.waitForFunction(() => {
+    const { state, view } = window.clearance, [{ object }] = view.seen.cell.sensors, isOfCamera = ({ pair }) => state.pairs[pair] && [state.pairs[pair].a, state.pairs[pair].b].includes(object);
+    const known = state.report?.pairs.find((pair) => pair.status < 5 && isOfCamera(pair));
+    if (known && !view.lines.shown.some(({ pair }) => isOfCamera(pair))) view.on.pairChosen(known.pair);
+    return view.lines.shown.some(({ pair }) => isOfCamera(pair));
+  });
   const found = await page.evaluate(() => {
-    const { view } = window.clearance, { seen: shown, renderer } = view, [{ points }] = shown.sensors;
+    const { view, state } = window.clearance, { seen: shown, renderer } = view, [{ points }] = shown.sensors, [{ object: camera }] = shown.cell.sensors;
     const pixels = () => {
       view.redraw();
       const gl = renderer.getContext(), { drawingBufferWidth: width, drawingBufferHeight: height } = gl, all = new Uint8Array(4 * width * height);
@@ -295,6 +302,7 @@ async function seen() {
     const without = pixels();
     points.visible = true;
     return {
+      lines: view.lines.shown.filter(({ pair }) => [state.pairs[pair.pair].a, state.pairs[pair.pair].b].includes(camera)).length,
       places: [...points.geometry.getAttribute("position").array], drawn, without,
       bodies: shown.cell.parts.filter(({ object }) => shown.cell.sensors.some((sensor) => sensor.object === object)).length,
       shells: Object.fromEntries(Object.entries(shown.status[0].shells).map(([object, thickness]) => [shown.cell.objects[object].name, thickness])),
