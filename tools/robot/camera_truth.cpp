@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kLongArm = 1.0;                 // m: a joint turns points that are this far away
 constexpr std::int64_t kSameNs = 1'000;          // stamps that differ by less are equal
-constexpr double kRounding = 1e-9;               // m, of the truth itself
+constexpr double kRounding = 1e-6;               // m, of the truth itself
 constexpr std::chrono::milliseconds kPause{50};  // between comparisons
 
 const ConvexBody& a_point() {
@@ -71,7 +71,7 @@ void CameraTruth::sent(const SentFrame& sent) {
     const Vec3 at = sent.truth.point(i);
     const double measured = at.z() + sensor.error_at(at.z());  // at most
     const double ray = at.norm() / at.z();
-    frame.points.push_back(sent.world_from_sensor.position + turn * at);
+    frame.points.push_back((sent.world_from_sensor.position + turn * at).cast<float>());
     frame.sizes.push_back(
         static_cast<float>(2.0 * ray * sensor.error_at(measured) + 1.5 * pixel * measured));
   }
@@ -137,8 +137,8 @@ std::vector<Vec3> CameraTruth::outside_of_shells(std::uint32_t sensor, const Fra
   }
   std::vector<Vec3> outside;
   for (std::size_t i = 0; i < frame.points.size(); ++i) {
-    if (!is_in_shell(own, frame.points[i], double{frame.sizes[i]}))
-      outside.push_back(frame.points[i]);
+    const Vec3 at = frame.points[i].cast<double>();
+    if (!is_in_shell(own, at, double{frame.sizes[i]})) outside.push_back(at);
   }
   return outside;
 }

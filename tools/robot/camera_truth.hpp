@@ -41,10 +41,10 @@ class CameraTruth {
   void tell();
 
  private:
-  // The foreign points of a frame, in the world, m.
+  // The foreign points of a frame.
   struct Frame {
     std::int64_t stamp_ns = 0;
-    std::vector<Vec3> points;
+    std::vector<Eigen::Vector3f> points;  // in the world, m
     std::vector<float> sizes;  // m: no element that contains the point extends farther from it
   };
   // Of one pair.
@@ -60,7 +60,7 @@ class CameraTruth {
     Pose place;  // in the world
     double shell;
   };
-  static constexpr std::size_t kKept = 12;  // frames
+  static constexpr std::size_t kKept = 45;  // frames: 1.5 s
 
   void run();
   void compare(std::uint32_t sensor, const clearance_msg_Distances& report);
