@@ -118,21 +118,39 @@ void CameraTruth::compare(std::uint32_t sensor, const clearance_msg_Distances& r
         ++unknown_;
         return;
       }
-      points = outside_of_shells(sensor, *frame);
+      points = outside_of_shells(*frame, shells_of(seen, report));
       most_blind_ = std::max(most_blind_, frame->points.size() - points->size());
     }
     compare(pair, now_ns - (is_first ? pair.age_b_ns : pair.age_a_ns), *points);
   }
 }
 
-std::vector<Vec3> CameraTruth::outside_of_shells(std::uint32_t sensor, const Frame& frame) {
+CameraTruth::Shells CameraTruth::shells_of(std::uint32_t seen,
+                                           const clearance_msg_Distances& report) const {
+  Shells shells;
+  for (const clearance_msg_HiddenState& hidden :
+       std::span(report.hidden._buffer, report.hidden._length)) {
+    const ObjectPair& objects = cell_.scene.pairs[hidden.pair];
+    if (objects.first == seen) shells[objects.second] = hidden.thickness;
+    if (objects.second == seen) shells[objects.first] = hidden.thickness;
+  }
+  return shells;
+}
+
+// Links without a pair with the sensor are not reported: theirs is taken to be twice as thick as
+// the thickest one.
+std::vector<Vec3> CameraTruth::outside_of_shells(const Frame& frame, const Shells& reported) {
+  double thickest = joint_motion_;
+  for (const auto& [object, thickness] : reported) thickest = std::max(thickest, thickness);
   world_.place(time_.seconds_of_stamp(frame.stamp_ns));
   std::vector<OwnPart> own;
   for (std::uint32_t i = 0; i < cell_.scene.objects.size(); ++i) {
     if (!world_.is_of_robot(i) || !world_.object(i)) continue;
     for (const Part& part : cell_.scene.objects[i].parts) {
+      const auto shell = reported.find(i);
+      const bool is_reported = shell != reported.end();
       own.push_back({&part, compose(*world_.object(i), part.object_from_part),
-                     cell_.scene.sensors[sensor].own_shell + joint_motion_});
+                     is_reported ? shell->second + kRounding : 2.0 * thickest, is_reported});
     }
   }
   std::vector<Vec3> outside;
@@ -145,7 +163,8 @@ std::vector<Vec3> CameraTruth::outside_of_shells(std::uint32_t sensor, const Fra
 
 bool CameraTruth::is_in_shell(std::span<const OwnPart> parts, const Vec3& point, double size) {
   return std::ranges::any_of(parts, [&](const OwnPart& each) {
-    const double shell = each.shell + size, reach = radius_of(*each.part) + shell;
+    const double shell = each.shell + (each.is_reported ? 0.0 : size),
+                 reach = radius_of(*each.part) + shell;
     if ((point - each.place.position).squaredNorm() > reach * reach) return false;
     TrackingState state;
     return distance_of(*each.part, each.place, point, state) <= shell;

@@ -59,8 +59,10 @@ class CameraTruth {
     const Part* part;
     Pose place;  // in the world
     double shell;
+    bool is_reported;  // the shell contains whole elements
   };
-  static constexpr std::size_t kKept = 45;  // frames: 1.5 s
+  using Shells = std::map<std::uint32_t, double>;  // by object, m
+  static constexpr std::size_t kKept = 45;         // frames: 1.5 s
 
   void run();
   void compare(std::uint32_t sensor, const clearance_msg_Distances& report);
@@ -68,7 +70,9 @@ class CameraTruth {
                const std::vector<Vec3>& points);
   [[nodiscard]] std::optional<Frame> frame_of(std::uint32_t sensor, std::int64_t stamp_ns);
   // The points of the frame that are not in the blind shell of the robots at its stamp.
-  [[nodiscard]] std::vector<Vec3> outside_of_shells(std::uint32_t sensor, const Frame& frame);
+  [[nodiscard]] std::vector<Vec3> outside_of_shells(const Frame& frame, const Shells& reported);
+  // Those of the report for the object of a sensor.
+  [[nodiscard]] Shells shells_of(std::uint32_t seen, const clearance_msg_Distances& report) const;
   [[nodiscard]] static bool is_in_shell(std::span<const OwnPart> parts, const Vec3& point,
                                         double size);
   // The distance of an object to the points, m; infinite without any.

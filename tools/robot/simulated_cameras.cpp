@@ -16,6 +16,8 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
+// A camera starts later than the robot: its first frame shows a robot whose joints are known.
+constexpr std::int64_t kWarmUpNs = kSecondNs;
 constexpr std::uint32_t kPointStep = 16;  // bytes: x, y, z and padding, as drivers send it
 constexpr std::uint8_t kFloat32 = 7;
 
@@ -213,7 +215,7 @@ void SimulatedCameras::run() {
   name_thread("cameras");
   SystemClock clock;
   const std::int64_t period_ns = std::llround(1e9 / options_.rate_hz);
-  std::int64_t deadline = clock.monotonic_ns();
+  std::int64_t deadline = clock.monotonic_ns() + kWarmUpNs;
   while (!stop_) {
     clock.sleep_until(deadline);
     const std::int64_t now = clock.monotonic_ns();
