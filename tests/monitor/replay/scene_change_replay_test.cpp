@@ -192,7 +192,7 @@ TEST_F(ChangingRun, AsATableHasTheNamesAndTheRevisionOfTheCellThatWasInForce) {
     const std::uint64_t tick = std::stoull(line);
     std::size_t in_force = 0;
     while (in_force < changes.size() && tick >= changes[in_force].from) ++in_force;
-    EXPECT_TRUE(line.ends_with(fmt::format(",{:016x},,,", cells[in_force].scene.revision)));
+    EXPECT_TRUE(line.ends_with(fmt::format(",{:016x},,,,,", cells[in_force].scene.revision)));
     const bool is_of_bin = line.find(",bin") != std::string::npos;
     EXPECT_TRUE(!is_of_bin || in_force == 2) << line;
     of_bin += is_of_bin;
