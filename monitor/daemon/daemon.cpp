@@ -58,7 +58,7 @@ Participant join(const DaemonOptions& options) {
 }
 
 std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
-                                          const DaemonOptions& options, const PoseReader& poses,
+                                          const DaemonOptions& options, PoseReader& poses,
                                           RecordingHealth& health) {
   if (options.record_file.empty()) return nullptr;
   return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
@@ -101,7 +101,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
                              .pace = partner_ ? &partner_->ticks : nullptr,
                              .frames = poses_.frames()};
   std::vector<ReportSink*> sinks{now_.queue.get()};
-  if (recording_) sinks.push_back(&recording_->sink());
+  if (recording_) sinks.insert(sinks.end(), {&recording_->frames(), &recording_->sink()});
   if (now_.ros) sinks.push_back(now_.ros.get());
   PoseSource& source = partner_ ? static_cast<PoseSource&>(partner_->ticks) : poses_;
   loop_ = std::make_unique<TickLoop>(cell.scene, source, std::move(sinks), clock_, loop);
@@ -301,7 +301,7 @@ std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell
   next_ = parts_of(cell);
   std::vector<ReportSink*> sinks{next_.queue.get()};
   if (ReportSink* const sink = recording_ ? recording_->prepare(cell) : nullptr)
-    sinks.push_back(sink);
+    sinks.insert(sinks.end(), {&recording_->frames(), sink});
   if (next_.ros) sinks.push_back(next_.ros.get());
   return sinks;
 }

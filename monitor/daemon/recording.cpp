@@ -48,12 +48,13 @@ Recording::Part::Part(std::shared_ptr<const Cell> the_cell)
 
 // The file and its catalogue are written before the first tick, so that errors show at the start.
 Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
-                     std::shared_ptr<const Cell> cell, const PoseReader& poses,
-                     RecordingHealth& health)
+                     std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health)
     : file_(file.string()),
       by_event_(options.events.any()),
       files_(by_event_ ? 0 : 1),
+      clouds_every_(options.clouds_every),
       poses_(poses),
+      built_(options.events.any() ? nullptr : poses.keep_frames()),
       health_(health),
       recorder_(file, *cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
@@ -165,6 +166,7 @@ void Recording::record_all(Part& part) {
       queue.inputs().pop();
       count(1);
     }
+    if (built_ != nullptr) record_frames(queued->report.cycle);
     if (command_came_.exchange(false))
       recorder_.ask_for_file({RecordedEvent::Cause::kCommand, "a command was answered"});
     recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
@@ -177,6 +179,30 @@ void Recording::record_all(Part& part) {
     queue.statistics().pop();
     recorder_.check();
     count(0);
+  }
+}
+
+// A frame that a tick was shown is built already. Those before it, which no tick was shown, have
+// changed what later ones hide.
+void Recording::record_frames(std::uint64_t cycle) {
+  const auto record = [this](const BuiltFrame& frame, std::uint64_t of_cycle, bool is_kept) {
+    recorder_.frame(frame.stamp_ns, encoder_.encode(*to_wire(frame, of_cycle, is_kept)));
+  };
+  for (; const FrameUses::Use* const use = uses_.uses().front(); uses_.uses().pop()) {
+    if (use->cycle > cycle) return;
+    bool is_there = false;
+    for (const BuiltFrame& frame : built_->take(use->sensor, use->stamp_ns)) {
+      const bool is_shown = frame.stamp_ns == use->stamp_ns;
+      is_there |= is_shown;
+      record(frame, is_shown ? use->cycle : 0, clouds_every_ > 0 && frames_++ % clouds_every_ == 0);
+    }
+    if (!is_there) {
+      BuiltFrame lost;
+      lost.sensor = use->sensor;
+      lost.stamp_ns = use->stamp_ns;
+      record(lost, use->cycle, false);
+    }
+    count(1);
   }
 }
 

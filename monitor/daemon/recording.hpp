@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "config/cell/cell.hpp"
+#include "monitor/daemon/frame_uses.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/report_queue.hpp"
@@ -35,13 +36,15 @@ class Recording {
   // Throws RecordError when the file cannot be made, is no regular file, or exists and may not be
   // overwritten.
   Recording(const std::filesystem::path& file, const RecordingOptions& options,
-            std::shared_ptr<const Cell> cell, const PoseReader& poses, RecordingHealth& health);
+            std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
 
   // Takes the reports of the first cell.
   [[nodiscard]] ReportSink& sink() noexcept { return parts_.front()->queue; }
+  // Of every cell, in front of that sink: the frames of sensors that ticks are shown.
+  [[nodiscard]] ReportSink& frames() noexcept { return uses_; }
   // The cell may change: returns the sink of the changed one. Null if the disk is so slow that the
   // reports of kMostWaiting cells wait for it: the recording then ends with those. The preparing
   // thread calls these three.
@@ -79,6 +82,7 @@ class Recording {
 
   void run();
   void record_all(Part& part);
+  void record_frames(std::uint64_t cycle);
   [[nodiscard]] bool next_part();
   void fail(const std::string& why);
   void tell_of_missing_files() const;
@@ -92,7 +96,11 @@ class Recording {
   std::string file_;  // the first one
   bool by_event_;
   std::uint64_t files_;  // files that the log has named
+  std::uint64_t clouds_every_, frames_ = 0;
   const PoseReader& poses_;
+  FrameUses uses_;
+  BuiltFrames* built_;  // null: the cell has no sensors
+  CdrEncoder encoder_;
   RecordingHealth& health_;
   mutable std::mutex mutex_;  // guards the next two
   // The first one is being recorded, and the loop writes to the last one.

@@ -86,6 +86,13 @@ void RecordingArguments::add_events_to(CLI::App& app, const std::string& prefix)
       ->capture_default_str()
       ->excludes(around)
       ->group(kRecording);
+  app.add_option(prefix + "clouds", clouds_every,
+                 "Keep every N-th frame of each camera whole, and of the others only when a tick "
+                 "was shown them; 0: none. Only with all of them (1) a replay makes the same "
+                 "reports")
+      ->check(whole_number(0, 1'000'000'000))
+      ->capture_default_str()
+      ->group(kRecording);
   for (const char* const name : {"roll-mb", "roll-s"})
     around->excludes(app.get_option(prefix + name));
 }
@@ -101,11 +108,12 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),
       .roll_ns = static_cast<std::int64_t>(std::ceil(std::min(roll_s * 1e9, kMost))),
       .ticks_every = ticks_every,
-      .events = {
-          .around_ns = static_cast<std::int64_t>(std::ceil(std::min(around_s * 1e9, kMost))),
-          .ring_bytes = static_cast<std::size_t>(ring_mb * 1e6),
-          .keep_bytes = static_cast<std::uint64_t>(std::ceil(std::min(keep_mb * 1e6, kMost))),
-          .keep_ns = static_cast<std::int64_t>(std::ceil(std::min(keep_h * 3.6e12, kMost)))}};
+      .events = {.around_ns = static_cast<std::int64_t>(std::ceil(std::min(around_s * 1e9, kMost))),
+                 .ring_bytes = static_cast<std::size_t>(ring_mb * 1e6),
+                 .keep_bytes =
+                     static_cast<std::uint64_t>(std::ceil(std::min(keep_mb * 1e6, kMost))),
+                 .keep_ns = static_cast<std::int64_t>(std::ceil(std::min(keep_h * 3.6e12, kMost)))},
+      .clouds_every = clouds_every};
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }

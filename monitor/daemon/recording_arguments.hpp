@@ -20,7 +20,7 @@ struct RecordingArguments {
   void add_to(CLI::App& app, const std::string& prefix);
 
   double around_s = 0.0, ring_mb = 256.0, keep_mb = 0.0, keep_h = 0.0;
-  std::uint64_t ticks_every = 1;
+  std::uint64_t ticks_every = 1, clouds_every = 1;
 
   // Adds what only a recorder that sees every tick can do: events, and ticks that are left out.
   void add_events_to(CLI::App& app, const std::string& prefix);

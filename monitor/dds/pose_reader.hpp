@@ -61,6 +61,11 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] SourceTally departed() const;
   // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
+  // Before start(): keeps the frames of sensors for a recording. Null: the cell has none.
+  [[nodiscard]] BuiltFrames* keep_frames() {
+    if (sensors_) sensors_->keep_frames();
+    return sensors_ ? &sensors_->built() : nullptr;
+  }
   // By sensor of the cell.
   [[nodiscard]] std::vector<SensorStatus> sensors() const {
     return sensors_ ? sensors_->statuses() : std::vector<SensorStatus>();

@@ -47,6 +47,10 @@ SensorReader::~SensorReader() {
   if (thread_.joinable()) thread_.join();
 }
 
+void SensorReader::keep_frames() {
+  sensors_->keep([this](BuiltFrame frame) { built_.put(std::move(frame)); });
+}
+
 void SensorReader::start() {
   thread_ = std::thread([this] { run(); });
 }

@@ -20,6 +20,7 @@
 #include "monitor/loop/frame_exchange.hpp"
 #include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
 
 namespace clearance {
@@ -33,6 +34,9 @@ class SensorReader {
   SensorReader(const SensorReader&) = delete;
   SensorReader& operator=(const SensorReader&) = delete;
 
+  // Before start(): keeps the frames that are built for a recording.
+  void keep_frames();
+  [[nodiscard]] BuiltFrames& built() noexcept { return built_; }
   // Starts the thread. Call this once.
   void start();
   // The loop ticks another cell, with the same sensors but for what they state of their places and
@@ -60,6 +64,7 @@ class SensorReader {
 
   const Cell* cell_;
   FrameExchange frames_;
+  BuiltFrames built_;
   SpscRing<PoseBatch> batches_;
   std::mutex mutex_;  // guards what follows, but for the statuses
   SceneIds ids_;

@@ -46,6 +46,9 @@ struct RecordingOptions {
   // to the bit.
   std::uint64_t ticks_every = 1;
   EventOptions events = {};
+  // One frame of a sensor in so many is kept whole, of others only that a tick was shown them. 0:
+  // none. A replay gives the same reports only with all of them (1).
+  std::uint64_t clouds_every = 1;
 };
 
 // Returns true when the report of this cycle keeps its pairs.

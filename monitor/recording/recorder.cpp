@@ -113,6 +113,8 @@ void Recorder::report(const Report& report, std::span<const SourceUse> sources,
 void Recorder::write_report(const Report& report, std::span<const SourceUse> sources,
                             std::int64_t publish_ns) {
   write_used(sources, report.now_ns);
+  for (const WaitingFrame& frame : std::exchange(frames_, {}))
+    sink_->write_frame(report.now_ns, frame.stamp_ns, frame.cdr);
   if (!report.separated_zones.empty()) write_separation(report, publish_ns);
   if (holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *now_->distances);

@@ -40,6 +40,12 @@ class Recorder {
   // tick's report. It may be made for one of the last scenes (SceneIds).
   void poses(const PoseBatch& batch);
 
+  // A frame of a sensor that the next report's tick was shown, or that no tick was; written in
+  // front of that report.
+  void frame(std::int64_t stamp_ns, std::span<const std::byte> cdr) {
+    frames_.push_back({stamp_ns, {cdr.begin(), cdr.end()}});
+  }
+
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
   // it was handed over; 0 where it was not published.
   void report(const Report& report, std::span<const SourceUse> sources,
@@ -82,6 +88,10 @@ class Recorder {
     std::uint64_t revision;
     std::vector<std::string> names;
   };
+  struct WaitingFrame {
+    std::int64_t stamp_ns;
+    std::vector<std::byte> cdr;
+  };
   struct Waiting {  // a batch whose report has not come yet
     TopicKind kind;
     SourceName source;
@@ -114,6 +124,7 @@ class Recorder {
   std::unique_ptr<RecordingSink> sink_;
   std::string without_files_;
   std::vector<Waiting> waiting_;
+  std::vector<WaitingFrame> frames_;
   Sample<clearance_msg_PoseBatch> batch_;
   std::unique_ptr<OfScene> now_;
   std::deque<JointNamesOf> joint_names_;  // of the last scenes, the present one last

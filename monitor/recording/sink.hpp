@@ -10,6 +10,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/recording/recorded_event.hpp"
+#include "monitor/recording/topic_schema.hpp"
 #include "monitor/recording/writer.hpp"
 
 namespace clearance {
@@ -28,6 +29,9 @@ class RecordingSink {
   // written.
   virtual void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                      std::span<const std::byte> cdr, bool repeated) = 0;
+  // A frame of a sensor. Files by event do not have them.
+  virtual void write_frame(std::int64_t /*log_ns*/, std::int64_t /*stamp_ns*/,
+                           std::span<const std::byte> /*cdr*/) {}
   // A tick ends, in which this happened. Returns true if a file may begin with the next tick, which
   // then states every zone.
   virtual bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) = 0;
@@ -57,6 +61,11 @@ class ContinuousFiles final : public RecordingSink {
              std::span<const std::byte> cdr, bool /*repeated*/) override {
     writer_.write(kind, log_ns, publish_ns, cdr);
   }
+  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
+                   std::span<const std::byte> cdr) override {
+    if (!frames_) frames_ = writer_.add_channel(frames_schema(), kFramesTopic);
+    writer_.write(*frames_, log_ns, stamp_ns, cdr);
+  }
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& /*event*/) override {
     return writer_.roll(now_ns);
   }
@@ -73,6 +82,7 @@ class ContinuousFiles final : public RecordingSink {
 
  private:
   RecordingWriter writer_;
+  std::optional<std::uint16_t> frames_;  // their channel, from the first one on
 };
 
 }  // namespace clearance

@@ -112,6 +112,12 @@ std::string_view type_of(TopicKind kind) noexcept {
   return std::string_view(topic(kind).type->m_typename).substr(kScope.size());
 }
 
+const McapSchema& frames_schema() {
+  static const McapSchema kSchema{"clearance::msg::SensorFrame", std::string(kIdlEncoding),
+                                  self_contained_idl(kFramesIdlText, "SensorFrame")};
+  return kSchema;
+}
+
 // Made once, on first use; initialisation of statics is thread-safe.
 const McapSchema& topic_schema(TopicKind kind) {
   static const std::array<McapSchema, kRecordedTopics.size()> kSchemas = [] {

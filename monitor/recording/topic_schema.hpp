@@ -23,8 +23,13 @@ inline constexpr std::string_view kIdlEncoding = "omgidl";
 // Name, encoding and self-contained IDL text of the topic's type.
 [[nodiscard]] const McapSchema& topic_schema(TopicKind kind);
 
-// idl/clearance.idl as it was when this was built.
+// The same of frames of sensors, which recordings alone have, on the topic kFramesTopic.
+[[nodiscard]] const McapSchema& frames_schema();
+inline constexpr const char* kFramesTopic = "clearance/frames";
+
+// idl/clearance.idl and idl/frames.idl as they were when this was built.
 extern const char* const kIdlText;
+extern const char* const kFramesIdlText;
 
 // The part of `idl` that `type` (e.g. PoseBatch) needs. The text is written as clearance.idl is:
 // constants of one line and structs, inside modules, each used after its definition. Comments are

@@ -83,8 +83,12 @@ class RecordingWriter {
   // returns its id.
   [[nodiscard]] std::uint16_t add_channel(const McapSchema& schema, const std::string& topic);
   void write(std::uint16_t channel, std::int64_t log_ns, std::span<const std::byte> cdr) {
-    const auto time_ns = static_cast<std::uint64_t>(log_ns);
-    mcap_->write(channel, time_ns, time_ns, cdr);
+    write(channel, log_ns, log_ns, cdr);
+  }
+  void write(std::uint16_t channel, std::int64_t log_ns, std::int64_t publish_ns,
+             std::span<const std::byte> cdr) {
+    mcap_->write(channel, static_cast<std::uint64_t>(log_ns),
+                 static_cast<std::uint64_t>(publish_ns), cdr);
   }
 
   // Afterwards everything written so far survives a crash.

@@ -74,7 +74,7 @@ class Replay {
   void begin_tick(const TickInput& input);
   void end_tick(const TickInput& input, const Report& report,
                 const std::function<void(const ReplayedTick&)>& on_tick);
-  void compare(const TickInput& input, const Report& report);
+  void compare(const TickInput& input, const Report& report, bool complete);
   void compare_zones();
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
@@ -251,7 +251,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     // Bounds for other poses say nothing about these.
     const bool complete = input.complete && loop_.is_complete();
     const bool comparable = complete || *options_.compare == Comparison::kBits;
-    if (in_window && comparable && !differs_) compare(input, report);
+    if (in_window && comparable && !differs_) compare(input, report, complete);
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
@@ -273,7 +273,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 }
 
 // Only the first difference is reported: later ones are its consequences.
-void Replay::compare(const TickInput& input, const Report& report) {
+void Replay::compare(const TickInput& input, const Report& report, bool complete) {
   const std::optional<std::string> found =
       difference_->first(input, report, cycle_offset_, feed_.not_recorded());
   ++result_.compared;
@@ -281,11 +281,10 @@ void Replay::compare(const TickInput& input, const Report& report) {
   differs_ = true;
   const std::string what = fmt::format("the replay differs in {}", *found);
   fail(report.cycle, report.now_ns,
-       input.complete
-           ? what + other_build_
-           : fmt::format(
-                 "poses that this tick used are not in the recording: it cannot be compared ({})",
-                 what));
+       complete ? what + other_build_
+                : fmt::format("{} that this tick used are not in the recording: it cannot be "
+                              "compared ({})",
+                              input.complete ? "frames of sensors" : "poses", what));
 }
 
 // Zone changes come on a topic of their own and are compared when all are known. The recording must

@@ -34,6 +34,7 @@ void RecordedLoop::start(const Cell& cell, bool followed) {
   cell_ = &cell;
   since_ = {};
   next_ = nullptr;
+  blind_.clear();
   monitor_ = std::make_unique<Monitor>(cell.scene);
   ids_ = std::make_unique<SceneIds>(cell.scene, followed);
   sensors_ =
@@ -70,11 +71,26 @@ const Report* RecordedLoop::tick(const TickInput& input) {
 // The joints of this tick come first: they may be those at the stamp of a frame.
 void RecordedLoop::show_frames(const TickInput& input) {
   const std::int64_t now_ns = input.time.now_ns;
+  if (input.recorded != nullptr) return show_recorded(input);
   sensors_->add(poses_, joints_);
   for (const auto& message : input.sensors) sensors_->add(*message, now_ns);
   sensors_->settle(
       now_ns, [this](const SeenCloud* cloud) { return monitor_->uses(cloud); },
       [this](std::uint32_t sensor, const SensorFrame& frame) { monitor_->show(sensor, frame); });
+}
+
+// Builds what the daemon built, in the same order: what a frame hides may depend on those before.
+void RecordedLoop::show_recorded(const TickInput& input) {
+  for (const auto& [cycle, frame] : input.frames) {
+    const bool is_shown = cycle == input.recorded->cycle;
+    const bool is_built = sensors_->rebuild(
+        frame, [this](const SeenCloud* cloud) { return monitor_->uses(cloud); },
+        [&](std::uint32_t sensor, const SensorFrame& built) {
+          if (is_shown) monitor_->show(sensor, built);
+        });
+    if (is_built && is_shown) blind_.erase(frame.sensor);
+    if (!is_built) blind_.insert(frame.sensor);
+  }
 }
 
 // A message waits while the scene changes because of the one before it.
@@ -107,6 +123,9 @@ void RecordedLoop::take(const PoseBatch& batch) {
 void RecordedLoop::begin_with(const clearance_msg_Distances& report) {
   begun_ = true;
   from_ = report.cycle;
+  if (report.cycle > 1) {  // the frames in use may be from before
+    for (std::uint32_t i = 0; i < cell_->scene.sensors.size(); ++i) blind_.insert(i);
+  }
   const Cell* const cell = history_.cell(report.scene_revision);
   if (monitor_->cycle() > 0 || cell == nullptr || cell == cell_) return;
   start(*cell, true);

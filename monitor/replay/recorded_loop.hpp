@@ -42,7 +42,8 @@ class RecordedLoop {
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
   // False: a batch may be missing that the daemon used, because it was made for a scene before the
   // recording began.
-  [[nodiscard]] bool is_complete() const noexcept { return unclear_.empty(); }
+  // The same if it does not have the frame of a sensor in use.
+  [[nodiscard]] bool is_complete() const noexcept { return unclear_.empty() && blind_.empty(); }
   // The number of batches that were made for no scene that is known.
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
 
@@ -60,6 +61,7 @@ class RecordedLoop {
   void begin_with(const clearance_msg_Distances& report);
   void take(const PoseBatch& batch);
   void show_frames(const TickInput& input);
+  void show_recorded(const TickInput& input);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
   [[nodiscard]] bool begin(const Cell& cell, std::uint64_t from);
@@ -82,6 +84,7 @@ class RecordedLoop {
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
   std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
+  std::set<std::uint32_t> blind_;  // sensors whose frame in use is not in the recording
   std::uint64_t of_other_scenes_ = 0;
   std::string error_;
 };

@@ -7,7 +7,7 @@ namespace clearance {
 namespace {
 
 // By this much log time a message may stand behind the report of its tick.
-constexpr std::int64_t kReadAheadNs = 2'000'000'000;
+constexpr std::int64_t kTicksReadAheadNs = 2'000'000'000;
 
 // Batches that no tick has used after this time are forgotten.
 constexpr std::int64_t kUnusedNs = 10'000'000'000;
@@ -46,7 +46,7 @@ const RecordedTick* RecordedTicks::front() {
     }
     if (!ticks_.empty() && ticks_.begin()->second.report) {
       const RecordedTick& tick = ticks_.begin()->second;
-      if (ended_ || read_to_ns_ > tick.log_ns + kReadAheadNs) {
+      if (ended_ || read_to_ns_ > tick.log_ns + kTicksReadAheadNs) {
         for (const clearance_msg_ZoneState& state : tick.zones) zones_[state.zone] = state;
         return &tick;
       }

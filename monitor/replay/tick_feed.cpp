@@ -56,7 +56,9 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory
       by_report_(outline.has_reports),
       tick_hz_(tick_hz),
       separations_(history.has_changes() || separated_count(history.first().scene).zones > 0),
-      gradients_(history.has_changes() || history.first().scene.gradients) {}
+      gradients_(history.has_changes() || history.first().scene.gradients) {
+  if (by_report_ && !history.first().scene.sensors.empty()) frames_.emplace(files);
+}
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
     : log_(std::move(log)),
@@ -72,6 +74,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.sources.clear();
   tick.scenes.clear();
   tick.sensors.clear();
+  tick.frames.clear();
   tick.recorded = nullptr;
   tick.separation = nullptr;
   tick.gradients = nullptr;
@@ -176,6 +179,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   while (!all_there(tick.sources) && read_ahead()) {
   }
   take_used(tick);
+  take_frames(report.cycle, tick);
   const auto further = [this] { return read_ahead(); };
   tick.separation = separations_.of_tick(report.now_ns, further);
   tick.gradients = gradients_.of_tick(report.now_ns, further);
@@ -236,6 +240,15 @@ void TickFeed::take_used(TickInput& tick) {
     }
     return false;
   });
+}
+
+// One that no tick was shown stands before another one that was.
+void TickFeed::take_frames(std::uint64_t cycle, TickInput& tick) {
+  if (!frames_) return;
+  for (; const clearance_msg_SensorFrame* const frame = frames_->front(); frames_->pop()) {
+    if (frame->cycle > cycle) return;
+    tick.frames.push_back({frame->cycle, from_wire(*frame)});
+  }
 }
 
 void TickFeed::add(PoseBatch& batch, TickInput& tick) {

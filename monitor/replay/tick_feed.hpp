@@ -24,11 +24,18 @@
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/reader.hpp"
+#include "monitor/replay/frame_feed.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
+
+// A frame that the daemon built, and the cycle of the tick that was shown it; 0: none was.
+struct RecordedFrame {
+  std::uint64_t cycle = 0;
+  BuiltFrame frame;
+};
 
 // The input of Monitor::tick, and the report that the daemon made of it.
 struct TickInput {
@@ -39,6 +46,9 @@ struct TickInput {
   std::vector<std::shared_ptr<const moveit::RawScene>> scenes;
   // Likewise, messages of sensors.
   std::vector<std::shared_ptr<const RawSensorMessage>> sensors;
+  // Of a recording: frames of sensors up to this tick, each with the cycle of the tick that was
+  // shown it.
+  std::vector<RecordedFrame> frames;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports
   // Messages of the same tick. Null if the scene asks for none, or if the recording has none of
   // this tick.
@@ -132,11 +142,13 @@ class TickFeed {
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
   void take_used(TickInput& tick);
+  void take_frames(std::uint64_t cycle, TickInput& tick);
   void add(PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
 
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
+  std::optional<FrameFeed> frames_;        // and this, if the cell has sensors
   SceneHistory* history_ = nullptr;        // null: a log of another program
   ObjectMap objects_;
   std::unique_ptr<OwnBatches> own_;  // null: a log of another program

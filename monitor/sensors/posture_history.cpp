@@ -179,6 +179,31 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) co
 void PostureHistory::place(std::int64_t stamp_ns) {
   for (std::size_t i = 0; i < joints_.size(); ++i) place_joint(i, stamp_ns);
   for (std::uint32_t i = 0; i < objects_.size(); ++i) objects_[i] = pose_at(i, stamp_ns);
+  place_links();
+}
+
+bool PostureHistory::place(const PlacedPostures& placed) {
+  if (placed.joints.size() != variables_.size() || placed.objects.size() != objects_.size())
+    return false;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    variables_[i].input.has_value = placed.joints[i].known;
+    variables_[i].position = placed.joints[i].position;
+    variables_[i].may_have_moved = placed.joints[i].may_have_moved;
+  }
+  objects_ = placed.objects;
+  place_links();
+  return true;
+}
+
+PlacedPostures PostureHistory::placed() const {
+  PlacedPostures placed;
+  for (const TrackedVariable& joint : variables_)
+    placed.joints.push_back({joint.input.has_value, joint.position, joint.may_have_moved});
+  placed.objects = objects_;
+  return placed;
+}
+
+void PostureHistory::place_links() {
   for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
     const RobotBase& base = scene_.robots[robot].base;
     if (base.kind != RobotBase::Kind::kObject) continue;

@@ -33,6 +33,16 @@ struct PastPose {
 [[nodiscard]] PastPose carried(const PastPose& parent, const Pose& parent_from_child,
                                double shift_error, double turn_error) noexcept;
 
+// Where a scene's joints and bodies were at one time: what all links follow from.
+struct PlacedPostures {
+  struct Joint {
+    bool known = false;
+    double position = 0.0, may_have_moved = 0.0;  // rad or m
+  };
+  std::vector<Joint> joints;      // by variable
+  std::vector<PastPose> objects;  // by object; those that are no links
+};
+
 class PostureHistory {
  public:
   // At 1 kHz, two seconds.
@@ -50,6 +60,10 @@ class PostureHistory {
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const noexcept;
   // Finds where everything was at this time, for the two functions below.
   void place(std::int64_t stamp_ns);
+  // The same for what another history of this scene found. False: it is of another scene.
+  [[nodiscard]] bool place(const PlacedPostures& placed);
+  // As of the last place().
+  [[nodiscard]] PlacedPostures placed() const;
   [[nodiscard]] PastPose link(std::uint32_t robot, std::uint32_t link) const noexcept;
   // The pose of an object that is no link: a fixed one, or one whose poses come.
   [[nodiscard]] PastPose object(std::uint32_t object) const noexcept;
@@ -73,6 +87,7 @@ class PostureHistory {
   };
 
   void place_joint(std::size_t variable, std::int64_t stamp_ns);
+  void place_links();
   [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns) const;
 
   const Scene& scene_;

@@ -64,7 +64,8 @@ struct Sensors::Waiting {
   OctomapView map;
   Pose frame_from_sensor;  // of a map of MoveIt
   PinholeCamera camera;
-  std::string frame;  // of tf
+  std::string frame;         // of tf
+  RawSensorMessage message;  // if it is kept
   std::int64_t stamp_ns = 0, came_ns = 0;
 
   [[nodiscard]] auto& sample(const sensor_msgs_msg_dds__Image_*) noexcept { return image_sample; }
@@ -181,6 +182,7 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   if (fault == FrameFault::kNoCameraInfo) state.without_info = message;
   if (fault != FrameFault::kNoFault) return;
   if (state.stream.camera()) frame->camera = *state.stream.camera();
+  if (options_.keep) frame->message = message;
   if (state.waiting.size() == kMostWaiting) {
     state.waiting.pop_front();
     ++state.status.skipped;
@@ -240,23 +242,37 @@ void Sensors::settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use)
 }
 
 void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
-  const auto began = std::chrono::steady_clock::now();
-  SensorFrame out{.cloud = &cloud, .stamp_ns = frame.stamp_ns, .world_from_sensor = {}};
   postures_.place(frame.stamp_ns);
   PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
   if (state.sensor.kind == SensorKind::kOctomap)
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
-  FrameFault fault = place.known ? fill(state, frame, place, cloud) : FrameFault::kNoPlace;
-  if (fault == FrameFault::kNoFault) {
-    leave_out(state, place, frame.stamp_ns, cloud);
-    if (cloud.size() == 0) fault = FrameFault::kNothingSeen;
+  const FrameFault fault =
+      place.known ? build_at(state, frame, place, cloud, use) : FrameFault::kNoPlace;
+  if (fault != FrameFault::kNoFault) ++state.not_built[static_cast<std::size_t>(fault)];
+}
+
+// The postures are placed. What a frame leaves behind for later ones is left by each frame that is
+// kept, even if it shows nothing.
+FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose& place,
+                             SeenCloud& cloud, const Use& use) {
+  const auto began = std::chrono::steady_clock::now();
+  if (const FrameFault fault = fill(state, frame, place, cloud); fault != FrameFault::kNoFault)
+    return fault;
+  if (options_.keep) {
+    options_.keep({.sensor = state.index,
+                   .stamp_ns = frame.stamp_ns,
+                   .scene_revision = cell_.scene.revision,
+                   .place = place,
+                   .postures = postures_.placed(),
+                   .camera = frame.camera,
+                   .message = frame.message});
   }
-  if (fault != FrameFault::kNoFault) {
-    ++state.not_built[static_cast<std::size_t>(fault)];
-    return;
-  }
-  out.world_from_sensor = place.world_from_body;
-  out.pose_error = place.error(state.sensor.extent());
+  leave_out(state, place, frame.stamp_ns, cloud);
+  if (cloud.size() == 0) return FrameFault::kNothingSeen;
+  const SensorFrame out{.cloud = &cloud,
+                        .stamp_ns = frame.stamp_ns,
+                        .world_from_sensor = place.world_from_body,
+                        .pose_error = place.error(state.sensor.extent())};
   SensorStatus& status = state.status;
   ++status.frames;
   status.stamp_ns = frame.stamp_ns;
@@ -267,6 +283,50 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   status.longest_build_ns = std::max<std::int64_t>(
       status.longest_build_ns, std::chrono::duration_cast<std::chrono::nanoseconds>(took).count());
   use(state.index, out);
+  return FrameFault::kNoFault;
+}
+
+template <class Message, class View>
+bool Sensors::decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out) {
+  return decoder_.decode(built.message.cdr, sample, built.message.bytes) &&
+         view(*sample, cell_.scene.sensors[built.sensor].most_points, out) == FrameFault::kNoFault;
+}
+
+bool Sensors::decode_again(const BuiltFrame& built, Waiting& frame) {
+  switch (built.message.type) {
+    case Type::kImage:
+      return decode_again(built, frame.image_sample, frame.image);
+    case Type::kPoints:
+      return decode_again(built, frame.points_sample, frame.points);
+    case Type::kOctomap:
+      return decoder_.decode(built.message.cdr, frame.map_sample, built.message.bytes) &&
+             view(*frame.map_sample, frame.map) == FrameFault::kNoFault;
+    case Type::kPlanningScene:
+      return decoder_.decode(built.message.cdr, frame.scene_sample, built.message.bytes) &&
+             view(frame.scene_sample->world.octomap.octomap, frame.map) == FrameFault::kNoFault;
+    case Type::kCameraInfo:
+    case Type::kTransforms:
+    case Type::kStaticTransforms:
+      return false;
+  }
+  return false;
+}
+
+bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use& use) {
+  if (built.scene_revision != cell_.scene.revision || built.sensor >= states_.size()) return false;
+  State& state = *states_[built.sensor];
+  if (state.sensor.kind != kind_of(built.message.type)) return false;
+  Waiting frame;
+  frame.camera = built.camera;
+  frame.stamp_ns = built.stamp_ns;
+  const auto cloud =
+      std::ranges::find_if(state.clouds, [&](const auto& each) { return !is_used(each.get()); });
+  if (cloud == state.clouds.end() || !decode_again(built, frame) ||
+      !postures_.place(built.postures)) {
+    return false;
+  }
+  const FrameFault fault = build_at(state, frame, built.place, **cloud, use);
+  return fault == FrameFault::kNoFault || fault == FrameFault::kNothingSeen;
 }
 
 FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& place,

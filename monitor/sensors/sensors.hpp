@@ -21,11 +21,24 @@
 
 namespace clearance {
 
+// A frame that was built, with all that a second build of it needs.
+struct BuiltFrame {
+  std::uint32_t sensor = 0;
+  std::int64_t stamp_ns = 0;
+  std::uint64_t scene_revision = 0;
+  PastPose place;
+  PlacedPostures postures;
+  PinholeCamera camera;  // of depth images
+  RawSensorMessage message;
+};
+
 struct SensorsOptions {
   bool is_log = false;  // see IntakeOptions::is_log
   // A frame waits for joints and poses up to its stamp for this long, ns of the caller's time. Then
   // it is built with what their largest speeds allow.
   std::int64_t patience_ns = 20'000'000;
+  // Receives each frame that is built, before anything else does. Empty: messages are not kept.
+  std::function<void(BuiltFrame frame)> keep = {};
 };
 
 // The part of the robot's surroundings that a frame cannot show, because it is left out with the
@@ -77,6 +90,12 @@ class Sensors {
   // use, its frame waits.
   void settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use);
 
+  // Builds a frame again, whatever was judged of its message and wherever the joints are. False: it
+  // is of another cell, or cannot be built.
+  [[nodiscard]] bool rebuild(const BuiltFrame& frame, const IsUsed& is_used, const Use& use);
+  // As SensorsOptions::keep; before the first message.
+  void keep(std::function<void(BuiltFrame frame)> keep) { options_.keep = std::move(keep); }
+
   // True if a frame waits.
   [[nodiscard]] bool any_waiting() const noexcept;
   [[nodiscard]] SensorStatus status(std::uint32_t sensor) const;
@@ -92,6 +111,11 @@ class Sensors {
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
+  [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
+                                    SeenCloud& cloud, const Use& use);
+  [[nodiscard]] bool decode_again(const BuiltFrame& built, Waiting& frame);
+  template <class Message, class View>
+  [[nodiscard]] bool decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out);
   [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, const PastPose& place,
                                 SeenCloud& cloud);
   void leave_out(State& state, const PastPose& place, std::int64_t stamp_ns, SeenCloud& cloud);

@@ -10,47 +10,12 @@
 
 #include "monitor/wire/moveit_types.hpp"
 #include "tests/shared/one_cube.hpp"
-#include "tests/shared/ros_camera.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
-#include "tests/tools/watched_daemon.hpp"
+#include "tests/tools/camera_daemon.hpp"
 
 namespace clearance::test {
 namespace {
-
-constexpr double kError = 0.002;      // of the depth, m
-constexpr double kRadius = 0.1;       // of the objects before the camera, m
-constexpr double kHeight = 3.0;       // of the camera above the origin of the world, m
-constexpr double kRounding = 2.5e-7;  // of float32 between 2 and 4 m, in which depths are kept
-constexpr int kPeriodMs = 20;
-
-const std::string kImage =
-    "depth_image: /cam/image, size: [65, 49], depth_error: {constant: 0.002}, range: [0.3, 4]";
-const std::string kPoints =
-    "points: /cam/points, most_points: 4000, depth_error: {constant: 0.002}, range: [0.3, 4]";
-// It looks down along the z axis of the world.
-const std::string kAbove = ", mount: {pose: {xyz: [0, 0, 3], rpy: [3.141592653589793, 0, 0]}}";
-
-// A ball fixed 1 m below the camera, and the arm of scara.urdf at the origin.
-class DaemonCameras : public WatchedDaemon {
- protected:
-  void start(const std::string& sensor, const std::vector<std::string>& more = {},
-             const std::string& ball = "pose: {xyz: [0, 0, 2]}") {
-    watch(
-        "name: cameras\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
-        "ros2: {world_frame: map}\n"
-        "robots: [{name: arm, urdf: scara.urdf}]\n"
-        "objects: [{name: ball, fixed: true, sphere: {radius: 0.1}, " +
-            ball + "}]\nsensors: [{name: eye, " + sensor +
-            "}]\npairs: [{between: [ball, eye]}, {between: [arm, eye]}]\n",
-        more);
-  }
-  // The one pair of the ball.
-  const clearance_msg_PairDistance& ball_pair() { return pair("ball"); }
-  bool is_measured() { return is("ball", PairStatus::kConverged); }
-
-  MadeScene scene_of_wall{.wall = 2.5, .ball = {}};
-};
 
 // The slabs of the pixels cover the wall up to its depth less the error, everywhere below the ball.
 TEST_F(DaemonCameras, GivesTheExactDistanceToAWallInADepthImage) {
@@ -236,6 +201,53 @@ TEST_F(DaemonCameras, GoesOnWhenTheCellChanges) {
   daemon->signal(SIGHUP);
   EXPECT_TRUE(step_until(kPeriodMs, send, told("scene-refused", {"sensors"}))) << daemon->output();
   EXPECT_TRUE(is_measured());
+}
+
+// The robot, and with it a camera in its hand, moves while frames come. The first frames come
+// before the first joints.
+TEST_F(DaemonCameras, AreRecordedSoThatAReplayMakesTheSameReports) {
+  const std::string file = (folder / "run.mcap").string();
+  start(kImage + ", mount: {on: upper, pose: {xyz: [0.3, 0, 0.5], rpy: [3.141592653589793, 0, 0]}}",
+        {"--record", file}, "pose: {xyz: [0.3, 0, -1]}");
+  RosCamera camera(client, {});
+  RosJoints joints(client);
+  ASSERT_TRUE(camera.is_heard() && joints.is_heard());
+  int steps = 0;
+  const auto send = [&] {
+    if (++steps > 10) joints.send({"shoulder", "elbow", "push"}, {0.004 * steps, 0, 0.1});
+    if (steps % 5 == 0) camera.send_image(scene_of_wall);
+  };
+  ASSERT_TRUE(step_until(5, send, [&] { return steps > 150 && is_measured(); }))
+      << daemon->output();
+  std::string text = read_text(cell);
+  text.replace(text.find("radius: 0.1"), 11, "radius: 0.2");
+  write_text(cell, text);
+  daemon->signal(SIGHUP);
+  ASSERT_TRUE(step_until(5, send, [&] { return daemon->told("scene-changed", {}) && steps > 250; }))
+      << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  ChildProcess replay(kReplay, {"check", file, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  EXPECT_THAT(replay.output(), testing::HasSubstr("sensor 'eye'"));
+}
+
+// A recording that leaves out the content of frames says so instead of an answer.
+TEST_F(DaemonCameras, ThatARecordingLeavesOutCannotBeCompared) {
+  const std::string file = (folder / "run.mcap").string();
+  start(kImage + kAbove, {"--record", file, "--record-clouds", "4"});
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  int steps = 0;
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_image({.wall = 2.5 + 0.01 * ++steps, .ball = {}}); },
+      [&] { return steps > 30 && is_measured(); }))
+      << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  ChildProcess replay(kReplay, {"check", file, "--compare"});
+  EXPECT_NE(replay.wait(), 0);
+  EXPECT_THAT(replay.output(), testing::HasSubstr("not in the recording"));
 }
 
 }  // namespace

@@ -1,0 +1,128 @@
+// A stream of 640 x 480 pixels at 30 Hz beside ticks at 1 kHz.
+//
+// CLEARANCE_CAMERA_SECONDS=60 lets it last longer, and prints how late reports and ticks are, with
+// the stream and without it in turn.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "tests/shared/ros_joints.hpp"
+#include "tests/tools/camera_daemon.hpp"
+
+namespace clearance::test {
+namespace {
+
+using std::chrono::steady_clock;
+
+double percentile(std::vector<double>& values, double share) {
+  if (values.empty()) return 0.0;
+  std::ranges::sort(values);
+  const auto place = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1));
+  return values[place];
+}
+
+class CameraStream : public DaemonCameras {
+ protected:
+  // Streams for this long, and takes all reports. Returns the times from the end of the write of a
+  // frame to its first report, ms.
+  std::vector<double> stream(double seconds, bool with_images) {
+    std::vector<double> late_ms;
+    std::map<std::int64_t, std::int64_t> written;  // when, by stamp
+    std::atomic<bool> done{false};
+    std::thread moving([&] {
+      auto next = steady_clock::now();
+      for (int i = 0; !done; ++i) {
+        joints->send({"shoulder", "elbow", "push"}, {0.3 * std::sin(0.001 * i), 0, 0.1});
+        std::this_thread::sleep_until(next += std::chrono::milliseconds(1));
+      }
+    });
+    const auto end = steady_clock::now() + std::chrono::duration<double>(seconds);
+    auto next = steady_clock::now();
+    while (steady_clock::now() < end) {
+      if (steady_clock::now() >= next) {
+        next += std::chrono::microseconds(33'333);
+        const std::int64_t stamp = dds_time();
+        if (with_images) {
+          camera->send_image(scene_of_wall, stamp);
+          written[stamp] = dds_time();
+        }
+      }
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+      take();
+      take_health(with_images ? with_stream : without);
+      const auto sent = written.find(report->oldest_pose_ns);
+      if (sent == written.end()) continue;
+      late_ms.push_back(1e-6 * static_cast<double>(dds_time() - sent->second));
+      written.erase(written.begin(), std::next(sent));
+    }
+    done = true;
+    moving.join();
+    return late_ms;
+  }
+  // The largest delay of a wake-up, and the longest tick, of each second, us.
+  struct Ticks {
+    std::vector<double> wakeups, ticks;
+    [[nodiscard]] std::string text() {
+      return fmt::format("wake-up late p50 {:.0f}, worst {:.0f}; tick p50 {:.0f}, worst {:.0f}",
+                         percentile(wakeups, 0.5), percentile(wakeups, 1.0), percentile(ticks, 0.5),
+                         percentile(ticks, 1.0));
+    }
+  };
+  void take_health(Ticks& of) {
+    void* pointer = &*health;
+    dds_sample_info_t info{};
+    while (dds_take(health_reader, &pointer, &info, 1, 1) == 1) {
+      of.wakeups.push_back(health->wakeup_second_max_us);
+      of.ticks.push_back(health->tick_second_max_us);
+    }
+  }
+  Ticks with_stream, without;
+  Sample<clearance_msg_Health> health;
+  dds_entity_t health_reader = client.reader(TopicKind::kHealth, Topics{}.health);
+  std::optional<RosCamera> camera;
+  std::optional<RosJoints> joints;
+};
+
+TEST_F(CameraStream, OfFullSizeComesIntoReportsBesideTicksAtOneKilohertz) {
+  const char* const wanted = std::getenv("CLEARANCE_CAMERA_SECONDS");
+  const double seconds = wanted == nullptr ? 1.0 : std::atof(wanted);
+  rate_hz = 1000;
+  start(
+      "depth_image: /cam/image, size: [640, 480], depth_error: {constant: 0.002}, range: [0.3, 4]" +
+      kAbove);
+  camera.emplace(client, MadeCamera{.width = 640, .height = 480, .focal = 525.0});
+  joints.emplace(client);
+  ASSERT_TRUE(camera->is_heard() && joints->is_heard());
+  std::vector<double> late_ms;
+  for (double streamed = 0.0; streamed < seconds; streamed += 5.0) {
+    const double part = std::min(5.0, seconds);
+    if (wanted != nullptr) static_cast<void>(stream(part, false));
+    const std::vector<double> of_part = stream(part, true);
+    late_ms.insert(late_ms.end(), of_part.begin(), of_part.end());
+  }
+  EXPECT_GT(static_cast<double>(late_ms.size()), 5.0 * seconds) << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  if (wanted == nullptr) return;
+  std::printf(
+      "%zu of %.0f frames in reports; from the end of the write to the first report, ms: "
+      "p50 %.2f, p99 %.2f, p99.9 %.2f, worst %.2f\nlargest of each second, us, with the "
+      "stream: %s\nwithout: %s\n%s\n",
+      late_ms.size(), 30.0 * seconds, percentile(late_ms, 0.5), percentile(late_ms, 0.99),
+      percentile(late_ms, 0.999), percentile(late_ms, 1.0), with_stream.text().c_str(),
+      without.text().c_str(), daemon->output().c_str());
+}
+
+}  // namespace
+}  // namespace clearance::test
