@@ -15,6 +15,7 @@
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/urdf/robot_files.hpp"
+#include "core/model/rotation_between.hpp"
 
 namespace clearance {
 namespace {
@@ -141,7 +142,7 @@ void ModelBuilder::read_axis(const UrdfJoint& joint, RobotJoint& made) {
     return;
   }
   made.axis = unit_along(axis);
-  const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), made.axis);
+  const auto turn = rotation_between(Vec3::UnitZ(), made.axis);
   made.plane_x = turn * Vec3::UnitX();
   made.plane_y = turn * Vec3::UnitY();
 }

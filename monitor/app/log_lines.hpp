@@ -261,6 +261,9 @@ inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
 inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWarn,
                                                     "the partner's state is not taken over: {}"};
 
+// A template, because a tuple of so many types is slow to compile: only those who use it pay for
+// it.
+template <class = void>
 inline constexpr std::tuple kAll{kStarted,
                                  kHowToReach,
                                  kSystemRefuses,

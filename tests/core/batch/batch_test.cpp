@@ -12,8 +12,10 @@
 #include <string>
 #include <vector>
 
+#include "core/model/rotation_between.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/allocation_count.hpp"
+#include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/vector_widths.hpp"
@@ -218,7 +220,7 @@ TEST(DistanceBatch, KeepsTheSignsOfZeros) {
 Pose turned_to(int feature, double x) {
   const Vec3 closest[] = {{1.0, 1.0, 1.0}, {1.0, 1.0, 0.02}, {1.0, 0.03, 0.02}};
   const Vec3 to = x < 0.0 ? Vec3::UnitX() : Vec3(-Vec3::UnitX());
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(closest[feature], to);
+  const Eigen::Quaterniond turn = rotation_between(closest[feature], to);
   const Eigen::Quaterniond about(Eigen::AngleAxisd(x < 0.0 ? 0.3 : 1.1, to));
   return {Vec3(x, 0.0, 0.0), about * turn};
 }

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/urdf/robot_files.hpp"
+#include "core/model/rotation_between.hpp"
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/random.hpp"
 
@@ -58,7 +59,7 @@ Written random_robot(Random& random, int joints, JointType only = JointType::kFi
     const UrdfOrigin origin{random.in_box(0.5), random.in_box(3.2)};
     joint.parent_from_joint = pose_of(origin);
     joint.axis = random.direction();
-    const auto turn = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), joint.axis);
+    const auto turn = rotation_between(Vec3::UnitZ(), joint.axis);
     joint.plane_x = turn * Vec3::UnitX();
     joint.plane_y = turn * Vec3::UnitY();
     if (joint.type == JointType::kFloating) {

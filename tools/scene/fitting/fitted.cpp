@@ -6,6 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "core/model/rotation_between.hpp"
 #include "tools/scene/fitting/certified_error.hpp"
 
 namespace clearance {
@@ -35,7 +36,7 @@ std::vector<Vec3> vertices_in(const ConvexBody& body, const Eigen::Quaterniond& 
 }
 
 Eigen::Quaterniond rotation_to(const Vec3& axis) {
-  return Eigen::Quaterniond::FromTwoVectors(Vec3(Vec3::UnitZ()), axis).normalized();
+  return rotation_between(Vec3::UnitZ(), axis).normalized();
 }
 
 Mat3 principal_axes(const ConvexBody& body) {
