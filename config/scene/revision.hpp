@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/text/file_bytes.hpp"
+#include "config/text/fnv1a.hpp"
 
 namespace clearance {
 
@@ -52,11 +53,7 @@ class Revision {
     return read_bytes(path.string());
   }
 
-  void add(std::string_view bytes) noexcept {
-    for (const char byte : bytes) {
-      hash_ = (hash_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3u;
-    }
-  }
+  void add(std::string_view bytes) noexcept { hash_.add(bytes); }
 
   // Adds a file's bytes, and keeps its path.
   void add_file(const std::filesystem::path& path, std::string_view bytes) {
@@ -68,10 +65,12 @@ class Revision {
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
 
   // The hash is never 0, which means "not checked" on the wire.
-  [[nodiscard]] std::uint64_t value() const noexcept { return hash_ == 0 ? 1 : hash_; }
+  [[nodiscard]] std::uint64_t value() const noexcept {
+    return hash_.value() == 0 ? 1 : hash_.value();
+  }
 
  private:
-  std::uint64_t hash_ = 0xcbf29ce484222325u;
+  Fnv1a hash_;
   std::filesystem::path root_;
   std::vector<std::filesystem::path> files_;
 };

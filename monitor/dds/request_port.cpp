@@ -6,6 +6,7 @@
 #include <utility>
 #include <variant>
 
+#include "config/text/fnv1a.hpp"
 #include "config/text/sentences.hpp"
 #include "monitor/app/log_lines.hpp"
 #include "monitor/loop/ports.hpp"
@@ -20,12 +21,11 @@ constexpr std::size_t kMostStrangers = 64;
 constexpr std::uint64_t kMostLines = 5;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-// FNV-1a. The bytes of a request that is sent again are the same.
+// The bytes of a request that is sent again are the same.
 std::uint64_t hash_of(std::span<const std::byte> bytes) {
-  std::uint64_t hash = 0xcbf29ce484222325;
-  for (const std::byte byte : bytes)
-    hash = (hash ^ static_cast<std::uint64_t>(byte)) * 0x100000001b3;
-  return hash;
+  Fnv1a hash;
+  hash.add(bytes);
+  return hash.value();
 }
 
 template <class Traffic>

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "config/text/fnv1a.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/recording/event_files.hpp"
 #include "monitor/wire/convert.hpp"
@@ -30,11 +31,10 @@ std::unique_ptr<RecordingSink> sink_of(const std::filesystem::path& file, const 
 
 // Equal for batches with the same objects or joints.
 std::uint64_t content_of(const PoseBatch& batch) {
-  std::uint64_t hash = 14695981039346656037U;  // FNV-1a
-  const auto add = [&hash](std::uint32_t id) { hash = (hash ^ id) * 1099511628211U; };
-  for (const PoseSample& sample : batch.samples) add(sample.object);
-  for (const JointSample& sample : batch.joints) add(sample.variable);
-  return hash;
+  Fnv1a hash;
+  for (const PoseSample& sample : batch.samples) hash.add(sample.object);
+  for (const JointSample& sample : batch.joints) hash.add(sample.variable);
+  return hash.value();
 }
 
 }  // namespace

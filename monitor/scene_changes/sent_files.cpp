@@ -8,6 +8,7 @@
 #include <system_error>
 
 #include "config/text/file_bytes.hpp"
+#include "config/text/fnv1a.hpp"
 #include "monitor/scene_changes/durable_file.hpp"
 
 namespace clearance {
@@ -20,16 +21,12 @@ bool is_of_name(char c) {
          c == '-' || c == '.';
 }
 
-// Two FNV-1a hashes with different beginnings, and the length: not against an adversary, whose
-// files are compared byte by byte.
+// Two hashes and the length: not against an adversary, whose files are compared byte by byte.
 std::string content_name(const std::string& bytes) {
-  constexpr std::uint64_t kPrime = 0x100000001b3;
-  std::uint64_t a = 0xcbf29ce484222325, b = 0x9e3779b97f4a7c15;
-  for (const char byte : bytes) {
-    a = (a ^ static_cast<unsigned char>(byte)) * kPrime;
-    b = (b ^ static_cast<unsigned char>(byte)) * kPrime;
-  }
-  return fmt::format("{:016x}{:016x}-{}", a, b, bytes.size());
+  Fnv1a a, b(0x9e3779b97f4a7c15);
+  a.add(bytes);
+  b.add(bytes);
+  return fmt::format("{:016x}{:016x}-{}", a.value(), b.value(), bytes.size());
 }
 
 }  // namespace

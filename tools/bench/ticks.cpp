@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 
+#include "config/text/fnv1a.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/plain_arithmetic.hpp"
@@ -34,15 +35,14 @@ double median(std::vector<double> times) {
 class Hash {
  public:
   void add(const Report& report) {
-    add(std::bit_cast<std::uint64_t>(report.minimum.distance));
-    add(report.minimum.pair + (report.minimum_certified ? 1ull << 32 : 0ull));
+    hash_.add(std::bit_cast<std::uint64_t>(report.minimum.distance));
+    hash_.add(report.minimum.pair + (report.minimum_certified ? 1ull << 32 : 0ull));
   }
   // 24 bits: exact in the printed double.
-  [[nodiscard]] double value() const { return static_cast<double>(hash_ >> 40); }
+  [[nodiscard]] double value() const { return static_cast<double>(hash_.value() >> 40); }
 
  private:
-  void add(std::uint64_t word) { hash_ = (hash_ ^ word) * 0x100000001b3ull; }
-  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+  Fnv1a hash_;
 };
 
 // Measures a run and counts its work; returns the time of each tick, ns.
