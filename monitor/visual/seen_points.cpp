@@ -21,7 +21,8 @@ Vec3 middle_of(const PointCloud& cloud, std::size_t block, std::size_t lane) {
 }
 
 bool is_present(const DepthCloud& cloud, std::size_t block, std::size_t lane) {
-  return cloud.block(block).low[lane] <= cloud.block(block).high[lane];
+  return !DepthCloud::is_empty(cloud.node(0, block)) &&
+         cloud.block(block).low[lane] <= cloud.block(block).high[lane];
 }
 bool is_present(const PointCloud& cloud, std::size_t block, std::size_t lane) {
   return cloud.block(block).is_present(lane);

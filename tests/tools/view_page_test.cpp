@@ -189,6 +189,50 @@ TEST_F(ViewPage, MeasuresAnyTwoBodiesSavesTheTableAndPlotsMinutes) {
   EXPECT_EQ(found["minutes"]["width"], -600);
 }
 
+// The shipped cell with a camera, whose simulation renders a person whom the cell does not know.
+// The nearest element to a link is on the person, or on what stands around.
+TEST(ViewOfACamera, DrawsItsPointsTheBlindShellsAndTheNearestElement) {
+  const std::string cell = places::sources() + "/config/cells/camera.yaml";
+  const auto dds = dds_arguments(own_dds());
+  const ChildProcess daemon(kDaemon, with({cell}, dds));
+  const ChildProcess robot(kRobot, with({cell, "--swing", "0.3", "--person", "1.5,-0.2:1.45,-0.1",
+                                         "--person-speed", "0.05", "--camera-rate", "10"},
+                                        dds));
+  const View view(with({cell}, dds));
+  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "seen"});
+  EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
+  std::map<std::string, json> found;
+  for (const json& line : lines_of(page)) {
+    if (line.contains("step")) found[line["step"]] = line["found"];
+  }
+  EXPECT_EQ(found["errors"], json::array()) << page.output();
+  const json seen = found["seen"];
+  ASSERT_TRUE(seen.is_object());
+  EXPECT_EQ(seen["bodies"], 0) << "the ball of the camera's view is drawn";
+  // Points on the floor, on the shelf, and on the person, within the stated error.
+  const std::vector<double> places = seen["places"];
+  ASSERT_GT(places.size(), 3u * 1000);
+  std::size_t floor = 0, person = 0, below = 0;
+  for (std::size_t i = 0; i + 2 < places.size(); i += 3) {
+    const Vec3 at(places[i], places[i + 1], places[i + 2]);
+    floor += std::abs(at.z()) < 0.07;
+    below += at.z() < -0.1;
+    person += at.z() > 0.9 && (at - Vec3(1.5, -0.2, at.z())).norm() < 0.5;
+  }
+  EXPECT_GT(floor, 100u);
+  EXPECT_GT(person, 20u);
+  EXPECT_EQ(below, 0u);
+  EXPECT_GT(seen.value("drawn", 0), 500);
+  EXPECT_LT(10 * seen.value("without", 9999), seen.value("drawn", 0));
+  EXPECT_GT(seen["shells"].value("hand", 0.0), 0.001);
+  EXPECT_LT(seen["shells"].value("hand", 9.0), 2.0);
+  EXPECT_NEAR(seen["pose"][2], 1.9, 1e-9);
+  EXPECT_EQ(seen["row"][0], "camera");
+  EXPECT_GE(seen.value("lines", 0), 1) << "the pair with the nearest element has a line";
+  EXPECT_EQ(seen["modes"], json::parse(R"([{"all": true, "shells": false},
+      {"all": false, "shells": false}, {"all": true, "shells": true}])"));
+}
+
 void expect_causes(const json& found, PlacedBy placed_by) {
   ASSERT_EQ(found["texts"].size(), 8u);
   for (std::uint8_t i = 0; i < 8; ++i) {
