@@ -66,6 +66,10 @@ class PoseReader final : public PoseSource {
     if (sensors_) sensors_->keep_frames();
     return sensors_ ? &sensors_->built() : nullptr;
   }
+  // Any thread: see SensorReader::copies().
+  [[nodiscard]] std::vector<SeenFrame> seen(std::uint64_t scene_revision) {
+    return sensors_ ? sensors_->copies(scene_revision) : std::vector<SeenFrame>();
+  }
   // By sensor of the cell.
   [[nodiscard]] std::vector<SensorStatus> sensors() const {
     return sensors_ ? sensors_->statuses() : std::vector<SensorStatus>();
