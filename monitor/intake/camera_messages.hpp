@@ -44,9 +44,10 @@ enum class FrameFault : std::uint8_t {
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
   kCannotBuild,  // a picture too wide, or more points within the range than the cell states
   kNothingSeen,  // no pixel or point within the range but the robot's own
+  kLinkPlace,    // where a link was at the stamp is not known, or only roughly
   kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
 };
-inline constexpr std::size_t kFrameFaults = 24;
+inline constexpr std::size_t kFrameFaults = 25;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

@@ -176,6 +176,12 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) co
   return past;
 }
 
+bool PostureHistory::began_by(std::int64_t stamp_ns) const noexcept {
+  return std::ranges::all_of(joints_, [&](const Joint& joint) {
+    return joint.positions.empty() || joint.positions.around(stamp_ns).before != nullptr;
+  });
+}
+
 void PostureHistory::place(std::int64_t stamp_ns) {
   for (std::size_t i = 0; i < joints_.size(); ++i) place_joint(i, stamp_ns);
   for (std::uint32_t i = 0; i < objects_.size(); ++i) objects_[i] = pose_at(i, stamp_ns);

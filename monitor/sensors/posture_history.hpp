@@ -58,6 +58,8 @@ class PostureHistory {
 
   // True if no joint or pose that was heard lacks a value at or after the stamp.
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const noexcept;
+  // True if no joint that is heard has its first value after the stamp.
+  [[nodiscard]] bool began_by(std::int64_t stamp_ns) const noexcept;
   // Finds where everything was at this time, for the two functions below.
   void place(std::int64_t stamp_ns);
   // The same for what another history of this scene found. False: it is of another scene.

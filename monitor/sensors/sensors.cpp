@@ -246,8 +246,14 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
   if (state.sensor.kind == SensorKind::kOctomap)
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
-  const FrameFault fault =
-      place.known ? build_at(state, frame, place, cloud, use) : FrameFault::kNoPlace;
+  FrameFault fault = FrameFault::kNoFault;
+  if (!place.known) {
+    fault = FrameFault::kNoPlace;
+  } else if (!own_image_.can_leave_out(postures_, frame.stamp_ns)) {
+    fault = FrameFault::kLinkPlace;
+  } else {
+    fault = build_at(state, frame, place, cloud, use);
+  }
   if (fault != FrameFault::kNoFault) ++state.not_built[static_cast<std::size_t>(fault)];
 }
 

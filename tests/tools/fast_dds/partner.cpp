@@ -129,6 +129,7 @@ json distances(Cdr& cdr) {
   out["partner"] = take<std::string>(cdr);
   for (const char* field : {"lineage", "checksum", "state_checksum"})
     out[field] = take<std::uint64_t>(cdr);
+  out["hidden"] = take<std::uint32_t>(cdr);  // the number of them: the cell has no sensors
   return out;
 }
 
