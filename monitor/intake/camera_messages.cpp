@@ -101,10 +101,8 @@ const char* text(FrameFault fault) noexcept {
       return "its picture is too wide, or has more points within the range than the cell states";
     case FrameFault::kNothingSeen:
       return "nothing is seen within the range but the robot itself: that is not clear";
-    case FrameFault::kLinkPlace:
-      return "where the robot's links were at its stamp is not known, or only roughly: its own "
-             "image "
-             "cannot be told from an obstacle";
+    case FrameFault::kBeforeJoints:
+      return "joints were first heard after its stamp: the robot's own image is not left out";
     case FrameFault::kOctree:
       return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
   }
@@ -159,8 +157,8 @@ const char* name(FrameFault fault) noexcept {
       return "too wide, or too many points";
     case FrameFault::kNothingSeen:
       return "nothing seen but the robot";
-    case FrameFault::kLinkPlace:
-      return "places of links not known";
+    case FrameFault::kBeforeJoints:
+      return "before the first joints";
     case FrameFault::kOctree:
       return "a map that cannot be read";
   }

@@ -42,10 +42,11 @@ enum class FrameFault : std::uint8_t {
   kTooOften,           // more frames than the cell states
   // Faults that show when a frame is built.
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
-  kCannotBuild,  // a picture too wide, or more points within the range than the cell states
-  kNothingSeen,  // no pixel or point within the range but the robot's own
-  kLinkPlace,    // where a link was at the stamp is not known, or only roughly
-  kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
+  kCannotBuild,   // a picture too wide, or more points within the range than the cell states
+  kNothingSeen,   // no pixel or point within the range but the robot's own
+  kBeforeJoints,  // joints were first heard after the stamp: the robot's image is taken for an
+                  // obstacle
+  kOctree,        // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
 };
 inline constexpr std::size_t kFrameFaults = 25;
 

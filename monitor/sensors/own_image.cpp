@@ -30,17 +30,6 @@ OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
   }
 }
 
-bool OwnImage::can_leave_out(const PostureHistory& postures, std::int64_t stamp_ns) const noexcept {
-  if (!postures.began_by(stamp_ns)) return false;
-  return std::ranges::all_of(links_, [&](const Link& link) {
-    const PastPose past = postures.link(link.robot, link.link);
-    const auto& parts = scene_.objects[link.object].parts;
-    return !past.known || std::ranges::all_of(parts, [&](const Part& part) {
-      return past.error(radius_of(part)) <= kMostLinkError;
-    });
-  });
-}
-
 void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
                          const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
   const double place_error = place.error(sensor.extent());

@@ -18,12 +18,6 @@ class OwnImage {
 
   [[nodiscard]] std::size_t links() const noexcept { return links_.size(); }
 
-  // True unless the image of a robot that is heard cannot be told from an obstacle: its joints came
-  // later than this stamp, or their error would leave out all within kMostLinkError of a link. The
-  // postures are placed at the stamp.
-  [[nodiscard]] bool can_leave_out(const PostureHistory& postures,
-                                   std::int64_t stamp_ns) const noexcept;
-
   // A frame of the sensor, before any element is left out. The postures are placed at its stamp.
   // Writes the blind shells of SeenCloud::hidden(), too. A link whose pose at the stamp is not
   // known is not left out: its image counts as an obstacle. Call refit() of the cloud afterwards.
@@ -36,7 +30,6 @@ class OwnImage {
                    SeenCloud& cloud, SlabBody& body);
 
  private:
-  static constexpr double kMostLinkError = 0.3;  // m
   struct Link {
     std::uint32_t object = 0, robot = 0, link = 0;
   };

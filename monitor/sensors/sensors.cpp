@@ -249,8 +249,8 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   FrameFault fault = FrameFault::kNoFault;
   if (!place.known) {
     fault = FrameFault::kNoPlace;
-  } else if (!own_image_.can_leave_out(postures_, frame.stamp_ns)) {
-    fault = FrameFault::kLinkPlace;
+  } else if (!postures_.began_by(frame.stamp_ns)) {
+    fault = FrameFault::kBeforeJoints;
   } else {
     fault = build_at(state, frame, place, cloud, use);
   }

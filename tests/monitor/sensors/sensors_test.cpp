@@ -136,6 +136,18 @@ TEST_F(SensorsTest, WaitForJointsUpToTheStampButNotForLong) {
   EXPECT_EQ(settle(kStart + kFrame + 3000).size(), 1u);
 }
 
+TEST_F(SensorsTest, RefuseFramesFromBeforeTheFirstJoints) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(flat(0, 1000));
+  add_joints(0.0, kStart + 1'000'000);
+  EXPECT_TRUE(settle(kStart + 30'000'000).empty());
+  EXPECT_EQ(count(FrameFault::kBeforeJoints), 1u);
+  add(flat(1, 1100));
+  add_joints(0.0, kStart + kFrame);
+  EXPECT_EQ(settle(kStart + kFrame + 1000).size(), 1u);
+}
+
 TEST_F(SensorsTest, UseOnlyTheNewestOfSeveralFramesThatAreReady) {
   make(kImage + kAbove);
   add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
