@@ -201,7 +201,7 @@ double Chains::acceleration(const Chain& chain,
   return (1.0 + kChainRounding) * sum;
 }
 
-// From the tip inwards: a joint moves all that the joints behind it have moved.
+// Joints are taken from the tip inwards: a joint moves all that the joints behind it have moved.
 Nearing Chains::nearing(const Chain& chain, std::uint32_t object, const Sphere& sphere,
                         std::span<const VariableBounds> bounds,
                         std::span<const Nearing> free) const noexcept {

@@ -44,7 +44,7 @@ struct StatedPose {
   std::string object;
   Pose world_from_object;
   double age = 0.0;  // s, from 0 on: it was there this long before the first waypoint
-  // Of an object on which a robot stands: it does not rotate faster, rad/s. Infinity: not stated.
+  // An object on which a robot stands does not rotate faster, rad/s. Infinity: not stated.
   double turn_speed = kInfinity;
 };
 
@@ -98,7 +98,7 @@ struct Question {
   JointTrajectory motion;
   std::vector<JointTrajectory> beside;  // of other robots, which rest before and after it
   std::vector<HeldJoint> held;          // joints that stay
-  // Of robots that do nothing for this question, where they are: `others` says how they move. Every
+  // The positions of robots that do nothing for this question: `others` says how they move. Every
   // joint of the cell is in one of these. Pairs of such a robot count only if the other body has a
   // stated motion, or stays by `held`.
   std::vector<StatedJoint> joints;

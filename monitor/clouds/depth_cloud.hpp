@@ -204,7 +204,7 @@ class DepthCloud {
   std::size_t size_ = 0, missing_ = 0;
   std::uint64_t revision_ = 0;
   double extent_ = 0.0;
-  // Of unseen places, m: where they begin if their pixel was not seen, and where they end.
+  // Depths of unseen places, m: where they begin if their pixel was not seen, and where they end.
   float near_ = 0.0F, far_ = 0.0F;
 };
 

@@ -21,8 +21,8 @@ namespace clearance {
 // Metres, in the frame of the sensor. A coordinate that is not finite means a missing point.
 struct MeasuredPoint {
   float x = 0.0F, y = 0.0F, z = 0.0F;
-  // Of the ball that contains what was measured, or half of the side of a cube along the axes of
-  // the frame; finite, not negative.
+  // The radius of the ball that contains what was measured, or half the side of a cube along the
+  // axes of the frame; finite, not negative.
   float radius = 0.0F;
 };
 

@@ -359,7 +359,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
   const auto built = [&](const CloudCrop& crop) {
     return is_map ? points.build_cubes(points_, crop) : points.build(points_, crop);
   };
-  // Of a map, what is beyond the range is not dropped but cropped.
+  // A map is cropped to the range, and nothing of it is dropped.
   const CloudCrop whole{.centre = Vec3::Zero(),
                         .radius = is_map ? sensor.greatest_depth : sensor.extent()};
   CloudCrop crop = sensor.crop_radius < kInfinity ? crop_of(sensor, place) : whole;

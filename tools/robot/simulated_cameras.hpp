@@ -60,7 +60,7 @@ class SimulatedCameras {
   void stop();
   [[nodiscard]] std::uint64_t sent() const noexcept { return sent_; }
   [[nodiscard]] std::uint64_t failed() const noexcept { return failed_; }
-  // Of a frame of one camera: from its stamp until it is rendered, and until it is written.
+  // Delays of a frame of one camera: from its stamp until it is rendered, and until it is written.
   [[nodiscard]] const Histogram& rendered() const noexcept { return rendered_; }
   [[nodiscard]] const Histogram& written() const noexcept { return written_; }
 
