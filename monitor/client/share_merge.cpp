@@ -168,6 +168,7 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
     }
   }
   std::ranges::sort(list(out.contacts), {}, &clearance_msg_ContactState::pair);
+  if (views.empty()) out.lower_all = out.swept_lower_all = -kNone;
   out.minimum_certified = out.minimum_known;
   for (std::size_t share = 0; share < views.size(); ++share) {
     if (map.pairs(share) == 0) continue;

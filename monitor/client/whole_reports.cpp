@@ -30,14 +30,14 @@ void put(const std::vector<clearance_msg_PairDistance>& pairs, clearance_msg_Dis
 
 clearance_msg_PairDistance unknown_pair(std::uint32_t pair) noexcept {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
   constexpr clearance_msg_Vector3 kNowhere{kNaN, kNaN, kNaN};
   clearance_msg_PairDistance unknown{};
   unknown.pair = pair;
   unknown.status = static_cast<std::uint8_t>(PairStatus::kUnknown);
   unknown.distance = unknown.closing_speed = unknown.time_to_contact = kNaN;
-  unknown.lower = unknown.swept_lower = -kNone;
-  unknown.upper = kNone;
+  unknown.lower = unknown.swept_lower = -kUnbounded;
+  unknown.upper = kUnbounded;
   unknown.witness_a = unknown.witness_b = unknown.normal = kNowhere;
   unknown.age_a_ns = unknown.age_b_ns = -1;
   return unknown;
@@ -45,8 +45,12 @@ clearance_msg_PairDistance unknown_pair(std::uint32_t pair) noexcept {
 
 // Pairs stand in the order of the cell, which is that of their ids.
 bool WholeReports::complete(clearance_msg_Distances& message) {
+  if (message.changes_since == 0) {  // of a daemon that always sends all
+    cycle_ = 0;
+    return true;
+  }
   const std::uint64_t sender = sender_of(message);
-  const bool is_full = message.changes_since == 0;
+  const bool is_full = message.changes_since == message.cycle;
   const bool is_same = sender == sender_ && message.scene_revision == revision_;
   is_known_ = is_full || (is_known_ && is_same && message.changes_since == cycle_);
   cycle_ = message.cycle;
@@ -55,6 +59,7 @@ bool WholeReports::complete(clearance_msg_Distances& message) {
   const auto* const sent = message.pairs._buffer;
   if (is_full) {
     pairs_.assign(sent, sent + message.pairs._length);
+    message.changes_since = 0;
     return true;
   }
   if (!is_same_scene) pairs_.clear();

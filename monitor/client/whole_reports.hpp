@@ -11,8 +11,8 @@ namespace clearance::client {
 class WholeReports {
  public:
   // Completes a message: the pairs that it leaves out are as in the messages before. If one of
-  // those is missing, they are unknown until the next full report. Returns false then. A full
-  // message stays as it is. Messages come in the order of their cycles.
+  // those is missing, they are unknown until the next full report. Returns false then. Afterwards
+  // changes_since is 0. Messages come in the order of their cycles.
   bool complete(clearance_msg_Distances& message);
 
  private:

@@ -43,6 +43,7 @@ void ChangedPairs::reduce(clearance_msg_Distances& message) {
   lineage_ = message.lineage;
   if (!follows || message.cycle % full_every_ == 0) {
     listed_.assign(pairs, pairs + message.pairs._length);
+    message.changes_since = message.cycle;
     return;
   }
   std::uint32_t kept = 0;

@@ -19,8 +19,9 @@ class ChangedPairs {
   // Every report whose cycle is a multiple of `full_every` has all pairs; 0: every report.
   explicit ChangedPairs(std::uint64_t full_every) : full_every_(full_every) {}
 
-  // Leaves out the pairs of `message` that are as in the message before, and states so. All
-  // messages are of one scene. The first one of a lineage is full.
+  // Leaves out the pairs of `message` that are as in the message before, and states so: a full one
+  // has its own cycle as changes_since. All messages are of one scene. The first one of a lineage
+  // is full.
   void reduce(clearance_msg_Distances& message);
 
  private:

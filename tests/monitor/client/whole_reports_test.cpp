@@ -87,7 +87,7 @@ TEST(WholeReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
     Sample<clearance_msg_Distances> message;
     ticks.fill(*message, 0.1);
     changes.reduce(*message);
-    const bool is_full = message->changes_since == 0;
+    const bool is_full = message->changes_since == cycle;
     EXPECT_EQ(is_full, cycle == 1 || cycle % 20 == 0);
     if (cycle < 7 || random.chance(0.03)) {
       is_known = false;
