@@ -309,13 +309,13 @@ void CellReader::select_share(const YamlNode& root, Cell& cell) {
   if (found != all.end())
     return clearance::select_share(cell, static_cast<std::uint32_t>(found - all.begin()));
   std::vector<std::string> names;
-  for (const Share& share : all) names.push_back("'" + share.name + "'");
+  for (const Share& share : all) names.push_back(share.name);
   diagnostics_.add(
       shares_ == nullptr ? root : *shares_,
       names.empty()
           ? fmt::format("found no 'shares', and was asked for the share '{}'", options_.share)
           : fmt::format("found no share '{}'; expected {}{}", options_.share, one_of(names),
-                        did_you_mean("'" + options_.share + "'", names)));
+                        did_you_mean(options_.share, names)));
 }
 
 // The root frame cannot be guessed: while transforms are missing, any frame may be the root.
