@@ -98,7 +98,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   const TickLoopOptions loop{.max_ticks = options.max_ticks,
                              .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
                                                              PoseReader::joints_a_batch(cell)),
-                             .pace = partner_ ? &partner_->ticks : nullptr};
+                             .pace = partner_ ? &partner_->ticks : nullptr,
+                             .rehearses = true};
   std::vector<ReportSink*> sinks{now_.queue.get()};
   if (recording_) sinks.push_back(&recording_->sink());
   if (now_.ros) sinks.push_back(now_.ros.get());

@@ -16,6 +16,13 @@ namespace {
 constexpr std::int64_t kLongestWithoutSleep = 50'000'000, kShortSleep = 10'000;
 // The time between two looks of another thread for its answer.
 constexpr std::chrono::microseconds kLookForAnswer{50};
+// ns. A rehearsal that ends this long before the deadline still helps; a wake-up may be later.
+constexpr std::int64_t kRehearsalMargin = 20'000;
+
+// Answered when the tick thread is between two ticks: it does not rehearse then.
+class Nothing final : public LoopQuestion {
+  void copy(const LoopState&) noexcept override {}
+};
 
 }  // namespace
 
@@ -34,6 +41,9 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       statistics_(scene) {
   samples_.reserve(options_.max_samples);
   joints_.reserve(options_.max_samples);
+  if (!options_.rehearses || options_.pace != nullptr) return;
+  owned_rehearsal_ = Rehearsal::of(scene, monitor_.get());
+  rehearsal_ = owned_rehearsal_.get();
 }
 
 // Measures the delay of the wake-up, and the time until the report was handed over.
@@ -71,12 +81,41 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
 // decided on.
 std::int64_t TickLoop::wait(std::int64_t deadline) noexcept {
   if (options_.pace == nullptr) {
+    rehearse(deadline);
     clock_.sleep_until(deadline);
     return deadline;
   }
   clock_.sleep_until(deadline - options_.pace->ahead_ns());
   between_ticks();
   return options_.pace->decide(deadline, monitor_->cycle() + 1, scene_->revision);
+}
+
+// Begins so early that even the slowest rehearsal of late would end in time, and leaves it out when
+// that time has passed already.
+void TickLoop::rehearse(std::int64_t deadline) noexcept {
+  Rehearsal* const rehearsal = rehearsal_.load(std::memory_order_acquire);
+  if (rehearsal == nullptr || !rehearsal->is_of(*scene_) || monitor_->cycle() == 0) return;
+  const std::int64_t begin = deadline - kRehearsalMargin - rehearsal_ns_;
+  if (rehearsal_ns_ > period_ns_ / 4 || clock_.monotonic_ns() >= begin) {
+    rehearsal_ns_ -= rehearsal_ns_ / 16;
+    return;
+  }
+  clock_.sleep_until(begin);
+  const std::int64_t started = clock_.monotonic_ns();
+  if (started >= begin + kRehearsalMargin) return;
+  rehearsal->run(samples_, joints_, last_time_);
+  const std::int64_t took = clock_.monotonic_ns() - started;
+  rehearsal_ns_ = std::max(took, rehearsal_ns_ - rehearsal_ns_ / 16);
+}
+
+void TickLoop::renew_rehearsal(const std::atomic<bool>& loop_ended) {
+  if (!options_.rehearses || options_.pace != nullptr) return;
+  if (owned_rehearsal_ != nullptr && owned_rehearsal_->is_of(*scene_)) return;
+  std::unique_ptr<Rehearsal> next = Rehearsal::of(*scene_, monitor_.get());
+  rehearsal_.store(next.get(), std::memory_order_release);
+  Nothing nothing;
+  (void)ask(nothing, loop_ended);  // from now on the tick thread does not use the former one
+  owned_rehearsal_ = std::move(next);
 }
 
 // Deadlines stay on the grid of the first one. Missed ones are counted and skipped: a loop that
@@ -97,6 +136,7 @@ void TickLoop::tick_once() noexcept {
   take_in();
   const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
   const Report& report = monitor_->tick(samples_, joints_, time);
+  last_time_ = time;
   if (Successor* next = offered_.load(std::memory_order_acquire);
       next != nullptr && next->state() == Successor::State::kCatchingUp) {
     next->record(samples_, joints_, time, report.minimum_certified);

@@ -13,6 +13,7 @@
 #include "monitor/loop/joined_state.hpp"
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/loop/rehearsal.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/loop/successor.hpp"
 #include "monitor/monitor.hpp"
@@ -24,6 +25,8 @@ struct TickLoopOptions {
   std::size_t max_samples =
       4096;                  // samples that one tick can use; the rest waits for the next tick
   TickPace* pace = nullptr;  // null: the loop alone decides when it ticks
+  // Wakes before each deadline for a rehearsal, if the scene is small and there is no pace.
+  bool rehearses = false;
 };
 
 // Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an
@@ -65,6 +68,10 @@ class TickLoop {
   // has ended.
   [[nodiscard]] bool ask(LoopQuestion& question, const std::atomic<bool>& loop_ended);
 
+  // The preparing thread, after a change of the scene: makes a rehearsal for the new one. Until
+  // then there is none.
+  void renew_rehearsal(const std::atomic<bool>& loop_ended);
+
   // Runs in the calling thread until `stop` is set or `max_ticks` are done.
   void run(const std::atomic<bool>& stop) noexcept;
 
@@ -76,6 +83,7 @@ class TickLoop {
   void follow_offer() noexcept;
   void join() noexcept;
   [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
+  void rehearse(std::int64_t deadline) noexcept;
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;
@@ -91,6 +99,11 @@ class TickLoop {
   std::atomic<Successor*> offered_{nullptr};
   std::atomic<JoinedState*> joined_{nullptr};
   std::atomic<LoopQuestion*> asked_{nullptr};
+  // The tick thread uses the first one, the preparing thread owns it.
+  std::atomic<Rehearsal*> rehearsal_{nullptr};
+  std::unique_ptr<Rehearsal> owned_rehearsal_;
+  std::int64_t rehearsal_ns_ = 0;  // the time that one takes, at most as of late
+  TickTime last_time_;             // of the last tick
   SceneIds ids_;
   SteadyTime time_;
   PoseSource& source_;

@@ -35,6 +35,7 @@ void SceneThread::run() {
     }
     if (!enter(Phase::kChanging)) return;
     if (result && next->answer) next->answer(*result);
+    loop_.renew_rehearsal(loop_ended_);
   }
 }
 

@@ -15,7 +15,9 @@ class SceneThread {
  public:
   SceneThread(SceneChanger& changer, TickLoop& loop, const std::atomic<bool>& loop_ended,
               CommanderOptions options)
-      : commander_(changer, loop, loop_ended, std::move(options)) {}
+      : loop_(loop),
+        loop_ended_(loop_ended),
+        commander_(changer, loop, loop_ended, std::move(options)) {}
   ~SceneThread();
   SceneThread(const SceneThread&) = delete;
   SceneThread& operator=(const SceneThread&) = delete;
@@ -38,6 +40,8 @@ class SceneThread {
   // Returns false after end(); then nothing may be read any more.
   bool enter(Phase phase);
 
+  TickLoop& loop_;
+  const std::atomic<bool>& loop_ended_;
   CommandQueue queue_;
   SceneCommander commander_;
   std::mutex mutex_;
