@@ -103,8 +103,8 @@ TEST(Shares, ARobotIsReadWithWhatItStandsOn) {
   const std::string cell = cell_text(
       "objects:\n"
       "  - {name: wagon, sphere: {radius: 0.1}}\n"
-      "  - {name: tool, groups: [things], sphere: {radius: 0.1}, attached: {to: wagon, pose: {xyz: [0, 0, 1]}}}\n"
-      "  - {name: box, groups: [things], sphere: {radius: 0.1}}\n"
+      "  - {name: tool, sphere: {radius: 0.1}, attached: {to: wagon, pose: {xyz: [0, 0, 1]}}}\n"
+      "  - {name: box, sphere: {radius: 0.1}}\n"
       "  - {name: post, fixed: true, sphere: {radius: 0.1}}\n"
       "pairs: [{between: [tool, post]}, {between: [box, post]}, {between: [wagon, box]}]\n"
       "shares:\n"
