@@ -25,7 +25,8 @@
 namespace clearance {
 namespace {
 
-constexpr const char* kFooter = R"(Whatever hangs on a share that is not heard is unknown, and its zones are active.
+constexpr const char* kFooter =
+    R"(Whatever hangs on a share that is not heard is unknown, and its zones are active.
 
 Exit status:
   0  stopped by SIGINT, SIGTERM, SIGHUP or --seconds
@@ -56,8 +57,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->capture_default_str();
   app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
       ->check(number_from_zero());
-  app.add_option("--priority", arguments.fifo_priority,
-                 "Run under SCHED_FIFO with this priority")
+  app.add_option("--priority", arguments.fifo_priority, "Run under SCHED_FIFO with this priority")
       ->check(CLI::Range(1, 99));
   arguments.dds.add_to(app);
   add_log_level(app, arguments.log_level);

@@ -195,7 +195,8 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
                                            describe(*publish)));
   if (what == "changes") cell.full_every_s = 1.0;
   if (full != nullptr) {
-    const auto every = read_number(*full, kFullReports, "seconds between full reports", diagnostics_);
+    const auto every =
+        read_number(*full, kFullReports, "seconds between full reports", diagnostics_);
     if (what == "all")
       diagnostics_.add(*full, "found full_every_s without 'publish: changes'; expected both");
     if (what == "changes") cell.full_every_s = every.value_or(1.0);

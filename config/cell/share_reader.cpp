@@ -97,10 +97,10 @@ class ShareReader {
       const auto pair = pair_index(pairs_, key);
       if (!pair || share_of_[*pair] == share) continue;
       if (share_of_[*pair] != kNoShare) {
-        refuse(node, fmt::format("found {} in the shares '{}' and '{}'; expected every pair in one "
-                                 "share",
-                                 described(*pair), shares_[share_of_[*pair]].name,
-                                 shares_[share].name));
+        refuse(node,
+               fmt::format("found {} in the shares '{}' and '{}'; expected every pair in one "
+                           "share",
+                           described(*pair), shares_[share_of_[*pair]].name, shares_[share].name));
         return added;
       }
       share_of_[*pair] = share;
@@ -120,8 +120,7 @@ class ShareReader {
 
   [[nodiscard]] std::string described(std::uint32_t pair) const {
     const ObjectPair& of = pairs_[pair];
-    return fmt::format("the pair '{}' and '{}'", objects_[of.first].name,
-                       objects_[of.second].name);
+    return fmt::format("the pair '{}' and '{}'", objects_[of.first].name, objects_[of.second].name);
   }
 
   void refuse(const YamlNode& node, std::string what) {
@@ -133,7 +132,7 @@ class ShareReader {
   const std::vector<ObjectPair>& pairs_;
   GroupIndex& group_index_;
   Diagnostics& diagnostics_;
-  std::vector<std::uint32_t> share_of_;             // by pair
+  std::vector<std::uint32_t> share_of_;            // by pair
   std::map<std::string, const YamlNode*> topics_;  // of the shares, and where they are named
   std::vector<Share> shares_;
   bool is_complete_ = true;
@@ -163,9 +162,10 @@ std::vector<Share> read_balanced(const YamlNode& node, const std::vector<Object>
 std::vector<Share> read_shares(const YamlNode& node, const std::vector<Object>& objects,
                                const std::vector<ObjectPair>& pairs, const std::vector<Zone>& zones,
                                GroupIndex& group_index, Diagnostics& diagnostics) {
-  std::vector<Share> shares = node.kind == YamlNode::Kind::kMap
-                                  ? read_balanced(node, objects, pairs, diagnostics)
-                                  : ShareReader(objects, pairs, group_index, diagnostics).read(node);
+  std::vector<Share> shares =
+      node.kind == YamlNode::Kind::kMap
+          ? read_balanced(node, objects, pairs, diagnostics)
+          : ShareReader(objects, pairs, group_index, diagnostics).read(node);
   if (!shares.empty()) note_zones(zones, shares);
   return shares;
 }

@@ -11,8 +11,8 @@
 
 namespace clearance {
 
-// `pairs` and `zones` are those of the whole cell. Reports shares that have a pair in common, pairs that no
-// share has, and shares without a pair. Returns nothing after a mistake.
+// `pairs` and `zones` are those of the whole cell. Reports shares that have a pair in common, pairs
+// that no share has, and shares without a pair. Returns nothing after a mistake.
 [[nodiscard]] std::vector<Share> read_shares(const YamlNode& node,
                                              const std::vector<Object>& objects,
                                              const std::vector<ObjectPair>& pairs,

@@ -93,7 +93,7 @@ void select_share(Cell& cell, std::uint32_t share) {
 // for 499,500 pairs), and some pairs in a hundred are evaluated.
 std::uint64_t pair_cost(const std::vector<Object>& objects, const ObjectPair& pair) noexcept {
   constexpr std::uint64_t kPolyhedra = 1000, kCurved = 3000, kSeen = 20'000;
-  constexpr std::uint64_t kKept = 10;         // every pair
+  constexpr std::uint64_t kKept = 10;          // every pair
   constexpr std::uint64_t kEvaluatedOne = 50;  // of this many pairs that are not published
   const Object& a = objects[pair.first];
   const Object& b = objects[pair.second];

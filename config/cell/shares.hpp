@@ -61,8 +61,8 @@ void select_share(Cell& cell, std::uint32_t share);
 // Divides all pairs into `count` shares "1", "2", ... of about the same cost: runs of the pairs'
 // order, so that a share has few of the first objects. Their zones are not filled.
 [[nodiscard]] std::vector<Share> balanced_shares(const std::vector<Object>& objects,
-                                                const std::vector<ObjectPair>& pairs,
-                                                std::uint32_t count);
+                                                 const std::vector<ObjectPair>& pairs,
+                                                 std::uint32_t count);
 
 // Fills Share::zones. Every pair is in one share.
 void note_zones(const std::vector<Zone>& zones, std::vector<Share>& shares);

@@ -252,8 +252,8 @@ inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWa
 
 // ---- Shares, as clearance-merge joins them
 
-inline constexpr LogLine<Text, Count, Text> kMergeStarted{
-    "merge-started", kInfo, "cell '{}' in {} shares on {}"};
+inline constexpr LogLine<Text, Count, Text> kMergeStarted{"merge-started", kInfo,
+                                                          "cell '{}' in {} shares on {}"};
 inline constexpr LogLine<Text, Count> kShareHeard{"share-heard", kInfo,
                                                   "the share '{}' (revision {:016x}) is heard"};
 inline constexpr LogLine<Text> kShareMissing{

@@ -106,8 +106,8 @@ class Stream {
   WholeReports whole_;
 };
 
-// Of a daemon that publishes the pairs that changed, reports have all pairs here. A pair that cannot
-// be known, since a report before was missed, is unknown until the next full report.
+// Of a daemon that publishes the pairs that changed, reports have all pairs here. A pair that
+// cannot be known, since a report before was missed, is unknown until the next full report.
 using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell
 using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`

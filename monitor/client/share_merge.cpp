@@ -70,8 +70,7 @@ void add_counts(const clearance_msg_Distances& report, clearance_msg_Distances& 
   out.oldest_pose_ns = older(out.oldest_pose_ns, report.oldest_pose_ns);
   out.now_ns = older(out.now_ns, report.now_ns);
   out.publish_ns = older(out.publish_ns, report.publish_ns);
-  if (report.minimum_known &&
-      (!out.minimum_known || is_nearer(report.minimum, out.minimum))) {
+  if (report.minimum_known && (!out.minimum_known || is_nearer(report.minimum, out.minimum))) {
     out.minimum_known = true;
     out.minimum = report.minimum;
     out.clock_offset_ns = report.clock_offset_ns;
@@ -104,7 +103,8 @@ void join_sources(std::span<const ShareView> views, clearance_msg_Distances& out
 
 // No pair of a share is nearer than its lower_all, and none but its minimum is nearer than that one
 // if it is certified.
-bool allows_minimum(const clearance_msg_Distances& report, const clearance_msg_PairDistance& least) {
+bool allows_minimum(const clearance_msg_Distances& report,
+                    const clearance_msg_PairDistance& least) {
   return report.minimum_certified || report.lower_all >= least.upper;
 }
 
@@ -208,8 +208,8 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
           !has_any || found->scaling < least.scaling ||
           (found->scaling == least.scaling && found->remaining < least.remaining);
       const auto worst = has_any ? std::min(validity(*found), validity(least)) : validity(*found);
-      const double speed = has_any ? std::min(found->speed_limit, least.speed_limit)
-                                   : found->speed_limit;
+      const double speed =
+          has_any ? std::min(found->speed_limit, least.speed_limit) : found->speed_limit;
       if (is_nearer) least = *found;
       least.validity = worst;
       least.speed_limit = speed;
@@ -241,9 +241,9 @@ clearance_msg_ZoneState join_zone(const ShareMap& map, std::uint32_t zone,
       joined.clearance = joined.swept_clearance = -kNone;
       return joined;
     }
-    const bool decides = (state->active && !joined.active) ||
-                         (state->active == joined.active &&
-                          state->swept_clearance < joined.swept_clearance);
+    const bool decides =
+        (state->active && !joined.active) ||
+        (state->active == joined.active && state->swept_clearance < joined.swept_clearance);
     joined.certified = joined.certified && state->certified;
     if (!decides && joined.name[0] != '\0') continue;
     const bool is_certified = joined.certified;

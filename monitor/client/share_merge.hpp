@@ -25,7 +25,7 @@ enum class ShareState : std::uint8_t {
 // A share at one moment.
 struct ShareView {
   ShareState state = ShareState::kMissing;
-  const clearance_msg_Distances* report = nullptr;      // kWhole: not null
+  const clearance_msg_Distances* report = nullptr;       // kWhole: not null
   const clearance_msg_Separation* separation = nullptr;  // null: it has none, or none of that time
 };
 

@@ -16,8 +16,8 @@
 namespace clearance::client {
 namespace {
 
-// A zone's state that a daemon wrote holds for this long after the last report of that daemon, since
-// its partner may have written nothing since.
+// A zone's state that a daemon wrote holds for this long after the last report of that daemon,
+// since its partner may have written nothing since.
 constexpr std::int64_t kHeardFor = 1'000'000'000;
 
 std::uint64_t random_number() {
@@ -210,8 +210,8 @@ void SharedCell::follow_revision() {
   int most = 0;
   for (const auto& share : shares_) {
     const std::uint64_t revision = share->current->scene_revision;
-    const bool is_here = revision != 0 && joined_ns_ - share->current->publish_ns <
-                                              options_.late_after.count();
+    const bool is_here =
+        revision != 0 && joined_ns_ - share->current->publish_ns < options_.late_after.count();
     if (is_here && ++counts[revision] > most) {
       most = counts[revision];
       best = revision;
@@ -274,9 +274,8 @@ void SharedCell::join(std::int64_t now_ns) {
     view.state = checks_[i].state;
     view.report = &*share.current;
     const clearance_msg_Separation& separation = *share.separations;
-    const bool is_of_now =
-        separation.scene_revision == map_.revision() &&
-        now_ns - separation.publish_ns <= options_.late_after.count();
+    const bool is_of_now = separation.scene_revision == map_.revision() &&
+                           now_ns - separation.publish_ns <= options_.late_after.count();
     if (is_of_now) view.separation = &separation;
   }
   const std::int64_t before_ns = message_->now_ns, published_ns = message_->publish_ns;

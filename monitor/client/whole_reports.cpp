@@ -67,8 +67,8 @@ bool WholeReports::complete(clearance_msg_Distances& message) {
     for (clearance_msg_PairDistance& pair : pairs_) pair = unknown_pair(pair.pair);
   }
   for (std::uint32_t i = 0; i < message.pairs._length; ++i) {
-    const auto place = std::ranges::lower_bound(pairs_, sent[i].pair, {},
-                                                &clearance_msg_PairDistance::pair);
+    const auto place =
+        std::ranges::lower_bound(pairs_, sent[i].pair, {}, &clearance_msg_PairDistance::pair);
     if (place != pairs_.end() && place->pair == sent[i].pair) {
       *place = sent[i];
     } else {

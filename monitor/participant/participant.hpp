@@ -77,8 +77,8 @@ class Participant {
                       const dds_listener_t* listener = nullptr,
                       const dds_topic_filter* filter = nullptr);
   dds_entity_t writer(TopicKind kind, const std::string& name, const WriterOptions& options = {});
-  // Reads a latched topic that several programs write, so that no writer's sample takes the place of
-  // another's.
+  // Reads a latched topic that several programs write, so that no writer's sample takes the place
+  // of another's.
   dds_entity_t reader_of_several(TopicKind kind, const std::string& name);
   // Reads a distances topic without the writers of this participant: best-effort, only the newest
   // sample.

@@ -37,8 +37,8 @@ void ChangedPairs::reduce(clearance_msg_Distances& message) {
   message.changes_since = 0;
   if (full_every_ == 0) return;
   auto* const pairs = message.pairs._buffer;
-  const bool follows = cycle_ != 0 && message.cycle == cycle_ + 1 &&
-                       message.lineage == lineage_ && listed_.size() == message.pairs._length;
+  const bool follows = cycle_ != 0 && message.cycle == cycle_ + 1 && message.lineage == lineage_ &&
+                       listed_.size() == message.pairs._length;
   cycle_ = message.cycle;
   lineage_ = message.lineage;
   if (!follows || message.cycle % full_every_ == 0) {

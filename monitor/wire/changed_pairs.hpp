@@ -26,7 +26,7 @@ class ChangedPairs {
 
  private:
   std::uint64_t full_every_;
-  std::uint64_t cycle_ = 0, lineage_ = 0;          // of the message before
+  std::uint64_t cycle_ = 0, lineage_ = 0;           // of the message before
   std::vector<clearance_msg_PairDistance> listed_;  // as listed last
 };
 

@@ -109,8 +109,8 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
         if (cycle != 0 && reports->cycle > cycle + 1) ++missing;
         cycle = std::max(cycle, reports->cycle);
         const auto state = reports.partner().state;
-        other_bits += state == client::PartnerState::kDifferent ||
-                      state == client::PartnerState::kCorrupt;
+        other_bits +=
+            state == client::PartnerState::kDifferent || state == client::PartnerState::kCorrupt;
         agreed = state == client::PartnerState::kAgrees ? agreed + 1 : 0;
         if (const auto* const pair = boxes.in(*reports)) {
           if (pair->swept_lower < 0.3) is_inside = true;

@@ -53,8 +53,8 @@ class SharedCells : public testing::Test {
                       const std::string& as = {}) {
     auto& daemon = daemons[as.empty() ? share : as];
     daemon = std::make_unique<ChildProcess>(
-        kDaemon, test::with(test::with({file.path(), "--share", share}, test::dds_arguments(dds)),
-                            more));
+        kDaemon,
+        test::with(test::with({file.path(), "--share", share}, test::dds_arguments(dds)), more));
     return *daemon;
   }
   void start_all() {
@@ -120,12 +120,12 @@ TEST_F(SharedCells, AKilledOneIsUnknownByNameAndComesBack) {
     daemons["boxes"]->signal(is_stopped ? SIGSTOP : SIGKILL);
     // Until it is unknown, no report is older than that limit.
     EXPECT_TRUE(read_until(whole, [&] {
-      EXPECT_TRUE(status(whole, 0) == kUnknown ||
-                  dds_time() - whole->publish_ns < 1'000'000'000);
+      EXPECT_TRUE(status(whole, 0) == kUnknown || dds_time() - whole->publish_ns < 1'000'000'000);
       return !whole.is_whole();
     }));
     EXPECT_NE(whole.what_is_missing().find("'boxes'"), std::string::npos);
-    EXPECT_EQ(std::ranges::count(whole.shares(), ShareState::kWhole, &client::ShareCheck::state), 2);
+    EXPECT_EQ(std::ranges::count(whole.shares(), ShareState::kWhole, &client::ShareCheck::state),
+              2);
     EXPECT_EQ(whole->lower_all, -kInfinity);
     EXPECT_FALSE(whole->minimum_certified);
     const std::uint32_t boxes = cell.shares.all[0].pairs[0];
@@ -168,7 +168,8 @@ TEST_F(SharedCells, PartnersOfAShareLoseNoCycleWhenOneIsKilled) {
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
   ASSERT_TRUE(test::eventually([&] { return second.told("partner-agrees"); })) << logs();
-  read_until(whole, [] { return false; }, 1);
+  read_until(
+      whole, [] { return false; }, 1);
   const std::uint64_t missed = whole.missed();
   const std::uint64_t cycle = whole->cycle;
   daemons["boxes"]->signal(SIGKILL);
@@ -204,7 +205,8 @@ TEST_F(SharedCells, AnUnknownNameEndsTheDaemonWithTheNamesThatThereAre) {
 // Readers that know nothing of shares see one daemon.
 TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   start_all();
-  ChildProcess merge(kMerge, test::with({file.path(), "--late-ms", "300"}, test::dds_arguments(dds)));
+  ChildProcess merge(kMerge,
+                     test::with({file.path(), "--late-ms", "300"}, test::dds_arguments(dds)));
   client::Reports reports(connection);
   client::Catalogue catalogue(connection);
   client::Pair boxes(catalogue, "left", "right");
@@ -221,7 +223,8 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   ASSERT_TRUE(hears([&] {
     const auto* const pair = boxes.in(*reports);
     return pair != nullptr && pair->status != kUnknown && reports->minimum_certified;
-  })) << merge.output() << logs();
+  })) << merge.output()
+      << logs();
   EXPECT_TRUE(reports.check().fresh());
   EXPECT_EQ(reports->pairs._length, 3u);
   // The daemons tell their health once a second.
@@ -251,13 +254,14 @@ class ChangedSharedCells : public SharedCells {
 // A command reaches every share, in one order. One that a share refuses changes none.
 TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
   start_all();
-  ChildProcess merge(kMerge, test::with({file.path(), "--late-ms", "1000"}, test::dds_arguments(dds)));
+  ChildProcess merge(kMerge,
+                     test::with({file.path(), "--late-ms", "1000"}, test::dds_arguments(dds)));
   client::SharedCell whole(connection, {.late_after = milliseconds(1000)});
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   ASSERT_TRUE(test::eventually([&] { return merge.told("share-heard", {"right floor"}); }));
   client::Commands commands(connection, "planner");
-  const auto moved = commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2,
-                                                      .leave_above = 0.25}});
+  const auto moved =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});
   ASSERT_TRUE(moved) << merge.output() << logs();
   EXPECT_TRUE(moved->done()) << moved->reason;
   EXPECT_NE(moved->scene_revision, cell.scene.revision);
@@ -266,12 +270,13 @@ TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
     return whole.is_whole() && whole->scene_revision == moved->scene_revision;
   })) << whole.what_is_missing();
   // An object that no share watches: the shares would leave its pairs out.
-  const auto refused = commands.send({AddObject{
-      .yaml = "{name: cone, groups: [still], fixed: true, sphere: {radius: 0.1}}"}});
+  const auto refused = commands.send(
+      {AddObject{.yaml = "{name: cone, groups: [still], fixed: true, sphere: {radius: 0.1}}"}});
   ASSERT_TRUE(refused) << merge.output();
   EXPECT_FALSE(refused->done());
   EXPECT_NE(refused->reason.find("no share has changed"), std::string::npos) << refused->reason;
-  read_until(whole, [] { return false; }, 1);
+  read_until(
+      whole, [] { return false; }, 1);
   EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
   EXPECT_EQ(whole->scene_revision, moved->scene_revision);
 }

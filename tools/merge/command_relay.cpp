@@ -14,7 +14,7 @@
 namespace clearance::merge {
 namespace {
 
-constexpr std::chrono::seconds kPatience{10};          // for the result of one share
+constexpr std::chrono::seconds kPatience{10};                 // for the result of one share
 constexpr std::chrono::nanoseconds kReported{2'000'000'000};  // for the first report after it
 
 CommandResult refusal(const Command& command, CommandStatus status, std::string reason) {
@@ -29,7 +29,9 @@ std::optional<std::uint32_t> needs_a_pose(const Command& command) {
   for (std::uint32_t i = 0; i < command.changes.size(); ++i) {
     const auto* const attach = std::get_if<Attach>(&command.changes[i]);
     const auto* const detach = std::get_if<Detach>(&command.changes[i]);
-    if ((attach != nullptr && !attach->carrier_from_object) || (detach != nullptr && !detach->world_from_object)) return i;
+    if ((attach != nullptr && !attach->carrier_from_object) ||
+        (detach != nullptr && !detach->world_from_object))
+      return i;
   }
   return std::nullopt;
 }
@@ -42,9 +44,9 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
   for (const Share& share : cell.shares.all) {
     OfShare& of = shares_.emplace_back();
     of.name = share.name;
-    of.connection = std::make_unique<client::Connection>(
-        connection.participant().handle(), connection.participant().partition(),
-        topics_of_share(cell.topics, share.name));
+    of.connection = std::make_unique<client::Connection>(connection.participant().handle(),
+                                                         connection.participant().partition(),
+                                                         topics_of_share(cell.topics, share.name));
     for (const std::string& name : cell.commands.from)
       of.commands[name] = std::make_unique<client::Commands>(*of.connection, name);
   }
@@ -152,12 +154,12 @@ CommandResult CommandRelay::pass_on(const Command& asked) {
         others += fmt::format("{}'{}'", others.empty() ? "" : ", ", share.name);
         continue;
       }
-      return refusal(asked, CommandStatus::kFailed,
-                     fmt::format("the share '{}' did not make it{}: {}; the cell is not whole until "
-                                 "it has the same scene",
-                                 share.name,
-                                 others.empty() ? "" : fmt::format(", and {} did", others),
-                                 last.done() ? "its scene is another one" : last.reason));
+      return refusal(
+          asked, CommandStatus::kFailed,
+          fmt::format("the share '{}' did not make it{}: {}; the cell is not whole until "
+                      "it has the same scene",
+                      share.name, others.empty() ? "" : fmt::format(", and {} did", others),
+                      last.done() ? "its scene is another one" : last.reason));
     }
   }
   last.client = asked.client;

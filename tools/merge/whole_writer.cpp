@@ -106,7 +106,8 @@ std::string WholeWriter::summary(const client::SharedCell& whole) const {
                : delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
   };
   return fmt::format(
-      "{} reports of the whole cell, {} of them with a share missing, late or of another revision; {} "
+      "{} reports of the whole cell, {} of them with a share missing, late or of another revision; "
+      "{} "
       "cycles lost, {} zones wrong, {} reports not taken by DDS\n"
       "delay from the oldest share's report to that of the whole: p50 {:.0f} us, p99.9 {:.0f} us",
       reports_, not_whole_, whole.missed(), zone_check_.wrong(), failed_, at(0.5), at(0.999));

@@ -39,7 +39,7 @@ class WholeWriter {
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0;  // 0: no share has had any yet
   OtherDaemons others_;
-  std::uint64_t revision_ = 0;  // of the catalogue that was written; 0: none
+  std::uint64_t revision_ = 0;             // of the catalogue that was written; 0: none
   std::map<std::uint32_t, bool> written_;  // zones, and whether they were active
   std::int64_t health_ns_ = 0;
   std::uint64_t reports_ = 0, not_whole_ = 0, failed_ = 0;

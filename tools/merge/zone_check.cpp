@@ -8,9 +8,7 @@
 namespace clearance::merge {
 
 ZoneCheck::ZoneCheck(const Cell& cell)
-    : cell_(cell),
-      was_doubtful_(cell.scene.zones.size()),
-      was_unheard_(cell.scene.zones.size()) {}
+    : cell_(cell), was_doubtful_(cell.scene.zones.size()), was_unheard_(cell.scene.zones.size()) {}
 
 void ZoneCheck::look(const client::SharedCell& whole) {
   const Scene& scene = cell_.scene;
@@ -24,8 +22,7 @@ void ZoneCheck::look(const client::SharedCell& whole) {
     if (is_unheard && !was_unheard_[id]) ++wrong_;
     was_unheard_[id] = is_unheard;
     const bool is_inside = std::ranges::any_of(zone.pairs, [&](std::uint32_t pair) {
-      const auto at =
-          std::ranges::lower_bound(pairs, pair, {}, &clearance_msg_PairDistance::pair);
+      const auto at = std::ranges::lower_bound(pairs, pair, {}, &clearance_msg_PairDistance::pair);
       if (at == pairs.end() || at->pair != pair) return false;
       const ObjectPair& of = scene.pairs[pair];
       const double margins = scene.objects[of.first].margin + scene.objects[of.second].margin;

@@ -119,10 +119,10 @@ TEST(Shares, ARobotIsReadWithWhatItStandsOn) {
 }
 
 TEST(Shares, ThatOverlapAreRefusedWithThePairAndBothNames) {
-  const std::string text = mistake(
-      halls("shares:\n"
-            "  - {name: one, pairs: [{between: [left, left]}, {between: [left, right]}]}\n"
-            "  - {name: two, pairs: [{between: [right, right]}, {between: [a, c]}]}\n"));
+  const std::string text =
+      mistake(halls("shares:\n"
+                    "  - {name: one, pairs: [{between: [left, left]}, {between: [left, right]}]}\n"
+                    "  - {name: two, pairs: [{between: [right, right]}, {between: [a, c]}]}\n"));
   for (const char* part : {"'a'", "'c'", "'one'", "'two'", "in one share"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
 }

@@ -157,8 +157,8 @@ Sample<clearance_msg_Distances> full_report(Random& random) {
   return sample;
 }
 
-// A bit that flips between the tick and the client is found by the report that has it. Padding holds
-// nothing, and is no trial.
+// A bit that flips between the tick and the client is found by the report that has it. Padding
+// holds nothing, and is no trial.
 TEST_F(Merge, FindsEveryFlippedBitOfAMessageAtOnce) {
   Random random(34);
   CdrEncoder encoder, again;

@@ -30,16 +30,15 @@ Cell balls() {
     objects += std::string("  - {name: ") + name + ", groups: [all, " +
                (*name < 'd' ? "first" : "last") + "], sphere: {radius: 0.1}}\n";
   }
-  return read_good(cell_text(
-      objects +
-      "pairs: [{between: [all, all]}]\n"
-      "zones:\n"
-      "  - {name: wide, between: [all, all], enter_below: 1, leave_above: 1}\n"
-      "  - {name: far, between: [last, last], enter_below: 1, leave_above: 1}\n"
-      "shares:\n"
-      "  - {name: one, pairs: [{between: [first, first]}]}\n"
-      "  - {name: two, pairs: [{between: [first, last]}]}\n"
-      "  - {name: three, pairs: [{between: [last, last]}]}\n"));
+  return read_good(
+      cell_text(objects + "pairs: [{between: [all, all]}]\n"
+                          "zones:\n"
+                          "  - {name: wide, between: [all, all], enter_below: 1, leave_above: 1}\n"
+                          "  - {name: far, between: [last, last], enter_below: 1, leave_above: 1}\n"
+                          "shares:\n"
+                          "  - {name: one, pairs: [{between: [first, first]}]}\n"
+                          "  - {name: two, pairs: [{between: [first, last]}]}\n"
+                          "  - {name: three, pairs: [{between: [last, last]}]}\n"));
 }
 
 struct Shares {
@@ -115,8 +114,7 @@ TEST(ShareMerge, TheWholeHasEveryPairOnceAndTheLeastOfAll) {
 // Whatever is missing, each pair has a true lower bound or none, and nothing is certified.
 TEST(ShareMerge, AShareThatIsNotWholeIsUnknownByNameAndNeverClear) {
   Random random(35);
-  for (const auto state :
-       {ShareState::kMissing, ShareState::kLate, ShareState::kOtherRevision}) {
+  for (const auto state : {ShareState::kMissing, ShareState::kLate, ShareState::kOtherRevision}) {
     for (std::size_t lost = 0; lost < 3; ++lost) {
       Shares shares(random_bounds(random));
       shares.views[lost].state = state;
@@ -169,9 +167,9 @@ TEST(ShareMerge, APublishedPairThatItsShareDoesNotReportIsUnknown) {
   Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
   shares.reports[1]->pairs._length -= 1;
   const clearance_msg_Distances& whole = shares.join();
-  EXPECT_EQ(std::ranges::count(
-                std::span(whole.pairs._buffer, whole.pairs._length),
-                static_cast<std::uint8_t>(PairStatus::kUnknown), &clearance_msg_PairDistance::status),
+  EXPECT_EQ(std::ranges::count(std::span(whole.pairs._buffer, whole.pairs._length),
+                               static_cast<std::uint8_t>(PairStatus::kUnknown),
+                               &clearance_msg_PairDistance::status),
             1);
 }
 

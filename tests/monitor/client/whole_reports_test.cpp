@@ -50,8 +50,7 @@ bool is_as(const clearance_msg_Distances& message,
   if (message.pairs._length != pairs.size()) return false;
   for (std::uint32_t i = 0; i < pairs.size(); ++i) {
     const clearance_msg_PairDistance& one = message.pairs._buffer[i];
-    if (one.pair != pairs[i].pair || one.lower != pairs[i].lower ||
-        one.status != pairs[i].status)
+    if (one.pair != pairs[i].pair || one.lower != pairs[i].lower || one.status != pairs[i].status)
       return false;
   }
   return true;

@@ -344,9 +344,9 @@ TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
-// A bit that flips in a table of one daemon is seen within ten ticks: all pairs are compared in that
-// time. A place that is overwritten before anything has read it is no trial: the test sees that
-// nothing remains of it in the next hundred ticks.
+// A bit that flips in a table of one daemon is seen within ten ticks: all pairs are compared in
+// that time. A place that is overwritten before anything has read it is no trial: the test sees
+// that nothing remains of it in the next hundred ticks.
 //
 // The campaign: CLEARANCE_FLIPS=1000
 TEST_F(TickPartners, AFlippedBitThatIsReadIsFoundWithinTenTicks) {
