@@ -16,10 +16,12 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/asker.hpp"
+#include "monitor/ask/robots_of_question.hpp"
 #include "monitor/bags/bag.hpp"
 #include "monitor/files/file_error.hpp"
 #include "tools/ask/bag_motions.hpp"
 #include "tools/ask/motion_json.hpp"
+#include "tools/ask/motion_report.hpp"
 
 namespace clearance {
 namespace {
@@ -39,9 +41,12 @@ A motion is a JSON object:
   times_s     of the waypoints, s, increasing
   positions   a row a waypoint, a number a joint; rad or m. Between waypoints joints move linearly in time,
   velocities  or with rows of these along cubic polynomials, as trajectory_msgs/JointTrajectory says
-  held        {"JOINT": position} of all other joints of the cell; joints that mimic others follow
+  held        {"JOINT": position} of joints that stay; joints that mimic others follow
+  joints_of_others  {"JOINT": position, or [position, age in s]} of robots that do nothing here: they stay within
+              their velocity limits x time, and within their limits; with "others": "still" where they are
   poses       {"OBJECT": [x, y, z, qw, qx, qy, qz]} of objects that are neither fixed nor part of a robot;
               such an object comes nearer by its max_speed x time, or with "others": "still" not at all
+  turn_speeds {"OBJECT": rad/s} of such objects on which robots stand; without it they may rotate by any angle
   margins     m, instead of --margin
   beside      [{joints, times_s, positions, velocities}] of other robots, which rest before and after
   moving      {"OBJECT": {"times_s": [...], "poses": [[x, y, z, qw, qx, qy, qz], ...]}}: stated motions of objects
@@ -73,13 +78,8 @@ struct Options {
   std::uint64_t work_limit = 1'000'000;
   bool others_still = false, only_verdicts = false;
   int repeat = 1;
-};
-
-// A cell, and the memory for questions about it.
-struct Place {
-  explicit Place(Cell&& read) : cell(std::move(read)), asker(cell.scene) {}
-  Cell cell;
-  Asker asker;
+  unsigned threads = 1;
+  MotionReportFiles files;
 };
 
 double percentile(std::vector<double>& sorted, double share) {
@@ -89,13 +89,16 @@ double percentile(std::vector<double>& sorted, double share) {
 
 class Program {
  public:
-  explicit Program(const Options& options) : options_(options) {
+  explicit Program(const Options& options)
+      : options_(options),
+        report_(options.files, options.motions + " in " + options.cell, options.expected) {
     defaults_.margins = options.margins;
     defaults_.tolerance = options.tolerance;
     defaults_.work_limit = options.work_limit;
     defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
     if (options.others_still) defaults_.others = OthersMove::kNot;
     if (options.expected) defaults_.margins.push_back(*options.expected);
+    if (options.files.any()) defaults_.profile.emplace();
   }
 
   // Reads the cell of all motions; a folder is read as motions name its cells.
@@ -103,55 +106,122 @@ class Program {
     if (std::filesystem::is_directory(options_.cell)) return true;
     return add("", options_.cell);
   }
+  [[nodiscard]] std::string begin_report() { return report_.begin(); }
 
   int answer_all(std::istream& in, std::ostream& out) {
     std::size_t number = 0;
     for (std::string text; std::getline(in, text);) {
       ++number;
       if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
-      OrderedJson line;
+      AskedMotion motion{.where = std::to_string(number)};
       try {
-        line = answer(nlohmann::json::parse(text));
+        const nlohmann::json line = nlohmann::json::parse(text);
+        if (line.contains("id")) motion.id = line["id"];
+        motion.question = read_question(line, defaults_);
+        motion.place = &place_of(line);
       } catch (const BadMotion& error) {
-        line = {{"line", number}, {"error", error.what()}};
+        motion.error = error.what();
       } catch (const nlohmann::json::exception& error) {
-        line = {{"line", number}, {"error", std::string("not a motion: ") + error.what()}};
+        motion.error = std::string("not a motion: ") + error.what();
       }
-      write(line, std::to_string(number), out);
+      take(std::move(motion), out);
     }
     return conclude(in.bad() ? "cannot read " + options_.motions : "", "a JSON object a line", out);
   }
 
   // The motions of a bag.
   int answer_bag(std::ostream& out) {
-    const std::string error = for_each_motion(options_.motions, [&](const BagMotion& motion) {
-      OrderedJson line;
-      try {
-        line = answer(motion);
-      } catch (const BadMotion& bad) {
-        line = {{"id", motion.id}, {"error", bad.what()}};
+    const std::string error = for_each_motion(options_.motions, [&](const BagMotion& found) {
+      AskedMotion motion{.where = found.id, .id = found.id, .place = places_.at("").get()};
+      if (const auto* reason = std::get_if<std::string>(&found.motion)) {
+        motion.error = *reason;
+      } else {
+        motion.question = question_of(found, motion.scene());
       }
-      write(line, motion.id, out);
+      take(std::move(motion), out);
     });
     return conclude(error, "messages of trajectory_msgs/msg/JointTrajectory", out);
   }
 
  private:
-  void write(const OrderedJson& line, const std::string& place, std::ostream& out) {
+  // One thread answers each motion at once; several threads wait for the last one.
+  void take(AskedMotion motion, std::ostream& out) {
     ++lines_;
-    if (line.contains("error") && bad_++ == 0)
-      print(stderr, "{}:{}: {}\n", options_.motions, place, line["error"].get<std::string>());
+    if (options_.threads > 1) {
+      waiting_.push_back(std::move(motion));
+      return;
+    }
+    if (motion.error.empty()) ask(motion);
+    write(motion, out);
+  }
+
+  void ask(AskedMotion& motion) {
+    double least_us = 1e300;
+    for (int i = 0; i < options_.repeat; ++i) {
+      const auto start = std::chrono::steady_clock::now();
+      motion.error = motion.place->asker.ask(motion.question, motion.answer).value_or("");
+      if (!motion.error.empty()) return;
+      const std::chrono::duration<double, std::micro> taken =
+          std::chrono::steady_clock::now() - start;
+      least_us = std::min(least_us, taken.count());
+    }
+    times_us_.push_back(least_us);
+  }
+
+  // Place by place, since the memory for questions is that of one scene.
+  void ask_waiting() {
+    std::map<AskedPlace*, std::vector<std::size_t>> by_place;
+    for (std::size_t i = 0; i < waiting_.size(); ++i) {
+      if (waiting_[i].error.empty()) by_place[waiting_[i].place].push_back(i);
+    }
+    for (const auto& [place, indices] : by_place) {
+      std::vector<Question> questions;
+      for (const std::size_t i : indices) questions.push_back(std::move(waiting_[i].question));
+      std::vector<Answer> answers(indices.size());
+      std::vector<std::string> faults(indices.size());
+      ask_all(place->cell.scene, questions, answers, faults, options_.threads);
+      for (std::size_t k = 0; k < indices.size(); ++k) {
+        AskedMotion& motion = waiting_[indices[k]];
+        motion.question = std::move(questions[k]);
+        motion.answer = std::move(answers[k]);
+        motion.error = std::move(faults[k]);
+      }
+    }
+  }
+
+  void write(AskedMotion& motion, std::ostream& out) {
+    OrderedJson line;
+    if (motion.error.empty()) {
+      if (!motion.id.is_null()) line["id"] = motion.id;
+      line.update(answer_line(motion.answer, motion.scene(), motion.question));
+      for (const MarginAnswer& margin : motion.answer.margins)
+        undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
+      expect(motion);
+    } else {
+      if (bad_++ == 0) print(stderr, "{}:{}: {}\n", options_.motions, motion.where, motion.error);
+      const bool is_of_bag = motion.id.is_string() && motion.where == motion.id;
+      if (is_of_bag) {
+        line["id"] = motion.id;
+      } else {
+        line["line"] = std::stoull(motion.where);
+      }
+      line["error"] = motion.error;
+    }
     out << line.dump(-1, ' ', false, OrderedJson::error_handler_t::replace) << '\n';
+    report_.add(motion);
   }
 
   // `error` says why the input could not be read to its end.
-  int conclude(const std::string& error, const std::string& expected, std::ostream& out) {
+  int conclude(std::string error, const std::string& expected, std::ostream& out) {
+    ask_waiting();
+    for (AskedMotion& motion : waiting_) write(motion, out);
     out.flush();
-    if (!error.empty() || lines_ == 0 || !out) {
-      print(stderr, "clearance-ask: {}\n",
-            !error.empty() ? error
-            : lines_ == 0  ? options_.motions + " has no motion; expected " + expected
-                           : "could not write all answers to " + options_.out);
+    if (error.empty() && lines_ == 0)
+      error = options_.motions + " has no motion; expected " + expected;
+    if (error.empty() && !out) error = "could not write all answers to " + options_.out;
+    if (error.empty()) error = report_.finish();
+    if (!error.empty()) {
+      print(stderr, "clearance-ask: {}\n", error);
       return kUsage;
     }
     summarise();
@@ -161,11 +231,11 @@ class Program {
 
   bool add(const std::string& scene, const std::filesystem::path& file) {
     std::optional<Cell> cell = cell_or_errors(read_cell(file, told_on_stderr()));
-    if (cell) places_[scene] = std::make_unique<Place>(std::move(*cell));
+    if (cell) places_[scene] = std::make_unique<AskedPlace>(std::move(*cell));
     return cell.has_value();
   }
 
-  Place& place_of(const nlohmann::json& motion) {
+  AskedPlace& place_of(const nlohmann::json& motion) {
     if (!std::filesystem::is_directory(options_.cell)) return *places_.at("");
     const std::string scene = motion.at("scene").get<std::string>();
     const auto found = places_.find(scene);
@@ -178,57 +248,36 @@ class Program {
     return *places_.at(scene);
   }
 
-  OrderedJson answer(const nlohmann::json& motion) {
-    return answer(read_question(motion, defaults_),
-                  motion.contains("id") ? OrderedJson(motion["id"]) : OrderedJson(),
-                  place_of(motion));
-  }
-
-  // A bag has joint states of other robots, too.
-  OrderedJson answer(const BagMotion& motion) {
-    if (const auto* reason = std::get_if<std::string>(&motion.motion)) throw BadMotion(*reason);
-    Place& place = *places_.at("");
+  // A bag has joint states of robots that the cell does not have, too.
+  [[nodiscard]] Question question_of(const BagMotion& motion, const Scene& scene) const {
     Question question = defaults_;
     question.motion = std::get<JointTrajectory>(motion.motion);
-    for (const HeldJoint& held : motion.held) {
-      const auto& variables = place.cell.scene.variables;
-      if (std::ranges::find(variables, held.name, &JointVariable::name) != variables.end())
-        question.held.push_back(held);
+    const std::vector<bool> is_of_question = robots_of_question(scene, question);
+    for (const StatedJoint& joint : motion.joints) {
+      const auto found = std::ranges::find(scene.variables, joint.name, &JointVariable::name);
+      if (found == scene.variables.end()) continue;
+      if (is_of_question[found->robot]) {
+        question.held.push_back({joint.name, joint.position});
+      } else {
+        question.joints.push_back(joint);
+      }
     }
-    return answer(question, motion.id, place);
-  }
-
-  OrderedJson answer(const Question& question, const OrderedJson& id, Place& place) {
-    double least_us = 1e300;
-    for (int i = 0; i < options_.repeat; ++i) {
-      const auto start = std::chrono::steady_clock::now();
-      if (auto text = place.asker.ask(question, answer_)) throw BadMotion(*text);
-      const std::chrono::duration<double, std::micro> taken =
-          std::chrono::steady_clock::now() - start;
-      least_us = std::min(least_us, taken.count());
-    }
-    times_us_.push_back(least_us);
-    OrderedJson line;
-    if (!id.is_null()) line["id"] = id;
-    line.update(answer_line(answer_, place.cell.scene, question));
-    for (const MarginAnswer& margin : answer_.margins) {
-      undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
-    }
-    expect(line, place.cell.scene, question);
-    return line;
+    return question;
   }
 
   // The expected distance is the last margin.
-  void expect(const OrderedJson& line, const Scene& scene, const Question& question) {
-    if (!options_.expected || answer_.margins.empty()) return;
-    const MarginAnswer& margin = answer_.margins.back();
+  void expect(AskedMotion& motion) {
+    const Answer& answer = motion.answer;
+    if (!options_.expected || answer.margins.empty()) return;
+    const MarginAnswer& margin = answer.margins.back();
     if (margin.verdict == Verdict::kFree) return;
     ++failed_;
+    motion.as_expected = false;
     print(stderr, "{}: {} - {} {} {} m from {} s on; the least distance is in [{:.6f}, {:.6f}] m\n",
-          line.contains("id") ? line["id"].dump() : "motion " + std::to_string(lines_),
-          object_name(scene, question, margin.first), object_name(scene, question, margin.second),
+          motion.name(), object_name(motion.scene(), motion.question, margin.first),
+          object_name(motion.scene(), motion.question, margin.second),
           margin.verdict == Verdict::kBelow ? "comes below" : "may come below", margin.margin,
-          margin.above_until, answer_.lower, answer_.upper);
+          margin.above_until, answer.lower, answer.upper);
   }
 
   void summarise() {
@@ -244,15 +293,19 @@ class Program {
 
   const Options& options_;
   Question defaults_;
-  Answer answer_;
-  std::map<std::string, std::unique_ptr<Place>> places_;
+  MotionReport report_;
+  std::vector<AskedMotion> waiting_;
+  std::map<std::string, std::unique_ptr<AskedPlace>> places_;
   std::vector<double> times_us_;
   std::size_t lines_ = 0, bad_ = 0, undecided_ = 0, failed_ = 0, bad_cells_ = 0;
 };
 
 int run(const Options& options) {
-  if (!output_is_not_an_input("clearance-ask", options.out, {options.cell, options.motions})) {
-    return kUsage;
+  for (const std::string& file :
+       {options.out, options.files.profile, options.files.plot, options.files.page}) {
+    if (file.empty()) continue;
+    if (!output_is_not_an_input("clearance-ask", file, {options.cell, options.motions}))
+      return kUsage;
   }
   std::ifstream file_in;
   const bool is_bag = options.motions != "-" && bag_format(options.motions) != BagFormat::kOther;
@@ -276,6 +329,10 @@ int run(const Options& options) {
       print(stderr, "clearance-ask: {}\n", cannot_write(options.out));
       return kUsage;
     }
+  }
+  if (const std::string error = program.begin_report(); !error.empty()) {
+    print(stderr, "clearance-ask: {}\n", error);
+    return kUsage;
   }
   std::ostream& out = options.out == "-" ? std::cout : file_out;
   if (is_bag) return program.answer_bag(out);
@@ -313,6 +370,13 @@ int main(int argc, char** argv) {
       "Only the verdicts of margins; lower and first_below are then as good as these needed");
   app.add_option("--repeat", options.repeat, "Ask N times, for the times on stderr")
       ->check(CLI::Range(1, 1000000));
+  app.add_option("--threads", options.threads,
+                 "Answer in N threads, once all motions are read; the answers have the same bits")
+      ->check(CLI::Range(1, 256));
+  app.add_option("--profile", options.files.profile,
+                 "CSV for the distance over time: bounds for each part of each motion");
+  app.add_option("--plot", options.files.plot, "SVG for the same, by gnuplot");
+  app.add_option("--report", options.files.page, "Page of HTML with plot and table, for a review");
   if (const auto done = clearance::parse(app, argc, argv)) return *done;
   return clearance::run_program("clearance-ask",
                                 [&](clearance::StopSignal&) { return clearance::run(options); });

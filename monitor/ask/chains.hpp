@@ -15,19 +15,29 @@
 
 namespace clearance {
 
-// A joint between base and tip.
+// A joint between base and tip. An object that carries a robot and moves counts as two: one that
+// slides, and one that rotates.
 struct ChainJoint {
-  std::uint32_t link = 0;  // the link that it carries, counted through all robots
-  std::uint32_t variable = 0;
-  double factor = 1.0;  // |multiplier| of a joint that mimics another
+  std::uint32_t link = 0;      // the link that it carries, counted through all robots
+  std::uint32_t variable = 0;  // as Chains::of_carrier() counts them
+  double factor = 1.0;         // |multiplier| of a joint that mimics another
   bool rotates = true;
+  bool about_any_axis = false;  // through the origin of the carrying object
   // No point of the tip is ever farther from a point of the joint's axis than this, m.
   double largest_reach = kInfinity;
 };
 
 struct Chain {
+  static constexpr std::uint32_t kNone = ~0u;
   std::uint32_t begin = 0, end = 0;  // into Chains::joints, from the base to the tip
-  bool base_rests = false;           // no joint moves the base
+  std::uint32_t common = kNone;      // the first link, of all robots, that both hang on
+  bool shares_carrier = false;       // one object carries both; or carries the tip, and is the base
+};
+
+// By how far something may come nearer to what else there is, by its assumed speed, m: until the
+// end of a stretch, its middle, and its begin.
+struct Nearing {
+  double until_end = 0.0, until_middle = 0.0, until_begin = 0.0;
 };
 
 // An axis in the world at the present instant.
@@ -46,14 +56,36 @@ class Chains {
   [[nodiscard]] bool is_link(std::uint32_t object) const noexcept {
     return node_of_object_[object] != kNoNode;
   }
-  // True if a joint can move the link relative to the world.
+  // True if a joint, or an object that carries its robot, can move the link relative to the world.
   [[nodiscard]] bool can_move(std::uint32_t object) const noexcept;
+  // The object on which the robot of a link stands; kNone: the world.
+  [[nodiscard]] std::uint32_t carrier_of(std::uint32_t object) const noexcept;
+  // Calls use(variable) for all that moves a link of a robot relative to the world.
+  template <class Use>
+  void for_each_variable(std::uint32_t object, const Use& use) const {
+    for (std::uint32_t n = node_of_object_[object]; n != kNoNode; n = nodes_[n].parent) {
+      const Node& node = nodes_[n];
+      if (node.joint == nullptr && is_carried(node)) use(of_carrier(node.robot));
+      if (node.joint == nullptr) continue;
+      for (std::uint32_t i = 0; i < variables_of(node.joint->type); ++i)
+        use(node.joint->variable + i);
+    }
+  }
+
+  // Bounds of the motion of carrying objects follow those of the scene's variables: two for each
+  // robot. The first is its translation, m; the second its rotation, rad.
+  [[nodiscard]] std::uint32_t variables() const noexcept {
+    return static_cast<std::uint32_t>(scene_.variables.size() + 2 * scene_.robots.size());
+  }
+  [[nodiscard]] std::uint32_t of_carrier(std::uint32_t robot) const noexcept {
+    return static_cast<std::uint32_t>(scene_.variables.size()) + 2 * robot;
+  }
 
   // To be called once, after the last between().
   void finish();
 
-  // Reads the axes of all joints after the links were placed.
-  void place(const ForwardKinematics& kinematics) noexcept;
+  // Reads the axes of all joints after the links were placed. `bases`: by robot, what it stands on.
+  void place(const ForwardKinematics& kinematics, std::span<const LinkState> bases) noexcept;
 
   // No point of a sphere at the tip leaves its place relative to the base by more than this while
   // the variables deviate by `bounds`, m. `sphere` is in the world. Remembers the reaches.
@@ -67,21 +99,31 @@ class Chains {
   [[nodiscard]] double acceleration(const Chain& chain,
                                     std::span<const VariableBounds> bounds) const noexcept;
 
+  // By how far a sphere at a link may have come nearer to the other body of the chain through
+  // variables that deviate from what is stated by at most `free`. These are bounds until the end,
+  // the middle and the begin of the stretch in which all variables deviate by `bounds`.
+  [[nodiscard]] Nearing nearing(const Chain& chain, std::uint32_t object, const Sphere& sphere,
+                                std::span<const VariableBounds> bounds,
+                                std::span<const Nearing> free) const noexcept;
+
  private:
-  static constexpr std::uint32_t kNoNode = ~0u;
+  static constexpr std::uint32_t kNoNode = Chain::kNone;
   struct Node {
     std::uint32_t parent = kNoNode, robot = 0, link = 0;
     const RobotJoint* joint = nullptr;  // null at the root of a robot
     Vec3 place_in_parent = Vec3::Zero();
     double largest_slide = 0.0;  // m
   };
+  [[nodiscard]] bool is_carried(const Node& node) const noexcept {
+    return node.joint == nullptr && scene_.robots[node.robot].base.kind == RobotBase::Kind::kObject;
+  }
 
   const Scene& scene_;
   std::vector<double> radii_;                  // by object
   std::vector<Node> nodes_;                    // all links of all robots
   std::vector<std::uint32_t> node_of_object_;  // kNoNode: not a link
   std::vector<ChainJoint> joints_;
-  std::vector<PlacedAxis> axes_;  // by node
+  std::vector<PlacedAxis> axes_;  // by node; of a root: the origin of what carries it
   std::vector<std::uint32_t> moving_;
   std::vector<double> reaches_;  // by joint, of the last displacement()
 };

@@ -108,14 +108,14 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
       double lower = rounded_down(apart - at.loss);
       if (proves(lower, margin)) continue;
       const double size = at.tip.sphere_in_world.radius;
-      const bool may_be_below = apart - at.approach.until_middle < enough;
+      const bool may_be_below = apart - at.approach.nearing.until_middle < enough;
       const bool may_decide = apart + size >= enough + kShareAlongNormal * at.loss;
       bool below = false, near = false;
       if (may_be_below || may_decide || !divides) {
         const PairAtMiddle found = query(at, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough));
-        const double now = found.upper + motion.rounding - at.approach.until_middle;
+        const double now = found.upper + motion.rounding - at.approach.nearing.until_middle;
         const double upper = std::max(0.0, rounded_up(now));
         note_upper(found, upper, middle, pair);
         if (proves(lower, margin)) continue;

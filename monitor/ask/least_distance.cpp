@@ -38,9 +38,10 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
   const PairAtMiddle found = query(at, closest);
   const Bundle& bundle = pairs_.bundles()[pairs_.pairs()[closest].bundle];
   const TipMotion motion = tip_motion(bundle, whole, middle, posture_);
-  note_upper(found,
-             std::max(0.0, rounded_up(found.upper + motion.rounding - at.approach.until_middle)),
-             middle, closest);
+  note_upper(
+      found,
+      std::max(0.0, rounded_up(found.upper + motion.rounding - at.approach.nearing.until_middle)),
+      middle, closest);
 }
 
 void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double known) noexcept {
@@ -77,7 +78,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
       double speed = 0.0;
       if (!decided && worth) {
         const PairAtMiddle found = query(at, pair);
-        const double now = found.upper + motion.rounding - at.approach.until_middle;
+        const double now = found.upper + motion.rounding - at.approach.nearing.until_middle;
         note_upper(found, std::max(0.0, rounded_up(now)), middle, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough()));

@@ -14,6 +14,8 @@ constexpr double kShortest = 0x1p-46;
 // Halves of halves: 32 levels of segments, and 46 in a segment.
 constexpr std::size_t kMostLevels = 84;  // and the list of all pairs
 
+const ObjectApproach kNoApproach;
+
 }  // namespace
 
 const char* name(Verdict verdict) noexcept {
@@ -65,6 +67,9 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
 std::optional<std::string> MotionSearch::ask(const Question& question, Answer& answer) {
   if (auto text = posture_.take(question)) return text;
   if (auto text = fault(question)) return text;
+  if (question.time_scaling) {
+    if (auto text = fault_of_scaling()) return text;
+  }
   begin(question, answer);
   if (!question.only_margins) find_least();
   decide_margins();
@@ -96,6 +101,9 @@ MotionSearch::OpenList MotionSearch::all_pairs() noexcept {
   const auto bundles = pairs_.bundles();
   for (std::uint32_t b = 0; b < bundles.size(); ++b) {
     std::uint32_t count = bundles[b].end - bundles[b].first;
+    const bool base_counts =
+        bundles[b].base_is_link && posture_.is_of_question(bundles[b].object_base);
+    if (!posture_.is_of_question(bundles[b].object_tip) && !base_counts) continue;
     if (!posture_.all_present()) {
       count = 0;
       for (std::uint32_t i = bundles[b].first; i < bundles[b].end; ++i) {
@@ -122,9 +130,26 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
   const PartPair& of = pairs_.pairs()[pair];
   const PosedPart& tip = posture_.part(pairs_.bundles()[of.bundle].tip);
   const PosedPart& base = posture_.part(of.base);
-  const ObjectApproach& approach = posture_.approach(base.object);
-  return {base, tip, approach,
-          rounded_up(motion.moved + motion.rounding + approach.moved + approach.until_end)};
+  const Bundle& bundle = pairs_.bundles()[of.bundle];
+  const ObjectApproach* approach = &posture_.approach(base.object);
+  if (bundle.base_carries_tip) approach = &kNoApproach;
+  if (posture_.any_free()) {
+    approach_ = *approach;
+    Nearing& nearing = approach_.nearing;
+    Nearing of_base;
+    if (bundle.base_is_link) {
+      of_base = posture_.chains().nearing(bundle.chain, base.object, base.sphere_in_world,
+                                          posture_.bounds(), posture_.free_variables());
+    }
+    nearing.until_end =
+        rounded_up(nearing.until_end + motion.nearing.until_end + of_base.until_end);
+    nearing.until_middle += rounded_down(motion.nearing.until_middle + of_base.until_middle);
+    nearing.until_begin += rounded_down(motion.nearing.until_begin + of_base.until_begin);
+    approach = &approach_;
+  }
+  return {
+      base, tip, *approach,
+      rounded_up(motion.moved + motion.rounding + approach->moved + approach->nearing.until_end)};
 }
 
 double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) const noexcept {
@@ -135,6 +160,11 @@ double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) cons
 
 PairAtMiddle MotionSearch::query(const Pair& at, std::uint32_t pair) noexcept {
   ++answer_->queries;
+  const std::uint32_t seen = pairs_.pairs()[pair].seen;
+  if (seen != PartPair::kNotSeen) {
+    return query_seen(posture_.content(at.base.object), at.base, at.tip, pairs_.slab(),
+                      pairs_.seen(seen));
+  }
   return query_pair(at.base, at.tip, pairs_.tracking(pair));
 }
 

@@ -60,7 +60,7 @@ class MotionSearch {
   struct Pair {
     const PosedPart& base;
     const PosedPart& tip;
-    const ObjectApproach& approach;
+    const ObjectApproach& approach;  // of the base, and what both may come nearer
     double loss;  // m: the distance over the stretch is at least that at the middle less this
   };
 
@@ -96,6 +96,8 @@ class MotionSearch {
 
   // Time scaling (time_scaling.cpp).
   void collect_separated();
+  [[nodiscard]] std::optional<std::string> fault_of_scaling() const;
+  [[nodiscard]] std::uint32_t limited_robot(std::uint32_t separated) const noexcept;
   void scale_time() noexcept;
   void scale(const Stretch& stretch, std::size_t count, double known) noexcept;
 
@@ -107,6 +109,7 @@ class MotionSearch {
   std::vector<double> gaps_;          // by pair, at the present instant
   std::vector<Piece> pieces_;         // a heap
   OpenList profiled_;
+  ObjectApproach approach_;  // of the last pair_at(), if it is not the object's own
   std::vector<SeparatedPair> separated_;
   std::vector<std::uint32_t> scaled_;  // indices into separated_
 

@@ -68,7 +68,7 @@ std::optional<std::string> MovingObjects::take(const Question& question,
 
 void MovingObjects::rest(const Pose& pose, ObjectState& state) const noexcept {
   state.pose = pose;
-  state.velocity = Vec3::Zero();
+  state.velocity = state.angular = Vec3::Zero();
 }
 
 void MovingObjects::place(const Stretch& stretch, double at) noexcept {
@@ -90,6 +90,8 @@ void MovingObjects::place(const Stretch& stretch, double at) noexcept {
       const SineCosine half = sine_cosine(0.5 * u * turn.angle);
       const Vec3 sine = half.sine * turn.axis;
       state.velocity = step / span;
+      state.angular = clearance::times(rotation_matrix(poses[row].orientation), turn.axis) *
+                      (turn.angle / span);
       state.pose.position = poses[row].position + u * step;
       state.pose.orientation =
           product(poses[row].orientation, {half.cosine, sine.x(), sine.y(), sine.z()});

@@ -81,7 +81,12 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
   TipMotion motion;
   motion.half = rounded_up(std::max(stretch.to - middle, middle - stretch.from));
   motion.moved = chains.displacement(bundle.chain, sphere, posture.bounds());
-  motion.rounding = posture.trajectory().position_rounding() * bundle.sum_of_reaches;
+  motion.rounding = posture.trajectory().position_rounding() * bundle.sum_of_reaches +
+                    posture.carrier_rounding(sphere, bundle.object_base);
+  if (posture.any_free()) {
+    motion.nearing = chains.nearing(bundle.chain, bundle.object_tip, sphere, posture.bounds(),
+                                    posture.free_variables());
+  }
   if (!stretch.is_in_one_segment()) return motion;
   motion.has_twist = true;
   Vec3 base_origin, tip_origin;
@@ -90,6 +95,10 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
                   of_tip.angular};
   if (bundle.base_is_link) {
     const Twist of_base = posture.twist(bundle.object_base, base_origin);
+    motion.twist.linear -= of_base.linear + cross(of_base.angular, sphere.centre - base_origin);
+    motion.twist.angular -= of_base.angular;
+  } else if (bundle.base_carries_tip) {
+    const Twist of_base = posture.twist_of_carrier(bundle.object_tip, base_origin);
     motion.twist.linear -= of_base.linear + cross(of_base.angular, sphere.centre - base_origin);
     motion.twist.angular -= of_base.angular;
   }
@@ -136,10 +145,26 @@ PairAtMiddle query_pair(const PosedPart& base, const PosedPart& tip,
   return pair;
 }
 
+PairAtMiddle query_seen(const CloudPairs::Content& content, const PosedPart& base,
+                        const PosedPart& tip, SlabBody& slab, CloudTracking& tracking) noexcept {
+  const CloudPairs::Answer found = CloudPairs::query(content, base, tip, slab, tracking);
+  PairAtMiddle pair;
+  pair.lower = -kInfinity;
+  pair.upper = kInfinity;
+  if (found.status == DistanceStatus::kBadPose) return pair;
+  pair.lower = found.bounds.lower;
+  pair.upper = found.bounds.upper;
+  pair.separated = found.status == DistanceStatus::kConverged && pair.lower > 0.0;
+  pair.normal = found.normal;
+  pair.on_base = found.witness_a;
+  pair.on_tip = found.witness_b;
+  return pair;
+}
+
 double lower_over(const PairAtMiddle& found, const PosedPart& base, const PosedPart& tip,
                   bool tip_keeps_direction, const TipMotion& motion, const ObjectApproach& approach,
                   double enough) noexcept {
-  const double loss = rounded_up(motion.rounding + approach.until_end);
+  const double loss = rounded_up(motion.rounding + approach.nearing.until_end);
   double lower = rounded_down(found.lower - rounded_up(motion.moved + approach.moved + loss));
   if (lower >= enough || !found.separated || !motion.has_twist) return lower;
   if (!tip_keeps_direction || !base.keeps_direction) return lower;
@@ -168,7 +193,7 @@ double upper_over(const PairAtMiddle& found, const PosedPart& tip, const TipMoti
     upper = std::min(upper, most + (found.upper - found.lower) + bend + motion.rounding +
                                 approach.turned + kSlabRounding * sizes);
   }
-  return std::max(0.0, rounded_up(rounded_up(upper) - approach.until_begin));
+  return std::max(0.0, rounded_up(rounded_up(upper) - approach.nearing.until_begin));
 }
 
 double closing_speed(const PairAtMiddle& found, const PosedPart& tip, const TipMotion& motion,

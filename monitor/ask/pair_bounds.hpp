@@ -17,6 +17,7 @@ struct TipMotion {
   // At the middle a point x of the tip moves at linear + angular x (x - centre of the sphere).
   Twist twist;
   double acceleration = 0.0;  // of every point, at most, m/s2
+  Nearing nearing;            // by variables of the tip that nothing states
 };
 
 [[nodiscard]] TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle,
@@ -42,6 +43,10 @@ struct PairAtMiddle {
 
 [[nodiscard]] PairAtMiddle query_pair(const PosedPart& base, const PosedPart& tip,
                                       TrackingState& tracking) noexcept;
+// The same for a base that is what a sensor sees. Its nearest element gives points and normal.
+[[nodiscard]] PairAtMiddle query_seen(const CloudPairs::Content& content, const PosedPart& base,
+                                      const PosedPart& tip, SlabBody& slab,
+                                      CloudTracking& tracking) noexcept;
 
 // The distance is at least this over the whole stretch, m. The bound is made as good as possible
 // unless a worse one is `enough`.

@@ -39,7 +39,10 @@ PartBox box_around(const ConvexBody& shape) {
 // A pair of objects, directed: the tip is a link that moves relative to the base.
 struct Directed {
   std::uint32_t base, tip;
-  bool swapped, base_is_link;
+  bool swapped, base_is_link, base_carries_tip;
+
+  // Those that are not of one kind have a chain of their own.
+  [[nodiscard]] bool is_of_a_kind() const noexcept { return !base_is_link && !base_carries_tip; }
 };
 
 }  // namespace
@@ -52,18 +55,23 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
     std::uint32_t base = watched.first, tip = watched.second;
     const bool swapped = !chains.is_link(tip) || (chains.is_link(base) && !chains.can_move(tip));
     if (swapped) std::swap(base, tip);
-    if (chains.is_link(tip)) directed.push_back({base, tip, swapped, chains.is_link(base)});
+    if (!chains.is_link(tip)) continue;
+    directed.push_back({.base = base,
+                        .tip = tip,
+                        .swapped = swapped,
+                        .base_is_link = chains.is_link(base),
+                        .base_carries_tip = chains.carrier_of(tip) == base});
   }
   const auto key = [](const Directed& d) {
-    return std::tuple(d.tip, d.base_is_link, d.base_is_link ? d.base : 0, d.base);
+    return std::tuple(d.tip, !d.is_of_a_kind(), d.is_of_a_kind() ? 0 : d.base, d.base);
   };
   std::sort(directed.begin(), directed.end(),
             [&](const Directed& a, const Directed& b) { return key(a) < key(b); });
 
   const auto first = posture.first_part();
   const auto same = [](const Directed& a, const Directed& b) {
-    return a.tip == b.tip && a.base_is_link == b.base_is_link &&
-           (!a.base_is_link || a.base == b.base);
+    return a.tip == b.tip && a.is_of_a_kind() == b.is_of_a_kind() &&
+           (a.is_of_a_kind() || a.base == b.base);
   };
   for (std::size_t from = 0, to = 0; from < directed.size(); from = to) {
     while (to < directed.size() && same(directed[from], directed[to])) ++to;
@@ -75,6 +83,7 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
                     .object_tip = any.tip,
                     .object_base = any.base,
                     .base_is_link = any.base_is_link,
+                    .base_carries_tip = any.base_carries_tip,
                     .keeps_direction = part.keeps_direction && part.shape->bounded(),
                     .chain = chain,
                     .sum_of_reaches = chains.sum_of_reaches(chain),
@@ -82,8 +91,14 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
       for (std::size_t i = from; i < to; ++i) {
         for (std::uint32_t base = first[directed[i].base]; base < first[directed[i].base + 1];
              ++base) {
-          pairs_.push_back(
-              {base, static_cast<std::uint32_t>(bundles_.size()), directed[i].swapped});
+          PartPair pair{.base = base,
+                        .bundle = static_cast<std::uint32_t>(bundles_.size()),
+                        .swapped = directed[i].swapped};
+          if (posture.is_seen(directed[i].base)) {
+            pair.seen = static_cast<std::uint32_t>(seen_.size());
+            seen_.emplace_back();
+          }
+          pairs_.push_back(pair);
         }
       }
       bundle.end = static_cast<std::uint32_t>(pairs_.size());

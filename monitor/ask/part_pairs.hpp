@@ -12,13 +12,15 @@
 namespace clearance {
 
 // One part of a link, the tip, against parts that all have the same chain of joints to it: those of
-// another link, or those of all objects that are no links.
+// another link, of the object that carries the tip's robot, or of all other objects that are no
+// links.
 struct Bundle {
   std::uint32_t tip = 0;  // part
   std::uint32_t object_tip = 0;
   std::uint32_t object_base = 0;  // a link; of several objects, any
   bool base_is_link = false;
-  bool keeps_direction = false;  // the tip does
+  bool base_carries_tip = false;  // the base is what the robot of the tip stands on
+  bool keeps_direction = false;   // the tip does
   Chain chain;
   double sum_of_reaches = 0.0;
   std::uint32_t first = 0, end = 0;  // into PartPairs
@@ -34,6 +36,9 @@ struct PartPair {
   std::uint32_t base = 0;  // part; the tip is the bundle's
   std::uint32_t bundle = 0;
   bool swapped = false;  // the base is the second object of the pair in the scene
+  // The base is what a sensor sees: index of the state of its queries.
+  static constexpr std::uint32_t kNotSeen = ~0u;
+  std::uint32_t seen = kNotSeen;
 };
 
 class PartPairs {
@@ -45,7 +50,12 @@ class PartPairs {
   [[nodiscard]] const PartBox& box(std::uint32_t part) const noexcept { return boxes_[part]; }
 
   // Makes all states of tracking cold.
-  void forget() noexcept { ++question_; }
+  void forget() noexcept {
+    ++question_;
+    for (CloudTracking& tracking : seen_) tracking.forget();
+  }
+  [[nodiscard]] CloudTracking& seen(std::uint32_t slot) noexcept { return seen_[slot]; }
+  [[nodiscard]] SlabBody& slab() noexcept { return slab_; }
   [[nodiscard]] TrackingState& tracking(std::uint32_t pair) noexcept {
     if (tracked_in_[pair] != question_) {
       tracked_in_[pair] = question_;
@@ -60,6 +70,8 @@ class PartPairs {
   std::vector<PartBox> boxes_;   // by part
   std::vector<TrackingState> tracking_;
   std::vector<std::uint64_t> tracked_in_;
+  std::vector<CloudTracking> seen_;
+  SlabBody slab_;  // scratch
   std::uint64_t question_ = 1;
 };
 

@@ -4,17 +4,14 @@
 #include <cmath>
 
 #include "config/scene/chain_rounding.hpp"
+#include "monitor/clouds/seen_cloud.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
 
-// The bodies that a sensor sees have no pose that a question could state, and no bound over time.
-std::string sees_a_cloud(const std::string& sensor) {
-  return "sensor \"" + sensor +
-         "\": a motion is not certified beside what sensors see; ask about a cell without sensors";
-}
+std::string sensor_named(const std::string& name) { return "sensor \"" + name + "\": "; }
 
 // A joint that mimics another may be stated, if it is where the other one moves it. Rad or m.
 constexpr double kMimicTolerance = 1e-6;
@@ -46,7 +43,7 @@ Posture::Posture(const Scene& scene)
       chains_(scene, radii_of(scene, parts_)),
       trajectory_(scene.variables.size()),
       variables_(scene.variables.size()),
-      bounds_(scene.variables.size()),
+      bounds_(scene.variables.size() + 2 * scene.robots.size()),
       kinematics_(scene.robots),
       bases_(scene.robots.size()),
       robot_of_object_(scene.objects.size(), kNoLink),
@@ -57,7 +54,13 @@ Posture::Posture(const Scene& scene)
       present_(scene.objects.size(), 0),
       speed_(scene.objects.size(), 0.0),
       age_(scene.objects.size(), 0.0),
-      approaches_(scene.objects.size()) {
+      turn_speed_(scene.objects.size(), 0.0),
+      approaches_(scene.objects.size()),
+      freedom_(bounds_.size()),
+      is_of_question_(scene.objects.size(), 1),
+      may_deviate_(scene.objects.size(), 0),
+      contents_(scene.sensors.size()) {
+  free_variables_.reserve(bounds_.size());
   for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
     const Robot& robot = scene.robots[r];
     if (robot.base.kind == RobotBase::Kind::kObject) carries_[robot.base.object] = 1;
@@ -85,6 +88,8 @@ std::optional<std::string> Posture::take(const Question& question) {
   if (auto text = take_poses(question)) return text;
   if (auto text = take_motions(question)) return text;
   if (auto text = open_object(question)) return text;
+  if (auto text = free_carriers(question)) return text;
+  note_free();
   place_bases();
   return std::nullopt;
 }
@@ -99,6 +104,10 @@ std::optional<std::string> Posture::take_joints(const Question& question) {
   for (const std::uint32_t moved : trajectory_.moved()) variables_[moved].input.has_value = true;
   for (const HeldJoint& held : question.held) {
     if (auto text = hold(held)) return text;
+  }
+  free_variables_.clear();
+  for (const StatedJoint& stated : question.joints) {
+    if (auto text = set_free(stated, question.others)) return text;
   }
   // Joints that mimic others, once these have positions.
   for (const HeldJoint& held : question.held) {
@@ -117,19 +126,25 @@ std::optional<std::string> Posture::take_joints(const Question& question) {
 }
 
 std::optional<std::string> Posture::hold(const HeldJoint& held) {
-  if (!(std::abs(held.position) <= kLargestJoint)) {
+  std::uint32_t variable = 0;
+  if (variable_named(scene_, held.name) || mimic_named(scene_, held.name) == nullptr)
+    return set_variable(held.name, held.position, variable);
+  if (!(std::abs(held.position) <= kLargestJoint))
     return "the position of joint \"" + held.name + "\" is not finite, or larger than 1e6";
-  }
-  const auto variable = variable_named(scene_, held.name);
-  if (!variable) {
-    if (mimic_named(scene_, held.name) != nullptr) return std::nullopt;
-    return "the cell has no joint \"" + held.name + "\"";
-  }
-  if (variables_[*variable].input.has_value) {
-    return "joint \"" + held.name + "\" is held, and has a position already";
-  }
-  variables_[*variable].input.has_value = true;
-  variables_[*variable].position = held.position;
+  return std::nullopt;
+}
+
+std::optional<std::string> Posture::set_variable(const std::string& name, double position,
+                                                 std::uint32_t& variable) {
+  if (!(std::abs(position) <= kLargestJoint))
+    return "the position of joint \"" + name + "\" is not finite, or larger than 1e6";
+  const auto found = variable_named(scene_, name);
+  if (!found) return "the cell has no joint \"" + name + "\"";
+  variable = *found;
+  if (variables_[variable].input.has_value)
+    return "joint \"" + name + "\" is held, and has a position already";
+  variables_[variable].input.has_value = true;
+  variables_[variable].position = position;
   return std::nullopt;
 }
 
@@ -182,7 +197,6 @@ std::optional<std::string> Posture::find_free(const std::string& name,
   if (at->fixed || is_link(object)) {
     return "object \"" + name + "\" is fixed or part of a robot: its pose is known";
   }
-  if (at->is_seen()) return sees_a_cloud(name);
   if (present_[object] != 0) return "the pose of object \"" + name + "\" is stated twice";
   return std::nullopt;
 }
@@ -191,38 +205,65 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
   const bool within_speed = question.others == OthersMove::kWithinMaxSpeed;
   for (const std::uint32_t i : free_) {
     present_[i] = 0;
-    age_[i] = 0.0;
+    age_[i] = turn_speed_[i] = 0.0;
     speed_[i] = within_speed ? scene_.objects[i].max_speed : 0.0;
     approaches_[i] = {};
   }
   for (const StatedPose& stated : question.poses) {
     std::uint32_t i = 0;
     if (auto text = find_free(stated.object, i)) return text;
-    if (!is_unit(stated.world_from_object.orientation) ||
-        !stated.world_from_object.position.allFinite()) {
-      return "the pose of object \"" + stated.object +
-             "\" is not finite, or its quaternion has not length 1";
-    }
-    if (!(stated.age >= 0.0) || !std::isfinite(stated.age))
-      return "the age of the pose of object \"" + stated.object + "\" is not a number from 0 on";
-    pose_[i] = stated.world_from_object;
-    age_[i] = stated.age;
-    present_[i] = 1;
-    place_resting(i);
+    if (is_seen(i)) return sensor_named(stated.object) + "its pose comes with a frame";
+    if (!(stated.turn_speed >= 0.0))
+      return "the turn_speed of object \"" + stated.object + "\" is not a number from 0 on";
+    if (auto text = take_pose(stated.object, i, stated.world_from_object, stated.age)) return text;
+    turn_speed_[i] = within_speed ? stated.turn_speed : 0.0;
   }
+  std::fill(contents_.begin(), contents_.end(), CloudPairs::Content());
+  for (const SeenFrame& frame : question.seen) {
+    if (auto text = take_frame(frame)) return text;
+  }
+  return std::nullopt;
+}
+
+std::optional<std::string> Posture::take_frame(const SeenFrame& frame) {
+  std::uint32_t i = 0;
+  if (auto text = find_free(frame.sensor, i)) return text;
+  if (!is_seen(i)) return "object \"" + frame.sensor + "\" is no sensor, so it has no frame";
+  if (frame.cloud == nullptr || frame.cloud->size() == 0)
+    return sensor_named(frame.sensor) + "its frame is empty, which is not known to be clear";
+  if (!(frame.pose_error >= 0.0) || !std::isfinite(frame.pose_error))
+    return sensor_named(frame.sensor) + "its pose_error is not a number from 0 on";
+  contents_[scene_.objects[i].sensor] = {frame.cloud.get(), frame.pose_error};
+  return take_pose(frame.sensor, i, frame.world_from_sensor, frame.age);
+}
+
+std::optional<std::string> Posture::take_pose(const std::string& name, std::uint32_t object,
+                                              const Pose& pose, double age) {
+  if (!is_unit(pose.orientation) || !pose.position.allFinite())
+    return "the pose of object \"" + name + "\" is not finite, or its quaternion has not length 1";
+  if (!(age >= 0.0) || !std::isfinite(age))
+    return "the age of the pose of object \"" + name + "\" is not a number from 0 on";
+  pose_[object] = pose;
+  age_[object] = age;
+  present_[object] = 1;
+  place_resting(object);
   return std::nullopt;
 }
 
 std::optional<std::string> Posture::take_motions(const Question& question) {
   moving_objects_.clear();
+  carrier_extent_ = 0.0;
   for (const ObjectMotion& motion : question.moving) {
     std::uint32_t i = 0;
     if (auto text = find_free(motion.object, i)) return text;
-    if (carries_[i] != 0)
-      return "object \"" + motion.object +
-             "\" carries a robot or an object: only its pose can be "
-             "stated";
+    if (is_seen(i)) return sensor_named(motion.object) + "what it sees has no stated motion";
     moving_objects_.push_back(i);
+    if (carries_[i] != 0) {
+      double farthest = 1.0;
+      for (const Pose& pose : motion.world_from_object)
+        farthest = std::max(farthest, pose.position.norm());
+      carrier_extent_ += farthest;
+    }
     present_[i] = 1;
     speed_[i] = 0.0;
   }
@@ -233,8 +274,10 @@ std::optional<std::string> Posture::open_object(const Question& question) {
   all_present_ = true;
   for (const std::uint32_t i : free_) {
     const Object& object = scene_.objects[i];
-    if (object.is_seen() && !object.absent) return sees_a_cloud(object.name);
     all_present_ = all_present_ && present_[i] != 0;
+    if (present_[i] == 0 && !object.absent && object.is_seen())
+      return sensor_named(object.name) +
+             "it has no frame, so that nothing is known of what it sees";
     if (present_[i] == 0 && !object.absent) {
       return "object \"" + object.name +
              "\" has no pose: it is not fixed, so the question states it";
@@ -267,9 +310,11 @@ void Posture::place_bases() noexcept {
 
 void Posture::place(const Stretch& stretch, double at) noexcept {
   trajectory_.place(stretch, at, variables_, bounds_);
-  kinematics_.place(variables_, bases_);
-  chains_.place(kinematics_);
   if (!free_.empty()) place_free_objects(stretch, at);
+  if (!moving_objects_.empty()) place_carriers();
+  kinematics_.place(variables_, bases_);
+  chains_.place(kinematics_, bases_);
+  if (any_free_) note_freedom(stretch, at);
   ++instant_;
 }
 
@@ -278,9 +323,9 @@ void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
   for (const std::uint32_t i : free_) {
     if (speed_[i] == 0.0) continue;
     ObjectApproach& approach = approaches_[i];
-    approach.until_end = rounded_up(swept(speed_[i], stretch.to - begin + age_[i]));
-    approach.until_middle = rounded_down(swept(speed_[i], at - begin + age_[i]));
-    approach.until_begin = rounded_down(swept(speed_[i], stretch.from - begin + age_[i]));
+    approach.nearing = {rounded_up(swept(speed_[i], stretch.to - begin + age_[i])),
+                        rounded_down(swept(speed_[i], at - begin + age_[i])),
+                        rounded_down(swept(speed_[i], stretch.from - begin + age_[i]))};
   }
   moving_.place(stretch, at);
   for (const ObjectState& state : moving_.states()) {

@@ -14,6 +14,7 @@
 #include "monitor/ask/trajectory.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/pairs/cloud_pairs.hpp"
 
 namespace clearance {
 
@@ -23,9 +24,8 @@ struct ObjectApproach {
   // velocity says. The velocity is constant, m/s.
   double moved = 0.0, turned = 0.0;
   Vec3 velocity = Vec3::Zero();
-  // By its assumed speed it comes nearer by this, m: until the end of the stretch, its middle, and
-  // its begin.
-  double until_end = 0.0, until_middle = 0.0, until_begin = 0.0;
+  // By its assumed speed.
+  Nearing nearing;
 };
 
 class Posture {
@@ -41,6 +41,28 @@ class Posture {
   [[nodiscard]] const std::vector<PosedPart>& parts() const noexcept { return parts_; }
   [[nodiscard]] std::span<const std::uint32_t> first_part() const noexcept { return first_part_; }
   [[nodiscard]] std::span<const VariableBounds> bounds() const noexcept { return bounds_; }
+  // By variable, as bounds(): by how much it may deviate by its assumed speed. All zero unless
+  // any_free().
+  [[nodiscard]] std::span<const Nearing> free_variables() const noexcept { return freedom_; }
+  [[nodiscard]] bool any_free() const noexcept { return any_free_; }
+  // False for links of robots that the question neither moves nor holds.
+  [[nodiscard]] bool is_of_question(std::uint32_t object) const noexcept {
+    return is_of_question_[object] != 0;
+  }
+  // What a sensor's object consists of in this question.
+  [[nodiscard]] bool is_seen(std::uint32_t object) const noexcept {
+    return scene_.objects[object].is_seen();
+  }
+  [[nodiscard]] const CloudPairs::Content& content(std::uint32_t object) const noexcept {
+    return contents_[scene_.objects[object].sensor];
+  }
+  // Something that no motion is stated for moves this link.
+  [[nodiscard]] bool may_deviate(std::uint32_t object) const noexcept {
+    return may_deviate_[object] != 0;
+  }
+  // The rounding of the motion of a sphere at a link relative to the base, m, by stated motions of
+  // what their robots stand on.
+  [[nodiscard]] double carrier_rounding(const Sphere& sphere, std::uint32_t base) const noexcept;
   // False for objects that the question leaves out because the scene says that they are absent.
   [[nodiscard]] bool is_present(std::uint32_t object) const noexcept {
     return present_[object] != 0;
@@ -64,12 +86,19 @@ class Posture {
   // The velocity of the part's object, m/s and rad/s, and the origin that it refers to. Zero for
   // objects that are no links.
   [[nodiscard]] Twist twist(std::uint32_t object, Vec3& origin) const noexcept;
+  // The same of the object that carries a link's robot.
+  [[nodiscard]] Twist twist_of_carrier(std::uint32_t link_object, Vec3& origin) const noexcept;
 
  private:
   static constexpr std::uint32_t kNoLink = ~0u;
 
   [[nodiscard]] std::optional<std::string> take_joints(const Question& question);
   [[nodiscard]] std::optional<std::string> hold(const HeldJoint& held);
+  [[nodiscard]] std::optional<std::string> set_free(const StatedJoint& stated, OthersMove others);
+  [[nodiscard]] std::optional<std::string> set_variable(const std::string& name, double position,
+                                                        std::uint32_t& variable);
+  [[nodiscard]] std::optional<std::string> free_carriers(const Question& question);
+  void note_free();
   [[nodiscard]] std::optional<std::string> open_joint() const;
   [[nodiscard]] std::optional<std::string> slide_out_of_limits() const;
   [[nodiscard]] std::optional<std::string> take_poses(const Question& question);
@@ -78,10 +107,16 @@ class Posture {
   // Finds an object whose pose the question may state.
   [[nodiscard]] std::optional<std::string> find_free(const std::string& name,
                                                      std::uint32_t& object) const;
+  [[nodiscard]] std::optional<std::string> take_frame(const SeenFrame& frame);
+  // Takes a pose of an object, or a frame of a sensor.
+  [[nodiscard]] std::optional<std::string> take_pose(const std::string& name, std::uint32_t object,
+                                                     const Pose& pose, double age);
   void place_resting(std::uint32_t object) noexcept;
   void place_bases() noexcept;
   void place_link_part(std::uint32_t index) noexcept;
   void place_free_objects(const Stretch& stretch, double at) noexcept;
+  void place_carriers() noexcept;
+  void note_freedom(const Stretch& stretch, double at) noexcept;
   [[nodiscard]] const LinkState& link_state(std::uint32_t object) const noexcept;
 
   const Scene& scene_;
@@ -103,9 +138,23 @@ class Posture {
   std::vector<std::uint8_t> present_;  // by object
   bool all_present_ = true;
   std::vector<double> speed_, age_;  // by object: that are assumed, m/s; of a stated pose, s
+  std::vector<double> turn_speed_;   // by object, rad/s
   std::vector<ObjectApproach> approaches_;
   MovingObjects moving_;
   std::vector<std::uint32_t> moving_objects_;
+
+  // The assumed speed of a variable, as bounds_ counts them, that no motion is stated for.
+  struct FreeVariable {
+    std::uint32_t variable = 0;
+    double speed = 0.0, age = 0.0;  // per second; s
+    double most = kInfinity;        // its limits allow no larger deviation
+  };
+  std::vector<FreeVariable> free_variables_;
+  std::vector<Nearing> freedom_;
+  bool any_free_ = false;
+  std::vector<std::uint8_t> is_of_question_, may_deviate_;  // by object
+  std::vector<CloudPairs::Content> contents_;  // by sensor
+  double carrier_extent_ = 0.0;  // m: the sum of the largest positions of moving carriers
 };
 
 }  // namespace clearance

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +14,8 @@
 #include "core/pose.hpp"
 
 namespace clearance {
+
+class SeenCloud;  // monitor/clouds
 
 // Waypoints of some joints, as in trajectory_msgs/JointTrajectory. Between two waypoints every
 // joint moves linearly in time. With velocities it moves along the cubic polynomial that has the
@@ -24,15 +27,35 @@ struct JointTrajectory {
   std::vector<double> velocities;   // as positions, rad/s or m/s; empty: linear
 };
 
+// A joint that stays where it is.
 struct HeldJoint {
   std::string name;
   double position = 0.0;  // rad or m
+};
+
+// A joint of a robot whose motion nothing states.
+struct StatedJoint {
+  std::string name;
+  double position = 0.0;  // rad or m
+  double age = 0.0;       // s, from 0 on: it was there this long before the first waypoint
 };
 
 struct StatedPose {
   std::string object;
   Pose world_from_object;
   double age = 0.0;  // s, from 0 on: it was there this long before the first waypoint
+  // Of an object on which a robot stands: it does not rotate faster, rad/s. Infinity: not stated.
+  double turn_speed = kInfinity;
+};
+
+// What a sensor of the cell sees: its newest frame. It comes nearer by the `max_speed` of the
+// sensor's object, counted from the stamp of the frame.
+struct SeenFrame {
+  std::string sensor;                      // the name of its object
+  std::shared_ptr<const SeenCloud> cloud;  // not empty; does not change while the question is asked
+  Pose world_from_sensor;                  // at the stamp
+  double pose_error = 0.0;  // m: no element is farther from its exact place in the world
+  double age = 0.0;         // s, from 0 on: the stamp is this long before the first waypoint
 };
 
 // The motion of an object that is neither fixed nor part of a robot. Between two times its origin
@@ -55,10 +78,11 @@ struct Payload {
   std::vector<std::string> touch;  // names of objects that it may touch
 };
 
-// The motion of objects that are neither fixed nor part of a robot, and for which the question
-// states no motion.
+// The motion of what the question states no motion for: objects that are neither fixed nor part of
+// a robot, what robots stand on, and the joints of Question::joints.
 enum class OthersMove : std::uint8_t {
-  kWithinMaxSpeed,  // within max_speed x time since the first waypoint
+  // Within max_speed x time since the first waypoint; joints within their limits as well.
+  kWithinMaxSpeed,
   kNot,
 };
 
@@ -73,10 +97,15 @@ struct ProfileRequest {
 struct Question {
   JointTrajectory motion;
   std::vector<JointTrajectory> beside;  // of other robots, which rest before and after it
-  std::vector<HeldJoint> held;          // every other joint of the cell
-  std::vector<StatedPose> poses;        // of objects that are neither fixed nor part of a robot
-  std::vector<ObjectMotion> moving;     // instead of a pose
-  std::vector<Payload> payloads;        // beside what the scene has attached
+  std::vector<HeldJoint> held;          // joints that stay
+  // Of robots that do nothing for this question, where they are: `others` says how they move. Every
+  // joint of the cell is in one of these. Pairs of such a robot count only if the other body has a
+  // stated motion, or stays by `held`.
+  std::vector<StatedJoint> joints;
+  std::vector<StatedPose> poses;     // of objects that are neither fixed nor part of a robot
+  std::vector<SeenFrame> seen;       // one for each sensor of the cell
+  std::vector<ObjectMotion> moving;  // instead of a pose
+  std::vector<Payload> payloads;     // beside what the scene has attached
   OthersMove others = OthersMove::kWithinMaxSpeed;
   std::vector<double> margins = {0.0};  // m, from 0 on
   double tolerance = 1e-3;              // m: `upper` - `lower` at the end

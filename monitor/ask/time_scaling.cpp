@@ -50,12 +50,31 @@ void MotionSearch::collect_separated() {
   scaled_.resize(separated_.size());
 }
 
+// The link that the zone limits.
+std::uint32_t MotionSearch::limited_robot(std::uint32_t separated) const noexcept {
+  return pairs_.bundles()[pairs_.pairs()[separated_[separated].pair].bundle].object_tip;
+}
+
+std::optional<std::string> MotionSearch::fault_of_scaling() const {
+  for (std::uint32_t i = 0; i < separated_.size(); ++i) {
+    const std::uint32_t robot = limited_robot(i);
+    if (posture_.is_of_question(robot) && posture_.may_deviate(robot)) {
+      return "\"" + scene_.objects[robot].name +
+             "\" may move by its assumed speed: a motion is timed only if the question states that "
+             "of all that moves the robot";
+    }
+  }
+  return std::nullopt;
+}
+
 void MotionSearch::scale_time() noexcept {
   TimeScaling& scaling = answer_->scaling;
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
     const PartPair& pair = pairs_.pairs()[separated_[i].pair];
-    if (posture_.is_present(posture_.parts()[pair.base].object)) scaled_[count++] = i;
+    if (posture_.is_present(posture_.parts()[pair.base].object) &&
+        posture_.is_of_question(limited_robot(i)))
+      scaled_[count++] = i;
   }
   scaling.is_limited = count > 0;
   if (count == 0) return;
@@ -93,7 +112,7 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
     Pair at = pair_at(separated.pair, motion);
     // S_p counts the person's path from the present instant on. So nothing is assumed before.
     ObjectApproach approach = at.approach;
-    approach.until_end = approach.until_middle = approach.until_begin = 0.0;
+    approach.nearing = {};
     const double radius = at.tip.sphere_in_world.radius;
     const double fastest = largest_tip_speed(motion, radius);
     const double apart = gap(at, separated.pair, kInfinity);
@@ -104,7 +123,7 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
       const double over =
           lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
       lower = std::max(lower, factor_of(terms, rounded_down(over - separated.margins), fastest));
-      const double slowest = largest_tip_speed({.twist = motion.twist}, radius);
+      const double slowest = largest_tip_speed({.twist = motion.twist, .nearing = {}}, radius);
       const double now = rounded_up(found.upper + motion.rounding - separated.margins);
       const double upper = rounded_up(rounded_up(factor_of(terms, now, (1.0 - 0x1p-40) * slowest)));
       if (upper < scaling.factor_above) {

@@ -122,8 +122,7 @@ std::optional<std::string> Trajectory::take(const Question& question, const Scen
       largest_position_ = std::max(largest_position_, std::abs(v) * length);
     }
   }
-  position_rounding_ =
-      (any_cubic ? kCubicPositionRounding : kLinearRounding) * largest_position_;
+  position_rounding_ = (any_cubic ? kCubicPositionRounding : kLinearRounding) * largest_position_;
   return std::nullopt;
 }
 
@@ -226,8 +225,7 @@ void Trajectory::place_in_segment(const Track& track, const Stretch& stretch, do
       const std::vector<double>& times = track.motion->times;
       const double length =
           times[static_cast<std::size_t>(row) + 1] - times[static_cast<std::size_t>(row)];
-      const double rounding =
-          track.is_cubic() ? kCubicRounding * largest_position_ / length : 0.0;
+      const double rounding = track.is_cubic() ? kCubicRounding * largest_position_ / length : 0.0;
       bound.speed += rounding;
       bound.acceleration =
           std::abs(now.acceleration) + half * std::abs(now.jerk) + rounding / length;

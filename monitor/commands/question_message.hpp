@@ -22,7 +22,8 @@ inline constexpr std::size_t kMostWaypoints = 10'000, kMostMotionJoints = 64, kM
     const clearance_msg_Question& message);
 
 // Makes the message of a question. It allocates. The longest client has 32 bytes; more are cut off.
-// Shapes of new payloads cannot be sent: such a payload must be an object of the cell.
+// Shapes of new payloads cannot be sent: such a payload must be an object of the cell. Positions
+// of joints that other robots move, and frames of sensors, are not sent: the daemon has them.
 [[nodiscard]] Sample<clearance_msg_Question> to_wire(const MotionQuestion& question);
 
 // Answers. `daemon` as in all messages of a daemon. A verdict that is not known is undecided.

@@ -61,6 +61,10 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] SourceTally departed() const;
   // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
+  // Any thread: see SensorReader::copies().
+  [[nodiscard]] std::vector<SeenFrame> seen(std::uint64_t scene_revision) {
+    return sensors_ ? sensors_->copies(scene_revision) : std::vector<SeenFrame>();
+  }
   // By sensor of the cell.
   [[nodiscard]] std::vector<SensorStatus> sensors() const {
     return sensors_ ? sensors_->statuses() : std::vector<SensorStatus>();

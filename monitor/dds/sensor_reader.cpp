@@ -36,7 +36,8 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       ros_(participant, intake_),
       wait_(participant, {}),
       where_(participant.where()),
-      silence_said_(cell.scene.sensors.size()) {
+      silence_said_(cell.scene.sensors.size()),
+      last_(cell.scene.sensors.size()) {
   wait_.add(ros_.present().reader());
   build();
 }
@@ -56,6 +57,7 @@ void SensorReader::change(const Cell& cell) {
   const std::lock_guard lock(mutex_);
   SceneMap map = scene_map(cell_->scene, cell.scene);
   ids_.change(cell.scene.revision, map);
+  last_.assign(cell.scene.sensors.size(), {});
   sensors_ = std::make_unique<Sensors>(cell, *sensors_);
   intake_.change(cell);
   cell_ = &cell;
@@ -66,6 +68,22 @@ void SensorReader::note(const PoseBatch& batch) {
   if (slot == nullptr) return;
   *slot = batch;
   batches_.push();
+}
+
+// The cloud of the last frame is not built anew, even if the tick has refused it.
+std::vector<SeenFrame> SensorReader::copies(std::uint64_t scene_revision) {
+  const std::lock_guard lock(mutex_);
+  std::vector<SeenFrame> seen;
+  for (std::uint32_t i = 0; i < last_.size(); ++i) {
+    Last& last = last_[i];
+    if (last.frame.cloud == nullptr || last.scene_revision != scene_revision) continue;
+    if (last.copy == nullptr) last.copy = std::make_shared<const SeenCloud>(*last.frame.cloud);
+    seen.push_back({.sensor = cell_->scene.sensors[i].name,
+                    .cloud = last.copy,
+                    .world_from_sensor = last.frame.world_from_sensor,
+                    .pose_error = last.frame.pose_error});
+  }
+  return seen;
 }
 
 std::vector<SensorStatus> SensorReader::statuses() const {
@@ -119,9 +137,15 @@ void SensorReader::take_all() {
 
 void SensorReader::build() {
   sensors_->settle(
-      now_ns_, [this](const SeenCloud* cloud) { return frames_.is_used(cloud); },
+      now_ns_,
+      [this](const SeenCloud* cloud) {
+        return frames_.is_used(cloud) || std::ranges::any_of(last_, [&](const Last& last) {
+                 return last.frame.cloud == cloud;
+               });
+      },
       [this](std::uint32_t sensor, const SensorFrame& frame) {
         frames_.put(sensor, frame, cell_->scene.revision);
+        last_[sensor] = {frame, cell_->scene.revision, nullptr};
       });
   const std::lock_guard lock(status_mutex_);
   statuses_.resize(cell_->scene.sensors.size());

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/ask/question.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/intake/intake.hpp"
@@ -46,6 +47,11 @@ class SensorReader {
   // For the tick.
   [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
 
+  // Any thread, for questions about motions: copies of the last frames of the scene of this
+  // revision, each under the name of its sensor. A frame is copied once. `age` is left to the
+  // caller.
+  [[nodiscard]] std::vector<SeenFrame> copies(std::uint64_t scene_revision);
+
   // Any thread: as of the last frame or second.
   [[nodiscard]] std::vector<SensorStatus> statuses() const;
 
@@ -74,6 +80,13 @@ class SensorReader {
   std::int64_t now_ns_ = 0, started_ns_ = 0;  // CLOCK_MONOTONIC
   std::string where_;
   std::vector<bool> silence_said_;  // by sensor
+  // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.
+  struct Last {
+    SensorFrame frame;
+    std::uint64_t scene_revision = 0;
+    std::shared_ptr<const SeenCloud> copy;  // null: not copied yet
+  };
+  std::vector<Last> last_;  // by sensor
   mutable std::mutex status_mutex_;
   std::vector<SensorStatus> statuses_;
   std::atomic<bool> stop_{false};

@@ -1,5 +1,7 @@
 #include "monitor/pairs/cloud_pairs.hpp"
 
+#include <utility>
+
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -32,27 +34,32 @@ CloudPairs::CloudPairs(const Scene& scene, const std::vector<PosedPart>& parts,
 
 CloudPairs::Answer CloudPairs::query(std::uint32_t part_pair, const PosedPart& a,
                                      const PosedPart& b) noexcept {
+  const bool a_is_cloud = sensor_of_[a.object] != Object::kNoSensor;
+  const PosedPart& seen = a_is_cloud ? a : b;
+  Answer answer = query(content_[sensor_of_[seen.object]], seen, a_is_cloud ? b : a, body_,
+                        tracking_[slot_[part_pair]]);
+  if (a_is_cloud) return answer;
+  std::swap(answer.witness_a, answer.witness_b);
+  answer.normal = -answer.normal;
+  return answer;
+}
+
+CloudPairs::Answer CloudPairs::query(const Content& content, const PosedPart& seen,
+                                     const PosedPart& part, SlabBody& body,
+                                     CloudTracking& tracking) noexcept {
   Answer answer;
   answer.witness_a = answer.witness_b = answer.normal = Vec3::Constant(kNan);
-  const bool a_is_cloud = sensor_of_[a.object] != Object::kNoSensor;
-  const PosedPart& part = a_is_cloud ? b : a;
-  const PosedPart& seen = a_is_cloud ? a : b;
-  const Content& content = content_[sensor_of_[seen.object]];
   if (content.cloud == nullptr) return answer;
-  const NearestElement found =
-      content.cloud->nearest(*part.shape, relative_pose(part.world_from_part, seen.world_from_part),
-                             body_, tracking_[slot_[part_pair]]);
+  const NearestElement found = content.cloud->nearest(
+      *part.shape, relative_pose(part.world_from_part, seen.world_from_part), body, tracking);
   if (found.answer != CloudAnswer::kNearest) return answer;
-  const double error = rounded_up(placing_error(a, b) + content.pose_error);
+  const double error = rounded_up(placing_error(seen, part) + content.pose_error);
   answer.bounds = {rounded_down(found.lower - error), rounded_up(found.upper + error)};
   answer.status = status_of(found);
   const Mat3& turn = part.world_from_part_rotation;
-  const Vec3 on_part = turn * found.point_on_part + part.world_from_part.position;
-  const Vec3 on_element = turn * found.point_on_element + part.world_from_part.position;
-  const Vec3 normal = turn * found.normal;
-  answer.witness_a = a_is_cloud ? on_element : on_part;
-  answer.witness_b = a_is_cloud ? on_part : on_element;
-  answer.normal = a_is_cloud ? Vec3(-normal) : normal;
+  answer.witness_a = turn * found.point_on_element + part.world_from_part.position;
+  answer.witness_b = turn * found.point_on_part + part.world_from_part.position;
+  answer.normal = -(turn * found.normal);
   return answer;
 }
 

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/ask/robots_of_question.hpp"
+
 namespace clearance {
 namespace {
 
@@ -69,11 +71,12 @@ bool places(const Question& question, const std::string& object) {
 }  // namespace
 
 std::optional<std::string> complete(const Scene& scene, const InputState& state,
-                                    Question& question) {
+                                    std::vector<SeenFrame> frames, Question& question) {
   Missing missing;
   const auto is_held = [&](const std::string& name) {
     return std::ranges::find(question.held, name, &HeldJoint::name) != question.held.end();
   };
+  const std::vector<bool> is_of_question = robots_of_question(scene, question);
   for (std::size_t i = 0; i < scene.variables.size(); ++i) {
     const JointVariable& variable = scene.variables[i];
     const PresentJoint& joint = state.joints[i];
@@ -81,6 +84,10 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
     if (joint.state != PresentPose::State::kUsable) {
       missing.add(
           fmt::format("the position of joint '{}' {}", variable.name, what_is_wrong(joint.state)));
+      continue;
+    }
+    if (!is_of_question[variable.robot]) {
+      question.joints.push_back({variable.name, joint.position, state.joint_ages[i]});
       continue;
     }
     const bool may_move = question.others == OthersMove::kWithinMaxSpeed;
@@ -100,6 +107,17 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
     if (present.pose.state != PresentPose::State::kUsable) {
       missing.add(
           fmt::format("the pose of object '{}' {}", name, what_is_wrong(present.pose.state)));
+      continue;
+    }
+    if (scene.objects[present.object].is_seen()) {
+      const auto frame = std::ranges::find(frames, name, &SeenFrame::sensor);
+      if (frame == frames.end()) {
+        missing.add(fmt::format("that sensor '{}' has no frame of this scene", name));
+        continue;
+      }
+      // Not younger than it is: the frame in use is not newer than the last one.
+      frame->age = present.age;
+      question.seen.push_back(std::move(*frame));
       continue;
     }
     question.poses.push_back(

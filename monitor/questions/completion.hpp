@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/scene/scene.hpp"
 #include "monitor/motion_question.hpp"
@@ -11,14 +12,16 @@
 
 namespace clearance {
 
-// A joint that moves faster than this does not stay where it is, rad/s or m/s. Drives at rest
-// report less.
+// A joint of the robot in question that moves faster than this does not stay where it is, rad/s or
+// m/s. Drives at rest report less.
 inline constexpr double kRestSpeed = 2e-3;
 
-// Adds to `held` and `poses` what the question lacks. Returns why it cannot: a sentence that names
-// the inputs which are unknown, late or contradicted, or a joint that is taken to stay and moves.
-// Names that the scene lacks stay, for Asker to refuse.
+// Adds to `held`, `joints`, `poses` and `seen` what the question lacks. `frames` are the last ones
+// of the sensors; their ages are those of the frames in use. Returns why it cannot: a sentence that
+// names the inputs which are unknown, late or contradicted, or a joint that is taken to stay and
+// moves. Names that the scene lacks stay, for Asker to refuse.
 [[nodiscard]] std::optional<std::string> complete(const Scene& scene, const InputState& state,
+                                                  std::vector<SeenFrame> frames,
                                                   Question& question);
 
 // The joint whose first waypoint differs most from its present position.

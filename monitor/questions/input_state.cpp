@@ -23,12 +23,16 @@ class StateQuestion final : public LoopQuestion {
     if (!is_of_scene_) return;
     state_.cycle = loop.statistics.cycle;
     state_.now_ns = loop.statistics.now_ns;
-    for (std::uint32_t i = 0; i < state_.joints.size(); ++i)
+    const auto seconds = [](std::int64_t age_ns) {
+      return kSecond * static_cast<double>(std::max<std::int64_t>(age_ns, 0));
+    };
+    for (std::uint32_t i = 0; i < state_.joints.size(); ++i) {
       state_.joints[i] = loop.monitor.present_joint(i);
+      state_.joint_ages[i] = seconds(loop.monitor.joint_age(i).age_ns);
+    }
     for (PresentObject& object : state_.objects) {
       object.pose = loop.monitor.present_pose(object.object);
-      const std::int64_t age_ns = loop.monitor.input_age(object.object).age_ns;
-      object.age = kSecond * static_cast<double>(std::max<std::int64_t>(age_ns, 0));
+      object.age = seconds(loop.monitor.input_age(object.object).age_ns);
     }
   }
 
@@ -46,7 +50,8 @@ InputState room_for_inputs(const Scene& scene) {
       if (link.object != RobotLink::kNoObject) is_link[link.object] = true;
     }
   }
-  InputState state{.joints = std::vector<PresentJoint>(scene.variables.size())};
+  InputState state{.joints = std::vector<PresentJoint>(scene.variables.size()),
+                   .joint_ages = std::vector<double>(scene.variables.size(), 0.0)};
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].fixed && !is_link[i]) state.objects.push_back({.object = i});
   }

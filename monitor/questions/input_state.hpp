@@ -25,6 +25,7 @@ struct InputState {
   std::uint64_t cycle = 0;                  // the last tick; 0: none yet
   std::int64_t now_ns = 0;                  // its time
   std::vector<PresentJoint> joints = {};    // in the order of Scene::variables
+  std::vector<double> joint_ages = {};      // s: they had these positions this long before the tick
   std::vector<PresentObject> objects = {};  // those that are neither fixed nor links of robots
 };
 

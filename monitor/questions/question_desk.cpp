@@ -26,7 +26,7 @@ QuestionResult refusal(const MotionQuestion& question, QuestionStatus status, st
 
 std::size_t bytes_of(const QueuedQuestion& queued) noexcept {
   const Question& question = queued.question.question;
-  return sizeof(QueuedQuestion) +
+  return sizeof(QueuedQuestion) + queued.bytes_to_make +
          sizeof(double) * (question.motion.times.size() + question.motion.positions.size() +
                            question.motion.velocities.size() + question.margins.size()) +
          sizeof(std::string) * question.motion.joints.size() +
@@ -34,11 +34,14 @@ std::size_t bytes_of(const QueuedQuestion& queued) noexcept {
 }
 
 QuestionDesk::QuestionDesk(std::shared_ptr<const Cell> cell, TickLoop& loop,
-                           const std::atomic<bool>& loop_ended)
+                           const std::atomic<bool>& loop_ended, std::size_t more_clients,
+                           Frames frames)
     : settings_(cell->questions),
+      frames_(std::move(frames)),
       loop_ended_(loop_ended),
       inputs_(loop, loop_ended),
-      queue_(settings_.queue * std::max<std::size_t>(1, settings_.from.size()), kMostBytes),
+      queue_(settings_.queue * std::max<std::size_t>(1, settings_.from.size() + more_clients),
+             kMostBytes),
       cell_(std::move(cell)) {}
 
 void QuestionDesk::start() {
@@ -135,10 +138,17 @@ QuestionResult QuestionDesk::answer(QueuedQuestion& queued, Place& place) {
                   "found another scene in force than the question is about; expected its revision");
   }
   Question& question = asked.question;
+  if (queued.make) {
+    if (std::string reason = queued.make(scene, *state, question); !reason.empty())
+      return refuse(QuestionStatus::kRefused, std::move(reason));
+  }
   question.work_limit = question.work_limit == 0
                             ? settings_.work_limit
                             : std::min(question.work_limit, settings_.work_limit);
-  if (auto reason = complete(scene, *state, question))
+  // After the inputs: a frame is then not older than the one in use at their tick.
+  std::vector<SeenFrame> frames;
+  if (frames_ && !scene.sensors.empty()) frames = frames_(scene.revision);
+  if (auto reason = complete(scene, *state, std::move(frames), question))
     return refuse(QuestionStatus::kNoInput, *std::move(reason));
   if (auto reason = place.asker->ask(question, place.answer))
     return refuse(QuestionStatus::kRefused, *std::move(reason));

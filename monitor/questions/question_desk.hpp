@@ -25,6 +25,10 @@ struct QueuedQuestion {
   // Gets the answer, in a thread of the desk.
   std::function<void(const QuestionResult&)> answer = {};
   InputStates::Time came = std::chrono::steady_clock::now();
+  // Makes the motion by the inputs, in a thread of the desk, before anything else is done. Returns
+  // why it cannot; may be empty. The bytes that it holds count as waiting.
+  std::function<std::string(const Scene&, const InputState&, Question&)> make = {};
+  std::size_t bytes_to_make = 0;
 };
 [[nodiscard]] std::size_t bytes_of(const QueuedQuestion& queued) noexcept;
 
@@ -33,10 +37,15 @@ class QuestionDesk {
   // The bytes of questions that may wait.
   static constexpr std::size_t kMostBytes = 64 << 20;
 
-  // `cell` is the one that the loop ticks. The loop and `loop_ended`, which is set once its thread
+  // `cell` is the one that the loop ticks. `more_clients`: those that put questions beside the ones
+  // that the cell names. The loop and `loop_ended`, which is set once its thread
   // has ended, outlive this.
+  // `frames` returns the last frames of the sensors of the scene of a revision; empty: there are
+  // none. Any thread calls it.
+  using Frames = std::function<std::vector<SeenFrame>(std::uint64_t scene_revision)>;
   QuestionDesk(std::shared_ptr<const Cell> cell, TickLoop& loop,
-               const std::atomic<bool>& loop_ended);
+               const std::atomic<bool>& loop_ended, std::size_t more_clients = 0,
+               Frames frames = {});
   ~QuestionDesk() { end(); }
   QuestionDesk(const QuestionDesk&) = delete;
   QuestionDesk& operator=(const QuestionDesk&) = delete;
@@ -66,6 +75,7 @@ class QuestionDesk {
   void forget(const std::string& client);
 
   const QuestionSettings settings_;
+  const Frames frames_;
   const std::atomic<bool>& loop_ended_;
   InputStates inputs_;
   RequestQueue<QueuedQuestion> queue_;

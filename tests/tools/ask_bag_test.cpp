@@ -1,7 +1,9 @@
 // clearance-ask on bags of ROS 2. The oracle is the closed form of an arm that swings past a pin.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -113,6 +115,58 @@ TEST_F(AskOfABag, FailsIfAMotionComesNearerThanExpected) {
 TEST_F(AskOfABag, RefusesABagWithoutAMotion) {
   EXPECT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest)}), 2);
   EXPECT_NE(output.find("JointTrajectory"), std::string::npos) << output;
+}
+
+// The profile covers each motion, and the page says which one fails.
+TEST_F(AskOfABag, WritesProfilesAPlotAndAPage) {
+  const std::vector<RosMessage> bag = {
+      joint_state(kSecondNs, kSecondNs, kRest),
+      trajectory(2 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {0.6}}}),
+      trajectory(3 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {-0.5}}})};
+  EXPECT_EQ(ask(bag, {"--expect-min-distance", "0.2", "--profile", path("p.csv"), "--plot",
+                      path("p.svg"), "--report", path("p.html")}),
+            1)
+      << output;
+  std::ifstream csv(path("p.csv"));
+  std::string line;
+  ASSERT_TRUE(std::getline(csv, line));
+  EXPECT_EQ(line, "motion,from_s,to_s,lower_m,upper_m,first,second");
+  double until = 0.0, least = 1e9;
+  int rows = 0;
+  while (std::getline(csv, line) && line.find("at 1.000 s") != std::string::npos) {
+    double from = 0.0, to = 0.0, lower = 0.0, upper = 0.0;
+    ASSERT_EQ(std::sscanf(line.c_str() + line.find(',') + 1, "%lf,%lf,%lf,%lf", &from, &to, &lower,
+                          &upper),
+              4)
+        << line;
+    EXPECT_EQ(from, until);
+    EXPECT_LE(lower, upper);
+    least = std::min(least, upper);
+    until = to;
+    ++rows;
+  }
+  EXPECT_EQ(until, 2.0);
+  EXPECT_NEAR(least, 0.15, 6e-3);
+  EXPECT_GT(rows, 3);
+  const std::string page = read_text(path("p.html"));
+  EXPECT_NE(page.find("1 of them do not"), std::string::npos);
+  EXPECT_NE(page.find("<td class=\"failed\">/arm/joint_trajectory at 1.000 s</td>"),
+            std::string::npos);
+  EXPECT_NE(page.find("<svg"), std::string::npos) << output;
+  EXPECT_NE(read_text(path("p.svg")).find("</svg>"), std::string::npos);
+}
+
+TEST_F(AskOfABag, AnswersHaveTheSameBytesInSeveralThreads) {
+  std::vector<RosMessage> bag = {joint_state(kSecondNs, kSecondNs, kRest)};
+  for (int i = 0; i < 12; ++i) {
+    bag.push_back(trajectory((2 + i) * kSecondNs, {i == 5 ? "nothing" : "shoulder"},
+                             {{0.0, {-1.0 + 0.1 * i}}, {2.0, {0.6}}}));
+  }
+  EXPECT_EQ(ask(bag), 1) << "one motion has an error";
+  const std::string one = read_text(path("answers.jsonl"));
+  EXPECT_EQ(ask(bag, {"--threads", "3"}), 1) << output;
+  EXPECT_EQ(read_text(path("answers.jsonl")), one);
+  EXPECT_EQ(answers.size(), 12u);
 }
 
 }  // namespace

@@ -25,15 +25,20 @@ class Reader {
     if (message.topic->type != kTrajectory) return std::nullopt;
     BagMotion found{fmt::format("{} at {:.3f} s", message.topic->name,
                                 1e-9 * static_cast<double>(message.log_ns - *first_ns_))};
-    for (const auto& [name, position] : positions_) found.held.push_back({name, position});
+    std::vector<HeldJoint> present;
+    for (const auto& [name, joint] : joints_) {
+      present.push_back({name, joint.position});
+      const std::int64_t age_ns = std::max<std::int64_t>(0, message.log_ns - joint.stamp_ns);
+      found.joints.push_back({name, joint.position, 1e-9 * static_cast<double>(age_ns)});
+    }
     if (!decoder_.decode(message.payload, trajectory_)) {
       found.motion = "found bytes that do not decode; expected a JointTrajectory";
       return found;
     }
-    found.motion = motion_of(*trajectory_, found.held);
+    found.motion = motion_of(*trajectory_, present);
     if (const auto* motion = std::get_if<JointTrajectory>(&found.motion)) {
-      std::erase_if(found.held, [&](const HeldJoint& held) {
-        return std::ranges::find(motion->joints, held.name) != motion->joints.end();
+      std::erase_if(found.joints, [&](const StatedJoint& joint) {
+        return std::ranges::find(motion->joints, joint.name) != motion->joints.end();
       });
     }
     return found;
@@ -43,12 +48,19 @@ class Reader {
   void note_joints(const BagMessage& message) {
     if (!decoder_.decode(message.payload, states_)) return;
     const std::uint32_t count = std::min(states_->name._length, states_->position._length);
+    const auto& stamp = states_->header.stamp;
+    const std::int64_t stated_ns = 1'000'000'000LL * stamp.sec + stamp.nanosec;
+    const std::int64_t stamp_ns = stated_ns == 0 ? message.log_ns : stated_ns;
     for (std::uint32_t i = 0; i < count; ++i)
-      positions_[states_->name._buffer[i]] = states_->position._buffer[i];
+      joints_[states_->name._buffer[i]] = {states_->position._buffer[i], stamp_ns};
   }
 
   std::optional<std::int64_t> first_ns_;
-  std::map<std::string, double> positions_;
+  struct Joint {
+    double position;
+    std::int64_t stamp_ns;
+  };
+  std::map<std::string, Joint> joints_;
   CdrDecoder decoder_;
   Sample<trajectory_msgs_msg_dds__JointTrajectory_> trajectory_;
   Sample<sensor_msgs_msg_dds__JointState_> states_;

@@ -17,7 +17,7 @@ struct BagMotion {
   std::string id;  // "/arm/joint_trajectory at 12.345 s": the time since the first message
   // The motion, and all other joints of the bag where they were then; or why there is none.
   std::variant<JointTrajectory, std::string> motion = {};
-  std::vector<HeldJoint> held = {};
+  std::vector<StatedJoint> joints = {};
 };
 
 // Calls `take` for each motion of a bag, in order. Returns an empty text, or what is wrong with the

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <optional>
@@ -168,6 +169,27 @@ Question read_question(const Json& line, const Question& defaults) {
   if (line.contains("poses")) {
     for (const auto& [name, pose] : line["poses"].items()) {
       question.poses.push_back({name, pose_of(pose)});
+    }
+  }
+  if (line.contains("joints_of_others")) {
+    for (const auto& [name, stated] : line["joints_of_others"].items()) {
+      StatedJoint joint{.name = name};
+      if (stated.is_array()) {
+        const auto [position, age] = stated.get<std::array<double, 2>>();
+        joint.position = position;
+        joint.age = age;
+      } else {
+        joint.position = stated.get<double>();
+      }
+      question.joints.push_back(joint);
+    }
+  }
+  if (line.contains("turn_speeds")) {
+    for (const auto& [name, speed] : line["turn_speeds"].items()) {
+      const auto at = std::ranges::find(question.poses, name, &StatedPose::object);
+      if (at == question.poses.end())
+        throw BadMotion("\"turn_speeds\" names \"" + name + "\", which has no pose");
+      at->turn_speed = speed.get<double>();
     }
   }
   if (line.contains("beside")) {

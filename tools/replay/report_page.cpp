@@ -7,43 +7,10 @@
 #include <iterator>
 
 #include "monitor/pair_name.hpp"
+#include "tools/shared/html.hpp"
 
 namespace clearance {
 namespace {
-
-constexpr const char* kStyle = R"(
-body { font: 15px/1.5 system-ui, sans-serif; max-width: 1120px; margin: 32px auto; padding: 0 20px; color: #17202b; }
-h1 { font-size: 24px; margin-bottom: 4px; } h2 { font-size: 18px; margin-top: 36px; }
-table { border-collapse: collapse; width: 100%; font-variant-numeric: tabular-nums; }
-td, th { text-align: left; padding: 4px 12px 4px 0; border-bottom: 1px solid #dfe3e8; vertical-align: top; }
-th { color: #64707d; font-weight: 550; }
-.held { color: #0f8a6d; font-weight: 650; } .failed { color: #d1242f; font-weight: 650; }
-figure { margin: 18px 0; } figure img, figure svg { width: 100%; height: auto; border: 1px solid #dfe3e8; border-radius: 8px; }
-figcaption { font-weight: 600; margin-bottom: 6px; } .quiet { color: #64707d; }
-)";
-
-std::string escaped(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '<':
-        out += "&lt;";
-        break;
-      case '>':
-        out += "&gt;";
-        break;
-      case '&':
-        out += "&amp;";
-        break;
-      case '"':
-        out += "&quot;";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
 
 std::string row(const std::string& term, const std::string& text) {
   return fmt::format("<tr><th>{}</th><td>{}</td></tr>\n", term, escaped(text));
@@ -141,12 +108,6 @@ std::string zones(const RunSeries& series) {
   return out;
 }
 
-// gnuplot's file without the lines before its <svg> element.
-std::string inline_svg(const std::string& svg) {
-  const std::size_t begin = svg.find("<svg");
-  return begin == std::string::npos ? "" : svg.substr(begin);
-}
-
 }  // namespace
 
 std::string report_page(const Scene& scene, const OfflineReplay& replay, const RunSeries& series,
@@ -154,7 +115,7 @@ std::string report_page(const Scene& scene, const OfflineReplay& replay, const R
   std::string out = fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{0}: a run</title>"
       "<style>{1}</style></head>\n<body><h1>{0}: a run, replayed</h1>\n",
-      escaped(scene.name), kStyle);
+      escaped(scene.name), kPageStyle);
   out += summary_table(scene, replay, series, page);
   out += "<h2>Expectations</h2>\n" + expectations(replay, page);
   out += "<h2>Distances</h2>\n";

@@ -6,8 +6,12 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <variant>
+#include <vector>
 
+#include "core/shapes.hpp"
 #include "tests/monitor/ask/scara_questions.hpp"
 #include "tests/shared/allocation_count.hpp"
 
@@ -172,22 +176,48 @@ TEST(Asker, KeepsItsBoundsWhenTheWorkEndsEarly) {
   EXPECT_NE(answer.margins[0].verdict, Verdict::kBelow);
 }
 
-// A sensor's object has a body, the ball of its view, which says nothing about what is seen.
-TEST(Asker, RefusesACellWithASensorAndNamesIt) {
-  Scene scene = scara_beside("sphere: {radius: 0.1}, max_speed: 1");
-  const auto seen = std::ranges::find(scene.objects, "post", &Object::name);
-  ASSERT_NE(seen, scene.objects.end());
-  seen->sensor = 0;
-  Question question = swing(-1.0, 0.6);
-  for (const bool states_a_pose : {false, true}) {
-    if (states_a_pose) question.poses = {{"post", Pose{}}};
-    const auto answer = ask(scene, question);
-    ASSERT_TRUE(std::holds_alternative<std::string>(answer));
-    EXPECT_NE(std::get<std::string>(answer).find("sensor \"post\""), std::string::npos);
+// Half of the questions have faults or payloads, so that threads meet in all states.
+TEST(Asker, AnswersOfManyQuestionsHaveTheSameBitsForAnyNumberOfThreads) {
+  const Scene scene = scara_beside(kPin);
+  std::vector<Question> questions;
+  for (int i = 0; i < 60; ++i) {
+    Question question = swing(-1.0 + 0.03 * i, 0.6 - 0.02 * i);
+    question.margins = {0.0, 0.01 * i};
+    if (i % 7 == 3) question.held.pop_back();
+    if (i % 5 == 2) question.profile = ProfileRequest{};
+    if (i % 4 == 1)
+      question.payloads = {{.name = "part",
+                            .shape = std::get<ConvexBody>(box({0.05, 0.05, 0.05})),
+                            .link = "finger",
+                            .link_from_object = {.position = {0.1, 0, 0}},
+                            .touch = {}}};
+    questions.push_back(std::move(question));
   }
-  seen->absent = true;
-  question.poses.clear();
-  EXPECT_TRUE(std::holds_alternative<Answer>(ask(scene, question)));
+  const auto all = [&](unsigned threads) {
+    std::vector<Answer> answers(questions.size());
+    std::vector<std::string> faults(questions.size());
+    ask_all(scene, questions, answers, faults, threads);
+    return std::pair(std::move(answers), std::move(faults));
+  };
+  const auto [one, faults_of_one] = all(1);
+  for (const unsigned threads : {0u, 2u, 3u, 8u, 100u}) {
+    const auto [several, faults] = all(threads);
+    ASSERT_EQ(faults, faults_of_one) << threads;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const Answer &a = one[i], &b = several[i];
+      EXPECT_EQ(std::tie(a.lower, a.upper, a.time, a.first, a.second, a.queries, a.placements),
+                std::tie(b.lower, b.upper, b.time, b.first, b.second, b.queries, b.placements))
+          << i << " in " << threads;
+      ASSERT_EQ(a.margins.size(), b.margins.size());
+      for (std::size_t m = 0; m < a.margins.size(); ++m) {
+        EXPECT_EQ(std::tie(a.margins[m].verdict, a.margins[m].above_until, a.margins[m].below_at),
+                  std::tie(b.margins[m].verdict, b.margins[m].above_until, b.margins[m].below_at));
+      }
+      ASSERT_EQ(a.profile.size(), b.profile.size());
+    }
+  }
+  EXPECT_NE(faults_of_one[3], "");
+  EXPECT_EQ(faults_of_one[4], "");
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 #include "tests/monitor/scara_cell.hpp"
 
-namespace clearance {
+namespace clearance::trajectory_test {
 namespace {
 
 struct Exact {
@@ -66,10 +66,10 @@ TEST(Trajectory, BoundsIncludeTheRoundingOfPolynomials) {
     const double rounding = trajectory.position_rounding();
     EXPECT_LE(std::abs(here - exact_at(motion, row, middle).position), rounding) << round;
     for (int i = 0; i < 8; ++i) {
-      const double at = i == 0   ? stretch.from
-                        : i == 1 ? stretch.to
-                                 : std::clamp(between(stretch.from, stretch.to), stretch.from,
-                                              stretch.to);
+      const double at =
+          i == 0   ? stretch.from
+          : i == 1 ? stretch.to
+                   : std::clamp(between(stretch.from, stretch.to), stretch.from, stretch.to);
       const Exact exact = exact_at(motion, row, at);
       EXPECT_LE(std::abs(exact.position - here), bound.deviation + rounding) << round;
       EXPECT_LE(std::abs(exact.speed), bound.speed) << round;
@@ -79,4 +79,4 @@ TEST(Trajectory, BoundsIncludeTheRoundingOfPolynomials) {
 }
 
 }  // namespace
-}  // namespace clearance
+}  // namespace clearance::trajectory_test

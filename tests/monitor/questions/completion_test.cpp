@@ -24,7 +24,7 @@ struct Known {
     question.motion = {
         .joints = {"shoulder"}, .times = {0.0, 1.0}, .positions = {0.0, 1.0}, .velocities = {}};
   }
-  std::optional<std::string> completed() { return complete(scene, state, question); }
+  std::optional<std::string> completed() { return complete(scene, state, {}, question); }
 
   Scene scene = test::scara_cell();
   InputState state = room_for_inputs(scene);
@@ -104,6 +104,27 @@ TEST(QuestionCompletion, MeasuresTheStartOfAnAngleThatWrapsByTheShorterWay) {
   const StartDeviation start = start_deviation(known.scene, known.state, known.question.motion);
   EXPECT_EQ(start.joint, "elbow");
   EXPECT_NEAR(start.deviation, 0.0, 1e-12);
+}
+
+// A robot that the question does not name may move: its joints are stated with their ages.
+TEST(QuestionCompletion, TakesTheJointsOfOtherRobotsAsThoseThatOthersMove) {
+  const Cell cell = test::two_scara_arms();
+  InputState state = room_for_inputs(cell.scene);
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    state.joints[i] = {PoseState::kUsable, 0.1 * static_cast<double>(i), 5.0};
+    state.joint_ages[i] = 0.01 * static_cast<double>(i);
+  }
+  Question question;
+  question.motion = {.joints = {"left_shoulder", "left_elbow", "left_push"},
+                     .times = {0.0},
+                     .positions = {0.0, 0.0, 0.0},
+                     .velocities = {}};
+  EXPECT_EQ(complete(cell.scene, state, {}, question), std::nullopt) << "though they move";
+  EXPECT_TRUE(question.held.empty());
+  ASSERT_EQ(question.joints.size(), 3u);
+  EXPECT_EQ(question.joints[0].name, "right_shoulder");
+  EXPECT_EQ(question.joints[2].position, 0.1 * 5);
+  EXPECT_EQ(question.joints[2].age, 0.01 * 5);
 }
 
 }  // namespace

@@ -464,6 +464,7 @@ class Question:
         velocities: Optional[ArrayLike] = ...,
         *,
         held: Mapping[str, float] = ...,
+        joints_of_others: Mapping[str, float] = ...,
         poses: Mapping[str, _PoseLike] = ...,
         beside: Sequence[Tuple[Any, ...]] = ...,
         moving: Mapping[str, Tuple[ArrayLike, ArrayLike]] = ...,

@@ -80,6 +80,7 @@ Payload payload_of(const std::string& object, const py::tuple& value) {
 Question question_of(const std::vector<std::string>& joints, const py::object& times,
                      const py::object& positions, const py::object& velocities,
                      const std::map<std::string, double>& held,
+                     const std::map<std::string, double>& joints_of_others,
                      const std::map<std::string, py::object>& poses,
                      const std::vector<py::tuple>& beside,
                      const std::map<std::string, py::tuple>& moving,
@@ -98,6 +99,8 @@ Question question_of(const std::vector<std::string>& joints, const py::object& t
                                             each.size() == 4 ? py::object(each[3]) : py::none()));
   }
   for (const auto& [name, position] : held) question.held.push_back({name, position});
+  for (const auto& [name, position] : joints_of_others)
+    question.joints.push_back({.name = name, .position = position});
   for (const auto& [name, pose] : poses) {
     question.poses.push_back(
         {.object = name, .world_from_object = pose_of(pose, ("poses['" + name + "']").c_str())});
@@ -157,6 +160,8 @@ class Questions : public Live<QuestionParts> {
   QuestionResult ask(const Question& question, double timeout, std::uint64_t revision) {
     if (!(timeout >= 0.0 && timeout <= 1e6))
       throw py::value_error("timeout: expected seconds, 0 to 1e6");
+    if (!question.joints.empty())
+      throw py::value_error("joints_of_others: a daemon takes these from its inputs; leave them out");
     for (const Payload& payload : question.payloads) {
       if (payload.shape)
         throw py::value_error("payloads: a Body cannot be sent; expected objects of the cell");
@@ -220,7 +225,8 @@ void add_question(py::module_& module) {
       .def(
           py::init(&question_of), py::arg("joints"), py::arg("times"), py::arg("positions"),
           py::arg("velocities") = py::none(), py::kw_only(),
-          py::arg("held") = std::map<std::string, double>(), py::arg("poses") = Empty(),
+          py::arg("held") = std::map<std::string, double>(),
+          py::arg("joints_of_others") = std::map<std::string, double>(), py::arg("poses") = Empty(),
           py::arg("beside") = std::vector<py::tuple>(),
           py::arg("moving") = std::map<std::string, py::tuple>(),
           py::arg("payloads") = std::map<std::string, py::tuple>(), py::arg("others") = "max_speed",
@@ -231,11 +237,13 @@ void add_question(py::module_& module) {
           R"(joints: names of k joints. times: (n,), s, increasing. positions: (n, k), rad or m; joints move
 linearly between waypoints. velocities: (n, k), per second; then along cubic polynomials.
 
-held: positions of all other joints, by name. poses: of objects that are neither fixed nor part of a
-robot. A daemon knows both; what is left out is where it is now. beside: motions of other robots, each
+held: positions of joints that stay, by name. joints_of_others: of robots that do nothing here, which
+`others` is about; a daemon takes these from its inputs only. poses: of objects that are neither fixed
+nor part of a robot. A daemon knows both; what is left out is where it is now. beside: motions of other robots, each
 (joints, times, positions[, velocities]). moving: {object: (times (n,), poses (n, 7))}. payloads:
 {object: (link, pose in the link[, names that it may touch[, Body of a new object]])}.
-others: "max_speed": such objects stay within max_speed x time of their poses; "still": they do not move.
+others: "max_speed": such objects and joints stay within their largest speed x time of where they are;
+"still": they do not move.
 
 margins: m; 0 asks for contact. tolerance: m, upper - lower. only_margins: bounds need not be better
 than the verdicts need. profile: most parts of a distance profile; 0: none. profile_tolerance: m.

@@ -1,0 +1,123 @@
+// The motion that nobody has stated: joints of other robots, and objects that carry robots.
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/ask/posture.hpp"
+#include "monitor/motion/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+// The rounding of a stated motion of a carrying object, relative to the lengths in it.
+constexpr double kCarrierRounding = 0x1p-44;
+
+}  // namespace
+
+std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMove others) {
+  std::uint32_t variable = 0;
+  if (auto text = set_variable(stated.name, stated.position, variable)) return text;
+  if (!(stated.age >= 0.0) || !std::isfinite(stated.age))
+    return "the age of joint \"" + stated.name + "\" is not a number from 0 on";
+  if (others == OthersMove::kNot) return std::nullopt;
+  const JointVariable& joint = scene_.variables[variable];
+  FreeVariable free{.variable = variable, .speed = joint.max_speed, .age = stated.age};
+  const double most = std::max(joint.upper - stated.position, stated.position - joint.lower) +
+                      joint.limit_tolerance;
+  if (std::isfinite(most)) free.most = std::max(0.0, rounded_up(most));
+  if (!std::isfinite(free.speed) && !std::isfinite(free.most)) {
+    return "joint \"" + stated.name +
+           "\" has neither a limit of its velocity nor of its position: hold it, state its motion, "
+           "or that others do not move";
+  }
+  free_variables_.push_back(free);
+  return std::nullopt;
+}
+
+std::optional<std::string> Posture::free_carriers(const Question& question) {
+  if (question.others == OthersMove::kNot) return std::nullopt;
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    const RobotBase& base = scene_.robots[r].base;
+    if (base.kind != RobotBase::Kind::kObject || present_[base.object] == 0) continue;
+    const double age = age_[base.object], v = speed_[base.object], w = turn_speed_[base.object];
+    const std::uint32_t variable = chains_.of_carrier(r);
+    if (v > 0.0) free_variables_.push_back({.variable = variable, .speed = v, .age = age});
+    // An object that does not move at all does not rotate.
+    if (v > 0.0 && w > 0.0)
+      free_variables_.push_back({.variable = variable + 1, .speed = w, .age = age});
+  }
+  return std::nullopt;
+}
+
+// A link counts for the question if something states its motion: or if nothing may move it.
+void Posture::note_free() {
+  any_free_ = !free_variables_.empty();
+  std::fill(freedom_.begin(), freedom_.end(), Nearing());
+  std::fill(is_of_question_.begin(), is_of_question_.end(), std::uint8_t{1});
+  std::fill(may_deviate_.begin(), may_deviate_.end(), std::uint8_t{0});
+  if (!any_free_) return;
+  std::vector<std::uint8_t> is_free(bounds_.size(), 0), is_stated(bounds_.size(), 0);
+  for (const FreeVariable& free : free_variables_) is_free[free.variable] = 1;
+  for (const std::uint32_t moved : trajectory_.moved()) is_stated[moved] = 1;
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    const bool on_object = scene_.robots[r].base.kind == RobotBase::Kind::kObject;
+    const auto carrier = scene_.robots[r].base.object;
+    if (on_object && std::ranges::find(moving_objects_, carrier) != moving_objects_.end())
+      is_stated[chains_.of_carrier(r)] = 1;
+  }
+  for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
+    if (!is_link(i)) continue;
+    bool free = false, stated = false;
+    chains_.for_each_variable(i, [&](std::uint32_t v) {
+      free = free || is_free[v] != 0;
+      stated = stated || is_stated[v] != 0;
+    });
+    may_deviate_[i] = free;
+    is_of_question_[i] = stated || !free;
+  }
+}
+
+void Posture::note_freedom(const Stretch& stretch, double at) noexcept {
+  const double begin = trajectory_.begin();
+  for (const FreeVariable& free : free_variables_) {
+    const auto until = [&](double t) {
+      const double since = t - begin + free.age;
+      return since > 0.0 ? std::min(free.most, free.speed * since) : 0.0;
+    };
+    freedom_[free.variable] = {rounded_up(until(stretch.to)), rounded_down(until(at)),
+                               rounded_down(until(stretch.from))};
+  }
+}
+
+double Posture::carrier_rounding(const Sphere& sphere, std::uint32_t base) const noexcept {
+  if (carrier_extent_ == 0.0) return 0.0;
+  const double to_base = is_link(base) ? link_state(base).pose.position.norm() + radii_[base] : 0.0;
+  return kCarrierRounding *
+         (2.0 * carrier_extent_ + sphere.centre.norm() + sphere.radius + to_base);
+}
+
+// The robots on objects whose motion is stated.
+void Posture::place_carriers() noexcept {
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    const RobotBase& base = scene_.robots[r].base;
+    if (base.kind != RobotBase::Kind::kObject) continue;
+    const std::uint32_t v = chains_.of_carrier(r);
+    for (const ObjectState& state : moving_.states()) {
+      if (state.object != base.object) continue;
+      bases_[r].pose = state.pose;
+      bases_[r].twist = {state.velocity, state.angular};
+      bounds_[v] = {.deviation = state.shift, .speed = rounded_up(state.velocity.norm())};
+      bounds_[v + 1] = {.deviation = state.turn, .speed = rounded_up(state.angular.norm())};
+    }
+  }
+}
+
+Twist Posture::twist_of_carrier(std::uint32_t link_object, Vec3& origin) const noexcept {
+  const std::uint32_t carrier = chains_.carrier_of(link_object);
+  origin = pose_[carrier].position;
+  for (const ObjectState& state : moving_.states()) {
+    if (state.object == carrier) return {state.velocity, state.angular};
+  }
+  return {};
+}
+
+}  // namespace clearance
