@@ -65,9 +65,11 @@ std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cel
 }
 
 // ROS 2 knows the default partition only.
-void warn_of_partition(const Cell& cell, const DdsOptions& options) {
-  const bool wants_ros = writes_ros(cell) || !cell.ros.outputs.messages.empty() ||
-                         TrackedFrames(cell).any() || !cell.scene.sensors.empty();
+void warn_of_partition(const Cell& cell, const DaemonOptions& all) {
+  const DdsOptions& options = all.dds;
+  const bool wants_ros = !all.trajectories.topics.empty() || writes_ros(cell) ||
+                         !cell.ros.outputs.messages.empty() || TrackedFrames(cell).any() ||
+                         !cell.scene.sensors.empty();
   if (options.partition.empty() || !wants_ros) return;
   log_line(lines::kPartitionWithoutRos, options.partition);
 }
@@ -118,11 +120,22 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
         cell, cell.commands.from, participant_, reports_.daemon(),
         [this](QueuedCommand command) { return put(std::move(command)); }, revision);
   }
+  const TrajectoryOptions& trajectories = options.trajectories;
+  const auto put_question = [this](QueuedQuestion question) {
+    return desk_->put(std::move(question));
+  };
+  if (!cell.questions.from.empty() || !trajectories.topics.empty()) {
+    desk_ = std::make_unique<QuestionDesk>(
+        now_.cell, *loop_, loop_ended_, trajectories.topics.size(),
+        [this](std::uint64_t of_scene) { return poses_.seen(of_scene); });
+  }
   if (!cell.questions.from.empty()) {
-    desk_ = std::make_unique<QuestionDesk>(now_.cell, *loop_, loop_ended_);
-    questions_ = std::make_unique<QuestionPort>(
-        cell, cell.questions.from, participant_, reports_.daemon(),
-        [this](QueuedQuestion question) { return desk_->put(std::move(question)); }, revision);
+    questions_ = std::make_unique<QuestionPort>(cell, cell.questions.from, participant_,
+                                                reports_.daemon(), put_question, revision);
+  }
+  if (!trajectories.topics.empty()) {
+    trajectories_ = std::make_unique<TrajectoryPort>(cell.scene.name, trajectories, participant_,
+                                                     put_question, leads());
   }
 }
 
@@ -171,7 +184,7 @@ void Daemon::run(StopSignal& signal) {
     for (const std::string& note : notes_of(sensor))
       log_line(lines::kSensorNote, sensor.name, note);
   }
-  warn_of_partition(*now_.cell, options_.dds);
+  warn_of_partition(*now_.cell, options_);
 
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
@@ -181,10 +194,9 @@ void Daemon::run(StopSignal& signal) {
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
   if (commands_) commands_->start();
-  if (questions_) {
-    desk_->start();
-    questions_->start();
-  }
+  if (desk_) desk_->start();
+  if (questions_) questions_->start();
+  if (trajectories_) trajectories_->start();
   for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
     ++polls;
     const bool looks = polls % kPollsALook == 0;
@@ -230,6 +242,7 @@ void Daemon::end_requests() {
   loop_ended_ = true;
   if (desk_) desk_->end();
   questions_.reset();
+  trajectories_.reset();
   if (!scene_thread_ || still_reads_) return;
   still_reads_ = !scene_thread_->end();
   if (!still_reads_) commands_.reset();

@@ -18,6 +18,7 @@
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/partner_states.hpp"
 #include "monitor/daemon/recording.hpp"
+#include "monitor/daemon/trajectory_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
 #include "monitor/dds/request_port.hpp"
@@ -42,6 +43,7 @@ struct DaemonOptions {
   std::optional<int> cpu;            // processor that the tick thread is pinned to
   CommanderOptions commander;        // how commands and SIGHUP change the cell
   std::string partner;               // this daemon's name among partners; empty: it has none
+  TrajectoryOptions trajectories;    // motions on topics of ROS 2 that are asked about
   bool reload = false;               // read the cell again when its files have changed
   ReportWriter::OnHealth on_health;  // once a second; may be empty
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
@@ -134,6 +136,7 @@ class Daemon : private CellParts {
   std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
   std::unique_ptr<QuestionDesk> desk_;     // likewise, here and below
   std::unique_ptr<QuestionPort> questions_;
+  std::unique_ptr<TrajectoryPort> trajectories_;
   bool still_reads_ = false;
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;

@@ -85,6 +85,11 @@ std::string is_client(const std::string& text) {
                      kMaxSourceLength);
 }
 
+std::string is_ros_topic(const std::string& text) {
+  const bool fits = text.size() > 1 && text.front() == '/' && text.back() != '/';
+  return fits ? "" : fmt::format("found '{}'; expected a topic like /arm/joint_trajectory", text);
+}
+
 // The name stands in the announcement of the daemon, between blanks.
 std::string is_partner(const std::string& text) {
   const bool fits = !text.empty() && text.size() <= kMaxSourceLength &&
@@ -123,6 +128,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "(idl/QUESTIONS.md); repeatable")
       ->allow_extra_args(false)
       ->check(is_client);
+  app.add_option(
+         "--ros2-trajectories", arguments.daemon.trajectories.topics,
+         "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic, and answer on "
+         "/diagnostics and TOPIC/clearance (idl/ROS.md); repeatable")
+      ->allow_extra_args(false)
+      ->check(is_ros_topic);
+  app.add_option("--trajectory-margin", arguments.daemon.trajectories.margins,
+                 "Margin for these, m; 0 asks for contact; repeatable")
+      ->allow_extra_args(false)
+      ->check(number_from_zero())
+      ->capture_default_str();
   app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
                  "Keep the changed scene in this file, and begin with it after a crash");
   app.add_option("--partner", arguments.daemon.partner,

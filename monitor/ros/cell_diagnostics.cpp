@@ -14,18 +14,7 @@
 namespace clearance {
 namespace {
 
-struct Status {
-  std::string name, message;
-  DiagnosticLevel level = DiagnosticLevel::kOk;
-  std::vector<std::pair<std::string, std::string>> values = {};
-
-  // The first message of the highest level stays.
-  void raise(DiagnosticLevel to, std::string why) {
-    if (to <= level) return;
-    level = to;
-    message = std::move(why);
-  }
-};
+using Status = DiagnosticText;
 
 std::string milliseconds(std::int64_t ns) {
   return fmt::format("{:.1f} ms", 1e-6 * static_cast<double>(ns));
@@ -134,19 +123,6 @@ Status recording_status(const clearance_msg_Health& health) {
   return status;
 }
 
-char* copied(const std::string& text) { return dds_string_dup(text.c_str()); }
-
-void to_wire(const Scene& scene, const Status& status,
-             diagnostic_msgs_msg_dds__DiagnosticStatus_& out) {
-  out.level = static_cast<std::uint8_t>(status.level);
-  out.name = copied(fmt::format("clearance {}: {}", scene.name, status.name));
-  out.message = copied(status.message);
-  out.hardware_id = copied(scene.name);
-  reserve_sequence(out.values, status.values.size());
-  for (const auto& [key, value] : status.values)
-    out.values._buffer[out.values._length++] = {copied(key), copied(value)};
-}
-
 }  // namespace
 
 Sample<DiagnosticArray> CellDiagnostics::make(const clearance_msg_Health& health,
@@ -160,15 +136,7 @@ Sample<DiagnosticArray> CellDiagnostics::make(const clearance_msg_Health& health
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone)
     statuses.push_back(zone_status(scene_, zone, report.zones[zone]));
   if (*health.recording != '\0') statuses.push_back(recording_status(health));
-
-  Sample<DiagnosticArray> sample;
-  sample->header.stamp.sec = static_cast<std::int32_t>(stamp_ns / 1'000'000'000);
-  sample->header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % 1'000'000'000);
-  sample->header.frame_id = copied("");
-  reserve_sequence(sample->status, statuses.size());
-  for (const Status& status : statuses)
-    to_wire(scene_, status, sample->status._buffer[sample->status._length++]);
-  return sample;
+  return diagnostic_array(scene_.name, statuses, stamp_ns);
 }
 
 }  // namespace clearance

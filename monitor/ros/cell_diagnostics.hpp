@@ -9,13 +9,9 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
-#include "monitor/wire/dds_sample.hpp"
-#include "monitor/wire/ros_types.hpp"
+#include "monitor/ros/diagnostic_status.hpp"
 
 namespace clearance {
-
-using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
-enum class DiagnosticLevel : std::uint8_t { kOk = 0, kWarn = 1, kError = 2 };
 
 class CellDiagnostics {
  public:

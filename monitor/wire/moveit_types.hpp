@@ -63,6 +63,15 @@ inline constexpr RosType kRosOctomap{
     &octomap_msgs_msg_dds__Octomap__desc,
     "typehash=RIHS01_9891a19a05b70ec20aa8f45db3f8300b9ab80afff32c61c549d25087da9625b0;", false, 2};
 
+// A motion that a controller gets: each one counts.
+inline constexpr RosType kRosJointTrajectory{
+    &trajectory_msgs_msg_dds__JointTrajectory__desc,
+    "typehash=RIHS01_179b33eba59d676f6d967ac71fe35e7ca2f64b2f3928f4a018cec115e213796e;",
+    false,
+    64,
+    16,
+    true};
+
 // The scene that a daemon publishes: a late reader gets the present one.
 inline constexpr RosType kRosMonitoredScene{kRosPlanningScene.descriptor,
                                             kRosPlanningScene.user_data, true, 1};

@@ -3,10 +3,14 @@
 // Oracles: closed forms for a made scene, of which tests/shared/ros_camera.hpp renders pictures.
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <csignal>
+#include <optional>
 #include <string>
 
+#include "monitor/client/client.hpp"
+#include "monitor/client/questions.hpp"
 #include "tests/shared/ros_camera.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
@@ -207,6 +211,46 @@ TEST_F(DaemonCameras, GoesOnWhenTheCellChanges) {
   daemon->signal(SIGHUP);
   EXPECT_TRUE(step_until(kPeriodMs, send, told("scene-refused", {"sensors"}))) << daemon->output();
   EXPECT_TRUE(is_measured());
+}
+
+// The forearm's top is at z = 0.05, and the slabs of the wall end at z = 0.5 - kError.
+TEST_F(DaemonCameras, AnswersQuestionsAboutMotionsBesideWhatTheySee) {
+  start(kImage + kAbove, {"--questions", "planner"});
+  RosCamera camera(client, {});
+  RosJoints joints(client);
+  ASSERT_TRUE(camera.is_heard() && joints.is_heard());
+  const auto send = [&] {
+    camera.send_image(scene_of_wall);
+    joints.send({"shoulder", "elbow", "push"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
+  };
+  ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
+  client::Connection connection(dds);
+  client::Questions questions(connection, "planner");
+  Question question;
+  question.motion = {
+      .joints = {"elbow"}, .times = {0.0, 1.0}, .positions = {0.0, 0.5}, .velocities = {}};
+  question.margins = {0.1, 0.9};
+  const auto ask = [&] {
+    std::optional<QuestionResult> result;
+    EXPECT_TRUE(step_until(kPeriodMs, send, [&] {
+      result = questions.ask(question, {}, std::chrono::seconds(5));
+      return result && result->status != QuestionStatus::kNoInput;
+    })) << (result ? result->reason : daemon->output());
+    return result.value_or(QuestionResult{});
+  };
+  const QuestionResult refused = ask();
+  EXPECT_EQ(refused.status, QuestionStatus::kRefused) << "the eye states no max_speed";
+  EXPECT_NE(refused.reason.find("eye"), std::string::npos) << refused.reason;
+  question.others = OthersMove::kNot;
+  const QuestionResult result = ask();
+  ASSERT_TRUE(result.done()) << result.reason;
+  const double wall = kHeight - 2.5 - kError - 0.05;  // the pixels' slabs reach this low
+  EXPECT_LE(result.lower, wall + 1e-6);
+  EXPECT_GE(result.upper, wall - 2e-3);
+  EXPECT_LE(result.upper - result.lower, 1e-3 + 1e-6);
+  EXPECT_TRUE(result.is_free(0.1));
+  EXPECT_EQ(result.first, "eye");
+  EXPECT_EQ(result.margins[1].verdict, Verdict::kBelow);
 }
 
 }  // namespace
