@@ -1,6 +1,7 @@
 // The three-dimensional view: camera, lights, bodies, zones, lines, clicks.
 import * as THREE from "three";
 import { OrbitControls } from "orbit";
+import { AskedPath } from "./asked_path.js";
 import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
@@ -52,8 +53,9 @@ export class SceneView {
     this.shells = new ZoneShells(scene);
     this.lines = new PairLines(document.getElementById("labels"), on.pairChosen, on.pairLookedAt);
     this.visuals = new Visuals(this.bodies);
+    this.askedPath = new AskedPath(this.bodies);
     this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
-    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.lines);
+    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.askedPath, this.lines);
     this.clicks(canvas);
     this.changes = 0;
     new ResizeObserver(() => this.resizeSoon()).observe(this.element);
@@ -77,6 +79,7 @@ export class SceneView {
 
   retheme() {
     ++this.changes;
+    this.askedPath.retheme();
     this.bodies.recolour();
     this.shells.recolour();
   }
