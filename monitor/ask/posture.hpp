@@ -153,7 +153,7 @@ class Posture {
   std::vector<Nearing> freedom_;
   bool any_free_ = false;
   std::vector<std::uint8_t> is_of_question_, may_deviate_;  // by object
-  std::vector<CloudPairs::Content> contents_;  // by sensor
+  std::vector<CloudPairs::Content> contents_;               // by sensor
   double carrier_extent_ = 0.0;  // m: the sum of the largest positions of moving carriers
 };
 

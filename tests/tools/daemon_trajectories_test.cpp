@@ -96,8 +96,8 @@ class DaemonTrajectories : public WatchedDaemon {
   }
   void wait_for_joints() {
     ASSERT_TRUE(trajectories.is_heard() && joints.is_heard()) << daemon->output();
-    ASSERT_TRUE(eventually(
-        [&] { return writers_there(diagnostics) > 0 && writers_there(number) > 0; }));
+    ASSERT_TRUE(
+        eventually([&] { return writers_there(diagnostics) > 0 && writers_there(number) > 0; }));
     ASSERT_TRUE(step_until(
         kPeriodMs, [&] { send_joints(); }, [&] { return report->minimum_known; }))
         << daemon->output();
