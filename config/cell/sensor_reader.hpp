@@ -28,7 +28,7 @@ struct SensorList {
 void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
                    SensorList& list);
 
-// Computes the balls outside of which sensors crop, once the scene has all else.
+// Computes the balls to which sensors crop, once the scene has all else.
 void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene);
 
 }  // namespace clearance

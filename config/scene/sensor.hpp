@@ -61,8 +61,8 @@ struct Sensor {
 
   // Elements beyond this from everywhere that links can come to are cropped, m; infinity: none are.
   double reach = std::numeric_limits<double>::infinity();
-  // Hence the ball in the world outside of which they are, with the motion of what is seen within
-  // the age limit.
+  // The ball in the world that contains all other elements, widened by the motion of what is seen
+  // within the age limit.
   Vec3 crop_centre = Vec3::Zero();
   double crop_radius = std::numeric_limits<double>::infinity();
 
@@ -84,7 +84,7 @@ struct Sensor {
   }
 };
 
-// What a person should know of a sensor at the start, a sentence each.
+// Returns the sentences about a sensor that a person should read at the start.
 [[nodiscard]] std::vector<std::string> notes_of(const Sensor& sensor);
 
 struct Scene;

@@ -1,4 +1,4 @@
-// The motion that nobody has stated: joints of other robots, and objects that carry robots.
+// Motions that no question states: of joints of other robots, and of objects that carry robots.
 #include <algorithm>
 #include <cmath>
 

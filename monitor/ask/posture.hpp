@@ -49,7 +49,7 @@ class Posture {
   [[nodiscard]] bool is_of_question(std::uint32_t object) const noexcept {
     return is_of_question_[object] != 0;
   }
-  // What a sensor's object consists of in this question.
+  // True for the object of a sensor; content() is what it consists of in this question.
   [[nodiscard]] bool is_seen(std::uint32_t object) const noexcept {
     return scene_.objects[object].is_seen();
   }

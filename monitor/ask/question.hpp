@@ -48,7 +48,7 @@ struct StatedPose {
   double turn_speed = kInfinity;
 };
 
-// What a sensor of the cell sees: its newest frame. It comes nearer by the `max_speed` of the
+// The newest frame of a sensor of the cell. What it shows comes nearer by the `max_speed` of the
 // sensor's object, counted from the stamp of the frame.
 struct SeenFrame {
   std::string sensor;                      // the name of its object

@@ -1,13 +1,17 @@
 #include "monitor/client/questions.hpp"
 
+#include <stdexcept>
 #include <string>
 
+#include "monitor/commands/question_message.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance::client {
 namespace {
 
 auto maker(const Question& question, const QuestionOptions& options) {
+  if (const std::string unsent = unsent_part(question); !unsent.empty())
+    throw std::invalid_argument(unsent);
   return [&](const std::string& client, std::uint64_t number) {
     return MotionQuestion{client, number, options.scene_revision, question};
   };

@@ -28,13 +28,14 @@ class Questions : public QuestionRequests {
 
   // Asks, and waits for the answer. The same request is sent again every second until the answer
   // comes. `held` and `poses` have what shall count instead of the present positions and poses.
-  // Returns nothing when none came in time: then nothing is known of the motion.
+  // Returns nothing when none came in time: then nothing is known of the motion. Throws
+  // std::invalid_argument when a part of the question cannot be sent.
   [[nodiscard]] std::optional<QuestionResult> ask(
       const Question& question, const QuestionOptions& options = {},
       std::chrono::nanoseconds timeout = std::chrono::seconds(10));
 
   // Asks without waiting, and returns the number of the request, for result(). Nothing repeats it.
-  // Returns 0 when DDS did not take the message.
+  // Returns 0 when DDS did not take the message. Throws as ask().
   std::uint64_t post(const Question& question, const QuestionOptions& options = {});
 };
 

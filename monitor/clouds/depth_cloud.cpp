@@ -269,7 +269,7 @@ bool DepthCloud::build_unseen(const DepthCloud& seen, const DepthRange& range) n
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       const bool is_inside = column + lane % 4 < camera.width && row + lane / 4 < camera.height;
       const bool is_seen = before.low[lane] <= before.high[lane];
-      // What is behind begins where the slab of the pixel ends, so no place is between the two.
+      // The unseen place begins where the slab of the pixel ends, so no place is between the two.
       const float low = is_seen ? std::max(near_, before.high[lane]) : near_;
       const bool is_there = is_inside && low < far_;
       block.low[lane] = is_there ? low : kEmptyLow;

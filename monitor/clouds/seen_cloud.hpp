@@ -14,7 +14,7 @@
 
 namespace clearance {
 
-// What a frame cannot show near a body whose own image was left out of it, at the frame's stamp.
+// Places that a frame cannot show, near a body whose own image was left out, at the frame's stamp.
 struct HiddenNear {
   std::uint32_t object = 0;  // the caller's number of the body
   // Its thickness includes the error of the body's pose: anything that close to the exact body may
@@ -59,8 +59,8 @@ class SeenCloud {
       found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
     return found;
   }
-  // From now on, the elements outside of this ball, in the frame of the cloud, may have been left
-  // out. Infinity: none were, as after a build.
+  // The elements outside of this ball, in the frame of the cloud, may have been left out from now
+  // on. Infinity: none were, as after a build.
   void note_crop(const CloudCrop& crop) noexcept { crop_ = crop; }
   [[nodiscard]] const CloudCrop& crop() const noexcept { return crop_; }
 

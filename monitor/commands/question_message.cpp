@@ -172,6 +172,20 @@ std::variant<MotionQuestion, MalformedField> from_wire(const clearance_msg_Quest
   return asked;
 }
 
+std::string unsent_part(const Question& question) {
+  constexpr std::string_view kInputs = ": a daemon takes these from its inputs; leave them out";
+  if (!question.joints.empty()) return "joints_of_others" + std::string(kInputs);
+  if (!question.seen.empty()) return "seen" + std::string(kInputs);
+  for (const Payload& payload : question.payloads) {
+    if (payload.shape) return "payloads: a body cannot be sent; expected objects of the cell";
+  }
+  for (const StatedPose& pose : question.poses) {
+    if (pose.age != 0.0 || pose.turn_speed < kInfinity)
+      return "poses: ages and turn speeds cannot be sent; expected poses at the first waypoint";
+  }
+  return "";
+}
+
 Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
   Sample<clearance_msg_Question> message;
   copy_text(asked.client, message->client);

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <variant>
 
 #include "monitor/commands/command_message.hpp"
@@ -21,9 +22,13 @@ inline constexpr std::size_t kMostWaypoints = 10'000, kMostMotionJoints = 64, kM
 [[nodiscard]] std::variant<MotionQuestion, MalformedField> from_wire(
     const clearance_msg_Question& message);
 
+// Returns what a message has no room for, as "NAME: what to do instead"; empty: all of the question
+// can be sent. A daemon has the positions of other robots, ages, and the frames of sensors from its
+// inputs. A new payload must be an object of the cell.
+[[nodiscard]] std::string unsent_part(const Question& question);
+
 // Makes the message of a question. It allocates. The longest client has 32 bytes; more are cut off.
-// Shapes of new payloads cannot be sent: such a payload must be an object of the cell. Positions
-// of joints that other robots move, and frames of sensors, are not sent: the daemon has them.
+// The question must be one that unsent_part() finds complete.
 [[nodiscard]] Sample<clearance_msg_Question> to_wire(const MotionQuestion& question);
 
 // Answers. `daemon` as in all messages of a daemon. A verdict that is not known is undecided.

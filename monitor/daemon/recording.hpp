@@ -43,7 +43,7 @@ class Recording {
 
   // Takes the reports of the first cell.
   [[nodiscard]] ReportSink& sink() noexcept { return parts_.front()->queue; }
-  // Of every cell, in front of that sink: the frames of sensors that ticks are shown.
+  // Takes the frames of sensors that ticks are shown, of every cell. It stands before that sink.
   [[nodiscard]] ReportSink& frames() noexcept { return uses_; }
   // The cell may change: returns the sink of the changed one. Null if the disk is so slow that the
   // reports of kMostWaiting cells wait for it: the recording then ends with those. The preparing

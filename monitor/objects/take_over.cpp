@@ -24,7 +24,7 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
   now.rejected = before.rejected;
   for (std::size_t i = 0; i < now.objects.size(); ++i) {
     const std::uint32_t old = map.objects[i];
-    // What a sensor sees is known by its next frame.
+    // A sensor's object is unknown until the next frame.
     if (old != SceneMap::kNone && !scene.objects[i].is_seen())
       take_over(before.objects[old], now.objects[i]);
   }

@@ -43,7 +43,7 @@ class CloudPairs {
   // Requires has(). The parts are those of the part pair, placed at any poses. noexcept, no heap.
   [[nodiscard]] Answer query(std::uint32_t part_pair, const PosedPart& a,
                              const PosedPart& b) noexcept;
-  // The same for any two parts, the first of which is what a sensor sees, in this frame.
+  // The same for any two parts; `seen` is what a sensor sees, in this frame.
   [[nodiscard]] static Answer query(const Content& content, const PosedPart& seen,
                                     const PosedPart& part, SlabBody& body,
                                     CloudTracking& tracking) noexcept;

@@ -46,7 +46,7 @@ struct TickInput {
   std::vector<std::shared_ptr<const moveit::RawScene>> scenes;
   // Likewise, messages of sensors.
   std::vector<std::shared_ptr<const RawSensorMessage>> sensors;
-  // Of a recording: frames of sensors up to this tick, each with the cycle of the tick that was
+  // In a recording: frames of sensors up to this tick, each with the cycle of the tick that was
   // shown it.
   std::vector<RecordedFrame> frames;
   const clearance_msg_Distances* recorded = nullptr;  // null: the recording holds no reports

@@ -1,6 +1,6 @@
 // The daemon reads cameras over real DDS.
 //
-// Oracles: closed forms for a made scene, of which tests/shared/ros_camera.hpp renders pictures.
+// Oracles: closed forms for a made scene, which tests/shared/ros_camera.hpp renders.
 #include <gtest/gtest.h>
 
 #include <chrono>

@@ -160,13 +160,6 @@ class Questions : public Live<QuestionParts> {
   QuestionResult ask(const Question& question, double timeout, std::uint64_t revision) {
     if (!(timeout >= 0.0 && timeout <= 1e6))
       throw py::value_error("timeout: expected seconds, 0 to 1e6");
-    if (!question.joints.empty())
-      throw py::value_error(
-          "joints_of_others: a daemon takes these from its inputs; leave them out");
-    for (const Payload& payload : question.payloads) {
-      if (payload.shape)
-        throw py::value_error("payloads: a Body cannot be sent; expected objects of the cell");
-    }
     const Use parts = use();
     bool stopped = false;
     const client::QuestionOptions options{.scene_revision = revision,
