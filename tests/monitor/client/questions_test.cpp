@@ -23,8 +23,12 @@ TEST(Questions, ThatNoMessageHoldsAreRefusedAndNotSentWithoutAPart) {
       [](Question& q) {
         q.payloads.emplace_back().shape = std::get<ConvexBody>(box(Vec3(0.1, 0.1, 0.1)));
       },
-      [](Question& q) { q.poses.push_back({.object = "cart", .age = 0.1}); },
-      [](Question& q) { q.poses.push_back({.object = "cart", .turn_speed = 1.0}); },
+      [](Question& q) {
+        q.poses.push_back({.object = "cart", .world_from_object = {}, .age = 0.1});
+      },
+      [](Question& q) {
+        q.poses.push_back({.object = "cart", .world_from_object = {}, .turn_speed = 1.0});
+      },
   };
   for (const auto& change : unsent) {
     Question question;
@@ -33,7 +37,7 @@ TEST(Questions, ThatNoMessageHoldsAreRefusedAndNotSentWithoutAPart) {
     EXPECT_THROW(static_cast<void>(questions.post(question)), std::invalid_argument);
   }
   Question sent;
-  sent.poses.push_back({.object = "cart"});
+  sent.poses.push_back({.object = "cart", .world_from_object = {}});
   EXPECT_NE(questions.post(sent), 0u);
 }
 
