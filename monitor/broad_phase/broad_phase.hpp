@@ -130,8 +130,8 @@ class BroadPhase {
   std::vector<Body> bodies_;
   // By object, m a tick, smoothed. It divides allowances and proves nothing.
   std::vector<double> usual_displacement_;
-  std::vector<Ends> ends_;              // by pair
-  std::vector<std::uint8_t> left_out_;  // by pair
+  PairColumn<Ends> ends_;              // by pair
+  PairColumn<std::uint8_t> left_out_;  // by pair
   const ZoneLevels& zone_levels_;       // Z
   std::vector<double> urgent_;          // by object, m
   PairsByObject by_object_;

@@ -87,7 +87,7 @@ class Culling {
   KnownPairs known_;
   BroadPhase broad_phase_;
   HullBound hulls_;
-  std::vector<std::uint8_t> is_updated_;  // by pair
+  PairColumn<std::uint8_t> is_updated_;  // by pair
   // Each with capacity for all pairs.
   std::vector<std::uint32_t> active_, updated_;
   std::vector<Decided> decided_;

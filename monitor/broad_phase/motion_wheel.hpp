@@ -15,6 +15,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "monitor/pairs/pair_column.hpp"
+
 namespace clearance {
 
 class MotionWheels {
@@ -66,7 +68,7 @@ class MotionWheels {
 
   std::vector<Wheel> wheels_;
   std::vector<std::uint32_t> first_;  // timer by bucket: object, level, place in the ring
-  std::vector<Timer> timers_;
+  PairColumn<Timer> timers_;
 };
 
 }  // namespace clearance

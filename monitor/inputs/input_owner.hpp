@@ -65,12 +65,13 @@ class InputOwner {
   [[nodiscard]] std::uint32_t other_source() const noexcept { return other_; }
 
  private:
+  // The first three are all that a sample of the owner reads and writes.
   std::uint32_t source_ = kNoSource;
+  bool is_stated_ = false;
+  std::int64_t heard_ns_ = 0;  // last sample of the owner, in the tick's time
   std::uint32_t other_ = kNoSource;
   std::uint32_t former_ = kNoSource;
   std::uint32_t takeovers_ = 0;
-  std::int64_t heard_ns_ = 0;  // last sample of the owner, in the tick's time
-  bool is_stated_ = false;
 };
 
 }  // namespace clearance

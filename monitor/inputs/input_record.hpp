@@ -24,10 +24,10 @@ struct InputRecord {
   bool has_value = false;     // a value is in use; always so for a fixed object
   bool late = false;          // the value is older than its limit, or contradicted
   bool contradicted = false;  // at the last advance()
-  std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
   bool ages = true;           // false for a fixed object
-  InputOwner owner;           // the source whose samples are used
+  std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
   Contradiction contradiction;
+  InputOwner owner;  // the source whose samples are used
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
 
   // The age of the value is not known any more: it is late until the next one comes.

@@ -27,24 +27,43 @@ InputRecord* record_of(const JointSample& sample, Inputs& inputs) noexcept {
   return known ? &variables[sample.variable].input : nullptr;
 }
 
+// Returns why no sample may place the object.
+std::optional<Reject> refuses_samples(std::uint32_t object, const Scene& scene,
+                                      const Inputs& inputs) noexcept {
+  if (scene.objects[object].fixed || inputs.objects[object].absent) return Reject::kUnknownObject;
+  // The poses of what a sensor sees come with its frames.
+  if (inputs.robots.follows_joints(object) || scene.objects[object].is_seen())
+    return Reject::kOtherSource;
+  return std::nullopt;
+}
+
+// An object whose rest holds is one that samples may place. All that such a sample reads of it is
+// in two lines of memory: in large cells, fetching them takes most of its time.
 std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
-  if (sample.object >= inputs.objects.size() || scene.objects[sample.object].fixed ||
-      sample.source >= kMaxSources || inputs.objects[sample.object].absent) {
+  if (sample.object >= inputs.objects.size() || sample.source >= kMaxSources)
     return Reject::kUnknownObject;
-  }
-  if (inputs.robots.follows_joints(sample.object)) return Reject::kOtherSource;
-  const Object& object = scene.objects[sample.object];
-  if (object.is_seen()) return Reject::kOtherSource;  // its poses come with its frames
-  const std::int64_t stamp_ns = tick_stamp(sample, object.age_limit_ns, scene, inputs);
-  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
   TrackedObject& state = inputs.objects[sample.object];
-  if (take_at_rest(object, sample, stamp_ns, limits, state)) {
-    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -object.age_limit_ns), limits.now_ns);
+  if (!state.rest.holds) {
+    if (const auto cause = refuses_samples(sample.object, scene, inputs)) return cause;
+  }
+  const std::int64_t age_limit_ns = inputs.age_limits_ns[sample.object];
+  const std::int64_t stamp_ns = tick_stamp(sample, age_limit_ns, scene, inputs);
+  const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
+  if (take_at_rest(age_limit_ns, sample, stamp_ns, limits, state)) {
+    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -age_limit_ns), limits.now_ns);
     inputs.stamps.set(sample.object, stamp_ns);
     return std::nullopt;
   }
   inputs.visits.visit(sample.object);
-  return take(object, sample, stamp_ns, limits, state);
+  return take(scene.objects[sample.object], sample, stamp_ns, limits, state);
+}
+
+// From now on joints place the links of a robot.
+void visit_links(Inputs& inputs) noexcept {
+  for (std::uint32_t i = 0; i < inputs.objects.size(); ++i) {
+    if (inputs.robots.follows_joints(i)) inputs.objects[i].rest.holds = false;
+  }
+  inputs.visits.visit_all();
 }
 
 std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
@@ -55,7 +74,7 @@ std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs
   const auto cause =
       take(variable, sample, stamp_ns, {inputs.time.now_ns, scene.future_limit_ns},
            variables[sample.variable], variables[variable.first_of_joint].repetition);
-  if (!cause && inputs.robots.hear(sample.variable)) inputs.visits.visit_all();
+  if (!cause && inputs.robots.hear(sample.variable)) visit_links(inputs);
   return cause;
 }
 
@@ -65,11 +84,21 @@ void count(Reject cause, InputRecord* input, Inputs& inputs) noexcept {
   if (input != nullptr) ++input->rejected[index];
 }
 
+// Fetches what take() reads of an object at rest.
+void fetch(const PoseSample& sample, const Inputs& inputs) noexcept {
+  if (sample.object >= inputs.objects.size()) return;
+  __builtin_prefetch(&inputs.objects[sample.object].pose);
+  __builtin_prefetch(&inputs.objects[sample.object].rest, 1);
+}
+void fetch(const JointSample&, const Inputs&) noexcept {}
+
 template <class Sample>
 void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& inputs) noexcept {
-  for (const Sample& sample : samples) {
-    if (const auto cause = take(sample, scene, inputs)) {
-      count(*cause, record_of(sample, inputs), inputs);
+  constexpr std::size_t kAhead = 8;  // samples: several misses of the cache at a time
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    if (i + kAhead < samples.size()) fetch(samples[i + kAhead], inputs);
+    if (const auto cause = take(samples[i], scene, inputs)) {
+      count(*cause, record_of(samples[i], inputs), inputs);
     }
   }
 }
@@ -88,11 +117,16 @@ void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
 
 Inputs initial_inputs(const Scene& scene) {
   Inputs inputs{.objects = {},
+                .age_limits_ns = {},
                 .visits = VisitTimes(scene.objects.size()),
                 .stamps = PoseStamps(scene.objects.size()),
                 .robots = RobotInputs(scene),
                 .sources = {}};
-  for (const Object& object : scene.objects) inputs.objects.push_back(initial_state(object));
+  inputs.objects.reserve(scene.objects.size());
+  for (const Object& object : scene.objects) {
+    inputs.objects.push_back(initial_state(object));
+    inputs.age_limits_ns.push_back(object.age_limit_ns);
+  }
   SourceNumbers numbers(scene);
   state_owners(scene, numbers, inputs);
   return inputs;

@@ -146,11 +146,11 @@ std::optional<Reject> take(const Object& object, const PoseSample& sample, std::
 }
 
 // The checks that are left out would find what they found at the sample before.
-bool take_at_rest(const Object& object, const PoseSample& sample, std::int64_t stamp_ns,
+bool take_at_rest(std::int64_t age_limit_ns, const PoseSample& sample, std::int64_t stamp_ns,
                   const SampleLimits& limits, TrackedObject& state) noexcept {
   InputRecord& input = state.input;
   if (!state.rest.holds || stamp_ns > state.rest.until_ns || stamp_ns < input.stamp_ns ||
-      elapsed(input.stamp_ns, stamp_ns) > 2 * object.age_limit_ns ||
+      elapsed(input.stamp_ns, stamp_ns) > 2 * age_limit_ns ||
       elapsed(limits.now_ns, stamp_ns) > limits.future_ns ||
       sample.source != input.owner.source() || input.contradiction.holds(limits.now_ns)) {
     return false;

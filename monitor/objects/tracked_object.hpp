@@ -48,7 +48,7 @@ struct alignas(64) TrackedObject {
   double accumulated_turn = 0.0;  // accumulated Motion::turn
 
   // The reports of its pairs read the members from here to `twist_known`. A sample of an object at
-  // rest reads and writes those up to the first ones of `input`.
+  // rest reads and writes two lines of memory: the pose, and the rest with the first of `input`.
   double bounding_radius = kInfinity;  // around its origin, m; set by displace()
   // The pose in use, as sent. It is normalised if the orientation is off unit length by more than
   // 5e-7.
@@ -114,7 +114,7 @@ struct alignas(64) TrackedObject {
 
 // Takes a sample of an object at rest, or returns false if the sample needs the checks of take().
 // It then has changed nothing.
-[[nodiscard]] bool take_at_rest(const Object& object, const PoseSample& sample,
+[[nodiscard]] bool take_at_rest(std::int64_t age_limit_ns, const PoseSample& sample,
                                 std::int64_t stamp_ns, const SampleLimits& limits,
                                 TrackedObject& state) noexcept;
 

@@ -14,6 +14,7 @@
 #include "core/distance.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/inputs/checksum.hpp"
+#include "monitor/pairs/pair_column.hpp"
 
 namespace clearance {
 
@@ -53,23 +54,23 @@ struct alignas(64) PairEntry {
 };
 
 struct PairTable {
-  std::vector<PairEntry> entries;  // as in Scene::pairs
+  PairColumn<PairEntry> entries;  // as in Scene::pairs
 
   // By pair, m: a lower bound of its distance from the tick before its last evaluation up to that
   // evaluation. The directions of two evaluations prove it. -infinity: they prove none.
-  std::vector<double> lower_between;
+  PairColumn<double> lower_between;
   // By pair. The tick in which its bound was last found afresh from poses, or 0 if never. An
   // evaluation does so, and so do models of its objects that prove it far.
-  std::vector<std::uint64_t> refreshed_cycle;
+  PairColumn<std::uint64_t> refreshed_cycle;
 
   // By part pair.
-  std::vector<std::uint32_t> part_a, part_b;             // indices into parts_of(scene)
-  std::vector<double> lower, upper;                      // true at carried_at, m
-  std::vector<std::uint64_t> part_pair_evaluated_cycle;  // 0: never
-  std::vector<DistanceStatus> status;
-  std::vector<TrackingState> tracking;
-  std::vector<ClosestPoints> closest;
-  std::vector<double> gap;  // kept_gap() of the last evaluation along closest.normal, m
+  PairColumn<std::uint32_t> part_a, part_b;             // indices into parts_of(scene)
+  PairColumn<double> lower, upper;                      // true at carried_at, m
+  PairColumn<std::uint64_t> part_pair_evaluated_cycle;  // 0: never
+  PairColumn<DistanceStatus> status;
+  PairColumn<TrackingState> tracking;
+  PairColumn<ClosestPoints> closest;
+  PairColumn<double> gap;  // kept_gap() of the last evaluation along closest.normal, m
 
   PairTable(const Scene& scene, const std::vector<PosedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {

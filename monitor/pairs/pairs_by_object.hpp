@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/pairs/pair_column.hpp"
 
 namespace clearance {
 
@@ -23,7 +24,7 @@ class PairsByObject {
 
  private:
   std::vector<std::uint32_t> first_;  // by object, and the end
-  std::vector<std::uint32_t> pairs_, others_;
+  PairColumn<std::uint32_t> pairs_, others_;
 };
 
 }  // namespace clearance

@@ -37,7 +37,15 @@ struct Evaluator {
   }
   // Queues the pairs that the last step of the culling has decided about.
   void queue_decided() const noexcept {
-    for (const Culling::Decided& decided : culling.decided()) {
+    constexpr std::size_t kAhead = 8;
+    const auto all = culling.decided();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (i + 2 * kAhead < all.size()) {
+        queue.fetch(all[i + 2 * kAhead].pair);
+        __builtin_prefetch(&tick.table.refreshed_cycle[all[i + 2 * kAhead].pair], 1);
+      }
+      if (i + kAhead < all.size()) queue.fetch_neighbours(all[i + kAhead].pair);
+      const Culling::Decided& decided = all[i];
       if (decided.proved_far) {
         note_refreshed(decided.pair);
       } else {

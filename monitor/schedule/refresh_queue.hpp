@@ -28,6 +28,14 @@ class RefreshQueue {
   // Puts a pair that was refreshed in this tick at the back, whether it was in the queue or not.
   void move_to_back(std::uint32_t pair) noexcept;
 
+  // Fetches the memory of a pair that will be moved soon, and later that of its neighbours.
+  void fetch(std::uint32_t pair) const noexcept { __builtin_prefetch(&links_[pair], 1); }
+  void fetch_neighbours(std::uint32_t pair) const noexcept {
+    if (!in_list(pair)) return;
+    __builtin_prefetch(&links_[links_[pair].before], 1);
+    __builtin_prefetch(&links_[links_[pair].next], 1);
+  }
+
   // kNoIndex: the queue is empty.
   [[nodiscard]] std::uint32_t stalest() const noexcept;
 
@@ -58,8 +66,8 @@ class RefreshQueue {
 
   // The ends of the two lists: pairs that come back or were never refreshed, and all others.
   const std::uint32_t ahead_, main_;
-  std::vector<Link> links_;                  // by pair, then the two ends
-  std::vector<std::uint8_t> aside_;          // by pair
+  PairColumn<Link> links_;                  // by pair, then the two ends
+  PairColumn<std::uint8_t> aside_;          // by pair
   std::uint64_t oldest_ahead_ = kNever;      // no pair of that list was last refreshed earlier
   std::vector<std::uint64_t> oldest_aside_;  // by object: nor any pair that it had set aside
   std::vector<std::uint32_t> returning_;     // objects whose pairs come back, the next one last

@@ -21,7 +21,7 @@ std::vector<double> stated_speeds(const Scene& scene) {
 
 // Evaluates as many as the budget allows, the stalest first; pairs of equal age in their order.
 void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator) noexcept {
-  const std::vector<PairEntry>& entries = evaluator.tick.pairs.entries;
+  const PairColumn<PairEntry>& entries = evaluator.tick.pairs.entries;
   const std::uint32_t queries = evaluator.budget.left();
   // A pair takes at least one query, so no more pairs than this can have a turn.
   if (pairs.size() > queries) {
