@@ -216,7 +216,8 @@ void Monitor::flip_bit(bool of_pair, std::uint64_t which) noexcept {
   };
   const std::uint64_t bit = which % 64, place = which / 64;
   if (of_pair) {
-    flip(s.table.closest[place % s.table.closest.size()].witness_a[0], bit);
+    const auto part_pair = static_cast<std::uint32_t>(place % s.table.part_pairs());
+    flip(s.table.evaluations.of_query(part_pair, s.inputs.cycle).closest.witness_a[0], bit);
   } else {
     flip(s.inputs.objects[place % s.inputs.objects.size()].pose.position[0], bit);
   }
@@ -435,7 +436,9 @@ void Monitor::State::note_presence(std::uint32_t object) noexcept {
 // No pair has waited longer for its refresh than this monitor has run. All objects count as
 // changed, whether their presence is or not.
 void Monitor::State::begin_first_tick() noexcept {
-  std::ranges::fill(table.refreshed_cycle, inputs.cycle);
+  if (inputs.cycle > 0) {
+    for (PairEntry& entry : table.entries) entry.refreshed_cycle = inputs.cycle;
+  }
   presence_changed.clear();
 }
 

@@ -32,12 +32,14 @@ double displacement_since_last_tick(const TrackedObject& object) noexcept {
 }  // namespace
 
 BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts,
-                       const ZoneLevels& zone_levels, std::vector<double> urgent,
-                       std::span<const std::uint32_t> left_out, std::size_t most_activated)
+                       const PairTable& table, const ZoneLevels& zone_levels,
+                       std::vector<double> urgent, std::span<const std::uint32_t> left_out,
+                       std::size_t most_activated)
     : most_activated_(most_activated),
       most_met_(most_activated / 2),
       bodies_(scene.objects.size()),
       usual_displacement_(scene.objects.size(), 0.0),
+      table_(table),
       left_out_(scene.pairs.size(), 0),
       zone_levels_(zone_levels),
       urgent_(std::move(urgent)),
@@ -49,10 +51,9 @@ BroadPhase::BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts,
     bodies_[i].fixed = scene.objects[i].fixed;
   }
   for (const std::uint32_t pair : left_out) left_out_[pair] = 1;
-  ends_.reserve(scene.pairs.size());
   for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    ends_.push_back({scene.pairs[p].first, scene.pairs[p].second});
-    if (!left_out_[p]) bodies_[ends_[p].a].idle = bodies_[ends_[p].b].idle = false;
+    if (!left_out_[p])
+      bodies_[scene.pairs[p].first].idle = bodies_[scene.pairs[p].second].idle = false;
   }
   activated_.reserve(scene.pairs.size());
   for (std::uint32_t i = 0; i < bodies_.size(); ++i) {
@@ -127,10 +128,11 @@ void BroadPhase::meet_arrivals(std::size_t most) noexcept {
     const std::uint32_t object = arrived_[met_];
     Arrival& arrival = bodies_[object].arrival;
     if (met_pairs_ == 0) arrival.met = static_cast<std::uint32_t>(arrived_.size());
-    const auto pairs = by_object_.pairs_of(object), others = by_object_.others_of(object);
+    const auto pairs = by_object_.pairs_of(object);
     for (; met_pairs_ < pairs.size(); ++met_pairs_) {
       if (activated_.size() >= most) return;
-      const Arrival& other = bodies_[others[met_pairs_]].arrival;
+      const auto [a, b] = ends(pairs[met_pairs_]);
+      const Arrival& other = bodies_[a == object ? b : a].arrival;
       const bool met_before = other.rank < arrival.rank && arrival.rank < other.met;
       if (met_before || other.rank >= arrival.met) continue;
       if (!left_out_[pairs[met_pairs_]]) activated_.push_back(pairs[met_pairs_]);
@@ -163,7 +165,7 @@ double BroadPhase::waiting_lower() const noexcept {
 // also counts the displacement since the last tick. Both H and Z + U are raised by the margin that
 // makes the pair active well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
-  const auto [a, b] = ends_[pair];
+  const auto [a, b] = ends(pair);
   const double urgent = urgent_[a] + urgent_[b];
   const double since = displacement_since_last_tick(*bodies_[a].state) +
                        displacement_since_last_tick(*bodies_[b].state);
@@ -177,7 +179,7 @@ bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
 
 bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   if (!(horizon_ > -kInfinity)) return false;
-  const auto [a, b] = ends_[pair];
+  const auto [a, b] = ends(pair);
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
   const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z + U)
@@ -199,8 +201,8 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
 
 // Z + U, m.
 double BroadPhase::zone_level(std::uint32_t pair) const noexcept {
-  return zone_levels_.largest_threshold(pair) + bodies_[ends_[pair].a].state->may_have_moved +
-         bodies_[ends_[pair].b].state->may_have_moved;
+  return zone_levels_.largest_threshold(pair) + bodies_[ends(pair).a].state->may_have_moved +
+         bodies_[ends(pair).b].state->may_have_moved;
 }
 
 bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
@@ -210,8 +212,8 @@ bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
 // D >= H and D - U >= Z; only D >= W while some pairs' timers are overdue.
 bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
   if (!is_culled(pair)) return true;
-  const TrackedObject& a = *bodies_[ends_[pair].a].state;
-  const TrackedObject& b = *bodies_[ends_[pair].b].state;
+  const TrackedObject& a = *bodies_[ends(pair).a].state;
+  const TrackedObject& b = *bodies_[ends(pair).b].state;
   if (!a.known() || !b.known()) return true;
   return overdue_ ? upper >= std::min(horizon_, overdue_lower_)
                   : upper >= std::max(horizon_, zone_level(pair));
@@ -232,8 +234,8 @@ const Sphere& BroadPhase::sphere_of(Body& body) noexcept {
 }
 
 DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
-  const Sphere& a = sphere_of(bodies_[ends_[pair].a]);
-  const Sphere& b = sphere_of(bodies_[ends_[pair].b]);
+  const Sphere& a = sphere_of(bodies_[ends(pair).a]);
+  const Sphere& b = sphere_of(bodies_[ends(pair).b]);
   return {.lower = least_between(a, b), .upper = most_between(a, b)};
 }
 

@@ -34,9 +34,10 @@ class BroadPhase {
   // updates anyway, in ascending order. `most_activated`: how many pairs a tick may activate, half
   // of them by meeting for the first time. The others wait, and only waiting_lower() is known of
   // them.
-  BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, const ZoneLevels& zone_levels,
-             std::vector<double> urgent, std::span<const std::uint32_t> left_out,
-             std::size_t most_activated);
+  // The table must outlive it.
+  BroadPhase(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table,
+             const ZoneLevels& zone_levels, std::vector<double> urgent,
+             std::span<const std::uint32_t> left_out, std::size_t most_activated);
 
   // Updates the timers by how the objects have moved. Afterwards activated() has the pairs whose
   // allowance may be used up, whose objects are new, or whose objects have made a discontinuity.
@@ -74,15 +75,16 @@ class BroadPhase {
   // True if all pairs of known objects have been activated once.
   [[nodiscard]] bool everyone_met() const noexcept { return met_ == arrived_.size(); }
 
-  // The objects of a pair. These, side by side, are all that the decision about a far pair reads of
-  // it besides its timers.
+  // The objects of a pair.
   struct Ends {
     std::uint32_t a, b;
   };
-  [[nodiscard]] const Ends& ends(std::uint32_t pair) const noexcept { return ends_[pair]; }
+  [[nodiscard]] Ends ends(std::uint32_t pair) const noexcept {
+    return {table_.entries[pair].object_a, table_.entries[pair].object_b};
+  }
   // Fetches the memory of a pair that cull() will be asked about soon.
   void fetch(std::uint32_t pair) const noexcept {
-    __builtin_prefetch(&ends_[pair]);
+    __builtin_prefetch(&table_.entries[pair], 1);
     wheels_.fetch(pair);
   }
   [[nodiscard]] bool left_out(std::uint32_t pair) const noexcept { return left_out_[pair] != 0; }
@@ -130,8 +132,8 @@ class BroadPhase {
   std::vector<Body> bodies_;
   // By object, m a tick, smoothed. It divides allowances and proves nothing.
   std::vector<double> usual_displacement_;
-  PairColumn<Ends> ends_;              // by pair
-  PairColumn<std::uint8_t> left_out_;  // by pair
+  const PairTable& table_;
+  LargeColumn<std::uint8_t> left_out_;  // by pair
   const ZoneLevels& zone_levels_;       // Z
   std::vector<double> urgent_;          // by object, m
   PairsByObject by_object_;

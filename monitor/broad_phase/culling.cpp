@@ -31,7 +31,7 @@ Culling::Culling(const Scene& scene, const std::vector<PosedPart>& parts, const 
                  const KnownHulls& known)
     : least_left_(least_left(scene.budget, share)),
       known_(scene),
-      broad_phase_(scene, parts, zone_levels, std::move(urgent), left_out,
+      broad_phase_(scene, parts, table, zone_levels, std::move(urgent), left_out,
                    std::max(kLeastActivated, kActivatedPerQuery * scene.budget)),
       hulls_(scene, parts, known),
       is_updated_(table.pairs(), 0) {
@@ -121,7 +121,7 @@ void Culling::decide_activated(const OpenTick& tick, Budget& budget) noexcept {
     const bool known = tick.objects[a].known() && tick.objects[b].known();
     const auto culls = [&](double lower) { return broad_phase_.cull(pair, lower); };
     const bool proved_far = known && bound_by_models(pair, 0, tick, budget, culls);
-    decided_.push_back({pair, proved_far});
+    decided_.push_back({.pair = pair & 0x7fff'ffff, .proved_far = proved_far});
     if (proved_far) continue;
     if (known) {
       update(pair, tick);

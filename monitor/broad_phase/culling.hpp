@@ -67,8 +67,8 @@ class Culling {
 
   // An activated pair that the last cull() or raise_horizon() has decided about.
   struct Decided {
-    std::uint32_t pair;
-    bool proved_far;  // by models of its objects, for the poses of this tick
+    std::uint32_t pair : 31;
+    std::uint32_t proved_far : 1;  // by models of its objects, for the poses of this tick
   };
   [[nodiscard]] std::span<const Decided> decided() const noexcept { return decided_; }
 
@@ -87,7 +87,7 @@ class Culling {
   KnownPairs known_;
   BroadPhase broad_phase_;
   HullBound hulls_;
-  PairColumn<std::uint8_t> is_updated_;  // by pair
+  LargeColumn<std::uint8_t> is_updated_;  // by pair
   // Each with capacity for all pairs.
   std::vector<std::uint32_t> active_, updated_;
   std::vector<Decided> decided_;

@@ -15,7 +15,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "monitor/pairs/pair_column.hpp"
+#include "monitor/objects/large_column.hpp"
 
 namespace clearance {
 
@@ -68,7 +68,7 @@ class MotionWheels {
 
   std::vector<Wheel> wheels_;
   std::vector<std::uint32_t> first_;  // timer by bucket: object, level, place in the ring
-  PairColumn<Timer> timers_;
+  LargeColumn<Timer> timers_;
 };
 
 }  // namespace clearance

@@ -165,7 +165,7 @@ std::vector<std::uint32_t> first_parts(const Scene& scene) {
   return first;
 }
 
-void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
+void pose_parts(std::span<const TrackedObject> objects, std::span<const std::uint32_t> changed,
                 std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept {
   for (const std::uint32_t i : changed) {
     if (!objects[i].input.has_value) continue;

@@ -58,7 +58,7 @@ struct PosedPart {
 
 // Places the parts of these objects at their poses in this tick. Objects without a pose are left
 // out.
-void pose_parts(const std::vector<TrackedObject>& objects, std::span<const std::uint32_t> changed,
+void pose_parts(std::span<const TrackedObject> objects, std::span<const std::uint32_t> changed,
                 std::span<const std::uint32_t> first, std::vector<PosedPart>& parts) noexcept;
 
 // Places a part at its pose in this tick. Requires that its object has a pose.

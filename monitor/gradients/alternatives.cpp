@@ -31,12 +31,14 @@ bool are_same_points(const ClosestPoints& p, const ClosestPoints& q) noexcept {
 // GradientAlternative::farther.
 double farther_of(std::uint32_t pair, std::uint32_t closest, const TickView& view) noexcept {
   const PairTable& table = view.pairs;
-  const PairEntry& entry = table.entries[pair];
   double lower = kInfinity;
-  for (std::uint32_t other = entry.first_part_pair; other < entry.end_part_pair; ++other) {
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t other = table.first_part_pair(pair); other < end; ++other) {
     if (other == closest || table.lower[other] >= lower) continue;
-    const bool evaluated = table.part_pair_evaluated_cycle[other] == view.cycle;
-    if (evaluated && are_same_points(table.closest[other], table.closest[closest])) continue;
+    const bool evaluated = table.evaluations.cycle(other) == view.cycle;
+    if (evaluated &&
+        are_same_points(table.evaluations[other].closest, table.evaluations[closest].closest))
+      continue;
     lower = table.lower[other];
   }
   return std::max(0.0, lower - table.upper[closest]);
@@ -45,12 +47,12 @@ double farther_of(std::uint32_t pair, std::uint32_t closest, const TickView& vie
 // The part pair that a report names.
 std::uint32_t part_pair_of(const PairReport& pair, const TickView& view) noexcept {
   const PairTable& table = view.pairs;
-  const PairEntry& entry = table.entries[pair.pair];
+  const std::uint32_t first = table.first_part_pair(pair.pair);
+  const std::uint32_t end = table.end_part_pair(pair.pair);
   std::uint32_t parts_of_b = 1;
-  while (entry.first_part_pair + parts_of_b < entry.end_part_pair &&
-         table.part_a[entry.first_part_pair + parts_of_b] == table.part_a[entry.first_part_pair])
+  while (first + parts_of_b < end && table.part_a(first + parts_of_b) == table.part_a(first))
     ++parts_of_b;
-  return entry.first_part_pair + pair.part_a * parts_of_b + pair.part_b;
+  return first + pair.part_a * parts_of_b + pair.part_b;
 }
 
 // Another point along the tangent has another rate by one of the joints.
@@ -110,7 +112,7 @@ GradientAlternative alternative_of(const PairReport& pair, std::span<const Vec3>
                             .tilt = kNan};
   // A cloud has many elements: whether another one is as near is not known.
   if (pair.status == PairStatus::kConverged && !is_of_cloud(part_pair, view)) {
-    found.tilt = tilt_of(view.parts[table.part_a[part_pair]], view.parts[table.part_b[part_pair]],
+    found.tilt = tilt_of(view.parts[table.part_a(part_pair)], view.parts[table.part_b(part_pair)],
                          {pair.witness_a, pair.witness_b, pair.normal}, turns);
     if (found.tilt >= 0.0) found.status = GradientStatus::kUnique;
   }

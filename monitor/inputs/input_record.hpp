@@ -27,7 +27,7 @@ struct InputRecord {
   bool ages = true;           // false for a fixed object
   std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
   Contradiction contradiction;
-  InputOwner owner;  // the source whose samples are used
+  InputOwner owner;                                // the source whose samples are used
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
 
   // The age of the value is not known any more: it is late until the next one comes.

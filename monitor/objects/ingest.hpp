@@ -9,6 +9,7 @@
 
 #include "monitor/inputs/source_clock.hpp"
 #include "monitor/inputs/source_numbers.hpp"
+#include "monitor/objects/large_column.hpp"
 #include "monitor/objects/pose_stamps.hpp"
 #include "monitor/objects/robot_inputs.hpp"
 #include "monitor/objects/tracked_object.hpp"
@@ -20,7 +21,7 @@ namespace clearance {
 struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
-  std::vector<TrackedObject> objects;       // same order as Scene::objects
+  LargeColumn<TrackedObject> objects;       // same order as Scene::objects
   std::vector<std::int64_t> age_limits_ns;  // Object::age_limit_ns, side by side
   VisitTimes visits;  // a sample makes its object due, unless the object is at rest
   PoseStamps stamps;  // of the objects that are not fixed

@@ -53,12 +53,12 @@ DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,
     bounds.lower = rounded_down(bounds.lower - displacement);
     bounds.upper = rounded_up(bounds.upper + displacement);
   }
-  const PosedPart& part_a = view.parts[table.part_a[part_pair]];
-  const PosedPart& part_b = view.parts[table.part_b[part_pair]];
-  if (displacement > 0.0 && table.gap[part_pair] > -kInfinity) {
-    const Vec3& normal = table.closest[part_pair].normal;
-    bounds.lower =
-        std::max(bounds.lower, lower_along(normal, table.gap[part_pair], part_a, part_b));
+  const PosedPart& part_a = view.parts[table.part_a(part_pair)];
+  const PosedPart& part_b = view.parts[table.part_b(part_pair)];
+  const Evaluation& evaluation = table.evaluations[part_pair];
+  if (displacement > 0.0 && evaluation.gap > -kInfinity) {
+    bounds.lower = std::max(bounds.lower,
+                            lower_along(evaluation.closest.normal, evaluation.gap, part_a, part_b));
   }
   const Sphere& a = part_a.sphere_in_world;
   const Sphere& b = part_b.sphere_in_world;
@@ -76,8 +76,8 @@ void carry(std::uint32_t pair, const OpenTick& tick) noexcept {
   const double displacement = displacement_since(pair, tick);
   note_carried(pair, tick);
   double least = kInfinity;
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
-       ++part_pair) {
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < end; ++part_pair) {
     const DistanceBounds now = bounds_now(part_pair, displacement, tick);
     table.lower[part_pair] = now.lower;
     table.upper[part_pair] = now.upper;
@@ -98,8 +98,8 @@ void raise(std::uint32_t pair, double to, const OpenTick& tick) noexcept {
   PairEntry& entry = table.entries[pair];
   const double displacement = displacement_since(pair, tick);
   double least = kInfinity;
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
-       ++part_pair) {
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < end; ++part_pair) {
     if (displacement > 0.0) {
       table.lower[part_pair] = rounded_down(table.lower[part_pair] - displacement);
       table.upper[part_pair] = rounded_up(table.upper[part_pair] + displacement);

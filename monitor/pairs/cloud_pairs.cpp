@@ -24,8 +24,8 @@ CloudPairs::CloudPairs(const Scene& scene, const std::vector<PosedPart>& parts,
     : content_(scene.sensors.size()), slot_(table.part_pairs(), kNone) {
   for (const Object& object : scene.objects) sensor_of_.push_back(object.sensor);
   for (std::uint32_t part_pair = 0; part_pair < table.part_pairs(); ++part_pair) {
-    const bool is_of_sensor = scene.objects[parts[table.part_a[part_pair]].object].is_seen() ||
-                              scene.objects[parts[table.part_b[part_pair]].object].is_seen();
+    const bool is_of_sensor = scene.objects[parts[table.part_a(part_pair)].object].is_seen() ||
+                              scene.objects[parts[table.part_b(part_pair)].object].is_seen();
     if (!is_of_sensor) continue;
     slot_[part_pair] = static_cast<std::uint32_t>(tracking_.size());
     tracking_.emplace_back();

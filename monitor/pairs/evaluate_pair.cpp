@@ -11,13 +11,21 @@
 namespace clearance {
 namespace {
 
-DistanceResult query_distance(std::uint32_t part_pair, const OpenTick& tick) noexcept {
-  PairTable& table = tick.table;
-  const PosedPart& a = tick.parts[table.part_a[part_pair]];
-  const PosedPart& b = tick.parts[table.part_b[part_pair]];
-  return distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part,
-                  table.tracking[part_pair]);
-}
+// A part pair that is queried in this tick.
+struct Queried {
+  std::uint32_t part_pair;
+  const PosedPart &a, &b;
+  Evaluation& evaluation;
+  Queried(std::uint32_t of, const OpenTick& tick) noexcept
+      : part_pair(of),
+        a(tick.parts[tick.pairs.part_a(of)]),
+        b(tick.parts[tick.pairs.part_b(of)]),
+        evaluation(tick.table.evaluations.of_query(of, tick.cycle)) {}
+  [[nodiscard]] DistanceResult distance() const noexcept {
+    return clearance::distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part,
+                               evaluation.tracking);
+  }
+};
 
 // The motion of both objects since the last tick, added up.
 struct PairMotion {
@@ -38,11 +46,10 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
 // would have a rounding error that grows with the distance between the two. `known`: bounds of the
 // part pair before the query.
 inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
-                           const DistanceBounds& known, std::uint32_t part_pair,
+                           const DistanceBounds& known, const Queried& queried,
                            const PairMotion& motion, const OpenTick& tick) noexcept {
   PairTable& table = tick.table;
-  const PosedPart& a = tick.parts[table.part_a[part_pair]];
-  const PosedPart& b = tick.parts[table.part_b[part_pair]];
+  const auto& [part_pair, a, b, evaluation] = queried;
   // The carried bounds are true as well, and a query that was cut short may be looser.
   const DistanceBounds bounds = for_exact_poses(found, a, b);
   const double lower = std::max(known.lower, bounds.lower);
@@ -51,7 +58,7 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   table.upper[part_pair] = upper;
 
   const Mat3& turn = a.world_from_part_rotation;
-  ClosestPoints& closest = table.closest[part_pair];
+  ClosestPoints& closest = evaluation.closest;
   closest.distance = std::min(std::max(found.distance, lower), upper);
   closest.witness_a = turn * found.point_on_a + a.world_from_part.position;
   const Vec3 normal_before = closest.normal;
@@ -60,10 +67,10 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   closest.lower = found.status == DistanceStatus::kConverged ? bounds.lower : -kInfinity;
   const Vec3 on_b = b.world_from_part_rotation * point_on_b + b.world_from_part.position;
   closest.witness_b = on_rounded_b(on_b, closest.normal, *b.shape);
-  table.gap[part_pair] = kept_gap(bounds.lower, closest.normal, a, b);
-  table.status[part_pair] = found.status;
-  const bool was_last_tick = table.part_pair_evaluated_cycle[part_pair] + 1 == tick.cycle;
-  table.part_pair_evaluated_cycle[part_pair] = tick.cycle;
+  evaluation.gap = kept_gap(bounds.lower, closest.normal, a, b);
+  evaluation.status = found.status;
+  const bool was_last_tick = table.evaluations.cycle(part_pair) + 1 == tick.cycle;
+  table.evaluations.set_cycle(part_pair, tick.cycle);
   if (!was_last_tick) return -kInfinity;
   return lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
                              motion.displacement, motion.bend);
@@ -74,20 +81,21 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
 double query_cloud(std::uint32_t part_pair, const OpenTick& tick, Budget& budget) noexcept {
   PairTable& table = tick.table;
   const CloudPairs::Answer found = tick.clouds->query(
-      part_pair, tick.parts[table.part_a[part_pair]], tick.parts[table.part_b[part_pair]]);
+      part_pair, tick.parts[table.part_a(part_pair)], tick.parts[table.part_b(part_pair)]);
   budget.spend();
   const double lower = std::max(table.lower[part_pair], found.bounds.lower);
   const double upper = std::min(table.upper[part_pair], found.bounds.upper);
   table.lower[part_pair] = lower;
   table.upper[part_pair] = upper;
-  ClosestPoints& closest = table.closest[part_pair];
+  Evaluation& evaluation = table.evaluations.of_query(part_pair, tick.cycle);
+  ClosestPoints& closest = evaluation.closest;
   closest.distance = 0.5 * (lower + upper);
   closest.witness_a = found.witness_a;
   closest.witness_b = found.witness_b;
   closest.normal = found.normal;
-  closest.lower = table.gap[part_pair] = -kInfinity;
-  table.status[part_pair] = found.status;
-  table.part_pair_evaluated_cycle[part_pair] = tick.cycle;
+  closest.lower = evaluation.gap = -kInfinity;
+  evaluation.status = found.status;
+  table.evaluations.set_cycle(part_pair, tick.cycle);
   return -kInfinity;
 }
 
@@ -96,17 +104,17 @@ double query_part_pair(std::uint32_t part_pair, const PairMotion& motion, const 
                        Budget& budget) noexcept {
   if (is_of_cloud(part_pair, tick)) [[unlikely]]
     return query_cloud(part_pair, tick, budget);
-  const DistanceResult found = query_distance(part_pair, tick);
-  const PairTable& table = tick.pairs;
-  const DistanceBounds known{table.lower[part_pair], table.upper[part_pair]};
+  const Queried queried(part_pair, tick);
+  const DistanceResult found = queried.distance();
+  const DistanceBounds known{tick.pairs.lower[part_pair], tick.pairs.upper[part_pair]};
   budget.spend();
-  return write_answer(found, table.tracking[part_pair].b.point, known, part_pair, motion, tick);
+  return write_answer(found, queried.evaluation.tracking.b.point, known, queried, motion, tick);
 }
 
 // The part pair with the smallest upper bound: mostly the closest one.
 std::uint32_t likely_part_pair(std::uint32_t pair, const PairTable& table) noexcept {
-  const auto first = table.upper.begin() + table.entries[pair].first_part_pair;
-  const auto end = table.upper.begin() + table.entries[pair].end_part_pair;
+  const auto first = table.upper.begin() + table.first_part_pair(pair);
+  const auto end = table.upper.begin() + table.end_part_pair(pair);
   return static_cast<std::uint32_t>(std::min_element(first, end) - table.upper.begin());
 }
 
@@ -170,14 +178,14 @@ void evaluate_part_pairs(std::uint32_t pair, const OpenTick& tick, Budget& budge
                        .motion = motion_since_last_tick(entry, tick)};
   const std::uint32_t likely = likely_part_pair(pair, table);
   update_part_pair(likely, part_pairs, tick, budget);
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
-       ++part_pair) {
+  const std::uint32_t first = table.first_part_pair(pair), end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = first; part_pair < end; ++part_pair) {
     if (part_pair != likely && !rule_out(part_pair, part_pairs, table))
       update_part_pair(part_pair, part_pairs, tick, budget);
   }
   note_carried(pair, tick);
   entry.least_lower = part_pairs.least_lower;
-  table.lower_between[pair] = part_pairs.between;
+  table.evaluations.of_query(first, tick.cycle).lower_between = part_pairs.between;
   if (part_pairs.all_that_matter) entry.evaluated_cycle = tick.cycle;
 }
 
@@ -190,11 +198,13 @@ DistanceBounds for_exact_poses(const DistanceResult& found, const PosedPart& a,
   return {rounded_down(found.lower - error), rounded_up(found.upper + error)};
 }
 
+namespace {
+
 // Carried bounds would add nothing to the bounds of a converged answer.
-void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
-            const OpenTick& tick) noexcept {
+inline void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
+                   const Queried& queried, const OpenTick& tick) noexcept {
   PairTable& table = tick.table;
-  const std::uint32_t part_pair = table.entries[pair].first_part_pair;
+  const std::uint32_t part_pair = queried.part_pair;
   PairEntry& entry = table.entries[pair];
   DistanceBounds known;
   if (found.status == DistanceStatus::kConverged) {
@@ -203,22 +213,29 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
     carry(pair, tick);
     known = {table.lower[part_pair], table.upper[part_pair]};
   }
-  table.lower_between[pair] =
-      write_answer(found, point_on_b, known, part_pair, motion_since_last_tick(entry, tick), tick);
+  queried.evaluation.lower_between =
+      write_answer(found, point_on_b, known, queried, motion_since_last_tick(entry, tick), tick);
   entry.least_lower = table.lower[part_pair];
   entry.evaluated_cycle = tick.cycle;
+}
+
+}  // namespace
+
+void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_on_b,
+            const OpenTick& tick) noexcept {
+  settle(pair, found, point_on_b, Queried(tick.pairs.first_part_pair(pair), tick), tick);
 }
 
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept {
   const PairTable& table = tick.pairs;
   if (budget.left() == 0) return;
-  if (table.part_pairs_of(pair) > 1 || is_of_cloud(table.entries[pair].first_part_pair, tick)) {
+  if (table.part_pairs_of(pair) > 1 || is_of_cloud(table.first_part_pair(pair), tick)) {
     evaluate_part_pairs(pair, tick, budget);
     return;
   }
-  const std::uint32_t part_pair = table.entries[pair].first_part_pair;
-  const DistanceResult found = query_distance(part_pair, tick);
-  settle(pair, found, table.tracking[part_pair].b.point, tick);
+  const Queried queried(table.first_part_pair(pair), tick);
+  const DistanceResult found = queried.distance();
+  settle(pair, found, queried.evaluation.tracking.b.point, queried, tick);
   budget.spend();
 }
 

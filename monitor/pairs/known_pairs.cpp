@@ -18,7 +18,7 @@ KnownPairs::KnownPairs(const Scene& scene)
   for (std::size_t i = 0; i < scene.objects.size(); ++i) set(i, true, present_);
 }
 
-void KnownPairs::update(const std::vector<TrackedObject>& objects,
+void KnownPairs::update(std::span<const TrackedObject> objects,
                         std::span<const std::uint32_t> changed) noexcept {
   regained_.clear();
   for (const std::uint32_t i : changed) {

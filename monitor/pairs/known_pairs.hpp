@@ -19,7 +19,7 @@ class KnownPairs {
 
   // Takes the counts to the objects' states of this tick. `changed`: at least the objects whose
   // states are not what they were.
-  void update(const std::vector<TrackedObject>& objects,
+  void update(std::span<const TrackedObject> objects,
               std::span<const std::uint32_t> changed) noexcept;
 
   // Objects that are known as of the last update and were not before it.

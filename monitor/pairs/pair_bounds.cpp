@@ -36,11 +36,12 @@ PairStatus status_of(DistanceStatus status) noexcept {
 }
 
 // The part pair with the smallest upper bound; evaluated ones come before all others.
-std::uint32_t closest_part_pair(const PairEntry& entry, const PairTable& table) noexcept {
-  std::uint32_t closest = entry.first_part_pair;
-  for (std::uint32_t part_pair = closest + 1; part_pair < entry.end_part_pair; ++part_pair) {
-    const bool evaluated = table.part_pair_evaluated_cycle[part_pair] > 0;
-    const bool closest_evaluated = table.part_pair_evaluated_cycle[closest] > 0;
+std::uint32_t closest_part_pair(std::uint32_t pair, const PairTable& table) noexcept {
+  std::uint32_t closest = table.first_part_pair(pair);
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = closest + 1; part_pair < end; ++part_pair) {
+    const bool evaluated = table.evaluations.cycle(part_pair) > 0;
+    const bool closest_evaluated = table.evaluations.cycle(closest) > 0;
     if (evaluated != closest_evaluated ? evaluated
                                        : table.upper[part_pair] < table.upper[closest]) {
       closest = part_pair;
@@ -49,18 +50,15 @@ std::uint32_t closest_part_pair(const PairEntry& entry, const PairTable& table) 
   return closest;
 }
 
-DistanceBounds bounds_as_carried(const PairEntry& entry, const PairTable& table) noexcept {
-  const auto first = table.upper.begin() + entry.first_part_pair;
-  const auto end = table.upper.begin() + entry.end_part_pair;
-  return {entry.least_lower, *std::min_element(first, end)};
+DistanceBounds bounds_as_carried(std::uint32_t pair, const PairTable& table) noexcept {
+  return {table.entries[pair].least_lower, upper_of(pair, table)};
 }
 
 DistanceBounds pair_bounds_now(std::uint32_t pair, const TickView& view) noexcept {
-  const PairEntry& entry = view.pairs.entries[pair];
   const double displacement = displacement_since(pair, view);
   DistanceBounds least{kInfinity, kInfinity};
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
-       ++part_pair) {
+  const std::uint32_t end = view.pairs.end_part_pair(pair);
+  for (std::uint32_t part_pair = view.pairs.first_part_pair(pair); part_pair < end; ++part_pair) {
     const DistanceBounds now = bounds_now(part_pair, displacement, view);
     least.lower = std::min(least.lower, now.lower);
     least.upper = std::min(least.upper, now.upper);
@@ -70,17 +68,17 @@ DistanceBounds pair_bounds_now(std::uint32_t pair, const TickView& view) noexcep
 
 // Returns the pair's status by this tick's evaluations. It is kCarried if a part pair that could be
 // the closest was not evaluated in this tick.
-PairStatus evaluated_status(const PairEntry& entry, std::uint32_t closest,
+PairStatus evaluated_status(std::uint32_t pair, std::uint32_t closest,
                             const TickView& view) noexcept {
   const PairTable& table = view.pairs;
   const std::uint64_t cycle = view.cycle;
-  if (table.part_pair_evaluated_cycle[closest] != cycle) return PairStatus::kCarried;
-  PairStatus status = status_of(table.status[closest]);
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
-       ++part_pair) {
+  if (table.evaluations.cycle(closest) != cycle) return PairStatus::kCarried;
+  PairStatus status = status_of(table.evaluations[closest].status);
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < end; ++part_pair) {
     if (part_pair == closest || table.lower[part_pair] >= table.upper[closest]) continue;
-    if (table.part_pair_evaluated_cycle[part_pair] != cycle) return PairStatus::kCarried;
-    if (status_of(table.status[part_pair]) == PairStatus::kIterationLimit)
+    if (table.evaluations.cycle(part_pair) != cycle) return PairStatus::kCarried;
+    if (status_of(table.evaluations[part_pair].status) == PairStatus::kIterationLimit)
       status = PairStatus::kIterationLimit;
   }
   return status;
@@ -106,7 +104,8 @@ double lower_between_ticks(const TrackedObject& a, const TrackedObject& b, doubl
 }
 
 double lower_by_evaluations(std::uint32_t pair, const TickView& view) noexcept {
-  return is_evaluated(pair, view) ? view.pairs.lower_between[pair] : -kInfinity;
+  if (!is_evaluated(pair, view)) return -kInfinity;
+  return view.pairs.evaluations[view.pairs.first_part_pair(pair)].lower_between;
 }
 
 // The result of bounds_of() for the usual pair, which was brought up to date in this tick, in a
@@ -116,15 +115,17 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
                                    SweptPrecision precision) noexcept {
   const PairTable& table = view.pairs;
   const PairEntry& entry = table.entries[pair];
-  const std::uint32_t part_pair = entry.first_part_pair;
-  const std::uint64_t evaluated = table.part_pair_evaluated_cycle[part_pair];
+  const std::uint32_t part_pair = table.first_part_pair(pair);
+  const Evaluation& evaluation = table.evaluations[part_pair];
+  const std::uint64_t evaluated = table.evaluations.cycle(part_pair);
   const double upper = table.upper[part_pair];
+  const double between = is_evaluated(pair, view) ? evaluation.lower_between : -kInfinity;
   return {
-      .status = evaluated == view.cycle ? status_of(table.status[part_pair]) : PairStatus::kCarried,
+      .status = evaluated == view.cycle ? status_of(evaluation.status) : PairStatus::kCarried,
       .lower = entry.least_lower,
       .upper = upper,
-      .swept_lower = lower_between_ticks(a, b, entry.lower_before, entry.least_lower,
-                                         lower_by_evaluations(pair, view), precision),
+      .swept_lower =
+          lower_between_ticks(a, b, entry.lower_before, entry.least_lower, between, precision),
       .swept_upper = upper,
       .part_pair = part_pair,
       .evaluated_cycle = evaluated,
@@ -177,20 +178,20 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
   const TrackedObject& a = view.objects[entry.object_a];
   const TrackedObject& b = view.objects[entry.object_b];
   const bool carried = is_carried(pair, view);
-  if (a.plain && b.plain && carried && entry.end_part_pair - entry.first_part_pair == 1) {
+  if (a.plain && b.plain && carried && view.pairs.part_pairs_of(pair) == 1) {
     return bounds_of_one_part_pair(pair, a, b, view, precision);
   }
   PairBounds bounds;
   if (a.absent || b.absent) bounds.status = PairStatus::kAbsent;
   if (!a.known() || !b.known()) return bounds;
   const DistanceBounds now =
-      carried ? bounds_as_carried(entry, view.pairs) : pair_bounds_now(pair, view);
+      carried ? bounds_as_carried(pair, view.pairs) : pair_bounds_now(pair, view);
   bounds.lower = now.lower;
   bounds.upper = bounds.swept_upper = now.upper;
   bounds.swept_lower = lower_since_last_tick(pair, now.lower, view, precision);
-  bounds.part_pair = closest_part_pair(entry, view.pairs);
-  bounds.evaluated_cycle = view.pairs.part_pair_evaluated_cycle[bounds.part_pair];
-  bounds.status = evaluated_status(entry, bounds.part_pair, view);
+  bounds.part_pair = closest_part_pair(pair, view.pairs);
+  bounds.evaluated_cycle = view.pairs.evaluations.cycle(bounds.part_pair);
+  bounds.status = evaluated_status(pair, bounds.part_pair, view);
   if (!a.plain || !b.plain) count_lateness_in(a, b, bounds);
   return bounds;
 }
@@ -204,16 +205,16 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   report.pair = pair;
   report.age_a_ns = a.input.age_ns(view.now_ns);
   report.age_b_ns = b.input.age_ns(view.now_ns);
-  report.refresh_age_cycles = view.cycle - table.refreshed_cycle[pair];
+  report.refresh_age_cycles = view.cycle - table.entries[pair].refreshed_cycle;
   report.status = bounds.status;
   if (!is_known(bounds.status)) return;
 
   report.lower = bounds.lower;
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;
-  const ClosestPoints& closest = table.closest[bounds.part_pair];
-  report.part_a = view.parts[table.part_a[bounds.part_pair]].index_in_object;
-  report.part_b = view.parts[table.part_b[bounds.part_pair]].index_in_object;
+  const ClosestPoints& closest = table.evaluations[bounds.part_pair].closest;
+  report.part_a = view.parts[table.part_a(bounds.part_pair)].index_in_object;
+  report.part_b = view.parts[table.part_b(bounds.part_pair)].index_in_object;
   report.distance = closest.distance;
   report.witness_a = closest.witness_a;
   report.witness_b = closest.witness_b;

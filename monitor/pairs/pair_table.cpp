@@ -1,47 +1,59 @@
 #include "monitor/pairs/pair_table.hpp"
 
+#include <algorithm>
+
+#include "config/scene/refresh_share.hpp"
+
 namespace clearance {
 
-ClosestPoints::ClosestPoints() noexcept
-    : distance(kNan),
-      lower(-kInfinity),
-      witness_a(Vec3::Constant(kNan)),
-      witness_b(Vec3::Constant(kNan)),
-      normal(Vec3::Constant(kNan)) {}
+namespace {
 
-PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts) {
-  std::vector<std::vector<std::uint32_t>> parts_by_object(scene.objects.size());
-  for (std::uint32_t part = 0; part < parts.size(); ++part) {
-    parts_by_object[parts[part].object].push_back(part);
-  }
-  std::size_t all_part_pairs = 0;
-  for (const ObjectPair& pair : scene.pairs) {
-    all_part_pairs += parts_by_object[pair.first].size() * parts_by_object[pair.second].size();
-  }
+std::size_t count_part_pairs(const Scene& scene) {
+  std::size_t count = 0;
+  for (const ObjectPair& pair : scene.pairs)
+    count += scene.objects[pair.first].parts.size() * scene.objects[pair.second].parts.size();
+  return count;
+}
+
+}  // namespace
+
+PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts)
+    : lower(count_part_pairs(scene), -kInfinity),
+      upper(lower.size(), kInfinity),
+      evaluations(lower.size(), scene.budget) {
   entries.reserve(scene.pairs.size());
-  for (auto* column : {&part_a, &part_b}) column->reserve(all_part_pairs);
   for (const ObjectPair& pair : scene.pairs) {
     PairEntry& entry = entries.emplace_back();
     entry.object_a = pair.first;
     entry.object_b = pair.second;
-    entry.first_part_pair = part_pairs();
+  }
+  all_single_ = std::ranges::all_of(scene.objects,
+                                    [](const Object& object) { return object.parts.size() == 1; });
+  if (!all_single_) number_part_pairs(scene, parts);
+  for (std::uint32_t pair = 0; pair < pairs(); ++pair) {
+    if (!is_published(scene.pairs[pair], scene)) continue;
+    for (std::uint32_t i = first_part_pair(pair); i < end_part_pair(pair); ++i) evaluations.keep(i);
+  }
+  evaluations.share();
+}
+
+void PairTable::number_part_pairs(const Scene& scene, const std::vector<PosedPart>& parts) {
+  std::vector<std::vector<std::uint32_t>> parts_by_object(scene.objects.size());
+  for (std::uint32_t part = 0; part < parts.size(); ++part) {
+    parts_by_object[parts[part].object].push_back(part);
+  }
+  first_part_pair_.reserve(scene.pairs.size() + 1);
+  for (auto* column : {&part_a_, &part_b_}) column->reserve(lower.size());
+  for (const ObjectPair& pair : scene.pairs) {
+    first_part_pair_.push_back(static_cast<std::uint32_t>(part_a_.size()));
     for (const std::uint32_t a : parts_by_object[pair.first]) {
       for (const std::uint32_t b : parts_by_object[pair.second]) {
-        part_a.push_back(a);
-        part_b.push_back(b);
+        part_a_.push_back(a);
+        part_b_.push_back(b);
       }
     }
-    entry.end_part_pair = part_pairs();
   }
-  lower_between.assign(pairs(), -kInfinity);
-  refreshed_cycle.assign(pairs(), 0);
-  lower.assign(part_pairs(), -kInfinity);
-  upper.assign(part_pairs(), kInfinity);
-  part_pair_evaluated_cycle.assign(part_pairs(), 0);
-  status.assign(part_pairs(), DistanceStatus::kIterationLimit);
-  tracking.resize(part_pairs());
-  closest.resize(part_pairs());
-  gap.assign(part_pairs(), -kInfinity);
+  first_part_pair_.push_back(static_cast<std::uint32_t>(part_a_.size()));
 }
 
 void add_pair(std::uint32_t pair, const PairTable& table, Checksum& sum) noexcept {
@@ -52,25 +64,26 @@ void add_pair(std::uint32_t pair, const PairTable& table, Checksum& sum) noexcep
   sum.add(entry.least_lower);
   sum.add(entry.lower_before);
   sum.add(entry.evaluated_cycle);
-  sum.add(table.lower_between[pair]);
-  sum.add(table.refreshed_cycle[pair]);
-  for (std::uint32_t i = entry.first_part_pair; i < entry.end_part_pair; ++i) {
+  sum.add(entry.refreshed_cycle);
+  for (std::uint32_t i = table.first_part_pair(pair); i < table.end_part_pair(pair); ++i) {
+    const Evaluation& evaluation = table.evaluations[i];
     sum.add(table.lower[i]);
     sum.add(table.upper[i]);
-    sum.add(table.part_pair_evaluated_cycle[i]);
-    sum.add(table.status[i]);
-    sum.add(table.gap[i]);
-    sum.add(table.closest[i].distance);
-    sum.add(table.closest[i].lower);
-    sum.add3(table.closest[i].witness_a);
-    sum.add3(table.closest[i].witness_b);
-    sum.add3(table.closest[i].normal);
+    sum.add(evaluation.lower_between);
+    sum.add(table.evaluations.cycle(i));
+    sum.add(evaluation.status);
+    sum.add(evaluation.gap);
+    sum.add(evaluation.closest.distance);
+    sum.add(evaluation.closest.lower);
+    sum.add3(evaluation.closest.witness_a);
+    sum.add3(evaluation.closest.witness_b);
+    sum.add3(evaluation.closest.normal);
   }
 }
 
 void forget_bounds(std::uint32_t pair, PairTable& table) noexcept {
-  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
-       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < table.end_part_pair(pair);
+       ++part_pair) {
     table.lower[part_pair] = -kInfinity;
     table.upper[part_pair] = kInfinity;
   }
@@ -81,14 +94,15 @@ void forget_bounds(std::uint32_t pair, PairTable& table) noexcept {
 void forget_pair(std::uint32_t pair, PairTable& table) noexcept {
   forget_bounds(pair, table);
   PairEntry& entry = table.entries[pair];
-  for (std::uint32_t part_pair = entry.first_part_pair; part_pair < entry.end_part_pair;
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < table.end_part_pair(pair);
        ++part_pair) {
-    table.part_pair_evaluated_cycle[part_pair] = 0;
-    table.closest[part_pair] = ClosestPoints();
-    table.gap[part_pair] = -kInfinity;
+    Evaluation* const evaluation = table.evaluations.find(part_pair);
+    if (evaluation == nullptr) continue;
+    table.evaluations.set_cycle(part_pair, 0);
+    evaluation->closest = ClosestPoints();
+    evaluation->gap = evaluation->lower_between = -kInfinity;
   }
   entry.carried_cycle = entry.evaluated_cycle = 0;
-  table.lower_between[pair] = -kInfinity;
 }
 
 }  // namespace clearance

@@ -14,23 +14,10 @@
 #include "core/distance.hpp"
 #include "monitor/geometry/posed_part.hpp"
 #include "monitor/inputs/checksum.hpp"
-#include "monitor/pairs/pair_column.hpp"
+#include "monitor/objects/large_column.hpp"
+#include "monitor/pairs/evaluations.hpp"
 
 namespace clearance {
-
-// A figure that is not known.
-inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-// The witness points of two parts, in the world. NaN until evaluated.
-struct ClosestPoints {
-  double distance;  // m
-  // The distance along the normal at the exact poses of that tick is at least this, m. -infinity:
-  // the normal did not separate the parts.
-  double lower;
-  Vec3 witness_a, witness_b;
-  Vec3 normal;
-  ClosestPoints() noexcept;
-};
 
 // TrackedObject::accumulated of both objects of a pair, m.
 struct AccumulatedDisplacement {
@@ -44,52 +31,65 @@ struct DistanceBounds {
 // All that ticks ask of an object pair whether it is evaluated or not, in one cache line.
 struct alignas(64) PairEntry {
   std::uint32_t object_a = 0, object_b = 0;
-  std::uint32_t first_part_pair = 0, end_part_pair = 0;  // its part pairs, the latter excluded
-  AccumulatedDisplacement carried_at;                    // when they were last brought up to date
-  std::uint64_t carried_cycle = 0;                       // the tick in which that was; 0: never
-  double least_lower = -kInfinity;                       // over its part pairs in that tick, m
-  double lower_before = -kInfinity;                      // for the poses of the tick before that, m
+  AccumulatedDisplacement carried_at;  // when its part pairs were last brought up to date
+  std::uint64_t carried_cycle = 0;     // the tick in which that was; 0: never
+  double least_lower = -kInfinity;     // over its part pairs in that tick, m
+  double lower_before = -kInfinity;    // for the poses of the tick before that, m
   // The tick in which all part pairs that matter were last evaluated; 0: never.
   std::uint64_t evaluated_cycle = 0;
+  // The tick in which its bound was last found afresh from poses; 0: never. An evaluation does so,
+  // and so do models of its objects that prove it far.
+  std::uint64_t refreshed_cycle = 0;
 };
 
 struct PairTable {
-  PairColumn<PairEntry> entries;  // as in Scene::pairs
-
-  // By pair, m: a lower bound of its distance from the tick before its last evaluation up to that
-  // evaluation. The directions of two evaluations prove it. -infinity: they prove none.
-  PairColumn<double> lower_between;
-  // By pair. The tick in which its bound was last found afresh from poses, or 0 if never. An
-  // evaluation does so, and so do models of its objects that prove it far.
-  PairColumn<std::uint64_t> refreshed_cycle;
+  LargeColumn<PairEntry> entries;  // as in Scene::pairs
 
   // By part pair.
-  PairColumn<std::uint32_t> part_a, part_b;             // indices into parts_of(scene)
-  PairColumn<double> lower, upper;                      // true at carried_at, m
-  PairColumn<std::uint64_t> part_pair_evaluated_cycle;  // 0: never
-  PairColumn<DistanceStatus> status;
-  PairColumn<TrackingState> tracking;
-  PairColumn<ClosestPoints> closest;
-  PairColumn<double> gap;  // kept_gap() of the last evaluation along closest.normal, m
+  LargeColumn<double> lower, upper;  // true at carried_at, m
+  Evaluations evaluations;
 
   PairTable(const Scene& scene, const std::vector<PosedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {
     return static_cast<std::uint32_t>(entries.size());
   }
-  [[nodiscard]] std::uint32_t part_pairs_of(std::uint32_t pair) const noexcept {
-    return entries[pair].end_part_pair - entries[pair].first_part_pair;
-  }
   [[nodiscard]] std::uint32_t part_pairs() const noexcept {
-    return static_cast<std::uint32_t>(part_a.size());
+    return static_cast<std::uint32_t>(lower.size());
   }
+  // The part pairs of a pair are first_part_pair .. end_part_pair, the latter excluded.
+  [[nodiscard]] std::uint32_t first_part_pair(std::uint32_t pair) const noexcept {
+    return all_single_ ? pair : first_part_pair_[pair];
+  }
+  [[nodiscard]] std::uint32_t end_part_pair(std::uint32_t pair) const noexcept {
+    return all_single_ ? pair + 1 : first_part_pair_[pair + 1];
+  }
+  [[nodiscard]] std::uint32_t part_pairs_of(std::uint32_t pair) const noexcept {
+    return end_part_pair(pair) - first_part_pair(pair);
+  }
+  // Indices into parts_of(scene).
+  [[nodiscard]] std::uint32_t part_a(std::uint32_t part_pair) const noexcept {
+    return all_single_ ? entries[part_pair].object_a : part_a_[part_pair];
+  }
+  [[nodiscard]] std::uint32_t part_b(std::uint32_t part_pair) const noexcept {
+    return all_single_ ? entries[part_pair].object_b : part_b_[part_pair];
+  }
+
+ private:
+  void number_part_pairs(const Scene& scene, const std::vector<PosedPart>& parts);
+
+  // Every object has one part: a pair is its part pair, and an object is its part. The columns are
+  // empty then.
+  bool all_single_ = false;
+  LargeColumn<std::uint32_t> first_part_pair_;  // by pair, and the end
+  LargeColumn<std::uint32_t> part_a_, part_b_;  // by part pair
 };
 
 // The pair's distance was at most this, m, when it was last brought up to date: the smallest upper
 // bound of its part pairs.
 [[nodiscard]] inline double upper_of(std::uint32_t pair, const PairTable& table) noexcept {
-  const PairEntry& entry = table.entries[pair];
-  double upper = table.upper[entry.first_part_pair];
-  for (std::uint32_t i = entry.first_part_pair + 1; i < entry.end_part_pair; ++i) {
+  const std::uint32_t first = table.first_part_pair(pair), end = table.end_part_pair(pair);
+  double upper = table.upper[first];
+  for (std::uint32_t i = first + 1; i < end; ++i) {
     upper = upper < table.upper[i] ? upper : table.upper[i];
   }
   return upper;

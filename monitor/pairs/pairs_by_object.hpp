@@ -1,4 +1,4 @@
-// The pairs of an object, and its partner in each.
+// The pairs of an object.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/pairs/pair_column.hpp"
+#include "monitor/objects/large_column.hpp"
 
 namespace clearance {
 
@@ -14,17 +14,14 @@ class PairsByObject {
  public:
   explicit PairsByObject(const Scene& scene);
 
-  // Indices into Scene::pairs, in ascending order; and the other object of each.
+  // Indices into Scene::pairs, in ascending order.
   [[nodiscard]] std::span<const std::uint32_t> pairs_of(std::uint32_t object) const noexcept {
     return std::span(pairs_).subspan(first_[object], first_[object + 1] - first_[object]);
-  }
-  [[nodiscard]] std::span<const std::uint32_t> others_of(std::uint32_t object) const noexcept {
-    return std::span(others_).subspan(first_[object], first_[object + 1] - first_[object]);
   }
 
  private:
   std::vector<std::uint32_t> first_;  // by object, and the end
-  PairColumn<std::uint32_t> pairs_, others_;
+  LargeColumn<std::uint32_t> pairs_;
 };
 
 }  // namespace clearance

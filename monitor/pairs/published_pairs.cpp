@@ -55,8 +55,8 @@ void PublishedPairs::form_groups(const Scene& scene, const std::vector<PosedPart
   };
   std::vector<BodyPair> body_pairs;
   for (const std::uint32_t pair : single) {
-    const std::uint32_t part_pair = table.entries[pair].first_part_pair;
-    body_pairs.push_back({body(table.part_a[part_pair]), body(table.part_b[part_pair])});
+    const std::uint32_t part_pair = table.first_part_pair(pair);
+    body_pairs.push_back({body(table.part_a(part_pair)), body(table.part_b(part_pair))});
   }
   world_from_body_.resize(bodies.size());
   for (std::size_t first = 0; first < single.size(); first += kGroup) {

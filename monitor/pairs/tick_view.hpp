@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "monitor/pairs/cloud_pairs.hpp"
@@ -13,7 +14,7 @@ namespace clearance {
 // The state that stages read: every object and part as placed in this tick, and the bounds of every
 // pair.
 struct TickView {
-  const std::vector<TrackedObject>& objects;
+  std::span<const TrackedObject> objects;
   const std::vector<PosedPart>& parts;
   std::uint64_t cycle;  // counts ticks from 1
   const PairTable& pairs;
@@ -26,7 +27,7 @@ struct TickView {
 struct OpenTick : TickView {
   PairTable& table;  // the same as `pairs`
 
-  OpenTick(const std::vector<TrackedObject>& the_objects, const std::vector<PosedPart>& the_parts,
+  OpenTick(std::span<const TrackedObject> the_objects, const std::vector<PosedPart>& the_parts,
            std::uint64_t the_cycle, PairTable& the_table, std::int64_t the_time = 0,
            CloudPairs* the_clouds = nullptr) noexcept
       : TickView{the_objects, the_parts, the_cycle, the_table, the_time, the_clouds},

@@ -32,7 +32,7 @@ struct Evaluator {
   }
   // Records that a pair's bound was found afresh in this tick.
   void note_refreshed(std::uint32_t pair) const noexcept {
-    tick.table.refreshed_cycle[pair] = tick.cycle;
+    tick.table.entries[pair].refreshed_cycle = tick.cycle;
     if (!culling.broad_phase().left_out(pair)) queue.move_to_back(pair);
   }
   // Queues the pairs that the last step of the culling has decided about.
@@ -42,7 +42,7 @@ struct Evaluator {
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (i + 2 * kAhead < all.size()) {
         queue.fetch(all[i + 2 * kAhead].pair);
-        __builtin_prefetch(&tick.table.refreshed_cycle[all[i + 2 * kAhead].pair], 1);
+        __builtin_prefetch(&tick.table.entries[all[i + 2 * kAhead].pair].refreshed_cycle, 1);
       }
       if (i + kAhead < all.size()) queue.fetch_neighbours(all[i + kAhead].pair);
       const Culling::Decided& decided = all[i];

@@ -13,7 +13,8 @@ namespace clearance {
 
 class MinimumSearch {
  public:
-  explicit MinimumSearch(std::size_t pairs) { candidates_.reserve(pairs); }
+  // `candidates` has capacity for all pairs; between two calls its content may change.
+  explicit MinimumSearch(std::vector<std::uint32_t>& candidates) : candidates_(candidates) {}
 
   // If the budget lasts, no pair that was not updated can be closer than the minimum afterwards.
   void find_minimum(const Evaluator& evaluator) noexcept;
@@ -25,7 +26,7 @@ class MinimumSearch {
   void evaluate_closest(const Evaluator& evaluator) noexcept;
 
   double smallest_upper_ = kInfinity;
-  std::vector<std::uint32_t> candidates_;
+  std::vector<std::uint32_t>& candidates_;
 };
 
 }  // namespace clearance

@@ -13,7 +13,6 @@ RefreshQueue::RefreshQueue(std::size_t objects, std::size_t pairs)
     : ahead_(static_cast<std::uint32_t>(pairs)),
       main_(static_cast<std::uint32_t>(pairs + 1)),
       links_(pairs + 2),
-      aside_(pairs, 0),
       oldest_aside_(objects, kNever),
       is_returning_(objects, 0) {
   for (const std::uint32_t end : {ahead_, main_}) links_[end] = {.before = end, .next = end};
@@ -35,15 +34,14 @@ void RefreshQueue::unlink(std::uint32_t pair) noexcept {
 }
 
 void RefreshQueue::enter(std::uint32_t pair, const PairTable& table) noexcept {
-  if (in_list(pair) || aside_[pair]) return;
+  if (in_list(pair) || is_aside(pair)) return;
   if (links_[ahead_].next == ahead_) oldest_ahead_ = kNever;
   append(pair, ahead_);
-  oldest_ahead_ = std::min(oldest_ahead_, table.refreshed_cycle[pair]);
+  oldest_ahead_ = std::min(oldest_ahead_, table.entries[pair].refreshed_cycle);
 }
 
 void RefreshQueue::move_to_back(std::uint32_t pair) noexcept {
   if (in_list(pair)) unlink(pair);
-  aside_[pair] = 0;
   append(pair, main_);
 }
 
@@ -55,8 +53,8 @@ std::uint32_t RefreshQueue::stalest() const noexcept {
 void RefreshQueue::set_aside(std::uint32_t pair, std::uint32_t object,
                              const PairTable& table) noexcept {
   unlink(pair);
-  aside_[pair] = 1;
-  oldest_aside_[object] = std::min(oldest_aside_[object], table.refreshed_cycle[pair]);
+  links_[pair].before = kAside;
+  oldest_aside_[object] = std::min(oldest_aside_[object], table.entries[pair].refreshed_cycle);
 }
 
 void RefreshQueue::regain(std::uint32_t object) noexcept {
@@ -71,21 +69,22 @@ void RefreshQueue::regain(std::uint32_t object) noexcept {
 }
 
 void RefreshQueue::bring_back(const PairsByObject& by_object, const TickView& view) noexcept {
-  const std::vector<TrackedObject>& objects = view.objects;
+  const std::span<const TrackedObject> objects = view.objects;
   for (std::size_t left = kMostBroughtBack; !returning_.empty() && left > 0;) {
     const std::uint32_t object = returning_.back();
     const auto pairs = by_object.pairs_of(object);
     for (; brought_back_ < pairs.size() && left > 0; ++brought_back_, --left) {
       const std::uint32_t pair = pairs[brought_back_];
-      if (!aside_[pair]) continue;
+      if (!is_aside(pair)) continue;
       const PairEntry& entry = view.pairs.entries[pair];
       const std::uint32_t other = entry.object_a == object ? entry.object_b : entry.object_a;
       if (!objects[object].known() || !objects[other].known()) {
         const std::uint32_t missing = objects[object].known() ? other : object;
-        oldest_aside_[missing] = std::min(oldest_aside_[missing], view.pairs.refreshed_cycle[pair]);
+        oldest_aside_[missing] =
+            std::min(oldest_aside_[missing], view.pairs.entries[pair].refreshed_cycle);
         continue;
       }
-      aside_[pair] = 0;
+      links_[pair] = {};
       enter(pair, view.pairs);
     }
     if (brought_back_ < pairs.size()) return;
@@ -99,7 +98,7 @@ void RefreshQueue::bring_back(const PairsByObject& by_object, const TickView& vi
 std::uint64_t RefreshQueue::oldest(const PairTable& table) const noexcept {
   std::uint64_t oldest = links_[ahead_].next != ahead_ ? oldest_ahead_ : kNever;
   if (links_[main_].next != main_)
-    oldest = std::min(oldest, table.refreshed_cycle[links_[main_].next]);
+    oldest = std::min(oldest, table.entries[links_[main_].next].refreshed_cycle);
   for (const std::uint32_t object : returning_) oldest = std::min(oldest, oldest_aside_[object]);
   return oldest;
 }

@@ -56,8 +56,13 @@ class RefreshQueue {
  private:
   static constexpr std::uint64_t kNever = std::numeric_limits<std::uint64_t>::max();
   struct Link {
-    std::uint32_t before = kNoIndex, next = kNoIndex;  // kNoIndex: not in a list
+    std::uint32_t before = kNoIndex;  // kAside: the pair is set aside
+    std::uint32_t next = kNoIndex;    // kNoIndex: not in a list
   };
+  static constexpr std::uint32_t kAside = kNoIndex - 1;
+  [[nodiscard]] bool is_aside(std::uint32_t pair) const noexcept {
+    return links_[pair].before == kAside && !in_list(pair);
+  }
   [[nodiscard]] bool in_list(std::uint32_t pair) const noexcept {
     return links_[pair].next != kNoIndex;
   }
@@ -66,8 +71,7 @@ class RefreshQueue {
 
   // The ends of the two lists: pairs that come back or were never refreshed, and all others.
   const std::uint32_t ahead_, main_;
-  PairColumn<Link> links_;                  // by pair, then the two ends
-  PairColumn<std::uint8_t> aside_;          // by pair
+  LargeColumn<Link> links_;                  // by pair, then the two ends
   std::uint64_t oldest_ahead_ = kNever;      // no pair of that list was last refreshed earlier
   std::vector<std::uint64_t> oldest_aside_;  // by object: nor any pair that it had set aside
   std::vector<std::uint32_t> returning_;     // objects whose pairs come back, the next one last

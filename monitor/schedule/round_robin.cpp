@@ -84,7 +84,7 @@ void RoundRobin::refresh_stalest(const Evaluator& evaluator) noexcept {
   for (std::uint32_t unknown = 0; refreshed < most && unknown < kMostSetAside;) {
     const std::uint32_t pair = queue_.stalest();
     const bool left = pair != RefreshQueue::kNoIndex;
-    const std::uint64_t last = left ? tick.pairs.refreshed_cycle[pair] : tick.cycle;
+    const std::uint64_t last = left ? tick.pairs.entries[pair].refreshed_cycle : tick.cycle;
     if (last == tick.cycle) return others_.all_refreshed();
     if (!is_known(pair, tick)) {
       set_aside(pair, tick);

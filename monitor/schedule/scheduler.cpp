@@ -22,9 +22,10 @@ Scheduler::Scheduler(const Scene& scene, const RefreshShare& share,
                      const std::vector<PosedPart>& parts, const PairTable& table,
                      const ZoneLevels& levels)
     : published_(scene, parts, table, share.published_every_tick),
-      minimum_(scene.pairs.size()),
-      urgency_(scene, levels),
+      minimum_(chosen_),
+      urgency_(scene, levels, chosen_),
       round_robin_(scene, share) {
+  chosen_.reserve(scene.pairs.size());
   re_evaluated_.reserve(kMostReEvaluated);
 }
 
@@ -77,7 +78,7 @@ void Scheduler::update_published(const Schedule& schedule, const Evaluator& eval
     for (const std::uint32_t pair : published_.pairs()) {
       if (!is_evaluated(pair, tick)) continue;
       evaluator.culling.mark_updated(pair);
-      tick.table.refreshed_cycle[pair] = tick.cycle;  // the queue does not have these pairs
+      tick.table.entries[pair].refreshed_cycle = tick.cycle;  // the queue does not have these pairs
     }
     return;
   }
@@ -104,7 +105,7 @@ std::uint64_t Scheduler::oldest_refresh(const Schedule& schedule, const Culling&
   std::uint64_t oldest = std::min(view.cycle, round_robin_.queue().oldest(view.pairs));
   if (!published_.every_tick() || schedule.published_at_once) return oldest;
   for (const std::uint32_t pair : published_.pairs()) {
-    if (is_known(pair, view)) oldest = std::min(oldest, view.pairs.refreshed_cycle[pair]);
+    if (is_known(pair, view)) oldest = std::min(oldest, view.pairs.entries[pair].refreshed_cycle);
   }
   return oldest;
 }

@@ -74,6 +74,7 @@ class Scheduler {
                                              const TickView& view) const noexcept;
 
   PublishedPairs published_;
+  std::vector<std::uint32_t> chosen_;  // scratch of the next two, with capacity for all pairs
   MinimumSearch minimum_;
   UrgencyBins urgency_;
   RoundRobin round_robin_;

@@ -21,7 +21,7 @@ std::vector<double> stated_speeds(const Scene& scene) {
 
 // Evaluates as many as the budget allows, the stalest first; pairs of equal age in their order.
 void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator) noexcept {
-  const PairColumn<PairEntry>& entries = evaluator.tick.pairs.entries;
+  const LargeColumn<PairEntry>& entries = evaluator.tick.pairs.entries;
   const std::uint32_t queries = evaluator.budget.left();
   // A pair takes at least one query, so no more pairs than this can have a turn.
   if (pairs.size() > queries) {
@@ -39,10 +39,12 @@ void evaluate_stalest(std::span<std::uint32_t> pairs, const Evaluator& evaluator
 
 }  // namespace
 
-UrgencyBins::UrgencyBins(const Scene& scene, const ZoneLevels& levels)
-    : levels_(levels), period_s_(1.0 / scene.rate_hz), stated_speed_(stated_speeds(scene)) {
-  in_bin_.reserve(scene.pairs.size());
-}
+UrgencyBins::UrgencyBins(const Scene& scene, const ZoneLevels& levels,
+                         std::vector<std::uint32_t>& in_bin)
+    : levels_(levels),
+      period_s_(1.0 / scene.rate_hz),
+      stated_speed_(stated_speeds(scene)),
+      in_bin_(in_bin) {}
 
 std::vector<double> UrgencyBins::distances_ahead(const Scene& scene) {
   const double period_s = 1.0 / scene.rate_hz;
@@ -73,7 +75,7 @@ void UrgencyBins::evaluate_urgent(const Evaluator& evaluator) noexcept {
 std::size_t UrgencyBins::bin_of(std::uint32_t pair, const TickView& view) const noexcept {
   const PairEntry& entry = view.pairs.entries[pair];
   const std::uint32_t a = entry.object_a, b = entry.object_b;
-  const std::vector<TrackedObject>& objects = view.objects;
+  const std::span<const TrackedObject> objects = view.objects;
   const double lower = entry.least_lower - objects[a].may_have_moved - objects[b].may_have_moved;
   const double above = lower - std::max(levels_.largest_threshold(pair), 0.0);
   if (!(above > 0.0)) return 0;

@@ -19,8 +19,9 @@ class UrgencyBins {
   static constexpr std::size_t kBins = 4;
   static constexpr double kTicks = 8.0;  // 2^(kBins - 1)
 
-  // `levels` must outlive it.
-  UrgencyBins(const Scene& scene, const ZoneLevels& levels);
+  // `levels` must outlive it. `in_bin` has capacity for all pairs; between two calls its content
+  // may change.
+  UrgencyBins(const Scene& scene, const ZoneLevels& levels, std::vector<std::uint32_t>& in_bin);
 
   // By object, m: how far it moves within the ticks of all bins at its stated speed. A pair must be
   // active well before it is in a bin.
@@ -38,8 +39,8 @@ class UrgencyBins {
 
   const ZoneLevels& levels_;
   const double period_s_;
-  std::vector<double> stated_speed_;   // by object, of any point, m/s; 0: fixed, or not stated
-  std::vector<std::uint32_t> in_bin_;  // pairs of the bin that is being evaluated
+  std::vector<double> stated_speed_;    // by object, of any point, m/s; 0: fixed, or not stated
+  std::vector<std::uint32_t>& in_bin_;  // pairs of the bin that is being evaluated
 };
 
 }  // namespace clearance

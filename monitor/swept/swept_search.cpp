@@ -46,12 +46,12 @@ void place_between(const InterpolatedMotion& motion, double s, PosedPart& part) 
 SweptSearch::SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept
     : part_pair_(part_pair),
       clouds_(is_of_cloud(part_pair, view) ? view.clouds : nullptr),
-      a_(view.parts[view.pairs.part_a[part_pair]]),
-      b_(view.parts[view.pairs.part_b[part_pair]]),
+      a_(view.parts[view.pairs.part_a(part_pair)]),
+      b_(view.parts[view.pairs.part_b(part_pair)]),
       motion_a_(view.objects[a_.object].interpolated()),
       motion_b_(view.objects[b_.object].interpolated()),
       directed_(a_.keeps_direction && b_.keeps_direction),
-      tracking_(view.pairs.tracking[part_pair]) {
+      tracking_(view.pairs.evaluations[part_pair].tracking) {
   place_between(motion_a_, 0.0, a_);
   place_between(motion_b_, 0.0, b_);
   const RelativeMotion of_a =

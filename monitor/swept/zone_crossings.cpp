@@ -21,8 +21,8 @@ SweptBounds search_part_pairs(std::uint32_t pair, double level, double displacem
     displacement = rounded_up(displacement + displacement_since(pair, view));
   }
   SweptBounds all{.lower = kInfinity};
-  for (std::uint32_t part_pair = table.entries[pair].first_part_pair;
-       part_pair < table.entries[pair].end_part_pair; ++part_pair) {
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < table.end_part_pair(pair);
+       ++part_pair) {
     SweptBounds bounds{.lower = rounded_down(table.lower[part_pair] - displacement)};
     const bool matters = bounds.lower < level && !(all.upper < level);
     if (matters && budget.left() >= SweptSearch::kLeastQueries) {

@@ -212,6 +212,29 @@ TEST(RobotsInTheTick, PosesOfLinksAreTakenUntilJointsAreHeard) {
   EXPECT_EQ(monitor.rejected(3)[static_cast<std::size_t>(Reject::kOtherSource)], 1u);
 }
 
+// A sample that repeats the pose of an object at rest is taken without most checks.
+TEST(RobotsInTheTick, PosesOfALinkAtRestAreRefusedFromTheTickOfItsFirstJointsOn) {
+  const Scene cell = test::scara_cell();
+  Monitor monitor(cell);
+  LinkState link;
+  link.pose.position = Vec3(1.0, 0.0, 0.0);
+  std::int64_t now = kStart;
+  for (int tick = 0; tick < 5; ++tick, now += kTick) {
+    std::array pose{pose_of(3, link, now)};
+    pose[0].has_twist = true;
+    monitor.tick(pose, now);
+  }
+  const auto refused = [&] {
+    return monitor.rejected(3)[static_cast<std::size_t>(Reject::kOtherSource)];
+  };
+  ASSERT_EQ(refused(), 0u);
+  std::array pose{pose_of(3, link, now)};
+  pose[0].has_twist = true;
+  monitor.tick(pose, joints(0.0, 0.0, 0.1, now), now);
+  EXPECT_EQ(refused(), 1u);
+  EXPECT_NEAR(test::report_between(cell, monitor, "upper", "wall").distance, 5.0 - 0.9, 1e-12);
+}
+
 TEST(RobotsInTheTick, ARobotMovesWithWhatItStandsOn) {
   const Scene cell = test::scara_cell(", base: {on: cart}");
   Monitor monitor(cell);

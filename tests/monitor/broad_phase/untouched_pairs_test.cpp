@@ -33,7 +33,7 @@ TEST(BroadPhaseInvariant, FailsForACulledPairThatIsNearerThanTheHorizon) {
   std::vector<TrackedObject> objects(2);
   for (TrackedObject& object : objects) object.input.has_value = true;
   const ZoneLevels levels(scene);
-  BroadPhase broad_phase(scene, parts, levels, {0.0, 0.0}, {}, 100);
+  BroadPhase broad_phase(scene, parts, table, levels, {0.0, 0.0}, {}, 100);
   const std::vector<std::uint32_t> changed{0, 1};
   broad_phase.begin(OpenTick(objects, parts, 1, table), changed);
   broad_phase.clear_activated();

@@ -27,7 +27,7 @@ class RefreshQueueTest : public testing::Test {
     queue.bring_back(by_object, TickView{objects, parts, 0, table});
   }
   void refresh(std::uint32_t pair, std::uint64_t cycle) {
-    table.refreshed_cycle[pair] = cycle;
+    table.entries[pair].refreshed_cycle = cycle;
     queue.move_to_back(pair);
   }
   void set_aside(std::uint32_t pair, std::uint32_t object) { queue.set_aside(pair, object, table); }
@@ -35,7 +35,7 @@ class RefreshQueueTest : public testing::Test {
   // tick.
   std::vector<std::uint32_t> order() {
     std::vector<std::uint32_t> pairs;
-    for (std::uint64_t cycle = 100; table.refreshed_cycle[queue.stalest()] < 100; ++cycle) {
+    for (std::uint64_t cycle = 100; table.entries[queue.stalest()].refreshed_cycle < 100; ++cycle) {
       pairs.push_back(queue.stalest());
       refresh(queue.stalest(), cycle);
     }
@@ -111,7 +111,7 @@ TEST(RefreshQueue, RemembersTheAgeOfPairsThatComeBackLater) {
   const std::span<const std::uint32_t> of_ball = by_object.pairs_of(0);
   ASSERT_EQ(of_ball.size(), kPairs);
   for (std::uint32_t i = 0; i < kPairs; ++i) {
-    table.refreshed_cycle[of_ball[i]] = kPairs - i;  // the last one is the oldest
+    table.entries[of_ball[i]].refreshed_cycle = kPairs - i;  // the last one is the oldest
     queue.move_to_back(of_ball[i]);
   }
   for (const std::uint32_t pair : of_ball) queue.set_aside(pair, 0, table);
