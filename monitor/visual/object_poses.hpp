@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -38,6 +39,11 @@ class ObjectPoses {
   // Moves the objects to their poses in this report.
   void use(const clearance_msg_Distances& report);
 
+  // The position of a joint variable at the latest report, rad or m; NaN before the first one.
+  [[nodiscard]] double position(std::size_t variable) const {
+    const TrackedVariable& state = inputs_->robots.variables()[variable];
+    return state.input.has_value ? state.position : std::numeric_limits<double>::quiet_NaN();
+  }
   // World from object; null before the first pose.
   [[nodiscard]] const Pose* pose(std::size_t object) const {
     const TrackedObject& state = inputs_->objects[object];

@@ -13,6 +13,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/files/build_info.hpp"
 #include "tools/bench/cells.hpp"
+#include "tools/bench/peers/fcl_motions.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/rows.hpp"
 #include "tools/bench/suite/suite.hpp"
@@ -25,6 +26,7 @@ constexpr const char* kHelp =
 
 Usage: clearance-bench [OPTIONS]
        clearance-bench --suite [...]  all rivals on one set of cases with exact answers; --suite --help has its options
+       clearance-bench --ask [...]    whole motions, certified, beside FCL; --ask --help has its options
   --queries       the rows that tools/bench/report shows in report.md
   --curved        the rows of curved bodies and of every pair of kinds, with their peers
   --tick          the rows tick/
@@ -124,6 +126,10 @@ int main(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "--suite") {
     return clearance::bench::run_suite(std::vector<std::string>(argv + 2, argv + argc));
   }
+#ifdef CLEARANCE_BENCH_FCL
+  if (argc > 1 && std::string_view(argv[1]) == "--ask")
+    return clearance::bench::run_ask(std::vector<std::string>(argv + 2, argv + argc));
+#endif
   std::vector<std::filesystem::path> cells, meshes;
   std::vector<std::string> options;
   for (int i = 1; i < argc; ++i) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "monitor/visual/cell_markers.hpp"
+#include "tools/view/json_number.hpp"
 
 namespace clearance::view {
 namespace {
@@ -14,9 +15,6 @@ Bytes shared(std::span<const std::byte> bytes) {
   return std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
 }
 
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
-}
 nlohmann::json point(const Vec3& at) {
   return {{"x", number(at.x())}, {"y", number(at.y())}, {"z", number(at.z())}};
 }

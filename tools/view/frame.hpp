@@ -39,6 +39,8 @@ class Frame {
   // The latest catalogue; its revision is 0 before the first one.
   [[nodiscard]] const clearance_msg_Catalogue& catalogue() const noexcept { return *catalogue_; }
 
+  [[nodiscard]] const ObjectPoses& poses() const noexcept { return poses_; }
+
   // Sends the messages that came since the last call.
   void publish(Server& server);
 

@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "monitor/commands/question_message.hpp"
 #include "monitor/loop/ports.hpp"
 #include "tools/view/sensors_json.hpp"
 
@@ -26,6 +27,9 @@ constexpr std::int64_t kLingerNs = 5'000'000'000;
 constexpr std::array kOnDemand = {TopicKind::kDistances, TopicKind::kSeparation,
                                   TopicKind::kGradients};
 
+// Messages of a client; only the last one is shown.
+constexpr std::int32_t kQuestionsKept = 8;
+
 // A reader of reports needs no more than the newest of each 1/60 s. A reader of poses needs as many
 // as a source sends meanwhile, since the report names the batch that it used.
 std::int32_t depth_of(TopicKind kind) {
@@ -40,6 +44,9 @@ LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
       participant_(dds),
       seen_(cell_->scene.sensors.empty() ? nullptr : std::make_unique<SeenFrames>(*cell_, false)),
       frame_(make_frame()),
+      questions_(participant_.reader(TopicKind::kQuestions, topics_.questions, kQuestionsKept)),
+      answers_(participant_.reader(TopicKind::kAnswers, topics_.answers, kQuestionsKept)),
+      asked_(std::make_unique<AskedPath>(cell_->scene)),
       intake_(*cell_, {.use_sensor = [this](const RawSensorMessage& message) { hear(message); }},
               [this](PoseBatch& batch) {
                 frame_->take_from_ros(std::move(batch));
@@ -90,6 +97,7 @@ void LiveSource::advance(Server& server) {
   for (const Topic& topic : kRecordedTopics) take(topic.kind);
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
+  take_questions(server);
   note_the_catalogue();
   follow_the_catalogue(server);
   note_what_is_attached(server);
@@ -149,6 +157,24 @@ void LiveSource::take_from_ros(const Now& now) {
   static_cast<void>(intake_.take_news());
 }
 
+void LiveSource::take_questions(Server& server) {
+  take_cdr(questions_, taken_);
+  for (const CdrSample& sample : std::exchange(taken_, {})) {
+    Sample<clearance_msg_Question> message;
+    if (!decoder_.decode(sample.bytes(), message, CdrBytes::kOfReader)) continue;
+    const auto read = from_wire(*message);
+    const auto* question = std::get_if<MotionQuestion>(&read);
+    if (question != nullptr && asked_->take(*question, frame_->poses()))
+      server.parameters_changed();
+  }
+  take_cdr(answers_, taken_);
+  for (const CdrSample& sample : std::exchange(taken_, {})) {
+    Sample<clearance_msg_Answer> message;
+    if (!decoder_.decode(sample.bytes(), message, CdrBytes::kOfReader)) continue;
+    if (asked_->take(from_wire(*message), frame_->poses())) server.parameters_changed();
+  }
+}
+
 // Reading may take long where meshes are new, so that a thread does it.
 void LiveSource::follow_the_catalogue(Server& server) {
   const clearance_msg_Catalogue& catalogue = frame_->catalogue();
@@ -176,12 +202,14 @@ void LiveSource::follow_the_catalogue(Server& server) {
   }
   server.forget(kSeen);
   frame_ = make_frame();
+  asked_ = std::make_unique<AskedPath>(cell_->scene);
   intake_.change(*cell_);
   server.parameters_changed();
 }
 
 nlohmann::json LiveSource::parameters() const {
-  return {{{"name", "scene.attached"}, {"value", attached_json(attached_)}}};
+  return {{{"name", "scene.attached"}, {"value", attached_json(attached_)}},
+          {{"name", "asked.motion"}, {"value", asked_->json()}}};
 }
 
 // The frame of a changed cell does not get the catalogue again.

@@ -12,6 +12,7 @@
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/visual/seen_frames.hpp"
+#include "tools/view/asked_path.hpp"
 #include "tools/view/cell_changes.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
@@ -45,6 +46,7 @@ class LiveSource final : public Source {
   void leave(Server& server);
   void take(TopicKind kind);
   void take_from_ros(const Now& now);
+  void take_questions(Server& server);
   void follow_the_catalogue(Server& server);
   void note_the_catalogue();
   void note_what_is_attached(Server& server);
@@ -58,6 +60,9 @@ class LiveSource final : public Source {
   std::unique_ptr<SeenFrames> seen_;  // null: the cell has no sensors
   bool is_seen_wanted_ = false;       // by a viewer
   std::unique_ptr<Frame> frame_;
+  dds_entity_t questions_, answers_;  // readers
+  std::unique_ptr<AskedPath> asked_;  // of the frame's scene
+  CdrDecoder decoder_;
   Intake intake_;                    // of ROS 2's topics
   std::future<CellResult> reading_;  // not valid: no cell is being read
   std::uint64_t read_ = 0;           // the revision that was read last, or is being read

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "monitor/report.hpp"
+#include "tools/view/json_number.hpp"
 
 namespace clearance::view {
 namespace {
@@ -31,10 +32,6 @@ Piece piece_of(const clearance_msg_Distances& report, std::int64_t log_ns) {
         1e-3 * static_cast<double>(report.publish_ns - report.clock_offset_ns - report.now_ns);
   }
   return piece;
-}
-
-nlohmann::json number(double value) {
-  return std::isfinite(value) ? nlohmann::json(value) : nlohmann::json();
 }
 
 // The stretches that fit into memory with so many columns.

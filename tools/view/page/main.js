@@ -1,5 +1,6 @@
 // clearance-view's page: joins the server's messages, the view and the controls.
 import { addressOf, asked } from "./address.js";
+import { verdictOf } from "./asked_path.js";
 import { CellState } from "./cell_state.js";
 import { Connection } from "./connection.js";
 import { isKnown } from "./format.js";
@@ -69,6 +70,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
     const revision = values["scene.revision"];
     if (revision !== undefined && revision !== scene.revision) return changeCell();
     contacts.attached = values["scene.attached"] ?? contacts.attached;
+    if (values["asked.motion"] !== undefined) showAsked(values["asked.motion"]);
     track?.parameters(values);
   },
   message: (topic, value, ns) => {
@@ -89,6 +91,26 @@ function isOfAnotherCell({ scene_revision, pairs }) {
   if (!pairs || scene_revision === undefined || Number(scene_revision) === Number(scene.revision)) return false;
   return !timeline || pairs.some(({ pair }) => !state.pairs[pair]);
 }
+
+// ---- The motion that a client asked about
+
+let askedAs; // client and request of the motion that is shown, or was closed
+function showAsked(motion) {
+  const as = motion && `${motion.client} ${motion.request}`;
+  if (as === askedAs) return;
+  askedAs = as;
+  drawAsked(motion);
+}
+function drawAsked(motion) {
+  view.askedPath.show(motion);
+  ++view.changes;
+  element("asked").hidden = !motion;
+  if (!motion) return;
+  const { level, text } = verdictOf(motion);
+  element("asked").textContent = text;
+  element("asked").className = `notice ${level}`;
+}
+element("asked").onclick = () => drawAsked(null);
 
 // ---- Selection
 

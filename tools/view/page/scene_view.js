@@ -1,6 +1,7 @@
 // The three-dimensional view: camera, lights, bodies, zones, lines, clicks.
 import * as THREE from "three";
 import { OrbitControls } from "orbit";
+import { AskedPath } from "./asked_path.js";
 import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
@@ -54,8 +55,9 @@ export class SceneView {
     this.lines = new PairLines(document.getElementById("labels"), on.pairChosen, on.pairLookedAt);
     this.visuals = new Visuals(this.bodies);
     this.seen = new Seen(scene, this.bodies);
+    this.askedPath = new AskedPath(this.bodies);
     this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
-    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.seen, this.lines);
+    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.seen, this.askedPath, this.lines);
     this.clicks(canvas);
     this.changes = 0;
     new ResizeObserver(() => this.resizeSoon()).observe(this.element);
@@ -79,6 +81,7 @@ export class SceneView {
 
   retheme() {
     ++this.changes;
+    this.askedPath.retheme();
     this.bodies.recolour();
     this.shells.recolour();
   }
