@@ -342,6 +342,10 @@ PresentJoint Monitor::present_joint(std::uint32_t variable) const noexcept {
           joint.velocity_known ? joint.velocity : std::numeric_limits<double>::quiet_NaN()};
 }
 
+std::span<const ContactReport> Monitor::contacts() const noexcept {
+  return state_->contacts.reports();
+}
+
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.stamp_ns;
 }

@@ -158,6 +158,9 @@ class Monitor {
   [[nodiscard]] PresentPose present_link(std::uint32_t robot, std::uint32_t link) const noexcept;
   [[nodiscard]] PresentJoint present_joint(std::uint32_t variable) const noexcept;
 
+  // The allowed contacts at the last tick, as Report::contacts.
+  [[nodiscard]] std::span<const ContactReport> contacts() const noexcept;
+
   // Stamp of the pose in use; 0 if the object is fixed or no pose is in use.
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;
 

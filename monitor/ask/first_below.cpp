@@ -8,15 +8,13 @@
 namespace clearance {
 namespace {
 
-// The first instant below a margin is known to this, relative to the duration.
-constexpr double kInstant = 1e-7;
-
-bool proves(double lower, double margin) noexcept {
-  return margin > 0.0 ? lower >= margin : lower > 0.0;
+// A limit below 0 is that of a contact which is meant.
+bool proves(double lower, double limit) noexcept {
+  return limit != 0.0 ? lower >= limit : lower > 0.0;
 }
 
-bool is_below(double upper, double margin) noexcept {
-  return margin > 0.0 ? upper < margin : upper <= 0.0;
+bool is_below(double upper, double limit) noexcept {
+  return limit != 0.0 ? upper < limit : upper <= 0.0;
 }
 
 }  // namespace
@@ -24,6 +22,7 @@ bool is_below(double upper, double margin) noexcept {
 // A larger margin is violated no later than a smaller one.
 void MotionSearch::decide_margins() {
   proven_until_ = posture_.trajectory().begin();
+  if (!question_->margins.empty()) end_contacts();
   const std::vector<double>& margins = question_->margins;
   double last = kInfinity;
   for (std::size_t n = 0; n < margins.size(); ++n) {
@@ -35,8 +34,8 @@ void MotionSearch::decide_margins() {
     last = next;
     MarginAnswer decided{.margin = next};
     decide(decided);
-    if (decided.verdict == Verdict::kFree && question_->only_margins)
-      answer_->lower = std::max(answer_->lower, next);
+    const bool keeps_distance = decided.verdict == Verdict::kFree && contacts_.empty();
+    if (keeps_distance && question_->only_margins) answer_->lower = std::max(answer_->lower, next);
     for (std::size_t i = 0; i < margins.size(); ++i) {
       if (margins[i] == next) answer_->margins[i] = decided;
     }
@@ -50,7 +49,8 @@ void MotionSearch::decide(MarginAnswer& answer) noexcept {
   }
   const Stretch whole = posture_.trajectory().whole();
   answer.above_until = whole.from;
-  if (question_->only_verdicts && is_below(answer_->upper, answer.margin)) {
+  const bool any_pair_counts = question_->only_verdicts && contacts_.empty();
+  if (any_pair_counts && is_below(answer_->upper, answer.margin)) {
     answer.verdict = Verdict::kBelow;
     answer.below_at = answer_->time;
     answer.first = answer_->first;
@@ -79,7 +79,6 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
   if (list.is_empty()) return;
   if (found_ && (stretch.from >= answer.below_at || question_->only_verdicts)) return;
   if (stretch.to <= proven_until_ && stretch.from < stretch.to) return;
-  const double margin = answer.margin, enough = std::max(margin, 1e-300);
   const auto note_uncertain = [&](std::uint32_t pair) {
     if (!uncertain_ || stretch.from < answer.above_until) {
       answer.above_until = stretch.from;
@@ -104,9 +103,13 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
       const Pair at = pair_at(pair, motion);
-      const double apart = gap(at, pair, rounded_up(enough + at.loss));
+      const double limit = limit_until(stretch.to, pair, answer.margin);
+      const double enough = limit != 0.0 ? limit : 1e-300;
+      double apart = gap(at, pair, rounded_up(enough + at.loss));
+      // Boxes and spheres say nothing of a depth.
+      if (limit < 0.0 && apart < 0.0) apart = -kInfinity;
       double lower = rounded_down(apart - at.loss);
-      if (proves(lower, margin)) continue;
+      if (proves(lower, limit)) continue;
       const double size = at.tip.sphere_in_world.radius;
       const bool may_be_below = apart - at.approach.nearing.until_middle < enough;
       const bool may_decide = apart + size >= enough + kShareAlongNormal * at.loss;
@@ -115,13 +118,15 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         const PairAtMiddle found = query(at, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough));
-        const double now = found.upper + motion.rounding - at.approach.nearing.until_middle;
-        const double upper = std::max(0.0, rounded_up(now));
-        note_upper(found, upper, middle, pair);
-        if (proves(lower, margin)) continue;
-        below = is_below(upper, margin);
-        near = !below && lower >= margin - question_->margin_tolerance &&
-               upper <= margin + question_->margin_tolerance;
+        // What moves without a limit may be at any depth.
+        const double nearing = at.approach.nearing.until_middle;
+        const double upper =
+            nearing < kInfinity ? rounded_up(found.upper + motion.rounding - nearing) : -kInfinity;
+        note_upper(found, std::max(0.0, upper), middle, pair);
+        if (proves(lower, limit)) continue;
+        below = is_below(upper, limit_until(middle, pair, answer.margin));
+        near = !below && lower >= limit - question_->margin_tolerance &&
+               upper <= limit + question_->margin_tolerance;
       }
       if (below && (!found_ || middle < answer.below_at)) {
         found_ = true;

@@ -35,6 +35,10 @@ MotionSearch::MotionSearch(const Scene& scene)
   order_.resize(pairs_.pairs().size());
   gaps_.resize(pairs_.pairs().size());
   open_.resize(kMostLevels * pairs_.bundles().size());
+  std::size_t contacts = 0;
+  for (const AllowedContact& contact : scene.contacts) contacts += contact.pairs.size();
+  contacts_.reserve(contacts);
+  if (contacts > 0) contact_of_.reserve(pairs_.pairs().size());
   collect_separated();
 }
 
@@ -70,6 +74,7 @@ std::optional<std::string> MotionSearch::ask(const Question& question, Answer& a
   if (question.time_scaling) {
     if (auto text = fault_of_scaling()) return text;
   }
+  if (auto text = take_contacts(question)) return text;
   begin(question, answer);
   if (!question.only_margins) find_least();
   decide_margins();

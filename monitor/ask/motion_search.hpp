@@ -30,6 +30,9 @@ class MotionSearch {
   // A query is worth its time only if it may decide the pair. The motion that counts, along the
   // normal, is about this share of all.
   static constexpr double kShareAlongNormal = 0.25;
+  // The first instant below a margin, and the end of a contact, are known to this, relative to the
+  // duration.
+  static constexpr double kInstant = 1e-7;
   // The first `count` pairs of a bundle, in the order of order_, are not decided.
   struct Open {
     std::uint32_t bundle = 0, count = 0;
@@ -55,6 +58,12 @@ class MotionSearch {
       const double wide_b = b.divides ? b.point.upper - b.point.lower : -1.0;
       return wide_a != wide_b ? wide_a < wide_b : a.point.from > b.point.from;
     }
+  };
+  // A contact that is meant between two objects, first < second.
+  struct Meant {
+    std::uint32_t first = 0, second = 0;
+    double least_allowed = 0.0;                      // m: minus the depth
+    double until = kInfinity, distance = kInfinity;  // s, m: its ends
   };
   // A part pair at the present instant.
   struct Pair {
@@ -82,6 +91,19 @@ class MotionSearch {
   void find_least();
   void seed_upper(const OpenList& all) noexcept;
   void minimise(const Stretch& stretch, const OpenList& list, double known) noexcept;
+
+  // Contacts that are meant (meant_contacts.cpp).
+  [[nodiscard]] std::optional<std::string> take_contacts(const Question& question);
+  void take_contacts_of_scene();
+  void end_contacts() noexcept;
+  [[nodiscard]] bool stays_near(const Stretch& stretch, std::uint32_t contact) noexcept;
+  // The distance that a pair has to keep up to an instant, m: a margin, or less for a contact.
+  [[nodiscard]] double limit_until(double instant, std::uint32_t pair,
+                                   double margin) const noexcept {
+    if (contacts_.empty() || contact_of_[pair] == kNotMeant) return margin;
+    const Meant& meant = contacts_[contact_of_[pair]];
+    return instant <= meant.until ? meant.least_allowed : margin;
+  }
 
   // The margins (first_below.cpp).
   void decide_margins();
@@ -112,6 +134,10 @@ class MotionSearch {
   ObjectApproach approach_;  // of the last pair_at(), if it is not the object's own
   std::vector<SeparatedPair> separated_;
   std::vector<std::uint32_t> scaled_;  // indices into separated_
+
+  static constexpr std::uint32_t kNotMeant = ~0u;
+  std::vector<Meant> contacts_;            // in ascending order of objects
+  std::vector<std::uint32_t> contact_of_;  // by pair of parts, unless there is no contact
 
   const Question* question_ = nullptr;
   Answer* answer_ = nullptr;

@@ -198,6 +198,10 @@ Scene Attacher::finish() {
     zone.pairs.resize(left);
     if (zone.separation) zone.separation->human_is_first.resize(left);
   }
+  for (AllowedContact& contact : scene_.contacts) {
+    for (std::uint32_t& pair : contact.pairs) pair = now[pair];
+    std::erase(contact.pairs, kGone);
+  }
   return std::move(scene_);
 }
 

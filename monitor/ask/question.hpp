@@ -78,6 +78,14 @@ struct Payload {
   std::vector<std::string> touch;  // names of objects that it may touch
 };
 
+// A contact of two objects that is meant, down to a depth and until an end: as Scene::contacts.
+struct MeantContact {
+  std::string first, second;    // names of objects
+  double depth = 0.0;           // m, above 0
+  double until = kInfinity;     // s: not after this instant
+  double distance = kInfinity;  // m: not after they may have been this far apart
+};
+
 // The motion of what the question states no motion for: objects that are neither fixed nor part of
 // a robot, what robots stand on, and the joints of Question::joints.
 enum class OthersMove : std::uint8_t {
@@ -106,6 +114,10 @@ struct Question {
   std::vector<SeenFrame> seen;       // one for each sensor of the cell
   std::vector<ObjectMotion> moving;  // instead of a pose
   std::vector<Payload> payloads;     // beside what the scene has attached
+  // Contacts in force at the first waypoint. While one is, its pair keeps all margins if it is no
+  // deeper than allowed. Not stated: those of the scene that no time or cycle ends, as if they came
+  // into force then. `lower`, `upper` and the profile count these pairs like others.
+  std::optional<std::vector<MeantContact>> contacts;
   OthersMove others = OthersMove::kWithinMaxSpeed;
   std::vector<double> margins = {0.0};  // m, from 0 on
   double tolerance = 1e-3;              // m: `upper` - `lower` at the end

@@ -176,6 +176,7 @@ std::string unsent_part(const Question& question) {
   constexpr std::string_view kInputs = ": a daemon takes these from its inputs; leave them out";
   if (!question.joints.empty()) return "joints_of_others" + std::string(kInputs);
   if (!question.seen.empty()) return "seen" + std::string(kInputs);
+  if (question.contacts) return "contacts" + std::string(kInputs);
   for (const Payload& payload : question.payloads) {
     if (payload.shape) return "payloads: a body cannot be sent; expected objects of the cell";
   }

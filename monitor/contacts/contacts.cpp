@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "monitor/contacts/contact_end.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -13,12 +14,6 @@ ContactEnded ended_by(bool was_far, std::int64_t last_ns, std::uint64_t last_cyc
   if (was_far) return ContactEnded::kByDistance;
   if (now_ns > last_ns) return ContactEnded::kByTime;
   return cycle > last_cycle ? ContactEnded::kByCycle : ContactEnded::kNot;
-}
-
-std::int64_t earlier_end(const ContactEnd& end, std::int64_t since_ns) noexcept {
-  const bool is_endless =
-      end.duration_ns > ContactEnd::kNoTime - std::max<std::int64_t>(since_ns, 0);
-  return is_endless ? end.time_ns : std::min(end.time_ns, since_ns + end.duration_ns);
 }
 
 // Every pose is known, on time and connected to the one before.
@@ -83,7 +78,7 @@ void Contacts::begin_tick(std::uint64_t cycle, std::int64_t now_ns) noexcept {
     if (report.since_cycle == 0) {
       report.since_cycle = cycle;
       report.since_ns = now_ns;
-      entry.last_ns = earlier_end(entry.end, now_ns);
+      entry.last_ns = last_time_of(entry.end, now_ns);
     }
     if (report.ended != ContactEnded::kNot) continue;
     report.ended = ended_by(entry.was_far, entry.last_ns, entry.end.last_cycle, now_ns, cycle);

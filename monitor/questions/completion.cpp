@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "monitor/ask/robots_of_question.hpp"
+#include "monitor/contacts/contact_end.hpp"
 
 namespace clearance {
 namespace {
@@ -68,6 +69,31 @@ bool places(const Question& question, const std::string& object) {
          std::ranges::find(question.payloads, object, &Payload::name) != question.payloads.end();
 }
 
+// The contacts that the tick allowed, with their ends on the clock of the waypoints.
+std::vector<MeantContact> contacts_in_force(const Scene& scene, const InputState& state,
+                                            double now) {
+  std::vector<MeantContact> contacts;
+  for (const ContactReport& report : state.contacts) {
+    if (report.since_cycle == 0 || report.ended != ContactEnded::kNot) continue;
+    const AllowedContact& contact = scene.contacts[report.contact];
+    const ObjectPair& pair = scene.pairs[report.pair];
+    double left = kInfinity;  // s
+    const std::int64_t last_ns = last_time_of(contact.end, report.since_ns);
+    if (last_ns != ContactEnd::kNoTime) left = 1e-9 * static_cast<double>(last_ns - state.now_ns);
+    if (contact.end.last_cycle != ContactEnd::kNoCycle) {
+      const double cycles =
+          static_cast<double>(contact.end.last_cycle) - static_cast<double>(state.cycle);
+      left = std::min(left, cycles / scene.rate_hz);
+    }
+    contacts.push_back({.first = scene.objects[pair.first].name,
+                        .second = scene.objects[pair.second].name,
+                        .depth = contact.depth,
+                        .until = now + left,
+                        .distance = contact.end.distance});
+  }
+  return contacts;
+}
+
 }  // namespace
 
 std::optional<std::string> complete(const Scene& scene, const InputState& state,
@@ -123,6 +149,8 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
     question.poses.push_back(
         {.object = name, .world_from_object = present.pose.world_from_body, .age = present.age});
   }
+  const double now = question.motion.times.empty() ? 0.0 : question.motion.times.front();
+  question.contacts = contacts_in_force(scene, state, now);
   return missing.text();
 }
 

@@ -34,6 +34,7 @@ class StateQuestion final : public LoopQuestion {
       object.pose = loop.monitor.present_pose(object.object);
       object.age = seconds(loop.monitor.input_age(object.object).age_ns);
     }
+    std::ranges::copy(loop.monitor.contacts(), state_.contacts.begin());
   }
 
   const Scene& scene_;
@@ -51,7 +52,8 @@ InputState room_for_inputs(const Scene& scene) {
     }
   }
   InputState state{.joints = std::vector<PresentJoint>(scene.variables.size()),
-                   .joint_ages = std::vector<double>(scene.variables.size(), 0.0)};
+                   .joint_ages = std::vector<double>(scene.variables.size(), 0.0),
+                   .contacts = std::vector<ContactReport>(contact_pairs(scene).size())};
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].fixed && !is_link[i]) state.objects.push_back({.object = i});
   }

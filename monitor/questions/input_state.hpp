@@ -27,6 +27,7 @@ struct InputState {
   std::vector<PresentJoint> joints = {};    // in the order of Scene::variables
   std::vector<double> joint_ages = {};      // s: they had these positions this long before the tick
   std::vector<PresentObject> objects = {};  // those that are neither fixed nor links of robots
+  std::vector<ContactReport> contacts = {};  // for each of contact_pairs()
 };
 
 // The state before any tick: room for what the loop knows of this scene.

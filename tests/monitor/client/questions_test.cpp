@@ -20,6 +20,7 @@ TEST(Questions, ThatNoMessageHoldsAreRefusedAndNotSentWithoutAPart) {
   const std::function<void(Question&)> unsent[] = {
       [](Question& q) { q.joints.push_back({.name = "elbow", .position = 1.0}); },
       [](Question& q) { q.seen.emplace_back().sensor = "eye"; },
+      [](Question& q) { q.contacts.emplace(); },
       [](Question& q) {
         q.payloads.emplace_back().shape = std::get<ConvexBody>(box(Vec3(0.1, 0.1, 0.1)));
       },

@@ -106,6 +106,50 @@ TEST(QuestionCompletion, MeasuresTheStartOfAnAngleThatWrapsByTheShorterWay) {
   EXPECT_NEAR(start.deviation, 0.0, 1e-12);
 }
 
+// The ends are on three clocks; the question has that of its waypoints.
+TEST(QuestionCompletion, TakesTheContactsThatTheTickAllowsWithTheirEnds) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const Scene scene = scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrate_hz: 500\n"
+      "robots: [{name: arm, urdf: scara.urdf}]\n" +
+          test::kScaraRest +
+          "contacts:\n"
+          "  - {name: a, between: [finger, wall], by: test, reason: meant, depth: 0.01,\n"
+          "     until: {duration_ms: 2000, distance: 0.03}}\n"
+          "  - {name: b, between: [upper, wall], by: test, reason: meant, depth: 0.02,\n"
+          "     until: {cycle: 150}}\n"
+          "  - {name: c, between: [lower, wall], by: test, reason: meant, depth: 0.03}\n"
+          "  - {name: d, between: [cart, wall], by: test, reason: meant, depth: 0.04}\n",
+      folder / "cell.yaml");
+  InputState state = room_for_inputs(scene);
+  state.cycle = 100;
+  state.now_ns = 10'000'000'000;
+  ASSERT_EQ(state.contacts.size(), 4u);
+  for (std::size_t i = 0; i < 4; ++i) {
+    const ContactPair of = contact_pairs(scene)[i];
+    state.contacts[i] = {
+        .contact = of.contact, .pair = of.pair, .since_cycle = 50, .since_ns = 9'500'000'000};
+    if (of.contact == 2) state.contacts[i].ended = ContactEnded::kByDistance;
+    if (of.contact == 3) state.contacts[i].since_cycle = 0;  // no tick has had it yet
+  }
+  Question question;
+  question.motion = {.joints = {"shoulder", "elbow", "push"},
+                     .times = {3.0},
+                     .positions = {0.0, 0.0, 0.0},
+                     .velocities = {}};
+  question.poses = {{.object = "cart", .world_from_object = {}}};
+  EXPECT_EQ(complete(scene, state, {}, question), std::nullopt);
+  ASSERT_EQ(question.contacts.value().size(), 2u);
+  for (const MeantContact& contact : *question.contacts) {
+    EXPECT_EQ(contact.first, "wall");
+    const bool is_first = contact.second == "finger";
+    EXPECT_EQ(contact.depth, is_first ? 0.01 : 0.02);
+    EXPECT_NEAR(contact.until, is_first ? 4.5 : 3.1, 1e-12);
+    EXPECT_EQ(contact.distance, is_first ? 0.03 : kInfinity);
+  }
+}
+
 // A robot that the question does not name may move: its joints are stated with their ages.
 TEST(QuestionCompletion, TakesTheJointsOfOtherRobotsAsThoseThatOthersMove) {
   const Cell cell = test::two_scara_arms();
