@@ -42,6 +42,8 @@ const char* name(ZoneCause cause) noexcept {
       return "contact_too_deep";
     case ZoneCause::kContactTooLate:
       return "contact_too_late";
+    case ZoneCause::kNoShare:
+      return "no_share";
   }
   return "";
 }

@@ -84,6 +84,7 @@ enum class ZoneCause : std::uint8_t {
   kContradicted = 5,    // like kLate, but an object's poses contradict each other or the cell
   kContactTooDeep = 6,  // the pair has an allowed contact, and may be deeper than that allows
   kContactTooLate = 7,  // the pair may touch after its allowed contact has ended
+  kNoShare = 8,         // a share of the cell with pairs of the zone is not heard; no tick gives it
 };
 [[nodiscard]] const char* name(ZoneCause cause) noexcept;
 

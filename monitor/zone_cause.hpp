@@ -47,6 +47,8 @@ enum class PlacedBy { kPoses, kJointStates, kEither };
       return "a contact is deeper than allowed";
     case ZoneCause::kContactTooLate:
       return "a contact is later than allowed";
+    case ZoneCause::kNoShare:
+      return "a share of the cell is not heard";
   }
   return "";
 }

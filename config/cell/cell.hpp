@@ -11,6 +11,7 @@
 
 #include "config/cell/command_settings.hpp"
 #include "config/cell/ros_settings.hpp"
+#include "config/cell/shares.hpp"
 #include "config/cell/simulation.hpp"
 #include "config/cell/topics.hpp"
 #include "config/scene/scene.hpp"
@@ -24,11 +25,14 @@ struct Cell {
   std::string partition = {};    // DDS; empty: the default partition
   std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
   Topics topics = {};
+  // Reports carry the pairs that changed, and all pairs once in this time, s; 0: always all.
+  double full_every_s = 0.0;
   RosSettings ros = {};
   CommandSettings commands = {};
   QuestionSettings questions = {};
   AddedCapacity capacity = {};
   Simulation simulation = {};  // may be empty
+  Shares shares = {};          // likewise
 
   std::string yaml = {};  // the text of the cell, for recordings
   // The file of that text, and the files that it names, directly or not: meshes, URDF, SRDF,

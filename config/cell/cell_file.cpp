@@ -21,11 +21,14 @@
 #include "config/cell/ros_reader.hpp"
 #include "config/cell/sensor_reader.hpp"
 #include "config/cell/shape_reader.hpp"
+#include "config/cell/share_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
 #include "config/cell/zone_reader.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/scene/revision.hpp"
 #include "config/text/file_bytes.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"
@@ -44,6 +47,8 @@ constexpr std::size_t kMaxDdsName = 255;  // bytes
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
 // The range is from one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
+// A reader that joins late waits this long.
+constexpr Range kFullReports{.least = 1e-3, .most = 60.0};  // s
 
 // The sections of a cell, one function each.
 class CellReader {
@@ -66,8 +71,9 @@ class CellReader {
   void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
+  void select_share(const YamlNode& root, Cell& cell);
   // This comes last: it needs every pair with its parts.
-  void refuse_small_budget(const YamlNode& root, const Scene& scene);
+  void refuse_small_budget(const YamlNode& root, const Cell& cell);
 
   const std::filesystem::path& file_;
   const CellOptions& options_;
@@ -76,7 +82,8 @@ class CellReader {
   Diagnostics& diagnostics_;
   Revision& revision_;
   const YamlNode* budget_ = nullptr;  // its place in the cell
-  const YamlNode* ros_ = nullptr;     // likewise
+  const YamlNode* ros_ = nullptr;     // likewise, here and below
+  const YamlNode* shares_ = nullptr;
 };
 
 // Both units are required: a default would silently be wrong for many cells.
@@ -178,6 +185,22 @@ void CellReader::read_dds(const YamlNode& node, Cell& cell) {
             .value_or("lo");
   }
   if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, cell.topics);
+  const YamlNode* publish = map.optional("publish");
+  const YamlNode* full = map.optional("full_every_s");
+  const auto what = publish == nullptr ? std::optional<std::string>("all")
+                                       : read_text(*publish, "'all' or 'changes'", diagnostics_);
+  if (what && *what != "all" && *what != "changes")
+    diagnostics_.add(*publish, fmt::format("found {}; expected 'all' or 'changes': the pairs that "
+                                           "a report carries",
+                                           describe(*publish)));
+  if (what == "changes") cell.full_every_s = 1.0;
+  if (full != nullptr) {
+    const auto every =
+        read_number(*full, kFullReports, "seconds between full reports", diagnostics_);
+    if (what == "all")
+      diagnostics_.add(*full, "found full_every_s without 'publish: changes'; expected both");
+    if (what == "changes") cell.full_every_s = every.value_or(1.0);
+  }
   map.refuse_unknown_keys();
 }
 
@@ -199,6 +222,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* zones_node = map.optional("zones");
   const YamlNode* contacts_node = map.optional("contacts");
   const YamlNode* simulation_node = map.optional("simulation");
+  shares_ = map.optional("shares");
 
   ObjectList list;
   ShapeReader shapes(quantities, meshes_, defaults.mesh_limits, known_);
@@ -238,7 +262,12 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     cell.scene.contacts =
         read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
   }
-  if (pairs.complete && list.names_known) group_index.refuse_unused_groups();
+  const bool is_complete = pairs.complete && list.names_known;
+  if (shares_ != nullptr && is_complete) {
+    cell.shares.all = read_shares(*shares_, list.objects, pairs.pairs, cell.scene.zones,
+                                  group_index, diagnostics_);
+  }
+  if (is_complete) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
     cell.simulation = read_simulation(*simulation_node, list, quantities);
   cell.scene.pairs = std::move(pairs.pairs);
@@ -272,7 +301,23 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
-  if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell.scene);
+  if (diagnostics_.empty() && !options_.share.empty()) select_share(root, cell);
+  if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell);
+}
+
+void CellReader::select_share(const YamlNode& root, Cell& cell) {
+  const std::vector<Share>& all = cell.shares.all;
+  const auto found = std::ranges::find(all, options_.share, &Share::name);
+  if (found != all.end())
+    return clearance::select_share(cell, static_cast<std::uint32_t>(found - all.begin()));
+  std::vector<std::string> names;
+  for (const Share& share : all) names.push_back(share.name);
+  diagnostics_.add(
+      shares_ == nullptr ? root : *shares_,
+      names.empty()
+          ? fmt::format("found no 'shares', and was asked for the share '{}'", options_.share)
+          : fmt::format("found no share '{}'; expected {}{}", options_.share, one_of(names),
+                        did_you_mean(options_.share, names)));
 }
 
 // The root frame cannot be guessed: while transforms are missing, any frame may be the root.
@@ -293,8 +338,20 @@ void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell&
 }
 
 // A budget that cannot refresh every pair in time would silently break the promise of refresh_s.
-void CellReader::refuse_small_budget(const YamlNode& root, const Scene& scene) {
-  const RefreshShare share = refresh_share(scene);
+// A cell in shares is meant for daemons that each have one.
+void CellReader::refuse_small_budget(const YamlNode& root, const Cell& cell) {
+  const Scene& scene = cell.scene;
+  RefreshShare share;
+  if (cell.shares.all.empty() || cell.shares.is_one()) {
+    share = refresh_share(scene);
+  } else {
+    for (const Share& each : cell.shares.all) {
+      std::vector<ObjectPair> pairs;
+      for (const std::uint32_t pair : each.pairs) pairs.push_back(scene.pairs[pair]);
+      const RefreshShare of = refresh_share(scene, pairs);
+      if (of.queries() > share.queries()) share = of;
+    }
+  }
   if (share.queries() <= scene.budget) return;
   diagnostics_.add(
       budget_ != nullptr ? *budget_ : root,

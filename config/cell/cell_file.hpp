@@ -32,6 +32,8 @@ struct CellOptions {
   // A directory with the files of another machine, including the cell, at the paths that they have
   // there. If empty, the files are this machine's own.
   std::filesystem::path root = {};
+  // The share of the cell to which it is reduced (select_share). If empty, it stays whole.
+  std::string share = {};
 };
 
 // Reads a cell again and again, as changes edit its YAML tree. Bodies, meshes and their parts that

@@ -18,11 +18,13 @@ std::uint64_t RefreshCost::queries(std::uint64_t ticks) const noexcept {
   return std::min(part_pairs, part_pairs / ticks + most);
 }
 
-RefreshShare refresh_share(const Scene& scene) {
+RefreshShare refresh_share(const Scene& scene) { return refresh_share(scene, scene.pairs); }
+
+RefreshShare refresh_share(const Scene& scene, std::span<const ObjectPair> pairs) {
   const auto ticks =
       static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
   RefreshCost published, others, all;
-  for (const ObjectPair& pair : scene.pairs) {
+  for (const ObjectPair& pair : pairs) {
     const std::uint64_t part_pairs =
         scene.objects[pair.first].parts.size() * scene.objects[pair.second].parts.size();
     (is_published(pair, scene) ? published : others).add(part_pairs);

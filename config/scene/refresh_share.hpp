@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "config/scene/scene.hpp"
 
@@ -36,6 +37,8 @@ struct RefreshShare {
 // kept separate. The exception is a budget that is enough only for one common round-robin. The
 // caller compares queries() with Scene::budget.
 [[nodiscard]] RefreshShare refresh_share(const Scene& scene);
+// The same for some pairs of the scene's objects.
+[[nodiscard]] RefreshShare refresh_share(const Scene& scene, std::span<const ObjectPair> pairs);
 
 // Tells whether a pair is published: it is then evaluated in every tick as long as the budget
 // lasts.

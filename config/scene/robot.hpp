@@ -65,6 +65,7 @@ struct JointVariable {
   std::uint32_t first_of_joint = 0;
   std::string source;       // the only source that is used; empty: the first that sends some
   std::uint32_t robot = 0;  // index into Scene::robots
+  bool is_read = true;      // as Object::is_read
 
   // A position that needs a higher speed than this, per second, contradicts the one before.
   [[nodiscard]] double plausible_speed() const noexcept {

@@ -51,6 +51,7 @@ struct Object {
   double pose_error = 0.0;
   bool may_jump = false;  // its poses may jump, as a simulation's do
   bool absent = false;    // known not to be there when the monitor starts (Monitor::set_absent)
+  bool is_read = true;    // false: no pair of this share of a cell depends on it (select_share)
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none

@@ -38,13 +38,15 @@ void CellArguments::add_to(CLI::App& app, bool from_ros) {
 }
 
 CellResult CellArguments::read() const {
-  return cell.empty() ? read_single_robot(robot, told_on_stderr())
-                      : read_cell(cell, told_on_stderr());
+  CellOptions options = told_on_stderr();
+  options.share = share;
+  return cell.empty() ? read_single_robot(robot, options) : read_cell(cell, options);
 }
 
 CellOptions CellArguments::reading() const {
   CellOptions options = told_on_stderr();
   options.is_of_urdf = cell.empty();
+  options.share = share;
   return options;
 }
 

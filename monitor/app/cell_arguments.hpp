@@ -16,6 +16,7 @@ struct CellArguments {
   // The ROS 2 topic with the robot's URDF, "/robot_description"; empty: not asked for. The program
   // that gets the URDF from there sets robot.urdf.
   std::string description_topic;
+  std::string share;  // CellOptions::share
 
   // Adds CELL, and --urdf with --srdf, --package and --age-limit-ms; one of CELL and --urdf is
   // required. With `from_ros`, --robot-description is a third choice.

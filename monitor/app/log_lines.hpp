@@ -261,6 +261,24 @@ inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
 inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWarn,
                                                     "the partner's state is not taken over: {}"};
 
+// ---- Shares, as clearance-merge joins them
+
+inline constexpr LogLine<Text, Count, Text> kMergeStarted{"merge-started", kInfo,
+                                                          "cell '{}' in {} shares on {}"};
+inline constexpr LogLine<Text, Count> kShareHeard{"share-heard", kInfo,
+                                                  "the share '{}' (revision {:016x}) is heard"};
+inline constexpr LogLine<Text> kShareMissing{
+    "share-missing", kError,
+    "the share '{}' is missing: its pairs are unknown, and its zones active"};
+inline constexpr LogLine<Text, double> kShareLate{
+    "share-late", kWarn,
+    "the last report of the share '{}' is {:.0f} ms old: its pairs are unknown, and its zones "
+    "active"};
+inline constexpr LogLine<Text, Count, Count> kShareOtherRevision{
+    "share-other-revision", kError,
+    "the share '{}' has revision {:016x} of the cell and most others have {:016x}: its pairs are "
+    "unknown, and its zones active"};
+
 // A template, because a tuple of so many types is slow to compile: only those who use it pay for
 // it.
 template <class = void>
@@ -354,6 +372,11 @@ inline constexpr std::tuple kAll{kStarted,
                                  kPartnerMissing,
                                  kPartnerClock,
                                  kPartnerOtherBuild,
-                                 kPartnerStateRefused};
+                                 kPartnerStateRefused,
+                                 kMergeStarted,
+                                 kShareHeard,
+                                 kShareMissing,
+                                 kShareLate,
+                                 kShareOtherRevision};
 
 }  // namespace clearance::lines

@@ -22,6 +22,7 @@
 
 #include "config/cell/topics.hpp"
 #include "monitor/client/partner_merge.hpp"
+#include "monitor/client/whole_reports.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"
@@ -74,6 +75,10 @@ class Stream {
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
   // Tells whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
+  // Takes the last message, in exchange for a sample that may be used again.
+  void exchange(Sample<Message>& with) noexcept { std::swap(*message_, *with); }
+  // For a wait on several streams.
+  [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
   // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
   [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
@@ -97,9 +102,12 @@ class Stream {
   Sample<Message> message_, scratch_;
   ReportChecker checker_;
   ReportCheck check_;
-  PartnerMerge merge_;  // of reports
+  PartnerMerge merge_;  // of reports, here and below
+  WholeReports whole_;
 };
 
+// Of a daemon that publishes the pairs that changed, reports have all pairs here. A pair that
+// cannot be known, since a report before was missed, is unknown until the next full report.
 using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell
 using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`

@@ -23,11 +23,13 @@ bool PartnerMerge::is_next(const clearance_msg_Distances& report) const noexcept
 }
 
 bool PartnerMerge::take(const clearance_msg_Distances& report) {
-  note_names(report);
-  if (checksum_of(report) != report.checksum) {
+  const bool is_delivered_whole =
+      report.delivery_checksum == 0 || delivery_checksum_of(report) == report.delivery_checksum;
+  if (checksum_of(report) != report.checksum || !is_delivered_whole) {
     note(PartnerState::kCorrupt, report);
     return false;
   }
+  note_names(report);
   if (!is_next(report)) {
     compare(report);
     return false;

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "monitor/client/client.hpp"
+#include "monitor/client/sequence_view.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/participant/participant.hpp"
 
@@ -42,11 +43,6 @@ TopicKind kind_of() {
 
 dds_entity_t make_reader(Connection& connection, TopicKind kind, std::int32_t depth = 0) {
   return connection.participant().reader(kind, connection.topics().*topic(kind).name, depth);
-}
-
-template <class Sequence>
-auto list(const Sequence& sequence) {
-  return std::span(sequence._buffer, sequence._length);
 }
 
 template <class Sequence>
@@ -110,8 +106,11 @@ bool Stream<Message>::take() {
   while (!is_next) {
     if (!take_one(reader_, *scratch_)) return false;
     is_next = true;
-    if constexpr (std::is_same_v<Message, clearance_msg_Distances>)
-      is_next = *scratch_->partner == '\0' || merge_.take(*scratch_);
+    if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
+      const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
+      is_next = is_of_one || merge_.take(*scratch_);
+      if (is_next) static_cast<void>(whole_.complete(*scratch_));
+    }
   }
   std::swap(*message_, *scratch_);
   check_ = checker_.check(*message_, now_ns());

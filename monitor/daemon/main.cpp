@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "config/scene/refresh_share.hpp"
 #include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
@@ -41,6 +42,7 @@ Example:
   clearanced config/cells/two_arms.yaml --record run.mcap --record-around 10 --record-keep-mb 2000
   clearanced config/cells/two_arms.yaml --commands planner --keep-scene scene.yaml
   clearanced config/cells/two_arms.yaml --partner left
+  clearanced hall.yaml --share north
   clearanced --urdf panda.urdf --srdf panda.srdf --interface default --ros2 markers)";
 
 // The command line, with its defaults.
@@ -109,6 +111,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   add_force(app, arguments.record_over);
   arguments.recording.add_to(app, "--record-");
   arguments.recording.add_events_to(app, "--record-");
+  auto* share = app.add_option(
+      "--share", arguments.cell.share,
+      "Watch only this share of a cell that names its shares; clearance-merge joins them");
   app.add_flag("--gradients", arguments.gradients,
                "Publish how the distances of published pairs change with joint positions, as "
                "'gradients: true' in the cell does");
@@ -117,7 +122,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
                  "repeatable")
       ->allow_extra_args(false)
-      ->check(is_ros_output);
+      ->check(is_ros_output)
+      ->excludes(share);
   app.add_option("--commands", arguments.commands,
                  "Take commands of this client too, which change the scene (idl/COMMANDS.md); "
                  "repeatable")
@@ -127,7 +133,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Answer questions of this client too, about motions before they are made "
                  "(idl/QUESTIONS.md); repeatable")
       ->allow_extra_args(false)
-      ->check(is_client);
+      ->check(is_client)
+      ->excludes(share);
   app.add_option(
          "--ros2-trajectories", arguments.daemon.trajectories.topics,
          "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic, and answer on "
@@ -202,6 +209,18 @@ std::optional<Cell> read_cell(const Arguments& arguments) {
   auto cell = cell_or_errors(arguments.cell.read());
   if (cell) finish(arguments, *cell);
   return cell;
+}
+
+// The budget of a cell in shares is only known to cover each of them.
+bool fits_into_one(const Cell& cell) {
+  if (cell.shares.all.empty() || cell.shares.is_one()) return true;
+  const std::uint64_t needed = refresh_share(cell.scene).queries();
+  if (needed <= cell.scene.budget) return true;
+  print(stderr,
+        "clearanced: the budget of {} queries a tick covers each share of the cell, and one daemon "
+        "for the whole cell needs {}. Start a daemon for each share: --share '{}'\n",
+        cell.scene.budget, needed, cell.shares.all.front().name);
+  return false;
 }
 
 // Begins with the scene that was kept, if there is one of this cell file. Returns an exit code if
@@ -299,7 +318,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     if (!take_robot_description(arguments, signal)) return kOk;
   }
   auto cell = read_cell(arguments);
-  if (!cell) return kBadCell;
+  if (!cell || !fits_into_one(*cell)) return kBadCell;
   if (arguments.check) {
     print_summary(cell->scene);
     return kOk;

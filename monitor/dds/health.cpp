@@ -104,7 +104,8 @@ void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance
   reserve_sequence(out.inputs,
                    std::min<std::size_t>(scene.objects.size(), clearance_msg_kMaxObjects));
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
-    if (scene.objects[object].fixed || out.inputs._length == out.inputs._maximum) continue;
+    const Object& of = scene.objects[object];
+    if (of.fixed || !of.is_read || out.inputs._length == out.inputs._maximum) continue;
     clearance_msg_InputAge& entry = out.inputs._buffer[out.inputs._length++];
     entry.object = object;
     entry.name = dds_string_dup(scene.objects[object].name.c_str());
@@ -123,6 +124,7 @@ void fill_joints(const Scene& scene, const LoopStatistics& statistics, clearance
                    std::min<std::size_t>(scene.variables.size(), clearance_msg_kMaxJoints));
   for (std::uint32_t variable = 0; variable < scene.variables.size(); ++variable) {
     if (out.joints._length == out.joints._maximum) return;
+    if (!scene.variables[variable].is_read) continue;
     clearance_msg_JointAge& entry = out.joints._buffer[out.joints._length++];
     entry.variable = variable;
     entry.name = dds_string_dup(scene.variables[variable].name.c_str());

@@ -12,7 +12,6 @@
 #include "monitor/app/log_lines.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/wire/convert.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
@@ -56,7 +55,10 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
       gradients(cell.scene),
-      written_zones(cell.scene.zones.size()) {
+      written_zones(cell.scene.zones.size()),
+      pairs(cell.shares.own_pairs()),
+      changed(static_cast<std::uint64_t>(
+          std::llround(std::ceil(cell.full_every_s * cell.scene.rate_hz)))) {
   distances->daemon = separation->daemon = daemon;
 }
 
@@ -138,7 +140,7 @@ std::uint32_t ReportWriter::distance_readers() const {
 }
 
 Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
-  auto catalogue = make_catalogue(now_->cell, now_->since);
+  auto catalogue = make_catalogue(now_->cell, now_->since, CataloguePairs::kOfWholeCell);
   catalogue->daemon = identity_.id;
   return catalogue;
 }
@@ -226,6 +228,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
+    now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
   if (writes_zones_) write_zones(queued.report);
@@ -239,7 +242,6 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
   if (partner_ != nullptr) {
     identity_.partner.copy(message.partner, sizeof message.partner - 1);
     message.lineage = tag.lineage;
-    message.checksum = checksum_of(queued.report);
     message.state_checksum = checksum_of_rest(queued.report, tag.state_checksum);
     const bool may_write_zones = tag.standing != PartnerStanding::kApart;
     write_zones_again_ = write_zones_again_ || (may_write_zones && !writes_zones_);
@@ -247,6 +249,12 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
     note_lead(partner_->leads());
   }
   to_wire(queued.report, queued.sources(), dds_time(), message);
+  now_->pairs.in(message);
+  now_->changed.reduce(message);
+  if (partner_ != nullptr) {
+    message.checksum = checksum_of(message);
+    message.delivery_checksum = delivery_checksum_of(message);
+  }
   const bool published = write(TopicKind::kDistances, distances_, &message, "distances");
   if (partner_ != nullptr) partner_->published(message);
   return published;
@@ -263,6 +271,7 @@ void ReportWriter::note_lead(bool leads) {
 
 void ReportWriter::write_separation(const Report& report) {
   to_wire(report, dds_time(), *now_->separation);
+  now_->pairs.in(*now_->separation);
   write(TopicKind::kSeparation, separation_, &*now_->separation, "separation");
 }
 
@@ -277,6 +286,7 @@ void ReportWriter::write_zones(const Report& report) {
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);
+    now_->pairs.in(state);
     write(TopicKind::kZones, zones_, &state, "zone state");
     if (!is_written && (now_->written_zones.any(zone) || active)) {
       zone_log_.note(zone, report.zones[zone], report.cycle);

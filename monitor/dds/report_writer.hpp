@@ -22,6 +22,8 @@
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/metrics/metrics_text.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/wire/changed_pairs.hpp"
+#include "monitor/wire/convert.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
@@ -88,6 +90,8 @@ class ReportWriter {
     Sample<clearance_msg_Separation> separation;
     GradientMessage gradients;
     WrittenZones written_zones;
+    MapPairs pairs;  // to the ids of the whole cell
+    ChangedPairs changed;
 
     OfCell(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
            std::uint64_t daemon);

@@ -29,7 +29,7 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
       .most_joints = options_.most_joints};
   const auto from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
   // A row for every kind of input.
-  add<OwnPoses>(topics_->poses, options_.most_samples, *this);
+  add<OwnPoses>(cell.scene, topics_->poses, options_.most_samples, *this);
   add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
   transforms_ = add<RosTransforms>(cell, from, *this, options_.use_sensor);

@@ -19,11 +19,24 @@ std::optional<Decoder::Wanted> OwnPoses::wants(const TopicName& topic) {
   return wanted(topic, topic_, TopicKind::kPoses);
 }
 
+// Empty for the scenes of most cells, which read all.
+void OwnPoses::note_unread(const Scene& scene) {
+  revision_ = scene.revision;
+  is_unread_.clear();
+  if (std::ranges::all_of(scene.objects, &Object::is_read)) return;
+  for (const Object& object : scene.objects) is_unread_.push_back(!object.is_read);
+}
+
 bool OwnPoses::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
   if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   const std::size_t sent = message_->poses._length;
   message_->poses._length = static_cast<std::uint32_t>(std::min(sent, most_));
   from_wire(*message_, batch_);
+  if (!is_unread_.empty() && (batch_.scene_revision == 0 || batch_.scene_revision == revision_)) {
+    std::erase_if(batch_.samples, [this](const PoseSample& sample) {
+      return sample.object < is_unread_.size() && is_unread_[sample.object];
+    });
+  }
   out_.give(batch_, message.writer, sent - message_->poses._length);
   return true;
 }

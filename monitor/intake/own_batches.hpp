@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "config/scene/scene.hpp"
 #include "monitor/intake/decoder.hpp"
@@ -19,14 +20,24 @@ class OwnPoses final : public Decoder {
   // `topic` is the name that the cell gives it. Only the first `most` poses of a batch are used.
   OwnPoses(std::string topic, std::size_t most, Outlet& out)
       : topic_(std::move(topic)), most_(most), out_(out) {}
+  // Leaves out the poses of objects that the scene does not read.
+  OwnPoses(const Scene& scene, std::string topic, std::size_t most, Outlet& out)
+      : OwnPoses(std::move(topic), most, out) {
+    note_unread(scene);
+  }
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
+  void change(const Cell& cell) override { note_unread(cell.scene); }
 
  private:
+  void note_unread(const Scene& scene);
+
   std::string topic_;
   std::size_t most_;
   Outlet& out_;
+  std::vector<bool> is_unread_;  // by object of the scene `revision_`; empty: all are read
+  std::uint64_t revision_ = 0;
   CdrDecoder decoder_;
   Sample<clearance_msg_PoseBatch> message_;
   PoseBatch batch_;

@@ -32,6 +32,10 @@ bool RosJointStates::is_wanted(const TopicName& topic) const {
   if (!options_.topics.empty()) {
     return std::ranges::find(options_.topics, topic.name) != options_.topics.end();
   }
+  const auto is_unread = [this, &topic](const JointVariable& variable) {
+    return scene_->robots[variable.robot].joint_states == topic.name && !variable.is_read;
+  };
+  if (std::ranges::any_of(scene_->variables, is_unread)) return false;
   return topic.name.ends_with(kLast) || topic.name == kLast.substr(1) ||
          std::ranges::find(scene_->robots, topic.name, &Robot::joint_states) !=
              scene_->robots.end();

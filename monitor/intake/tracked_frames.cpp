@@ -14,7 +14,7 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
   }
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    if (object.fixed || links.contains(i)) continue;
+    if (object.fixed || !object.is_read || links.contains(i)) continue;
     const bool by_its_name = object.frame.empty() && by_name == ByName::kYes;
     const std::string& frame = by_its_name ? object.name : object.frame;
     if (frame.empty()) continue;
@@ -23,6 +23,7 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
   for (std::uint32_t i = 0; i < scene.robots.size(); ++i) {
     const Robot& robot = scene.robots[i];
     if (!robot.base.frame.empty()) {
+      if (!scene.variables[robot.joints.front().variable].is_read) continue;
       followers_.push_back({robot.base.frame, robot.name, i, true,
                             scene.variables[robot.joints.front().variable].age_limit_ns});
     } else if (robot.base.kind == RobotBase::Kind::kWorld) {

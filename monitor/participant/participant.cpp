@@ -277,6 +277,7 @@ Participant::Participant(dds_entity_t participant, const std::string& partition)
 }
 
 void Participant::make_publisher_and_subscriber(const std::string& partition) {
+  partition_ = partition;
   const Qos qos = partition_qos(partition);
   publisher_ =
       check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");
@@ -312,6 +313,14 @@ dds_entity_t Participant::reader(TopicKind kind, const std::string& name, std::i
   const dds_entity_t of = make_topic(*row.type, name);
   if (filter != nullptr) check_dds(dds_set_topic_filter_extended(of, filter), "filtering a topic");
   return check_dds(dds_create_reader(subscriber_, of, qos.get(), listener),
+                   fmt::format("making a reader of {}", name));
+}
+
+dds_entity_t Participant::reader_of_several(TopicKind kind, const std::string& name) {
+  constexpr std::int32_t kSamples = 32;
+  const Topic& row = topic(kind);
+  const Qos qos = endpoint_qos(row.delivery, kSamples);
+  return check_dds(dds_create_reader(subscriber_, make_topic(*row.type, name), qos.get(), nullptr),
                    fmt::format("making a reader of {}", name));
 }
 

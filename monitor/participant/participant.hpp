@@ -77,6 +77,9 @@ class Participant {
                       const dds_listener_t* listener = nullptr,
                       const dds_topic_filter* filter = nullptr);
   dds_entity_t writer(TopicKind kind, const std::string& name, const WriterOptions& options = {});
+  // Reads a latched topic that several programs write, so that no writer's sample takes the place
+  // of another's.
+  dds_entity_t reader_of_several(TopicKind kind, const std::string& name);
   // Reads a distances topic without the writers of this participant: best-effort, only the newest
   // sample.
   dds_entity_t reader_of_others(const std::string& name, const dds_listener_t* listener);
@@ -89,6 +92,7 @@ class Participant {
                           const dds_listener_t* listener = nullptr);
   dds_entity_t ros_writer(const RosType& type, const std::string& name);
   [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
+  [[nodiscard]] const std::string& partition() const noexcept { return partition_; }
   // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
   // Says how to start another program on the same network: the CYCLONEDDS_URI to copy.
@@ -99,7 +103,7 @@ class Participant {
   dds_entity_t make_topic(const dds_topic_descriptor_t& type, const std::string& name);
 
   bool is_own_ = true;
-  std::string where_, how_to_reach_;
+  std::string partition_, where_, how_to_reach_;
   std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
   dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;
 };

@@ -91,6 +91,7 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
                                         const RecordingOutline& outline, CellOptions options) {
   const char* const yaml = outline.catalogue ? (*outline.catalogue)->cell_yaml : nullptr;
   if (yaml == nullptr || *yaml == '\0') return std::nullopt;
+  options.share = (*outline.catalogue)->share;
   return read_recorded(recording, yaml, outline.cell_file, std::nullopt, std::move(options));
 }
 
@@ -109,6 +110,7 @@ std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::
                                      .from = number_of(found.values, "in_force_from")},
                            .yaml = text("cell"),
                            .cell_file = text("cell_file"),
+                           .share = text("share"),
                            .recording = file,
                            .place = found.offset};
       std::erase_if(all, [&scene](const DescribedScene& before) {
@@ -135,6 +137,7 @@ std::vector<FormerScene> former_scenes(const std::filesystem::path& file) {
 }
 
 CellResult cell_of(const DescribedScene& described, CellOptions options) {
+  options.share = described.share;
   return read_recorded(described.recording, described.yaml, described.cell_file, described.place,
                        std::move(options));
 }

@@ -32,6 +32,7 @@ struct DescribedScene {
   std::uint64_t revision = 0;
   SceneInForce since = {};
   std::string yaml, cell_file;
+  std::string share;                // CellOptions::share
   std::filesystem::path recording;  // the file with the description
   std::uint64_t place = 0;          // its byte in that file
 };

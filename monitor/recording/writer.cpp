@@ -102,6 +102,7 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
   if (options_.ticks_every > 1) about_["ticks_every"] = std::to_string(options_.ticks_every);
   if (options_.roll_bytes > 0 || options_.roll_ns > 0) about_["part"] = std::to_string(part_);
   if (catalogue.daemon != 0) about_["daemon"] = std::to_string(catalogue.daemon);
+  if (*catalogue.share != '\0') about_["share"] = catalogue.share;
   if (catalogue.in_force_from != 0) {
     about_["began_after"] = std::to_string(catalogue.began_after);
     about_["in_force_from"] = std::to_string(catalogue.in_force_from);

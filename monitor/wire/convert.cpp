@@ -66,6 +66,28 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
   out.leave_above = zone.leave_above;
 }
 
+// The index of a share fits into an octet.
+void fill_shares(const Shares& shares, bool with_pairs, clearance_msg_Catalogue& out) {
+  copy_text(shares.name(), out.share);
+  reserve_sequence(out.shares, shares.all.size());
+  std::size_t pairs = 0;
+  for (const Share& share : shares.all) {
+    clearance_msg_CatalogueShare& to = out.shares._buffer[out.shares._length++];
+    copy_text(share.name, to.name);
+    to.pairs_total = static_cast<std::uint32_t>(share.pairs.size());
+    reserve_sequence(to.zones, share.zones.size());
+    for (const std::uint32_t zone : share.zones) to.zones._buffer[to.zones._length++] = zone;
+    pairs += share.pairs.size();
+  }
+  if (!with_pairs) return;
+  reserve_sequence(out.pair_shares, pairs);
+  out.pair_shares._length = static_cast<std::uint32_t>(pairs);
+  for (std::size_t share = 0; share < shares.all.size(); ++share) {
+    for (const std::uint32_t pair : shares.all[share].pairs)
+      out.pair_shares._buffer[pair] = static_cast<std::uint8_t>(share);
+  }
+}
+
 }  // namespace
 
 // Sequences get the capacity that any report of this scene needs.
@@ -120,7 +142,8 @@ void to_wire(const Report& report, std::int64_t publish_ns,
 }
 
 // Ids are places in the lists, as in the scene.
-Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInForce& since) {
+Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInForce& since,
+                                               CataloguePairs of) {
   const Scene& scene = cell.scene;
   Sample<clearance_msg_Catalogue> sample;
   sample->scene = duplicate(scene.name);
@@ -133,9 +156,13 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     fill(scene.objects[i], i, sample->objects._buffer[sample->objects._length++]);
   }
-  reserve_sequence(sample->pairs, scene.pairs.size());
-  for (std::uint32_t i = 0; i < scene.pairs.size(); ++i) {
-    const ObjectPair& pair = scene.pairs[i];
+  const bool of_whole = of == CataloguePairs::kOfWholeCell || !cell.shares.is_one();
+  const std::vector<ObjectPair>& pairs =
+      of_whole && cell.shares.is_one() ? cell.shares.pairs : scene.pairs;
+  fill_shares(cell.shares, of_whole && !cell.shares.all.empty(), *sample);
+  reserve_sequence(sample->pairs, pairs.size());
+  for (std::uint32_t i = 0; i < pairs.size(); ++i) {
+    const ObjectPair& pair = pairs[i];
     sample->pairs._buffer[sample->pairs._length++] = {i, pair.first, pair.second, pair.publish};
   }
   reserve_sequence(sample->zones, scene.zones.size());

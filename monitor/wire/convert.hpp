@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
@@ -12,6 +13,7 @@
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"
+#include "monitor/wire/message_fields.hpp"
 #include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
@@ -37,9 +39,40 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
 // Names, pairs, zones, joints and the text of the cell, and since when it is in force. It
-// allocates.
-[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell,
-                                                             const SceneInForce& since = {});
+// allocates. Pairs are those of the scene, as in recordings, or those of the whole cell.
+enum class CataloguePairs : std::uint8_t { kOfScene, kOfWholeCell };
+[[nodiscard]] Sample<clearance_msg_Catalogue> make_catalogue(
+    const Cell& cell, const SceneInForce& since = {},
+    CataloguePairs pairs = CataloguePairs::kOfScene);
+
+// Leads from the ids of one list to those of another in every field that means a pair. An id
+// without a counterpart stays. For a message of a share's scene: Shares::own_pairs().
+class MapPairs {
+ public:
+  // Without ids, nothing changes.
+  explicit MapPairs(std::span<const std::uint32_t> ids) noexcept : ids_(ids) {}
+
+  template <class Message>
+  void in(Message& message) const noexcept {
+    if (!ids_.empty()) for_each_field(*this, message);
+  }
+
+  template <class Value>
+  void operator()(const Field& field, Value& value) const noexcept {
+    if constexpr (MessageSequence<Value>) {
+      if constexpr (HasFields<std::remove_reference_t<decltype(*value._buffer)>>) {
+        for (std::uint32_t i = 0; i < value._length; ++i) for_each_field(*this, value._buffer[i]);
+      }
+    } else if constexpr (HasFields<Value>) {
+      for_each_field(*this, value);
+    } else if constexpr (std::is_same_v<Value, std::uint32_t>) {
+      if (field.meaning == Meaning::kPair && value < ids_.size()) value = ids_[value];
+    }
+  }
+
+ private:
+  std::span<const std::uint32_t> ids_;
+};
 
 // Converts a batch for the tick. The poses keep their order and are not checked, because the tick
 // refuses unknown ids, non-finite numbers and the rest. Allocates only while the capacity of `out`

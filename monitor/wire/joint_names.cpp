@@ -31,7 +31,8 @@ void JointNames::add(const Scene& scene, std::uint32_t robot, Prefix prefix) {
   };
   for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
     const JointVariable& variable = scene.variables[i];
-    if (variable.robot == robot) variables_.emplace(name_of(variable.name), i);
+    if (variable.robot == robot)
+      variables_.emplace(name_of(variable.name), variable.is_read ? i : kUnused);
   }
   for (const RobotJoint& joint : scene.robots[robot].joints) {
     if (joint.name.size() > scene.robots[robot].prefix.size())

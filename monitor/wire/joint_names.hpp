@@ -14,7 +14,7 @@ namespace clearance {
 class JointNames {
  public:
   static constexpr std::uint32_t kUnknown = std::numeric_limits<std::uint32_t>::max();
-  static constexpr std::uint32_t kUnused = kUnknown - 1;  // of a fixed joint, or one that mimics
+  static constexpr std::uint32_t kUnused = kUnknown - 1;  // fixed, mimics another, or is not read
 
   // On our own topic: the names of all robots, with their prefixes.
   explicit JointNames(const Scene& scene);

@@ -33,6 +33,8 @@ struct DistancesMessageFields {
     visit(Field{"lineage", Meaning::kDelivery}, message.lineage...);
     visit(Field{"checksum", Meaning::kDelivery}, message.checksum...);
     visit(Field{"state_checksum", Meaning::kDelivery}, message.state_checksum...);
+    visit(Field{"changes_since", Meaning::kDelivery}, message.changes_since...);
+    visit(Field{"delivery_checksum", Meaning::kDelivery}, message.delivery_checksum...);
     DistanceFields::for_each(visit, message...);
   }
 };

@@ -59,6 +59,29 @@ template <class Report>
   return sum.value();
 }
 
+// Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs.
+[[nodiscard]] inline std::uint64_t delivery_checksum_of(
+    const clearance_msg_Distances& message) noexcept {
+  Checksum sum;
+  const auto add_text = [&sum](const char* text) {
+    for (; *text != '\0'; ++text) sum.add(static_cast<std::uint64_t>(*text));
+    sum.add(std::uint64_t{0});
+  };
+  sum.add(message.daemon);
+  sum.add(message.publish_ns);
+  add_text(message.partner);
+  sum.add(message.lineage);
+  sum.add(message.checksum);
+  sum.add(message.state_checksum);
+  sum.add(message.changes_since);
+  sum.add(message.sources._length);
+  for (std::uint32_t i = 0; i < message.sources._length; ++i) {
+    add_text(message.sources._buffer[i].source);
+    sum.add(message.sources._buffer[i].sequence_number);
+  }
+  return sum.value();
+}
+
 // Of the rest of a report, and of the state of its tick. The counts of refused samples are left
 // out: a daemon that has joined counts from another start.
 [[nodiscard]] inline std::uint64_t checksum_of_rest(const Report& report,

@@ -1,10 +1,16 @@
 // Two daemons that are partners on two machines, and a link between them that is cut.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <optional>
 #include <string>
 
+#include "monitor/client/client.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/meeting_boxes.hpp"
 
@@ -57,6 +63,88 @@ TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
     EXPECT_EQ(daemon->wait(), 0) << daemon->output();
     EXPECT_FALSE(daemon->told("partner-differs")) << daemon->output();
   }
+  one.run([&] { robot.reset(); });
+}
+
+// The campaign: CLEARANCE_CUTS=100. A client beside one of the two hears that one, whatever becomes
+// of the link: it misses no cycle, and sees the zone as the reports have it.
+TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
+  test::NetworkNamespace one(1), other(2);
+  for (const auto* machine : {&one, &other}) {
+    if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
+  }
+  test::LossyWire wire(one.frames(), other.frames());
+  const test::CellFile file(test::meeting_cell());
+  const Cell cell = file.cell();
+  DdsOptions dds = test::own_dds();
+  const auto arguments = test::with(test::with({file.path()}, test::dds_arguments(dds)),
+                                    {"--interface", "eth0", "--partner"});
+  dds.interface = "eth0";
+  std::optional<ChildProcess> left, right;
+  std::optional<test::SendingRobot> robot;
+  const char* const asked = std::getenv("CLEARANCE_CUTS");
+  const int cuts = asked == nullptr ? 2 : std::atoi(asked);
+  int done = 0, missing = 0, other_bits = 0, zones_wrong = 0, came = 0;
+  one.run([&] {
+    robot.emplace(dds, cell);
+    left.emplace(kDaemon, test::with(arguments, {"left"}));
+  });
+  ASSERT_TRUE(eventually([&] { return left->told("partner-stands", {"leading"}); }));
+  other.run([&] { right.emplace(kDaemon, test::with(arguments, {"right"})); });
+  one.run([&] {
+    client::Connection connection(dds, cell.topics);
+    client::Reports reports(connection);
+    client::Catalogue catalogue(connection);
+    client::Zones zones(connection);
+    client::Pair boxes(catalogue, "left", "right");
+    Random random(34);
+    std::uint64_t cycle = 0;
+    bool is_inside = false;
+    int agreed = 0;
+    const auto read_for = [&](double seconds, const auto& until) {
+      const std::int64_t end = dds_time() + static_cast<std::int64_t>(1e9 * seconds);
+      while (dds_time() < end) {
+        if (!reports.next(std::chrono::milliseconds(50))) continue;
+        ++came;
+        if (cycle != 0 && reports->cycle > cycle + 1) ++missing;
+        cycle = std::max(cycle, reports->cycle);
+        const auto state = reports.partner().state;
+        other_bits +=
+            state == client::PartnerState::kDifferent || state == client::PartnerState::kCorrupt;
+        agreed = state == client::PartnerState::kAgrees ? agreed + 1 : 0;
+        if (const auto* const pair = boxes.in(*reports)) {
+          if (pair->swept_lower < 0.3) is_inside = true;
+          if (pair->swept_lower > 0.35) is_inside = false;
+        }
+        if (until()) return true;
+      }
+      return false;
+    };
+    const auto agree = [&] {
+      agreed = 0;
+      return read_for(20.0, [&] { return agreed > 20; });
+    };
+    for (; done < cuts; ++done) {
+      if (!agree()) break;
+      const auto zone_is_right = [&] {
+        zones.update();
+        return zones.states().contains(0) && zones.states().at(0).active == is_inside;
+      };
+      if (!read_for(5.0, zone_is_right)) ++zones_wrong;
+      wire.lose(1.0);
+      read_for(random.uniform(0.02, 0.6), [] { return false; });
+      if (!read_for(5.0, zone_is_right)) ++zones_wrong;
+      wire.lose(0.0);
+    }
+    if (!agree()) --done;
+  });
+  std::printf("%d cuts, %d reports, %d gaps, %d with other bits, %d zones wrong\n", done, came,
+              missing, other_bits, zones_wrong);
+  EXPECT_EQ(done, cuts) << left->output() << right->output();
+  EXPECT_EQ(missing, 0);
+  EXPECT_EQ(other_bits, 0);
+  EXPECT_EQ(zones_wrong, 0);
+  EXPECT_GT(came, 0);
   one.run([&] { robot.reset(); });
 }
 

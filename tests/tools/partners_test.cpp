@@ -2,7 +2,7 @@
 // started again while a source sends poses.
 //
 // The long campaign: CLEARANCE_KILLS=1000 tools_tests --gtest_filter='Partners.Random*'
-// Another seed: CLEARANCE_KILLS_SEED=7
+// Another seed, and another rate in Hz: CLEARANCE_KILLS_SEED=7 CLEARANCE_KILLS_RATE=1000
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -29,10 +29,22 @@ using std::chrono::milliseconds;
 using test::ChildProcess;
 using test::kDaemon;
 
+std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
+  const char* const text = std::getenv(variable);
+  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
+}
+
+std::string cell_at_rate() {
+  std::string text = test::meeting_cell();
+  const std::string rate = "rate_hz: 200";
+  return text.replace(text.find(rate), rate.size(),
+                      "rate_hz: " + std::to_string(number_of("CLEARANCE_KILLS_RATE", 200)));
+}
+
 class Partners : public testing::Test {
  protected:
   DdsOptions dds = test::own_dds();
-  test::CellFile file{test::meeting_cell()};
+  test::CellFile file{cell_at_rate()};
   Cell cell = file.cell();
   test::SendingRobot robot{dds, cell};
   client::Connection connection{dds, cell.topics};
@@ -94,11 +106,6 @@ class Partners : public testing::Test {
   bool inside = false, was_inside = false;  // the zone by the reports that came
   int zone_changes = 0;
 };
-
-std::uint64_t number_of(const char* variable, std::uint64_t otherwise) {
-  const char* const text = std::getenv(variable);
-  return text == nullptr ? otherwise : std::strtoull(text, nullptr, 10);
-}
 
 // One of the two, whichever it is, is killed or stopped again and again. No cycle is missing in the
 // merged stream, and the zone is as the reports say. Gradients come from the leader alone: the

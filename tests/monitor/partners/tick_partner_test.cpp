@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -342,13 +344,18 @@ TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
-// A bit that flips in a table of one daemon is seen within ten ticks, unless an evaluation
-// overwrites it before anything has used it: all pairs are compared in that time.
-TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
+// A bit that flips in a table of one daemon is seen within ten ticks: all pairs are compared in
+// that time. A place that is overwritten before anything has read it is no trial: the test sees
+// that nothing remains of it in the next hundred ticks.
+//
+// The campaign: CLEARANCE_FLIPS=1000
+TEST_F(TickPartners, AFlippedBitThatIsReadIsFoundWithinTenTicks) {
   scene.budget = 2;
   Random random(34);
+  const char* const asked = std::getenv("CLEARANCE_FLIPS");
+  const int flips = asked == nullptr ? 200 : std::atoi(asked);
   int found = 0, overwritten = 0;
-  for (int trial = 0; trial < 300; ++trial) {
+  for (int trial = 0; found < flips && !HasFailure(); ++trial) {
     Side one(scene, 1), other(scene, 2);
     std::uint64_t number = 0;
     const auto tick = [&] {
@@ -368,8 +375,9 @@ TEST_F(TickPartners, AFlippedBitIsFoundWithinTenTicksOrWasOverwrittenUnused) {
     ++(same ? overwritten : found);
     for (int i = 0; i < 100 && same; ++i) EXPECT_TRUE(tick()) << "nothing remained of it";
   }
-  EXPECT_GT(found, 10 * overwritten);
-  RecordProperty("found", found);
+  EXPECT_GT(found, overwritten);
+  std::printf("%d flips found within ten ticks, %d overwritten before they were read\n", found,
+              overwritten);
 }
 
 }  // namespace

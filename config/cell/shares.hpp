@@ -1,0 +1,70 @@
+// The shares of a cell that is too large for one machine: each daemon watches the pairs of one.
+//
+// All ids keep the meaning that they have in the whole cell, but pairs: a scene of one share has
+// its own list of pairs, and Shares::own_pairs() leads from an index there to the one in the whole
+// cell. DDS has the latter.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+
+namespace clearance {
+
+struct Cell;
+
+// The largest number of shares, and the length of their names in bytes.
+inline constexpr std::size_t kMaxShares = 64;
+inline constexpr std::size_t kMaxShareName = 32;
+
+struct Share {
+  std::string name;                  // printable, without '/'
+  std::vector<std::uint32_t> pairs;  // ascending: indices into the pairs of the whole cell
+  std::vector<std::uint32_t> zones;  // ascending: indices of the zones with a pair of this share
+};
+
+struct Shares {
+  std::vector<Share> all;            // empty: the cell is not divided
+  std::optional<std::uint32_t> own;  // index into `all`: the scene has only the pairs of this one
+  std::vector<ObjectPair> pairs;     // with `own`: those of the whole cell
+
+  [[nodiscard]] bool is_one() const noexcept { return own.has_value(); }
+  // Index into the whole cell's pairs by index into Scene::pairs. Empty if they are the same.
+  [[nodiscard]] const std::vector<std::uint32_t>& own_pairs() const noexcept {
+    static const std::vector<std::uint32_t> kSame;
+    return own ? all[*own].pairs : kSame;
+  }
+  // The name of the share that the scene has; empty: the whole cell.
+  [[nodiscard]] std::string_view name() const noexcept {
+    return own ? std::string_view(all[*own].name) : std::string_view();
+  }
+};
+
+// Reduces a whole cell to one of its shares:
+//  - the pairs of the scene, its zones and its contacts are those of the share; a zone without a
+//    pair stays, without separation, so that ids stay the same;
+//  - objects and joints on which no pair depends are not read (Object::is_read);
+//  - all topics except inputs are the share's own (topics_of_share);
+//  - it answers no questions and writes nothing for ROS 2: both would leave out the pairs of other
+//    shares.
+void select_share(Cell& cell, std::uint32_t share);
+
+// What a daemon's work for a pair costs, in thousandths of the tracked query of two polyhedra. It
+// depends on the cell alone, so all machines divide a cell alike.
+[[nodiscard]] std::uint64_t pair_cost(const std::vector<Object>& objects,
+                                      const ObjectPair& pair) noexcept;
+
+// Divides all pairs into `count` shares "1", "2", ... of about the same cost: runs of the pairs'
+// order, so that a share has few of the first objects. Their zones are not filled.
+[[nodiscard]] std::vector<Share> balanced_shares(const std::vector<Object>& objects,
+                                                 const std::vector<ObjectPair>& pairs,
+                                                 std::uint32_t count);
+
+// Fills Share::zones. Every pair is in one share.
+void note_zones(const std::vector<Zone>& zones, std::vector<Share>& shares);
+
+}  // namespace clearance

@@ -1,0 +1,136 @@
+// One health of several shares. The fields stand in the order of the message.
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <map>
+#include <span>
+#include <string>
+#include <utility>
+
+#include "monitor/client/sequence_view.hpp"
+#include "monitor/client/share_merge.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance::client {
+namespace {
+
+using Message = clearance_msg_Health;
+
+constexpr std::array kLargest = {&Message::tick_p50_us,        &Message::tick_p999_us,
+                                 &Message::tick_max_us,        &Message::wakeup_p50_us,
+                                 &Message::wakeup_p999_us,     &Message::wakeup_max_us,
+                                 &Message::tick_second_max_us, &Message::wakeup_second_max_us};
+constexpr std::array kSums = {&Message::clock_steps,     &Message::overruns,
+                              &Message::skipped_cycles,  &Message::batches,
+                              &Message::lost_batches,    &Message::undecodable_samples,
+                              &Message::dropped_reports, &Message::other_writers,
+                              &Message::foreign_reports, &Message::recording_missing};
+
+using Views = std::span<const clearance_msg_Health* const>;
+
+// Calls use(element) for each element of a list of all shares.
+template <class List, class Use>
+void for_all(Views views, List Message::*member, const Use& use) {
+  for (const clearance_msg_Health* view : views) {
+    if (view == nullptr) continue;
+    for (const auto& element : list(view->*member)) use(element);
+  }
+}
+
+// -1, never seen, is the oldest.
+std::int64_t older(std::int64_t a, std::int64_t b) { return a < 0 || b < 0 ? -1 : std::max(a, b); }
+
+template <class Age>
+void join_age(const Age& of, Age& out) {
+  const bool is_older = older(of.age_ns, out.age_ns) != out.age_ns;
+  out.stale = out.stale || of.stale;
+  out.contradicted = out.contradicted || of.contradicted;
+  out.age_ns = older(of.age_ns, out.age_ns);
+  if (!is_older) return;
+  std::memcpy(out.source, of.source, sizeof out.source);
+  std::memcpy(out.other_source, of.other_source, sizeof out.other_source);
+}
+
+// The first share's entry of each input, worsened by those of the others.
+template <class Age, class List>
+void join_ages(Views views, List Message::*member, std::uint32_t Age::*id, Message& out) {
+  std::map<std::uint32_t, Age> ages;
+  for_all(views, member, [&](const Age& age) {
+    const auto [at, is_new] = ages.emplace(age.*id, age);
+    if (!is_new) join_age(age, at->second);
+  });
+  reserve_sequence(out.*member, ages.size());
+  for (const auto& [number, age] : ages) {
+    Age& to = (out.*member)._buffer[(out.*member)._length++];
+    to = age;
+    to.name = dds_string_dup(age.name);
+  }
+}
+
+// Each source sends one numbered stream, which every share hears: the most that one has heard.
+void join_sources(Views views, Message& out) {
+  std::map<std::string, clearance_msg_SourceHealth> sources;
+  for_all(views, &Message::sources, [&](const clearance_msg_SourceHealth& source) {
+    const auto [at, is_new] = sources.emplace(source.source, source);
+    if (is_new) return;
+    clearance_msg_SourceHealth& to = at->second;
+    to.batches = std::max(to.batches, source.batches);
+    to.lost_batches = std::max(to.lost_batches, source.lost_batches);
+    to.cut_poses = std::max(to.cut_poses, source.cut_poses);
+    to.age_ns = std::max(to.age_ns, source.age_ns);
+  });
+  const std::size_t count = std::min<std::size_t>(sources.size(), clearance_msg_kMaxSources);
+  reserve_sequence(out.sources, count);
+  for (const auto& [name, source] : sources) {
+    if (out.sources._length < count) out.sources._buffer[out.sources._length++] = source;
+  }
+}
+
+void join_rejected(Views views, Message& out) {
+  std::map<std::pair<std::string, std::string>, std::uint64_t> counts;
+  for_all(views, &Message::rejected, [&](const clearance_msg_RejectCount& entry) {
+    counts[{entry.object, entry.cause}] += entry.count;
+  });
+  reserve_sequence(out.rejected, std::min<std::size_t>(counts.size(), 4096));
+  for (const auto& [what, count] : counts) {
+    if (out.rejected._length == out.rejected._maximum) return;
+    out.rejected._buffer[out.rejected._length++] = {dds_string_dup(what.first.c_str()),
+                                                    dds_string_dup(what.second.c_str()), count};
+  }
+}
+
+void join_notes(Views views, Message& out) {
+  std::map<std::string, clearance_msg_InputNote> notes;
+  for_all(views, &Message::notes,
+          [&](const clearance_msg_InputNote& note) { notes.emplace(note.input, note); });
+  reserve_sequence(out.notes, std::min<std::size_t>(notes.size(), 4096));
+  for (const auto& [input, note] : notes) {
+    if (out.notes._length == out.notes._maximum) return;
+    clearance_msg_InputNote& to = out.notes._buffer[out.notes._length++];
+    to = note;
+    to.input = dds_string_dup(note.input);
+  }
+}
+
+}  // namespace
+
+void join_health(Views views, clearance_msg_Health& out) {
+  std::string recording;
+  for (const clearance_msg_Health* view : views) {
+    if (view == nullptr) continue;
+    for (double Message::*const largest : kLargest)
+      out.*largest = std::max(out.*largest, view->*largest);
+    for (auto Message::*const sum : kSums) out.*sum += view->*sum;
+    out.now_ns = std::max(out.now_ns, view->now_ns);
+    if (*view->recording != '\0')
+      recording += (recording.empty() ? "" : "; ") + std::string(view->recording);
+  }
+  out.recording = dds_string_dup(recording.c_str());
+  join_rejected(views, out);
+  join_ages(views, &Message::inputs, &clearance_msg_InputAge::object, out);
+  join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
+  join_sources(views, out);
+  join_notes(views, out);
+}
+
+}  // namespace clearance::client

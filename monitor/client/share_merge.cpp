@@ -1,0 +1,256 @@
+#include "monitor/client/share_merge.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+#include "monitor/client/sequence_view.hpp"
+#include "monitor/client/whole_reports.hpp"
+#include "monitor/report.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance::client {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// Empties a sequence whose elements own nothing, with capacity for `count` of them.
+template <class Sequence>
+void begin(Sequence& sequence, std::size_t count) {
+  if (sequence._maximum < count) {
+    if (sequence._release) dds_free(sequence._buffer);
+    reserve_sequence(sequence, count);
+  }
+  sequence._length = 0;
+}
+
+template <class Sequence, class Element>
+void append(Sequence& sequence, const Element& element) {
+  if (sequence._length < sequence._maximum) sequence._buffer[sequence._length++] = element;
+}
+
+bool is_nearer(const clearance_msg_PairDistance& one, const clearance_msg_PairDistance& other) {
+  if (one.upper != other.upper) return one.upper < other.upper;
+  return one.lower != other.lower ? one.lower < other.lower : one.pair < other.pair;
+}
+
+// Both lists are in the order of the cell.
+void join_pairs(const ShareMap& map, std::span<const ShareView> views,
+                clearance_msg_Distances& out) {
+  begin(out.pairs, map.published().size());
+  std::vector<std::uint32_t> next(views.size(), 0);
+  for (const ShareMap::Published& published : map.published()) {
+    const ShareView& view = views[published.share];
+    const clearance_msg_PairDistance* found = nullptr;
+    if (view.state == ShareState::kWhole) {
+      const auto pairs = list(view.report->pairs);
+      std::uint32_t& at = next[published.share];
+      while (at < pairs.size() && pairs[at].pair < published.pair) ++at;
+      if (at < pairs.size() && pairs[at].pair == published.pair) found = &pairs[at];
+    }
+    append(out.pairs, found != nullptr ? *found : unknown_pair(published.pair));
+  }
+}
+
+void add_counts(const clearance_msg_Distances& report, clearance_msg_Distances& out) {
+  out.evaluated += report.evaluated;
+  out.carried += report.carried;
+  out.stale += report.stale;
+  out.unknown += report.unknown;
+  out.queries += report.queries;
+  out.oldest_evaluation_cycles =
+      std::max(out.oldest_evaluation_cycles, report.oldest_evaluation_cycles);
+  out.lower_all = std::min(out.lower_all, report.lower_all);
+  out.swept_lower_all = std::min(out.swept_lower_all, report.swept_lower_all);
+  out.newest_pose_ns = std::max(out.newest_pose_ns, report.newest_pose_ns);
+  const auto older = [](std::int64_t a, std::int64_t b) {
+    return a == 0 || (b != 0 && b < a) ? b : a;
+  };
+  out.oldest_pose_ns = older(out.oldest_pose_ns, report.oldest_pose_ns);
+  out.now_ns = older(out.now_ns, report.now_ns);
+  out.publish_ns = older(out.publish_ns, report.publish_ns);
+  if (report.minimum_known && (!out.minimum_known || is_nearer(report.minimum, out.minimum))) {
+    out.minimum_known = true;
+    out.minimum = report.minimum;
+    out.clock_offset_ns = report.clock_offset_ns;
+  }
+}
+
+// The batches that every share has used.
+void join_sources(std::span<const ShareView> views, clearance_msg_Distances& out) {
+  begin(out.sources, clearance_msg_kMaxSources);
+  bool is_first = true;
+  for (const ShareView& view : views) {
+    if (view.state != ShareState::kWhole) continue;
+    const auto uses = list(view.report->sources);
+    if (is_first) {
+      for (const clearance_msg_SourceUse& use : uses) append(out.sources, use);
+    }
+    is_first = false;
+    std::uint32_t kept = 0;
+    for (clearance_msg_SourceUse& use : list(out.sources)) {
+      const auto same = std::ranges::find_if(uses, [&use](const clearance_msg_SourceUse& other) {
+        return std::strcmp(use.source, other.source) == 0;
+      });
+      if (same == uses.end()) continue;
+      use.sequence_number = std::min(use.sequence_number, same->sequence_number);
+      out.sources._buffer[kept++] = use;
+    }
+    out.sources._length = kept;
+  }
+}
+
+// No pair of a share is nearer than its lower_all, and none but its minimum is nearer than that one
+// if it is certified.
+bool allows_minimum(const clearance_msg_Distances& report,
+                    const clearance_msg_PairDistance& least) {
+  return report.minimum_certified || report.lower_all >= least.upper;
+}
+
+}  // namespace
+
+const char* name(ShareState state) noexcept {
+  constexpr std::array kNames = {"whole", "missing", "late", "of another revision"};
+  const auto index = static_cast<std::size_t>(state);
+  return index < kNames.size() ? kNames[index] : "";
+}
+
+ShareMap::ShareMap(const clearance_msg_Catalogue& catalogue)
+    : revision_(catalogue.scene_revision), zones_(catalogue.zones._length) {
+  const auto shares = list(catalogue.shares);
+  first_pairs_.assign(shares.size(), 0);
+  std::vector<bool> has_first(shares.size());
+  for (std::size_t share = 0; share < shares.size(); ++share) {
+    names_.emplace_back(shares[share].name);
+    pairs_.push_back(shares[share].pairs_total);
+    for (const std::uint32_t zone : list(shares[share].zones)) {
+      if (zone < zones_.size()) zones_[zone].push_back(share);
+    }
+  }
+  const auto share_of = list(catalogue.pair_shares);
+  const auto pairs = list(catalogue.pairs);
+  for (std::uint32_t i = 0; i < pairs.size() && i < share_of.size(); ++i) {
+    const std::uint8_t share = share_of[i];
+    if (share >= shares.size()) continue;
+    if (!has_first[share]) first_pairs_[share] = i;
+    has_first[share] = true;
+    if (pairs[i].published) published_.push_back({i, share});
+  }
+}
+
+void join_reports(const ShareMap& map, std::span<const ShareView> views,
+                  clearance_msg_Distances& out) {
+  join_pairs(map, views, out);
+  std::size_t contacts = 0;
+  for (const ShareView& view : views) {
+    if (view.state == ShareState::kWhole) contacts += view.report->contacts._length;
+  }
+  begin(out.contacts, contacts);
+  join_sources(views, out);
+  out.scene_revision = map.revision();
+  out.now_ns = out.publish_ns = out.clock_offset_ns = 0;
+  out.newest_pose_ns = out.oldest_pose_ns = 0;
+  out.minimum_known = false;
+  out.minimum = unknown_pair(0);
+  out.lower_all = out.swept_lower_all = kNone;
+  out.pairs_total = out.evaluated = out.carried = out.stale = out.unknown = out.queries = 0;
+  out.oldest_evaluation_cycles = 0;
+  for (std::size_t share = 0; share < views.size(); ++share) {
+    out.pairs_total += map.pairs(share);
+    if (views[share].state == ShareState::kWhole) {
+      add_counts(*views[share].report, out);
+      for (const clearance_msg_ContactState& contact : list(views[share].report->contacts))
+        append(out.contacts, contact);
+    } else {
+      out.unknown += map.pairs(share);
+      if (map.pairs(share) > 0) out.lower_all = out.swept_lower_all = -kNone;
+    }
+  }
+  std::ranges::sort(list(out.contacts), {}, &clearance_msg_ContactState::pair);
+  if (views.empty()) out.lower_all = out.swept_lower_all = -kNone;
+  out.minimum_certified = out.minimum_known;
+  for (std::size_t share = 0; share < views.size(); ++share) {
+    if (map.pairs(share) == 0) continue;
+    out.minimum_certified = out.minimum_certified && views[share].state == ShareState::kWhole &&
+                            allows_minimum(*views[share].report, out.minimum);
+  }
+}
+
+void join_separations(const ShareMap& map, std::span<const ShareView> views,
+                      const std::vector<std::uint32_t>& zones, clearance_msg_Separation& out) {
+  std::size_t pairs = 0;
+  for (const ShareView& view : views)
+    pairs += view.separation == nullptr ? 0 : view.separation->pairs._length;
+  begin(out.pairs, pairs);
+  begin(out.zones, zones.size());
+  for (const std::uint32_t zone : zones) {
+    if (zone >= map.zones().size()) continue;
+    clearance_msg_ZoneSeparation least{};
+    bool is_known = true, has_any = false;
+    for (const std::size_t share : map.zones()[zone]) {
+      const clearance_msg_Separation* const of =
+          views[share].state == ShareState::kWhole ? views[share].separation : nullptr;
+      const clearance_msg_ZoneSeparation* found = nullptr;
+      if (of != nullptr) {
+        const auto in = list(of->zones);
+        const auto at = std::ranges::find(in, zone, &clearance_msg_ZoneSeparation::zone);
+        if (at != in.end()) found = &*at;
+        for (const clearance_msg_PairSeparation& pair : list(of->pairs)) {
+          if (pair.zone == zone) append(out.pairs, pair);
+        }
+      }
+      is_known = is_known && found != nullptr;
+      if (found == nullptr) continue;
+      // Absent (3) limits nothing and is no measure of the others.
+      const auto validity = [](const clearance_msg_ZoneSeparation& each) { return each.validity; };
+      const bool is_nearer =
+          !has_any || found->scaling < least.scaling ||
+          (found->scaling == least.scaling && found->remaining < least.remaining);
+      const auto worst = has_any ? std::min(validity(*found), validity(least)) : validity(*found);
+      const double speed =
+          has_any ? std::min(found->speed_limit, least.speed_limit) : found->speed_limit;
+      if (is_nearer) least = *found;
+      least.validity = worst;
+      least.speed_limit = speed;
+      has_any = true;
+    }
+    if (!is_known || !has_any) {
+      const std::size_t share = map.zones()[zone].empty() ? 0 : map.zones()[zone].front();
+      least = {zone, 0, map.pairs(share) > 0 ? map.first_pair(share) : 0, -kNone, 0.0, 0.0};
+    }
+    append(out.zones, least);
+  }
+}
+
+clearance_msg_ZoneState join_zone(const ShareMap& map, std::uint32_t zone,
+                                  std::span<const clearance_msg_ZoneState* const> of_shares) {
+  clearance_msg_ZoneState joined{};
+  joined.zone = zone;
+  joined.certified = true;
+  joined.clearance = joined.swept_clearance = kNone;
+  const std::vector<std::size_t>& shares = map.zones()[zone];
+  for (const std::size_t share : shares) {
+    const clearance_msg_ZoneState* const state = of_shares[share];
+    if (state == nullptr) {
+      joined.active = true;
+      joined.certified = false;
+      joined.cause = static_cast<std::uint8_t>(ZoneCause::kNoShare);
+      joined.cause_object = 0;
+      joined.pair = map.first_pair(share);
+      joined.clearance = joined.swept_clearance = -kNone;
+      return joined;
+    }
+    const bool decides =
+        (state->active && !joined.active) ||
+        (state->active == joined.active && state->swept_clearance < joined.swept_clearance);
+    joined.certified = joined.certified && state->certified;
+    if (!decides && joined.name[0] != '\0') continue;
+    const bool is_certified = joined.certified;
+    joined = *state;
+    joined.certified = is_certified;
+  }
+  return joined;
+}
+
+}  // namespace clearance::client

@@ -1,0 +1,90 @@
+// Joins what the daemons of the shares of one cell say, without DDS: one report, one state of each
+// zone, one health. Whatever hangs on a share that is not heard is unknown.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "clearance.h"
+
+namespace clearance::client {
+
+// The values of ShareHealth::state on the wire.
+enum class ShareState : std::uint8_t {
+  kWhole = 0,          // its reports are used
+  kMissing = 1,        // none has come, or its daemon has died or hangs
+  kLate = 2,           // its last report is too old, or its clock disagrees with ours
+  kOtherRevision = 3,  // it has another scene than the others, or one that is not known yet
+};
+// "whole", "missing", ...
+[[nodiscard]] const char* name(ShareState state) noexcept;
+
+// A share at one moment.
+struct ShareView {
+  ShareState state = ShareState::kMissing;
+  const clearance_msg_Distances* report = nullptr;       // kWhole: not null
+  const clearance_msg_Separation* separation = nullptr;  // null: it has none, or none of that time
+};
+
+// Which pairs and zones of a scene depend on which share.
+class ShareMap {
+ public:
+  ShareMap() = default;
+  // Of a catalogue with `shares`.
+  explicit ShareMap(const clearance_msg_Catalogue& catalogue);
+
+  [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
+  [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
+  [[nodiscard]] std::uint32_t pairs(std::size_t share) const { return pairs_[share]; }
+  // Published pairs, ascending, and the share of each.
+  struct Published {
+    std::uint32_t pair = 0;
+    std::uint8_t share = 0;
+  };
+  [[nodiscard]] std::span<const Published> published() const noexcept { return published_; }
+  // By zone: the shares that have pairs of it, ascending.
+  [[nodiscard]] const std::vector<std::vector<std::size_t>>& zones() const noexcept {
+    return zones_;
+  }
+  // The first pair of a share in the cell, for a zone that is active because of it.
+  [[nodiscard]] std::uint32_t first_pair(std::size_t share) const { return first_pairs_[share]; }
+
+ private:
+  std::uint64_t revision_ = 0;
+  std::vector<std::string> names_;
+  std::vector<std::uint32_t> pairs_, first_pairs_;
+  std::vector<Published> published_;
+  std::vector<std::vector<std::size_t>> zones_;
+};
+
+// Fills `out` with the report of the whole cell. One view a share, in the order of the map.
+//  - A pair of a share that is not whole is unknown, and so is a published one that its share does
+//    not report. `lower_all` is -infinity then, and no minimum is certified.
+//  - The minimum is the one of the shares with the least upper bound. It is certified if no other
+//    share can have a nearer pair.
+//  - `now_ns` and `publish_ns` are the oldest of the shares: a report is no younger than its oldest
+//    part. Bounds of different shares hold for the poses of different ticks, up to that far apart.
+//  - Counts are sums. `daemon`, `cycle` and `changes_since` are left to the caller.
+void join_reports(const ShareMap& map, std::span<const ShareView> views,
+                  clearance_msg_Distances& out);
+
+// The same for separations. A zone of a share that is not whole, or that has no separation of the
+// time of its report, has validity 0 and scaling 0, as its pairs. `zones` are those with
+// `separation` that any share has reported.
+void join_separations(const ShareMap& map, std::span<const ShareView> views,
+                      const std::vector<std::uint32_t>& zones, clearance_msg_Separation& out);
+
+// The state of a zone by those of its shares; null: not known. It is active if one of them is, or
+// if one is not known (ZoneCause::kNoShare). The least clearance decides what it says.
+[[nodiscard]] clearance_msg_ZoneState join_zone(
+    const ShareMap& map, std::uint32_t zone,
+    std::span<const clearance_msg_ZoneState* const> of_shares);
+
+// The ages of inputs are the largest that any share has, counts are sums, times are the largest.
+// One health a share; null: none has come. `shares` is left to the caller.
+void join_health(std::span<const clearance_msg_Health* const> of_shares, clearance_msg_Health& out);
+
+}  // namespace clearance::client

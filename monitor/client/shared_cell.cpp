@@ -1,0 +1,385 @@
+#include "monitor/client/shared_cell.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <random>
+#include <set>
+#include <span>
+#include <string_view>
+
+#include "config/cell/share_topics.hpp"
+#include "monitor/client/sequence_view.hpp"
+#include "monitor/participant/participant.hpp"
+
+namespace clearance::client {
+namespace {
+
+// A zone's state that a daemon wrote holds for this long after the last report of that daemon,
+// since its partner may have written nothing since.
+constexpr std::int64_t kHeardFor = 1'000'000'000;
+
+std::uint64_t random_number() {
+  std::random_device random;
+  std::uint64_t number = 0;
+  while (number == 0) number = std::uint64_t{random()} << 32 | random();
+  return number;
+}
+
+}  // namespace
+
+// A share with all its readers.
+struct SharedCell::OfShare {
+  OfShare(Connection& whole, std::string of, const SharedCellOptions& options)
+      : name(std::move(of)),
+        connection(whole.participant().handle(), whole.participant().partition(),
+                   topics_of_share(whole.topics(), name)),
+        reports(connection, {.old_after = options.late_after}),
+        separations(connection),
+        catalogue(connection),
+        health(connection),
+        zones(connection.participant().reader_of_several(TopicKind::kZones,
+                                                         connection.topics().zones)) {}
+  ~OfShare() { dds_delete(zones); }
+
+  // Up to two reports: the second one waits while the first one is not used yet.
+  void take(std::int64_t now_ns) {
+    while (!has_ahead && reports.next()) {
+      reports.exchange(is_new ? ahead : current);
+      (is_new ? has_ahead : is_new) = true;
+      missed += reports.check().missed;
+      heard[(has_ahead ? ahead : current)->daemon] = now_ns;
+    }
+    std::erase_if(heard, [now_ns](const auto& one) { return one.second + kHeardFor < now_ns; });
+    while (separations.next()) {
+    }
+    catalogue.update();
+    clearance_msg_ZoneState state{};
+    void* pointer = &state;
+    dds_sample_info_t info;
+    while (dds_take(zones, &pointer, &info, 1, 1) > 0) {
+      if (info.valid_data) states[{state.zone, state.daemon}] = state;
+    }
+  }
+  void use() {
+    is_new = false;
+    if (!has_ahead) return;
+    std::swap(*current, *ahead);
+    is_new = true;
+    has_ahead = false;
+  }
+  // The last state that a daemon has written of which this share is heard now. Partners tick the
+  // same times.
+  [[nodiscard]] const clearance_msg_ZoneState* zone(std::uint32_t id,
+                                                    std::string_view zone_name) const {
+    const clearance_msg_ZoneState* latest = nullptr;
+    for (auto at = states.lower_bound({id, 0}); at != states.end() && at->first.first == id; ++at) {
+      const clearance_msg_ZoneState& state = at->second;
+      const bool counts = *current->partner != '\0' ? heard.contains(state.daemon)
+                                                    : state.daemon == current->daemon;
+      if (!counts || zone_name.substr(0, sizeof state.name - 1) != state.name) continue;
+      if (latest == nullptr || state.now_ns > latest->now_ns ||
+          (state.now_ns == latest->now_ns && state.active)) {
+        latest = &state;
+      }
+    }
+    return latest;
+  }
+
+  std::string name;
+  Connection connection;
+  Reports reports;
+  client::Separation separations;
+  Catalogue catalogue;
+  client::Health health;
+  dds_entity_t zones;
+  Sample<clearance_msg_Distances> current, ahead;
+  bool is_new = false, has_ahead = false;
+  std::uint64_t missed = 0;
+  std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
+  std::map<std::pair<std::uint32_t, std::uint64_t>, clearance_msg_ZoneState> states;
+};
+
+SharedCell::SharedCell(Connection& connection, SharedCellOptions options)
+    : connection_(connection),
+      options_(std::move(options)),
+      daemon_(random_number()),
+      checker_(options_.old_after.count()) {
+  if (options_.names.empty()) {
+    discovery_ = check_dds(dds_create_reader(connection.participant().handle(),
+                                             DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
+                           "making a reader of discovery");
+    wait_ = std::make_unique<DataWait>(connection.participant(), std::vector{discovery_});
+  } else {
+    open(options_.names);
+  }
+}
+
+SharedCell::~SharedCell() {
+  wait_.reset();
+  if (discovery_ != 0) dds_delete(discovery_);
+}
+
+void SharedCell::open(const std::vector<std::string>& names) {
+  wait_.reset();
+  map_ = {};
+  shares_.clear();
+  std::vector<dds_entity_t> readers;
+  if (discovery_ != 0) readers.push_back(discovery_);
+  for (const std::string& name : names) {
+    shares_.push_back(std::make_unique<OfShare>(connection_, name, options_));
+    readers.push_back(shares_.back()->reports.reader());
+  }
+  wait_ = std::make_unique<DataWait>(connection_.participant(), readers);
+}
+
+// Any share's catalogue names all of them. A topic has a share's name but for special characters.
+void SharedCell::look_for_names() {
+  const std::string prefix = share_topic(connection_.topics().distances, "");
+  std::vector<std::string> names;
+  for (const auto& share : shares_) names.push_back(share->name);
+  const std::size_t before = names.size();
+  for (;;) {
+    void* sample = nullptr;
+    dds_sample_info_t info;
+    const dds_return_t count = dds_take(discovery_, &sample, &info, 1, 1);
+    if (count <= 0) break;
+    const std::string topic =
+        info.valid_data ? static_cast<const dds_builtintopic_endpoint_t*>(sample)->topic_name : "";
+    dds_return_loan(discovery_, &sample, count);
+    if (!topic.starts_with(prefix)) continue;
+    const std::string name = topic.substr(prefix.size());
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
+  }
+  if (names.size() != before) open(names);
+  for (const auto& share : shares_) {
+    share->catalogue.update();
+    if (share->catalogue.message() == nullptr) continue;
+    const ShareMap known(*share->catalogue.message());
+    dds_delete(std::exchange(discovery_, 0));
+    return open(known.names());
+  }
+}
+
+void SharedCell::take() {
+  const std::int64_t now_ns = dds_time();
+  for (const auto& share : shares_) share->take(now_ns);
+}
+
+bool SharedCell::next(std::chrono::nanoseconds timeout) {
+  const std::int64_t end_ns = dds_time() + timeout.count();
+  for (;;) {
+    if (discovery_ != 0) look_for_names();
+    take();
+    const std::int64_t now = dds_time();
+    if (is_due(now)) {
+      join(now);
+      return true;
+    }
+    if (now >= end_ns) return false;
+    wait_->wait(std::min(end_ns - now, options_.late_after.count() / 4));
+  }
+}
+
+bool SharedCell::newest(std::chrono::nanoseconds timeout) {
+  if (!next(timeout)) return false;
+  while (next()) {
+  }
+  return true;
+}
+
+// A share that is late or missing is not waited for.
+bool SharedCell::is_due(std::int64_t now_ns) const {
+  if (shares_.empty()) return false;
+  bool has_any = false, lacks_one = false;
+  for (const auto& share : shares_) {
+    if (share->has_ahead) return true;
+    has_any = has_any || share->is_new;
+    const std::int64_t age = now_ns - share->current->publish_ns;
+    lacks_one = lacks_one || (!share->is_new && age <= options_.late_after.count());
+  }
+  if (has_any) return !lacks_one;
+  return joined_ns_ != 0 && now_ns - joined_ns_ >= options_.late_after.count();
+}
+
+// The scene that most shares have; among equally many, that of the first share.
+void SharedCell::follow_revision() {
+  std::map<std::uint64_t, int> counts;
+  std::uint64_t best = map_.revision();
+  int most = 0;
+  for (const auto& share : shares_) {
+    const std::uint64_t revision = share->current->scene_revision;
+    const bool is_here =
+        revision != 0 && joined_ns_ - share->current->publish_ns < options_.late_after.count();
+    if (is_here && ++counts[revision] > most) {
+      most = counts[revision];
+      best = revision;
+    }
+  }
+  if (best == map_.revision() && catalogue() != nullptr) return;
+  for (const auto& share : shares_) {
+    const clearance_msg_Catalogue* const found =
+        best == 0 ? share->catalogue.message() : share->catalogue.message(best);
+    if (found == nullptr) continue;
+    ShareMap map(*found);
+    std::vector<std::string> names;
+    for (const auto& each : shares_) names.push_back(each->name);
+    if (map.names() != names) {
+      if (!map.names().empty()) open(map.names());
+      return;
+    }
+    map_ = std::move(map);
+    separated_.clear();
+    return;
+  }
+}
+
+const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
+  for (const auto& share : shares_) {
+    const auto* const found = share->catalogue.message(map_.revision());
+    if (found != nullptr) return found;
+  }
+  return nullptr;
+}
+
+void SharedCell::judge(std::int64_t now_ns) {
+  checks_.clear();
+  for (const auto& share : shares_) {
+    const clearance_msg_Distances& report = *share->current;
+    ShareCheck& check = checks_.emplace_back();
+    check.name = share->name;
+    check.daemon = report.daemon;
+    check.cycle = report.cycle;
+    check.scene_revision = report.scene_revision;
+    check.partner = share->reports.partner();
+    if (report.cycle == 0) continue;
+    check.age_ns = now_ns - report.publish_ns;
+    const std::int64_t limit = options_.late_after.count();
+    if (check.age_ns > limit && share->reports.daemons() == 0) continue;
+    check.state = check.age_ns > limit || check.age_ns < -limit ? ShareState::kLate
+                  : report.scene_revision != map_.revision()    ? ShareState::kOtherRevision
+                                                                : ShareState::kWhole;
+  }
+}
+
+void SharedCell::join(std::int64_t now_ns) {
+  joined_ns_ = now_ns;
+  follow_revision();
+  judge(now_ns);
+  std::vector<ShareView> views;
+  for (std::size_t i = 0; i < map_.names().size() && i < shares_.size(); ++i) {
+    OfShare& share = *shares_[i];
+    ShareView& view = views.emplace_back();
+    view.state = checks_[i].state;
+    view.report = &*share.current;
+    const clearance_msg_Separation& separation = *share.separations;
+    const bool is_of_now = separation.scene_revision == map_.revision() &&
+                           now_ns - separation.publish_ns <= options_.late_after.count();
+    if (is_of_now) view.separation = &separation;
+  }
+  const std::int64_t before_ns = message_->now_ns, published_ns = message_->publish_ns;
+  join_reports(map_, views, *message_);
+  // Without any share there is no time of a tick. Times do not go back where a share comes again.
+  if (message_->now_ns == 0) message_->now_ns = now_ns;
+  if (message_->publish_ns == 0) message_->publish_ns = now_ns;
+  message_->now_ns = std::max(message_->now_ns, before_ns);
+  message_->publish_ns = std::max(message_->publish_ns, published_ns);
+  message_->daemon = daemon_;
+  ++message_->cycle;
+  check_ = checker_.check(*message_, now_ns);
+  join_zones();
+  for (const ShareView& view : views) {
+    if (view.separation == nullptr) continue;
+    for (const clearance_msg_ZoneSeparation& zone : list(view.separation->zones)) {
+      const auto at = std::ranges::lower_bound(separated_, zone.zone);
+      if (at == separated_.end() || *at != zone.zone) separated_.insert(at, zone.zone);
+    }
+  }
+  if (!separated_.empty()) {
+    join_separations(map_, views, separated_, *separation_);
+    separation_->daemon = daemon_;
+    separation_->cycle = message_->cycle;
+    separation_->now_ns = message_->now_ns;
+    separation_->publish_ns = message_->publish_ns;
+    separation_->scene_revision = message_->scene_revision;
+  }
+  for (const auto& share : shares_) share->use();
+}
+
+void SharedCell::join_zones() {
+  const clearance_msg_Catalogue* const names = catalogue();
+  if (names == nullptr) return zones_.clear();
+  std::map<std::uint32_t, clearance_msg_ZoneState> joined;
+  std::vector<const clearance_msg_ZoneState*> of_shares(shares_.size());
+  for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
+    for (std::size_t i = 0; i < shares_.size(); ++i) {
+      const bool is_used = checks_[i].state == ShareState::kWhole;
+      of_shares[i] = is_used ? shares_[i]->zone(zone.id, zone.name) : nullptr;
+    }
+    clearance_msg_ZoneState state = join_zone(map_, zone.id, of_shares);
+    const std::string_view name = zone.name;
+    std::memset(state.name, 0, sizeof state.name);
+    name.copy(state.name, sizeof state.name - 1);
+    state.daemon = daemon_;
+    state.cycle = message_->cycle;
+    state.now_ns = message_->now_ns;
+    const auto before = zones_.find(zone.id);
+    const bool is_as_before = before != zones_.end() && before->second.active == state.active &&
+                              name.substr(0, sizeof state.name - 1) == before->second.name;
+    state.since_cycle = is_as_before ? before->second.since_cycle : message_->cycle;
+    joined[zone.id] = state;
+  }
+  zones_ = std::move(joined);
+}
+
+bool SharedCell::is_whole() const noexcept {
+  return !checks_.empty() && std::ranges::all_of(checks_, [](const ShareCheck& check) {
+    return check.state == ShareState::kWhole;
+  });
+}
+
+std::uint64_t SharedCell::missed() const noexcept {
+  std::uint64_t all = 0;
+  for (const auto& share : shares_) all += share->missed;
+  return all;
+}
+
+std::string SharedCell::what_is_missing() const {
+  std::string text;
+  for (const ShareCheck& check : checks_) {
+    if (check.state == ShareState::kWhole) continue;
+    text += fmt::format("{}the share '{}' is {}", text.empty() ? "" : ", ", check.name,
+                        client::name(check.state));
+  }
+  return text;
+}
+
+Sample<clearance_msg_Health> SharedCell::health() {
+  Sample<clearance_msg_Health> joined;
+  std::vector<const clearance_msg_Health*> of_shares;
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    shares_[i]->health.update();
+    const clearance_msg_Health* const health = shares_[i]->health.message();
+    const bool is_used = i < checks_.size() && checks_[i].state == ShareState::kWhole;
+    of_shares.push_back(is_used ? health : nullptr);
+  }
+  join_health(of_shares, *joined);
+  joined->daemon = daemon_;
+  joined->cycle = message_->cycle;
+  joined->scene_revision = message_->scene_revision;
+  if (joined->now_ns == 0) joined->now_ns = message_->now_ns;
+  reserve_sequence(joined->shares, checks_.size());
+  for (const ShareCheck& check : checks_) {
+    clearance_msg_ShareHealth& to = joined->shares._buffer[joined->shares._length++];
+    check.name.copy(to.share, sizeof to.share - 1);
+    to.state = static_cast<std::uint8_t>(check.state);
+    to.daemon = check.daemon;
+    to.cycle = check.cycle;
+    to.scene_revision = check.scene_revision;
+    to.age_ns = check.age_ns;
+  }
+  return joined;
+}
+
+}  // namespace clearance::client

@@ -1,0 +1,110 @@
+// A client of a cell in shares: reads every share, merges partners of a share, and joins all to the
+// report, the zones and the health of the whole cell.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/client/client.hpp"
+#include "monitor/client/share_merge.hpp"
+
+namespace clearance::client {
+
+struct SharedCellOptions {
+  // A share whose last report is older is left out, and what hangs on it is unknown. It has to be
+  // longer than the time that partners take to go on without each other: two periods.
+  std::chrono::nanoseconds late_after = std::chrono::milliseconds(20);
+  std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // as StreamOptions'
+  // The names of the shares. If empty, they are those of the first share that is met.
+  std::vector<std::string> names = {};
+};
+
+// How a share is in the report at hand.
+struct ShareCheck {
+  std::string name;
+  ShareState state = ShareState::kMissing;
+  std::uint64_t daemon = 0, cycle = 0, scene_revision = 0;  // of its last report; 0: none
+  std::int64_t age_ns = -1;                                 // since it was published; -1: none
+  PartnerCheck partner = {};
+};
+
+class SharedCell {
+ public:
+  // The topics of the connection are those of the cell; each share has its own (topics_of_share).
+  explicit SharedCell(Connection& connection, SharedCellOptions options = {});
+  ~SharedCell();
+  SharedCell(const SharedCell&) = delete;
+  SharedCell& operator=(const SharedCell&) = delete;
+
+  // Waits up to `timeout` for the next report of the whole cell. There is one each time that every
+  // share has reported again, or that one has reported twice. No report of a share is left out. If
+  // no share reports any longer, one that knows nothing follows after `late_after`, and again.
+  // Returns false when none came.
+  bool next(std::chrono::nanoseconds timeout = {});
+  // Does the same with the newest one.
+  bool newest(std::chrono::nanoseconds timeout = {});
+
+  // The last report. `cycle` counts those of this object from 1; `daemon` is its random number.
+  [[nodiscard]] const clearance_msg_Distances& operator*() const noexcept { return *message_; }
+  [[nodiscard]] const clearance_msg_Distances* operator->() const noexcept { return &*message_; }
+  [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
+  // The shares in the order of the cell, as they are in the last report.
+  [[nodiscard]] const std::vector<ShareCheck>& shares() const noexcept { return checks_; }
+  [[nodiscard]] bool is_whole() const noexcept;
+  // "the share 'left' is missing, the share 'right' is late"; empty if it is whole.
+  [[nodiscard]] std::string what_is_missing() const;
+
+  // The state of every zone, as of the last report, by its id.
+  [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
+    return zones_;
+  }
+  // Separations of the report at hand; null if the cell has none.
+  [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
+    return separated_.empty() ? nullptr : &*separation_;
+  }
+  // The catalogue of the report's scene; null before the first report. Its `share` is that of one
+  // daemon.
+  [[nodiscard]] const clearance_msg_Catalogue* catalogue() const noexcept;
+  // The health of all shares, as last told by each, with `shares`.
+  [[nodiscard]] Sample<clearance_msg_Health> health();
+
+  // Reports of shares that did not come, by their cycles, since the beginning.
+  [[nodiscard]] std::uint64_t missed() const noexcept;
+  [[nodiscard]] std::uint64_t daemon() const noexcept { return daemon_; }
+
+ private:
+  struct OfShare;
+
+  void look_for_names();
+  void open(const std::vector<std::string>& names);
+  void take();
+  [[nodiscard]] bool is_due(std::int64_t now_ns) const;
+  void follow_revision();
+  void judge(std::int64_t now_ns);
+  void join(std::int64_t now_ns);
+  void join_zones();
+  void join_separation();
+
+  Connection& connection_;
+  SharedCellOptions options_;
+  std::uint64_t daemon_;
+  dds_entity_t discovery_ = 0;  // 0: the names are known
+  std::vector<std::unique_ptr<OfShare>> shares_;
+  std::unique_ptr<DataWait> wait_;
+  ShareMap map_;
+  std::vector<ShareCheck> checks_;
+  Sample<clearance_msg_Distances> message_;
+  Sample<clearance_msg_Separation> separation_;
+  std::vector<std::uint32_t> separated_;  // zones of which any share has reported separations
+  std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
+  ReportChecker checker_;
+  ReportCheck check_;
+  std::int64_t joined_ns_ = 0;  // when the last report was made, by dds_time()
+};
+
+}  // namespace clearance::client

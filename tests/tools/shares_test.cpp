@@ -1,0 +1,311 @@
+// The shares of a cell as processes: daemons of one share each, clients that join them, and what
+// becomes of a share that is killed, stopped, or has another revision.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "config/cell/share_topics.hpp"
+#include "monitor/client/commands.hpp"
+#include "monitor/client/shared_cell.hpp"
+#include "monitor/report.hpp"
+#include "tests/tools/meeting_boxes.hpp"
+
+namespace clearance {
+namespace {
+
+using client::ShareState;
+using std::chrono::milliseconds;
+using test::ChildProcess;
+using test::kDaemon;
+
+const std::string kMerge = test::places::programs() + "/clearance-merge";
+
+// The boxes that meet are one share, and each with the floor another one.
+std::string shared_cell(const std::string& more = {}) {
+  return test::meeting_cell() +
+         R"(shares:
+  - {name: boxes, pairs: [{between: [arm, arm]}]}
+  - {name: left floor, pairs: [{between: [left, floor]}]}
+  - {name: right floor, pairs: [{between: [right, floor]}]}
+)" + more;
+}
+
+class SharedCells : public testing::Test {
+ protected:
+  explicit SharedCells(const std::string& more = {}) : file(shared_cell(more)) {}
+
+  DdsOptions dds = test::own_dds();
+  test::CellFile file;
+  Cell cell = file.cell();
+  test::SendingRobot robot{dds, cell};
+  client::Connection connection{dds, cell.topics};
+  std::map<std::string, std::unique_ptr<ChildProcess>> daemons;
+
+  ChildProcess& start(const std::string& share, const std::vector<std::string>& more = {},
+                      const std::string& as = {}) {
+    auto& daemon = daemons[as.empty() ? share : as];
+    daemon = std::make_unique<ChildProcess>(
+        kDaemon,
+        test::with(test::with({file.path(), "--share", share}, test::dds_arguments(dds)), more));
+    return *daemon;
+  }
+  void start_all() {
+    for (const Share& share : cell.shares.all) start(share.name);
+  }
+  std::string logs() {
+    std::string text;
+    for (const auto& [name, daemon] : daemons) text += "== " + name + "\n" + daemon->output();
+    return text;
+  }
+  template <class IsSo>
+  static bool read_until(client::SharedCell& whole, const IsSo& is_so, int seconds = 20) {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
+    while (std::chrono::steady_clock::now() < end) {
+      if (whole.next(milliseconds(100)) && is_so()) return true;
+    }
+    return false;
+  }
+  static std::uint8_t status(const client::SharedCell& whole, std::uint32_t pair) {
+    for (std::uint32_t i = 0; i < whole->pairs._length; ++i) {
+      if (whole->pairs._buffer[i].pair == pair) return whole->pairs._buffer[i].status;
+    }
+    return 255;
+  }
+};
+constexpr auto kUnknown = static_cast<std::uint8_t>(PairStatus::kUnknown);
+
+TEST_F(SharedCells, AreOneReportWithTheBoundsOfOneDaemonOfTheWholeCell) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole() && whole->minimum_certified; }))
+      << logs() << whole.what_is_missing();
+  ASSERT_EQ(whole->pairs._length, cell.scene.pairs.size());
+  // The objects' poses are those of ticks that are less than two periods apart, and each share's
+  // bounds are true of them: the distances of any two shares fit the motion.
+  double least = kInfinity;
+  for (std::uint32_t i = 0; i < whole->pairs._length; ++i) {
+    const clearance_msg_PairDistance& pair = whole->pairs._buffer[i];
+    EXPECT_EQ(pair.pair, i);
+    EXPECT_NE(pair.status, kUnknown);
+    least = std::min(least, pair.upper);
+  }
+  EXPECT_EQ(whole->minimum.upper, least);
+  EXPECT_EQ(whole->pairs_total, 3u);
+  EXPECT_EQ(whole->scene_revision, cell.scene.revision);
+  ASSERT_TRUE(whole.zones().contains(0));
+  const std::uint64_t before = whole->cycle;
+  bool is_active = false, is_clear = false;
+  EXPECT_TRUE(read_until(whole, [&] {
+    (whole.zones().at(0).active ? is_active : is_clear) = true;
+    return is_active && is_clear;
+  })) << logs();
+  EXPECT_GT(whole->cycle, before);
+  EXPECT_EQ(whole.missed(), 0u);
+}
+
+TEST_F(SharedCells, AKilledOneIsUnknownByNameAndComesBack) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(300)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  for (const bool is_stopped : {false, true}) {
+    SCOPED_TRACE(is_stopped);
+    daemons["boxes"]->signal(is_stopped ? SIGSTOP : SIGKILL);
+    // Until it is unknown, no report is older than that limit.
+    EXPECT_TRUE(read_until(whole, [&] {
+      EXPECT_TRUE(status(whole, 0) == kUnknown || dds_time() - whole->publish_ns < 1'000'000'000);
+      return !whole.is_whole();
+    }));
+    EXPECT_NE(whole.what_is_missing().find("'boxes'"), std::string::npos);
+    EXPECT_EQ(std::ranges::count(whole.shares(), ShareState::kWhole, &client::ShareCheck::state),
+              2);
+    EXPECT_EQ(whole->lower_all, -kInfinity);
+    EXPECT_FALSE(whole->minimum_certified);
+    const std::uint32_t boxes = cell.shares.all[0].pairs[0];
+    for (std::uint32_t pair = 0; pair < 3; ++pair)
+      EXPECT_EQ(status(whole, pair) == kUnknown, pair == boxes);
+    EXPECT_TRUE(whole.zones().at(0).active);
+    EXPECT_EQ(whole.zones().at(0).cause, static_cast<std::uint8_t>(ZoneCause::kNoShare));
+    const auto health = whole.health();
+    ASSERT_EQ(health->shares._length, 3u);
+    EXPECT_STREQ(health->shares._buffer[0].share, "boxes");
+    EXPECT_NE(health->shares._buffer[0].state, 0);
+    EXPECT_EQ(health->shares._buffer[1].state, 0);
+    if (is_stopped) {
+      daemons["boxes"]->signal(SIGCONT);
+    } else {
+      start("boxes");
+    }
+    EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+    EXPECT_NE(status(whole, boxes), kUnknown);
+  }
+  for (const auto& [name, daemon] : daemons) daemon->signal(SIGKILL);
+  EXPECT_TRUE(read_until(whole, [&] { return whole->unknown == 3; }));
+  EXPECT_TRUE(whole.zones().at(0).active) << "without any share, nothing is clear";
+}
+
+TEST_F(SharedCells, DaemonsOfDifferentOnesAreNoRivalsAndTwoOfTheSameAre) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  ChildProcess& second = start("boxes", {}, "second");
+  EXPECT_EQ(second.wait(), 4) << second.output();
+  EXPECT_TRUE(second.told("other-daemon-first")) << second.output();
+  EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  for (const Share& share : cell.shares.all) EXPECT_TRUE(daemons[share.name]->running());
+}
+
+TEST_F(SharedCells, PartnersOfAShareLoseNoCycleWhenOneIsKilled) {
+  for (const Share& share : cell.shares.all) start(share.name, {"--partner", "one"});
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
+  ASSERT_TRUE(test::eventually([&] { return second.told("partner-agrees"); })) << logs();
+  read_until(
+      whole, [] { return false; }, 1);
+  const std::uint64_t missed = whole.missed();
+  const std::uint64_t cycle = whole->cycle;
+  daemons["boxes"]->signal(SIGKILL);
+  EXPECT_TRUE(read_until(whole, [&] {
+    EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
+    return whole->cycle > cycle + 200;
+  })) << logs();
+  EXPECT_EQ(whole.missed(), missed);
+}
+
+TEST_F(SharedCells, OfAnotherRevisionAreUnknownUntilTheyAgree) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  std::ofstream(file.path(), std::ios::app) << "# another text\n";
+  daemons["left floor"]->signal(SIGHUP);
+  EXPECT_TRUE(read_until(whole, [&] { return !whole.is_whole(); })) << logs();
+  EXPECT_EQ(whole.shares()[1].state, ShareState::kOtherRevision) << whole.what_is_missing();
+  EXPECT_EQ(whole->scene_revision, cell.scene.revision) << "two of three have it";
+  EXPECT_EQ(whole->lower_all, -kInfinity);
+  daemons["boxes"]->signal(SIGHUP);
+  daemons["right floor"]->signal(SIGHUP);
+  EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  EXPECT_NE(whole->scene_revision, cell.scene.revision);
+}
+
+TEST_F(SharedCells, AnUnknownNameEndsTheDaemonWithTheNamesThatThereAre) {
+  ChildProcess& daemon = start("boxen");
+  EXPECT_EQ(daemon.wait(), 3);
+  EXPECT_TRUE(daemon.wrote("'left floor'")) << daemon.output();
+}
+
+// Readers that know nothing of shares see one daemon.
+TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
+  start_all();
+  ChildProcess merge(kMerge,
+                     test::with({file.path(), "--late-ms", "300"}, test::dds_arguments(dds)));
+  client::Reports reports(connection);
+  client::Catalogue catalogue(connection);
+  client::Pair boxes(catalogue, "left", "right");
+  client::Zones zones(connection);
+  client::Health health(connection);
+  const auto hears = [&](const auto& is_so) {
+    return test::eventually([&] {
+      const bool came = reports.next(milliseconds(50));
+      zones.update();
+      health.update();
+      return came && is_so();
+    });
+  };
+  ASSERT_TRUE(hears([&] {
+    const auto* const pair = boxes.in(*reports);
+    return pair != nullptr && pair->status != kUnknown && reports->minimum_certified;
+  })) << merge.output()
+      << logs();
+  EXPECT_TRUE(reports.check().fresh());
+  EXPECT_EQ(reports->pairs._length, 3u);
+  // The daemons tell their health once a second.
+  ASSERT_TRUE(hears([&] {
+    return health.message() != nullptr && health.message()->inputs._length == 2 &&
+           zones.states().contains(0);
+  }));
+  EXPECT_EQ(health.message()->shares._length, 3u);
+  daemons["boxes"]->signal(SIGKILL);
+  EXPECT_TRUE(hears([&] {
+    return boxes.in(*reports)->status == kUnknown && zones.states().at(0).active &&
+           zones.states().at(0).cause == static_cast<std::uint8_t>(ZoneCause::kNoShare);
+  })) << merge.output();
+  EXPECT_TRUE(merge.told("share-late", {"boxes"}) || merge.told("share-missing", {"boxes"}))
+      << merge.output();
+  start("boxes");
+  EXPECT_TRUE(hears([&] { return boxes.in(*reports)->status != kUnknown; })) << merge.output();
+  merge.signal(SIGTERM);
+  EXPECT_EQ(merge.wait(), 0) << merge.output();
+}
+
+class ChangedSharedCells : public SharedCells {
+ protected:
+  ChangedSharedCells() : SharedCells("commands: {from: [planner]}\n") {}
+};
+
+// A command reaches every share, in one order. One that a share refuses changes none.
+TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
+  start_all();
+  ChildProcess merge(kMerge,
+                     test::with({file.path(), "--late-ms", "1000"}, test::dds_arguments(dds)));
+  client::SharedCell whole(connection, {.late_after = milliseconds(1000)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  ASSERT_TRUE(test::eventually([&] { return merge.told("share-heard", {"right floor"}); }));
+  client::Commands commands(connection, "planner");
+  const auto moved =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});
+  ASSERT_TRUE(moved) << merge.output() << logs();
+  EXPECT_TRUE(moved->done()) << moved->reason;
+  EXPECT_NE(moved->scene_revision, cell.scene.revision);
+  EXPECT_NE(moved->in_force_from, 0u);
+  EXPECT_TRUE(read_until(whole, [&] {
+    return whole.is_whole() && whole->scene_revision == moved->scene_revision;
+  })) << whole.what_is_missing();
+  // An object that no share watches: the shares would leave its pairs out.
+  const auto refused = commands.send(
+      {AddObject{.yaml = "{name: cone, groups: [still], fixed: true, sphere: {radius: 0.1}}"}});
+  ASSERT_TRUE(refused) << merge.output();
+  EXPECT_FALSE(refused->done());
+  EXPECT_NE(refused->reason.find("no share has changed"), std::string::npos) << refused->reason;
+  read_until(
+      whole, [] { return false; }, 1);
+  EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
+  EXPECT_EQ(whole->scene_revision, moved->scene_revision);
+}
+
+class SparseSharedCells : public SharedCells {
+ protected:
+  SparseSharedCells() : SharedCells("dds: {publish: changes, full_every_s: 0.5}\n") {}
+};
+
+TEST_F(SparseSharedCells, AreWholeWhereReportsCarryOnlyWhatChanged) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole() && whole->unknown == 0; })) << logs();
+  const std::uint64_t cycle = whole->cycle;
+  EXPECT_TRUE(read_until(whole, [&] {
+    for (std::uint32_t pair = 0; pair < 3; ++pair) EXPECT_NE(status(whole, pair), kUnknown);
+    return whole->cycle > cycle + 200 || HasFailure();
+  }));
+}
+
+// The demonstration: two partners of each of three shares, one of them killed now and then.
+TEST(Several, LosesNoCycleAndHasNoZoneWrong) {
+  const DdsOptions dds = test::own_dds();
+  ChildProcess several(test::places::sources() + "/tools/several",
+                       {test::places::programs(), "--seconds", "4", "--every", "1", "--rate", "50",
+                        "--late-ms", "1000", "--domain", std::to_string(dds.domain)});
+  EXPECT_EQ(several.wait(), 0) << several.output();
+  EXPECT_TRUE(several.wrote(" 0 cycles lost, 0 zones wrong")) << several.output();
+}
+
+}  // namespace
+}  // namespace clearance

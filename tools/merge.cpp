@@ -1,0 +1,152 @@
+// clearance-merge: joins the shares of a cell, and publishes the whole cell on its own topics for
+// readers that know nothing of shares.
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <optional>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "monitor/app/cell_arguments.hpp"
+#include "monitor/app/log.hpp"
+#include "monitor/app/log_lines.hpp"
+#include "monitor/app/options.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/app/stop_signal.hpp"
+#include "monitor/client/shared_cell.hpp"
+#include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "tools/merge/command_relay.hpp"
+#include "tools/merge/whole_writer.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr const char* kFooter =
+    R"(Whatever hangs on a share that is not heard is unknown, and its zones are active.
+
+Exit status:
+  0  stopped by SIGINT, SIGTERM, SIGHUP or --seconds
+  1  something else failed
+  2  wrong usage
+  3  the cell file is wrong, or has no shares
+  4  DDS could not be joined, or another program publishes this cell already
+
+Example:
+  clearanced hall.yaml --share north &
+  clearanced hall.yaml --share south &
+  clearance-merge hall.yaml)";
+
+struct Arguments {
+  CellArguments cell;
+  double late_ms = 20.0, seconds = 0.0;
+  int fifo_priority = 0;
+  std::string log_level = "info";
+  DdsArguments dds;
+};
+
+void add_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("CELL", arguments.cell.cell, "The cell file (YAML), which names the shares")
+      ->required();
+  app.add_option("--late-ms", arguments.late_ms,
+                 "What hangs on a share whose last report is older than this is unknown")
+      ->check(CLI::Range(1.0, 10'000.0))
+      ->capture_default_str();
+  app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
+      ->check(number_from_zero());
+  app.add_option("--priority", arguments.fifo_priority, "Run under SCHED_FIFO with this priority")
+      ->check(CLI::Range(1, 99));
+  arguments.dds.add_to(app);
+  add_log_level(app, arguments.log_level);
+  app.footer(kFooter);
+}
+
+// Logs what becomes of each share, once a change.
+class ShareLog {
+ public:
+  void note(const client::SharedCell& whole) {
+    for (const client::ShareCheck& check : whole.shares()) {
+      const auto [at, is_new] = states_.emplace(check.name, check.state);
+      if (!is_new && at->second == check.state) continue;
+      at->second = check.state;
+      tell(check, whole->scene_revision);
+    }
+  }
+
+ private:
+  static void tell(const client::ShareCheck& check, std::uint64_t revision) {
+    switch (check.state) {
+      case client::ShareState::kWhole:
+        return log_line(lines::kShareHeard, check.name, check.scene_revision);
+      case client::ShareState::kMissing:
+        return log_line(lines::kShareMissing, check.name);
+      case client::ShareState::kLate:
+        return log_line(lines::kShareLate, check.name, 1e-6 * static_cast<double>(check.age_ns));
+      case client::ShareState::kOtherRevision:
+        return log_line(lines::kShareOtherRevision, check.name, check.scene_revision, revision);
+    }
+  }
+
+  std::map<std::string, client::ShareState> states_;
+};
+
+int run_merge(const Cell& cell, const Arguments& arguments, StopSignal& signal) {
+  use_precise_timers();
+  route_dds_log();
+  if (arguments.fifo_priority > 0) {
+    if (const Refusal refusal = use_fifo_scheduling(arguments.fifo_priority))
+      log_line(lines::kSystemRefuses, *refusal);
+  }
+  client::Connection connection(arguments.dds.resolve(cell), cell.topics);
+  client::SharedCellOptions options;
+  options.late_after = std::chrono::nanoseconds(std::llround(1e6 * arguments.late_ms));
+  for (const Share& share : cell.shares.all) options.names.push_back(share.name);
+  client::SharedCell whole(connection, options);
+  merge::WholeWriter writer(connection.participant(), cell, whole.daemon());
+  merge::CommandRelay commands(connection, cell, whole.daemon());
+  log_line(lines::kMergeStarted, cell.scene.name, cell.shares.all.size(), connection.where());
+  ShareLog log;
+  const std::int64_t started = dds_time();
+  const auto is_over = [&] {
+    return arguments.seconds > 0.0 &&
+           1e-9 * static_cast<double>(dds_time() - started) >= arguments.seconds;
+  };
+  while (!signal.wait(0) && !is_over()) {
+    if (!whole.next(std::chrono::milliseconds(20))) continue;
+    writer.write(whole);
+    commands.note(whole);
+    log.note(whole);
+    if (writer.gives_way()) return kDdsFailed;
+  }
+  print(stdout, "{}\n", writer.summary(whole));
+  return kOk;
+}
+
+int run(int argc, char** argv, StopSignal& signal) {
+  CLI::App app(
+      "Joins the shares of a cell that several daemons watch, and publishes the whole cell.");
+  Arguments arguments;
+  add_options(app, arguments);
+  if (const auto done = parse(app, argc, argv)) return *done;
+  start_log("clearance-merge", arguments.log_level);
+  const auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return kBadCell;
+  if (cell->shares.all.empty()) {
+    print(stderr, "clearance-merge: {} has no 'shares': a daemon of its own watches it whole\n",
+          arguments.cell.name());
+    return kBadCell;
+  }
+  return run_merge(*cell, arguments, signal);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  return clearance::run_program(
+      "clearance-merge", [=](auto& signal) { return clearance::run(argc, argv, signal); },
+      clearance::dds_exit_code);
+}

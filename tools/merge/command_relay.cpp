@@ -1,0 +1,171 @@
+#include "tools/merge/command_relay.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <optional>
+#include <utility>
+#include <variant>
+
+#include "config/cell/share_topics.hpp"
+#include "monitor/loop/realtime.hpp"
+#include "monitor/participant/participant.hpp"
+
+namespace clearance::merge {
+namespace {
+
+constexpr std::chrono::seconds kPatience{10};                 // for the result of one share
+constexpr std::chrono::nanoseconds kReported{2'000'000'000};  // for the first report after it
+
+CommandResult refusal(const Command& command, CommandStatus status, std::string reason) {
+  return {.client = command.client,
+          .request = command.request,
+          .status = status,
+          .reason = std::move(reason)};
+}
+
+// Each share would find another pose, or none: the scenes would differ.
+std::optional<std::uint32_t> needs_a_pose(const Command& command) {
+  for (std::uint32_t i = 0; i < command.changes.size(); ++i) {
+    const auto* const attach = std::get_if<Attach>(&command.changes[i]);
+    const auto* const detach = std::get_if<Detach>(&command.changes[i]);
+    if ((attach != nullptr && !attach->carrier_from_object) ||
+        (detach != nullptr && !detach->world_from_object))
+      return i;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std::uint64_t daemon)
+    : connection_(connection) {
+  if (cell.commands.from.empty()) return;
+  for (const Share& share : cell.shares.all) {
+    OfShare& of = shares_.emplace_back();
+    of.name = share.name;
+    of.connection = std::make_unique<client::Connection>(connection.participant().handle(),
+                                                         connection.participant().partition(),
+                                                         topics_of_share(cell.topics, share.name));
+    for (const std::string& name : cell.commands.from)
+      of.commands[name] = std::make_unique<client::Commands>(*of.connection, name);
+  }
+  thread_ = std::thread([this] { run(); });
+  port_ = std::make_unique<CommandPort>(
+      cell, cell.commands.from, connection_.participant(), daemon,
+      [this](QueuedCommand command) {
+        const std::lock_guard lock(mutex_);
+        if (stop_ || queue_.size() >= CommandQueue::kMost) return false;
+        queue_.push_back(std::move(command));
+        changed_.notify_one();
+        return true;
+      },
+      [this] { return revision_.load(); });
+  port_->start();
+}
+
+// The port ends last: results go through it.
+CommandRelay::~CommandRelay() {
+  if (!thread_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    stop_ = true;
+  }
+  changed_.notify_one();
+  thread_.join();
+  port_.reset();
+}
+
+void CommandRelay::note(const client::SharedCell& whole) {
+  if (revision_ == whole->scene_revision) return;
+  since_cycle_ = whole->cycle;
+  revision_ = whole->scene_revision;
+}
+
+void CommandRelay::run() {
+  name_thread("commands");
+  for (;;) {
+    QueuedCommand next;
+    {
+      std::unique_lock lock(mutex_);
+      changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+      if (stop_) return;
+      next = std::move(queue_.front());
+      queue_.pop_front();
+    }
+    const CommandResult result = pass_on(next.command);
+    if (next.answer) next.answer(result);
+  }
+}
+
+CommandResult CommandRelay::send(OfShare& share, const Command& command, bool dry_run) {
+  client::Commands& commands = *share.commands.at(command.client);
+  const auto result = commands.send(command.changes,
+                                    {.scene_revision = command.scene_revision,
+                                     .dry_run = dry_run,
+                                     .files = command.files,
+                                     .stop = [this] { return stop_.load(); }},
+                                    kPatience);
+  if (!result) return refusal(command, CommandStatus::kFailed, "it did not answer");
+  return *result;
+}
+
+// The first report of that scene; 0: it has not come in time.
+std::uint64_t CommandRelay::in_force_from(std::uint64_t revision) const {
+  const std::int64_t end_ns = dds_time() + kReported.count();
+  while (revision_ != revision && !stop_ && dds_time() < end_ns)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return revision_ == revision ? since_cycle_.load() : 0;
+}
+
+// All shares are asked first whether they can make the change. A share that then refuses it all the
+// same is of another revision, so that the cell is not whole until it agrees.
+CommandResult CommandRelay::pass_on(const Command& asked) {
+  const std::uint64_t revision = revision_;
+  if (asked.scene_revision != 0 && asked.scene_revision != revision)
+    return refusal(asked, CommandStatus::kOtherRevision,
+                   fmt::format("the scene in force has the revision {:016x}", revision));
+  if (const auto change = needs_a_pose(asked)) {
+    CommandResult result = refusal(asked, CommandStatus::kNoPose,
+                                   "the shares of a cell do not read the same poses: state the "
+                                   "pose");
+    result.change = *change;
+    return result;
+  }
+  Command command = asked;
+  command.scene_revision = revision;
+  CommandResult last;
+  for (OfShare& share : shares_) {
+    last = send(share, command, true);
+    if (last.done()) continue;
+    last.client = asked.client;
+    last.request = asked.request;
+    last.reason = fmt::format("the share '{}' refuses it, and no share has changed: {}", share.name,
+                              last.reason);
+    return last;
+  }
+  if (!asked.dry_run) {
+    std::string others;
+    for (OfShare& share : shares_) {
+      const std::uint64_t before = last.scene_revision;
+      last = send(share, command, false);
+      const bool is_same = others.empty() || last.scene_revision == before;
+      if (last.done() && is_same) {
+        others += fmt::format("{}'{}'", others.empty() ? "" : ", ", share.name);
+        continue;
+      }
+      return refusal(
+          asked, CommandStatus::kFailed,
+          fmt::format("the share '{}' did not make it{}: {}; the cell is not whole until "
+                      "it has the same scene",
+                      share.name, others.empty() ? "" : fmt::format(", and {} did", others),
+                      last.done() ? "its scene is another one" : last.reason));
+    }
+  }
+  last.client = asked.client;
+  last.request = asked.request;
+  last.in_force_from = asked.dry_run ? 0 : in_force_from(last.scene_revision);
+  return last;
+}
+
+}  // namespace clearance::merge

@@ -1,0 +1,116 @@
+#include "tools/merge/whole_writer.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "monitor/dds/report_writer.hpp"
+
+namespace clearance::merge {
+namespace {
+
+constexpr std::int64_t kHealthEvery = 1'000'000'000;
+constexpr std::size_t kDelays = 1 << 20;
+
+DaemonIdentity identity_of(std::uint64_t daemon) {
+  DaemonIdentity identity = make_identity();
+  identity.id = daemon;
+  return identity;
+}
+
+}  // namespace
+
+WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon)
+    : participant_(participant),
+      identity_(identity_of(daemon)),
+      topics_(cell.topics),
+      distances_(participant.writer(
+          TopicKind::kDistances, topics_.distances,
+          {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
+      catalogue_(participant.writer(TopicKind::kCatalogue, topics_.catalogue)),
+      zones_(participant.writer(TopicKind::kZones, topics_.zones)),
+      health_(participant.writer(TopicKind::kHealth, topics_.health)),
+      others_(participant, topics_.distances, identity_),
+      zone_check_(cell) {}
+
+void WholeWriter::put(dds_entity_t writer, const void* sample) {
+  if (!others_.give_way() && dds_write(writer, sample) != DDS_RETCODE_OK) ++failed_;
+}
+
+// The strings belong to the share's sample. Cycles are those of this program.
+void WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
+  clearance_msg_Catalogue whole = catalogue;
+  whole.daemon = identity_.id;
+  whole.share[0] = '\0';
+  whole.began_after = whole.in_force_from = 0;
+  put(catalogue_, &whole);
+}
+
+// Ids that a changed cell no longer has are withdrawn, and all others are written again.
+void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
+  std::map<std::uint32_t, bool> now;
+  for (const auto& [id, state] : whole.zones()) {
+    now[id] = state.active;
+    const auto before = written_.find(id);
+    if (again || before == written_.end() || before->second != state.active) put(zones_, &state);
+  }
+  for (const auto& [id, active] : written_) {
+    if (now.contains(id)) continue;
+    clearance_msg_ZoneState gone{};
+    gone.zone = id;
+    dds_dispose(zones_, &gone);
+  }
+  written_ = std::move(now);
+}
+
+// Before the first catalogue, nothing is known of the cell.
+void WholeWriter::write(client::SharedCell& whole) {
+  others_.look();
+  const clearance_msg_Catalogue* const catalogue = whole.catalogue();
+  if (catalogue == nullptr) return;
+  const bool is_new = catalogue->scene_revision != revision_ || others_.have_just_left();
+  if (is_new) {
+    revision_ = catalogue->scene_revision;
+    write_catalogue(*catalogue);
+  }
+  clearance_msg_Distances report = *whole;
+  const std::int64_t oldest_ns = report.publish_ns;
+  put(distances_, &report);
+  ++reports_;
+  not_whole_ += whole.is_whole() ? 0 : 1;
+  if (delays_us_.size() < kDelays)
+    delays_us_.push_back(1e-3 * static_cast<double>(dds_time() - oldest_ns));
+  if (const clearance_msg_Separation* const separation = whole.separation()) {
+    if (separation_ == 0)
+      separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
+    put(separation_, separation);
+  }
+  write_zones(whole, is_new);
+  zone_check_.look(whole);
+  if (dds_time() - health_ns_ < kHealthEvery) return;
+  health_ns_ = dds_time();
+  auto health = whole.health();
+  health->dropped_reports += failed_;
+  health->other_writers = others_.writers();
+  health->foreign_reports = others_.reports();
+  put(health_, &*health);
+}
+
+std::string WholeWriter::summary(const client::SharedCell& whole) const {
+  std::vector<double> delays = delays_us_;
+  std::ranges::sort(delays);
+  const auto at = [&delays](double share) {
+    return delays.empty()
+               ? 0.0
+               : delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
+  };
+  return fmt::format(
+      "{} reports of the whole cell, {} of them with a share missing, late or of another revision; "
+      "{} "
+      "cycles lost, {} zones wrong, {} reports not taken by DDS\n"
+      "delay from the oldest share's report to that of the whole: p50 {:.0f} us, p99.9 {:.0f} us",
+      reports_, not_whole_, whole.missed(), zone_check_.wrong(), failed_, at(0.5), at(0.999));
+}
+
+}  // namespace clearance::merge

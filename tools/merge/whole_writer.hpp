@@ -1,0 +1,50 @@
+// Publishes a joined cell on the topics of the cell, as a daemon of the whole cell would.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/client/shared_cell.hpp"
+#include "monitor/dds/daemon_identity.hpp"
+#include "monitor/dds/other_daemons.hpp"
+#include "monitor/participant/participant.hpp"
+#include "tools/merge/zone_check.hpp"
+
+namespace clearance::merge {
+
+class WholeWriter {
+ public:
+  // `daemon` is the number in all messages. Both outlive this. Throws DdsError.
+  WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon);
+
+  // Writes the report at hand, and what has changed with it: catalogue, separations, zones. Health
+  // goes out once a second.
+  void write(client::SharedCell& whole);
+  // Another program that started first publishes this cell.
+  [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
+  // "12 reports, 0 of them not whole, ..."
+  [[nodiscard]] std::string summary(const client::SharedCell& whole) const;
+
+ private:
+  void write_catalogue(const clearance_msg_Catalogue& catalogue);
+  void write_zones(const client::SharedCell& whole, bool again);
+  void put(dds_entity_t writer, const void* sample);
+
+  Participant& participant_;
+  DaemonIdentity identity_;
+  Topics topics_;
+  dds_entity_t distances_, catalogue_, zones_, health_;
+  dds_entity_t separation_ = 0;  // 0: no share has had any yet
+  OtherDaemons others_;
+  std::uint64_t revision_ = 0;             // of the catalogue that was written; 0: none
+  std::map<std::uint32_t, bool> written_;  // zones, and whether they were active
+  std::int64_t health_ns_ = 0;
+  std::uint64_t reports_ = 0, not_whole_ = 0, failed_ = 0;
+  ZoneCheck zone_check_;
+  std::vector<double> delays_us_;  // of reports, from the publishing of the last share to here
+};
+
+}  // namespace clearance::merge

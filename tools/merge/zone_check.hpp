@@ -1,0 +1,29 @@
+// Counts zones that contradict the reports: the check that clearance-merge makes of itself.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/client/shared_cell.hpp"
+
+namespace clearance::merge {
+
+class ZoneCheck {
+ public:
+  // `cell` is the whole cell, and outlives this.
+  explicit ZoneCheck(const Cell& cell);
+
+  // A zone is wrong if it is active because a share is not heard, or if it is inactive in two
+  // reports that both have a pair of it nearer than it is entered. The first of these may have come
+  // before the state of the zone. Of another revision of the cell, nothing is known.
+  void look(const client::SharedCell& whole);
+  [[nodiscard]] std::uint64_t wrong() const noexcept { return wrong_; }
+
+ private:
+  const Cell& cell_;
+  std::vector<bool> was_doubtful_, was_unheard_;  // by zone
+  std::uint64_t wrong_ = 0;
+};
+
+}  // namespace clearance::merge
