@@ -140,7 +140,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
          "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic, and answer on "
          "/diagnostics and TOPIC/clearance (idl/ROS.md); repeatable")
       ->allow_extra_args(false)
-      ->check(is_ros_topic);
+      ->check(is_ros_topic)
+      ->excludes(share);
   app.add_option("--trajectory-margin", arguments.daemon.trajectories.margins,
                  "Margin for these, m; 0 asks for contact; repeatable")
       ->allow_extra_args(false)
