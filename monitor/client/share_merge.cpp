@@ -142,11 +142,14 @@ ShareMap::ShareMap(const clearance_msg_Catalogue& catalogue)
 void join_reports(const ShareMap& map, std::span<const ShareView> views,
                   clearance_msg_Distances& out) {
   join_pairs(map, views, out);
-  std::size_t contacts = 0;
+  std::size_t contacts = 0, hidden = 0;
   for (const ShareView& view : views) {
-    if (view.state == ShareState::kWhole) contacts += view.report->contacts._length;
+    if (view.state != ShareState::kWhole) continue;
+    contacts += view.report->contacts._length;
+    hidden += view.report->hidden._length;
   }
   begin(out.contacts, contacts);
+  begin(out.hidden, hidden);
   join_sources(views, out);
   out.scene_revision = map.revision();
   out.now_ns = out.publish_ns = out.clock_offset_ns = 0;
@@ -162,12 +165,15 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
       add_counts(*views[share].report, out);
       for (const clearance_msg_ContactState& contact : list(views[share].report->contacts))
         append(out.contacts, contact);
+      for (const clearance_msg_HiddenState& place : list(views[share].report->hidden))
+        append(out.hidden, place);
     } else {
       out.unknown += map.pairs(share);
       if (map.pairs(share) > 0) out.lower_all = out.swept_lower_all = -kNone;
     }
   }
   std::ranges::sort(list(out.contacts), {}, &clearance_msg_ContactState::pair);
+  std::ranges::sort(list(out.hidden), {}, &clearance_msg_HiddenState::pair);
   if (views.empty()) out.lower_all = out.swept_lower_all = -kNone;
   out.minimum_certified = out.minimum_known;
   for (std::size_t share = 0; share < views.size(); ++share) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/convex_body.hpp"
 #include "monitor/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -113,8 +113,12 @@ TEST(Shares, ARobotIsReadWithWhatItStandsOn) {
   const Cell one = read(cell, "one");
   EXPECT_TRUE(one.scene.objects[0].is_read);
   for (const Object& object : one.scene.objects) {
-    if (object.name == "box") EXPECT_FALSE(object.is_read);
-    if (object.name == "tool") EXPECT_TRUE(object.is_read);
+    if (object.name == "box") {
+      EXPECT_FALSE(object.is_read);
+    }
+    if (object.name == "tool") {
+      EXPECT_TRUE(object.is_read);
+    }
   }
 }
 

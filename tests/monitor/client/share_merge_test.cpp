@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/convex_body.hpp"
 #include "monitor/client/share_merge.hpp"
 #include "monitor/client/whole_reports.hpp"
 #include "monitor/report.hpp"

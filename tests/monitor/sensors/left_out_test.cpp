@@ -89,6 +89,15 @@ TEST_F(LeftOutTest, TheConeOfAHiddenPixelIsUnseen) {
   EXPECT_LT(unseen(speckled), before - 0.1);
 }
 
+// A second after the last joint states each link may be metres from where it was.
+TEST_F(LeftOutTest, LateJointsHideNothingThatIsFarFromWhereTheLinksWere) {
+  make(kImage + kAbove);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  EXPECT_EQ(elements(flat(30, 1500)), 48u) << "half a metre above the arm";
+  EXPECT_EQ(elements(flat(31, 1850)), 0u) << "0.15 m above it: the frame has nothing but the arm";
+}
+
 TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
   Sensor sensor;
   sensor.persist_frames = 2;

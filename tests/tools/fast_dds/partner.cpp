@@ -127,10 +127,11 @@ json distances(Cdr& cdr) {
   for (auto n = take<std::uint32_t>(cdr); n > 0; --n) out["pairs"].push_back(pair_distance(cdr));
   out["contacts"] = take<std::uint32_t>(cdr);  // the number of them
   out["partner"] = take<std::string>(cdr);
-  for (const char* field :
-       {"lineage", "checksum", "state_checksum", "changes_since", "delivery_checksum"})
+  for (const char* field : {"lineage", "checksum", "state_checksum"})
     out[field] = take<std::uint64_t>(cdr);
   out["hidden"] = take<std::uint32_t>(cdr);  // the number of them: the cell has no sensors
+  for (const char* field : {"changes_since", "delivery_checksum"})
+    out[field] = take<std::uint64_t>(cdr);
   return out;
 }
 
