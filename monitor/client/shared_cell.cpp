@@ -87,6 +87,21 @@ struct SharedCell::OfShare {
     return latest;
   }
 
+  // A report has come, and the states of all zones that have a pair of this share.
+  [[nodiscard]] bool is_heard() const {
+    const clearance_msg_Catalogue* const names = catalogue.message();
+    if (current->cycle == 0 || names == nullptr) return false;
+    for (const clearance_msg_CatalogueShare& share : list(names->shares)) {
+      if (name != share.name) continue;
+      const bool has_all = std::ranges::all_of(list(names->zones), [&](const auto& of) {
+        const auto ids = list(share.zones);
+        return std::ranges::find(ids, of.id) == ids.end() || zone(of.id, of.name) != nullptr;
+      });
+      if (!has_all) return false;
+    }
+    return true;
+  }
+
   std::string name;
   Connection connection;
   Reports reports;
@@ -125,6 +140,7 @@ void SharedCell::open(const std::vector<std::string>& names) {
   wait_.reset();
   map_ = {};
   shares_.clear();
+  opened_ns_ = dds_time();
   std::vector<dds_entity_t> readers;
   if (discovery_ != 0) readers.push_back(discovery_);
   for (const std::string& name : names) {
@@ -165,6 +181,15 @@ void SharedCell::look_for_names() {
 void SharedCell::take() {
   const std::int64_t now_ns = dds_time();
   for (const auto& share : shares_) share->take(now_ns);
+  if (!waits_for_first(now_ns)) return;
+  for (const auto& share : shares_) {
+    if (share->has_ahead) share->use();
+  }
+}
+
+bool SharedCell::waits_for_first(std::int64_t now_ns) const {
+  return joined_ns_ == 0 && now_ns - opened_ns_ <= options_.late_after.count() &&
+         !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); });
 }
 
 bool SharedCell::next(std::chrono::nanoseconds timeout) {
@@ -191,7 +216,7 @@ bool SharedCell::newest(std::chrono::nanoseconds timeout) {
 
 // A share that is late or missing is not waited for.
 bool SharedCell::is_due(std::int64_t now_ns) const {
-  if (shares_.empty()) return false;
+  if (shares_.empty() || waits_for_first(now_ns)) return false;
   bool has_any = false, lacks_one = false;
   for (const auto& share : shares_) {
     if (share->has_ahead) return true;

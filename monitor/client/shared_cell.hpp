@@ -83,6 +83,8 @@ class SharedCell {
   void look_for_names();
   void open(const std::vector<std::string>& names);
   void take();
+  // No joined report has been made, a share has not been heard yet, and it is not late yet.
+  [[nodiscard]] bool waits_for_first(std::int64_t now_ns) const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
   void follow_revision();
   void judge(std::int64_t now_ns);
@@ -104,6 +106,7 @@ class SharedCell {
   std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
   ReportChecker checker_;
   ReportCheck check_;
+  std::int64_t opened_ns_ = 0;
   std::int64_t joined_ns_ = 0;  // when the last report was made, by dds_time()
 };
 
