@@ -53,7 +53,7 @@ struct Shares {
 //    shares.
 void select_share(Cell& cell, std::uint32_t share);
 
-// What a daemon's work for a pair costs, in thousandths of the tracked query of two polyhedra. It
+// The cost of a pair to its daemon, in thousandths of the tracked query of two polyhedra. It
 // depends on the cell alone, so all machines divide a cell alike.
 [[nodiscard]] std::uint64_t pair_cost(const std::vector<Object>& objects,
                                       const ObjectPair& pair) noexcept;

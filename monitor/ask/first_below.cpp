@@ -118,7 +118,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         const PairAtMiddle found = query(at, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough));
-        // What moves without a limit may be at any depth.
+        // An object that may move without a limit may be at any depth.
         const double nearing = at.approach.nearing.until_middle;
         const double upper =
             nearing < kInfinity ? rounded_up(found.upper + motion.rounding - nearing) : -kInfinity;

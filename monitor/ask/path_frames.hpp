@@ -1,4 +1,4 @@
-// Where the links of robots are along a motion, for pictures. Nothing is decided by it.
+// The places of robots' links along a motion, for pictures. No answer depends on them.
 #pragma once
 
 #include <cstddef>

@@ -106,7 +106,7 @@ class Stream {
   WholeReports whole_;
 };
 
-// Of a daemon that publishes the pairs that changed, reports have all pairs here. A pair that
+// Reports have all pairs here, even if the daemon publishes only those that changed. A pair that
 // cannot be known, since a report before was missed, is unknown until the next full report.
 using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell

@@ -33,7 +33,7 @@ struct ShareView {
 class ShareMap {
  public:
   ShareMap() = default;
-  // Of a catalogue with `shares`.
+  // The catalogue has `shares`.
   explicit ShareMap(const clearance_msg_Catalogue& catalogue);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }

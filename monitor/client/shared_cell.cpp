@@ -69,8 +69,8 @@ struct SharedCell::OfShare {
     is_new = true;
     has_ahead = false;
   }
-  // The last state that a daemon has written of which this share is heard now. Partners tick the
-  // same times.
+  // The last state that was written by a daemon whose reports come now. Partners tick the same
+  // times.
   [[nodiscard]] const clearance_msg_ZoneState* zone(std::uint32_t id,
                                                     std::string_view zone_name) const {
     const clearance_msg_ZoneState* latest = nullptr;

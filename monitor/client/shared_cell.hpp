@@ -24,7 +24,7 @@ struct SharedCellOptions {
   std::vector<std::string> names = {};
 };
 
-// How a share is in the report at hand.
+// The state of a share in the present report.
 struct ShareCheck {
   std::string name;
   ShareState state = ShareState::kMissing;

@@ -21,7 +21,7 @@ class WholeReports {
   std::vector<clearance_msg_PairDistance> pairs_;
 };
 
-// A pair of which nothing is known.
+// The report of a pair about which nothing is known.
 [[nodiscard]] clearance_msg_PairDistance unknown_pair(std::uint32_t pair) noexcept;
 
 }  // namespace clearance::client

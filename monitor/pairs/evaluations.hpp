@@ -1,5 +1,5 @@
-// What queries of part pairs have left: hints for the next query, the closest points, and what the
-// direction between them proves.
+// The results that queries of part pairs have left: hints for the next query, the closest points,
+// and the bounds that the direction between them proves.
 //
 // In large cells hardly any pair is ever queried: models of its objects prove it far. So the room
 // for this is not by part pair. Published pairs have theirs for good. The others share a number of
