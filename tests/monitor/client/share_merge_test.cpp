@@ -112,6 +112,30 @@ TEST(ShareMerge, TheWholeHasEveryPairOnceAndTheLeastOfAll) {
   }
 }
 
+TEST(ShareMerge, HiddenPlacesOfAllSharesComeInTheOrderOfPairs) {
+  Random random(36);
+  Shares shares(random_bounds(random));
+  for (std::size_t share = 0; share < 3; ++share) {
+    auto& hidden = shares.reports[share]->hidden;
+    const auto& pairs = shares.cell.shares.all[share].pairs;
+    reserve_sequence(hidden, pairs.size());
+    for (const std::uint32_t pair : pairs) {
+      clearance_msg_HiddenState& place = hidden._buffer[hidden._length++];
+      place = {};
+      place.pair = pair;
+      place.thickness = 0.01 * pair;
+    }
+  }
+  const clearance_msg_Distances& whole = shares.join();
+  ASSERT_EQ(whole.hidden._length, 15u);
+  for (std::uint32_t pair = 0; pair < 15; ++pair) {
+    EXPECT_EQ(whole.hidden._buffer[pair].pair, pair);
+    EXPECT_EQ(whole.hidden._buffer[pair].thickness, 0.01 * pair);
+  }
+  shares.views[1].state = ShareState::kLate;
+  EXPECT_EQ(shares.join().hidden._length, 15u - shares.cell.shares.all[1].pairs.size());
+}
+
 // Whatever is missing, each pair has a true lower bound or none, and nothing is certified.
 TEST(ShareMerge, AShareThatIsNotWholeIsUnknownByNameAndNeverClear) {
   Random random(35);
