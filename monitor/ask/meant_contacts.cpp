@@ -44,6 +44,8 @@ std::optional<std::string> MotionSearch::take_contacts(const Question& question)
         objects[at++] = static_cast<std::uint32_t>(found - scene_.objects.begin());
       }
       if (!(stated.depth > 0.0)) return "the depth of a contact is not above 0";
+      if (std::isnan(stated.until) || std::isnan(stated.distance))
+        return "the end of a contact is not a number";
       contacts_.push_back({std::min(objects[0], objects[1]), std::max(objects[0], objects[1]),
                            -stated.depth, stated.until, stated.distance});
     }

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "monitor/commands/body_message.hpp"
 #include "monitor/commands/wire_values.hpp"
 
 namespace clearance {
@@ -31,6 +32,21 @@ class Reader {
   // The same as number(), but 0 leaves what is there.
   void number_or_default(const std::string& path, double from, double& to) {
     if (from != 0.0) number(path, from, to);
+  }
+  void from_zero(const std::string& path, double from, double& to) {
+    if (!(from >= 0.0) || !std::isfinite(from))
+      return refuse(path, fmt::format("found {}; expected a finite number from 0 on", from));
+    to = from;
+  }
+  // What is not stated leaves what is there.
+  void stated(const std::string& path, const clearance_msg_StatedNumber& from, double& to) {
+    if (from.is_stated) number(path, from.value, to);
+  }
+  void body(const std::string& path, const clearance_msg_StatedBody& from,
+            std::optional<ConvexBody>& to) {
+    auto made = from_wire(from);
+    if (auto* error = std::get_if<ShapeError>(&made)) return refuse(path, std::move(error->reason));
+    to = std::get<0>(std::move(made));
   }
   void pose(const std::string& path, const clearance_msg_Placement& from, Pose& to) {
     if (auto fault = take_placement(from, to))
@@ -97,6 +113,9 @@ void put_list(const std::vector<From>& from, Sequence& to, const Put& put) {
 clearance_msg_Vector3 vector_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vector_of(const clearance_msg_Vector3& v) { return {v.x, v.y, v.z}; }
 
+// Infinity is not stated. What is no number is, and is refused.
+clearance_msg_StatedNumber stated_number(double value) { return {value != kInfinity, value}; }
+
 void read_profile(const clearance_msg_Question& message, Reader& read, Question& question) {
   if (message.profile == 0) return;
   ProfileRequest& profile = question.profile.emplace();
@@ -110,11 +129,32 @@ void read_profile(const clearance_msg_Question& message, Reader& read, Question&
   read.name("profile_second", message.profile_second, profile.second, true);
 }
 
+void read_contacts(const clearance_msg_Question& message, Reader& read, Question& question) {
+  if (!message.states_contacts) return;
+  read.list("contacts", message.contacts, kMostStated, question.contacts.emplace(),
+            [&](const std::string& at, const clearance_msg_MeantContact& from, MeantContact& to) {
+              read.name(at + ".first", from.first, to.first);
+              read.name(at + ".second", from.second, to.second);
+              read.number(at + ".depth", from.depth, to.depth);
+              read.stated(at + ".until", from.until, to.until);
+              read.stated(at + ".distance", from.distance, to.distance);
+            });
+}
+
 void read_others(const clearance_msg_Question& message, Reader& read, Question& question) {
   read.list("poses", message.poses, kMostStated, question.poses,
             [&](const std::string& at, const clearance_msg_PlacedObject& from, StatedPose& to) {
               read.name(at + ".object", from.object, to.object);
               read.pose(at + ".world_from_object", from.world_from_object, to.world_from_object);
+              read.from_zero(at + ".age", from.age, to.age);
+              if (from.turn_speed.is_stated)
+                read.from_zero(at + ".turn_speed", from.turn_speed.value, to.turn_speed);
+            });
+  read.list("joints", message.joints, kMostStated, question.joints,
+            [&](const std::string& at, const clearance_msg_PlacedJoint& from, StatedJoint& to) {
+              read.name(at + ".joint", from.joint, to.name);
+              read.number(at + ".position", from.position, to.position);
+              read.from_zero(at + ".age", from.age, to.age);
             });
   read.list("moving", message.moving, kMostStated, question.moving,
             [&](const std::string& at, const clearance_msg_ObjectMotion& from, ObjectMotion& to) {
@@ -131,6 +171,7 @@ void read_others(const clearance_msg_Question& message, Reader& read, Question& 
               read.name(at + ".link", from.link, to.link);
               read.pose(at + ".link_from_object", from.link_from_object, to.link_from_object);
               read.names(at + ".touch", from.touch, kMostStated, to.touch);
+              read.body(at + ".body", from.body, to.shape);
             });
   constexpr auto kLast = static_cast<std::uint8_t>(OthersMove::kNot);
   if (message.others > kLast)
@@ -161,6 +202,7 @@ std::variant<MotionQuestion, MalformedField> from_wire(const clearance_msg_Quest
               read.number(at + ".position", from.position, to.position);
             });
   read_others(message, read, question);
+  read_contacts(message, read, question);
   question.margins.clear();
   read.numbers("margins", message.margins, kMostMargins, question.margins);
   read.number_or_default("tolerance", message.tolerance, question.tolerance);
@@ -173,16 +215,12 @@ std::variant<MotionQuestion, MalformedField> from_wire(const clearance_msg_Quest
 }
 
 std::string unsent_part(const Question& question) {
-  constexpr std::string_view kInputs = ": a daemon takes these from its inputs; leave them out";
-  if (!question.joints.empty()) return "joints_of_others" + std::string(kInputs);
-  if (!question.seen.empty()) return "seen" + std::string(kInputs);
-  if (question.contacts) return "contacts" + std::string(kInputs);
+  if (!question.seen.empty())
+    return "seen: a daemon has the frames of its sensors from its inputs; leave them out";
   for (const Payload& payload : question.payloads) {
-    if (payload.shape) return "payloads: a body cannot be sent; expected objects of the cell";
-  }
-  for (const StatedPose& pose : question.poses) {
-    if (pose.age != 0.0 || pose.turn_speed < kInfinity)
-      return "poses: ages and turn speeds cannot be sent; expected poses at the first waypoint";
+    if (!payload.shape) continue;
+    if (std::string unsent = unsent_part(*payload.shape); !unsent.empty())
+      return "payloads: " + std::move(unsent);
   }
   return "";
 }
@@ -203,6 +241,14 @@ Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
            [](const StatedPose& from, clearance_msg_PlacedObject& to) {
              put_value(from.object, to.object);
              put_value(from.world_from_object, to.world_from_object);
+             to.age = from.age;
+             to.turn_speed = stated_number(from.turn_speed);
+           });
+  put_list(question.joints, message->joints,
+           [](const StatedJoint& from, clearance_msg_PlacedJoint& to) {
+             put_value(from.name, to.joint);
+             to.position = from.position;
+             to.age = from.age;
            });
   put_list(question.moving, message->moving,
            [](const ObjectMotion& from, clearance_msg_ObjectMotion& to) {
@@ -217,7 +263,19 @@ Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
              put_value(from.link, to.link);
              put_value(from.link_from_object, to.link_from_object);
              put_value(from.touch, to.touch);
+             if (from.shape) put_value(*from.shape, to.body);
            });
+  message->states_contacts = question.contacts.has_value();
+  if (question.contacts) {
+    put_list(*question.contacts, message->contacts,
+             [](const MeantContact& from, clearance_msg_MeantContact& to) {
+               put_value(from.first, to.first);
+               put_value(from.second, to.second);
+               to.depth = from.depth;
+               to.until = stated_number(from.until);
+               to.distance = stated_number(from.distance);
+             });
+  }
   message->others = static_cast<std::uint8_t>(question.others);
   put_value(question.margins, message->margins);
   message->tolerance = question.tolerance;

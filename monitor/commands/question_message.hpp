@@ -23,8 +23,7 @@ inline constexpr std::size_t kMostWaypoints = 10'000, kMostMotionJoints = 64, kM
     const clearance_msg_Question& message);
 
 // Returns what a message has no room for, as "NAME: what to do instead"; empty: all of the question
-// can be sent. A daemon has the positions of other robots, ages, and the frames of sensors from its
-// inputs. A new payload must be an object of the cell.
+// can be sent. A daemon has the frames of sensors from its inputs.
 [[nodiscard]] std::string unsent_part(const Question& question);
 
 // Makes the message of a question. It allocates. The longest client has 32 bytes; more are cut off.

@@ -102,11 +102,15 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
   const auto is_held = [&](const std::string& name) {
     return std::ranges::find(question.held, name, &HeldJoint::name) != question.held.end();
   };
+  const auto is_stated = [&](const std::string& name) {
+    return std::ranges::find(question.joints, name, &StatedJoint::name) != question.joints.end();
+  };
   const std::vector<bool> is_of_question = robots_of_question(scene, question);
   for (std::size_t i = 0; i < scene.variables.size(); ++i) {
     const JointVariable& variable = scene.variables[i];
     const PresentJoint& joint = state.joints[i];
-    if (moves(question, variable.name) || is_held(variable.name)) continue;
+    const std::string& name = variable.name;
+    if (moves(question, name) || is_held(name) || is_stated(name)) continue;
     if (joint.state != PresentPose::State::kUsable) {
       missing.add(
           fmt::format("the position of joint '{}' {}", variable.name, what_is_wrong(joint.state)));
@@ -150,7 +154,7 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
         {.object = name, .world_from_object = present.pose.world_from_body, .age = present.age});
   }
   const double now = question.motion.times.empty() ? 0.0 : question.motion.times.front();
-  question.contacts = contacts_in_force(scene, state, now);
+  if (!question.contacts) question.contacts = contacts_in_force(scene, state, now);
   return missing.text();
 }
 

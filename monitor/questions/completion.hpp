@@ -16,7 +16,7 @@ namespace clearance {
 // m/s. Drives at rest report less.
 inline constexpr double kRestSpeed = 2e-3;
 
-// Adds to `held`, `joints`, `poses` and `seen` what the question lacks. `frames` are the last ones
+// Adds to `held`, `joints`, `poses`, `seen` and `contacts` what the question lacks. `frames` are the last ones
 // of the sensors; their ages are those of the frames in use. Returns why it cannot: a sentence that
 // names the inputs which are unknown, late or contradicted, or a joint that is taken to stay and
 // moves. Names that the scene lacks stay, for Asker to refuse.

@@ -15,6 +15,15 @@ namespace {
 constexpr std::chrono::milliseconds kUntilSceneFollows{2};
 constexpr int kMostWaits = 500;
 
+// A vertex of a body with its share of edges, facets and tables, about.
+constexpr std::size_t kBytesOfVertex = 1000;
+
+std::size_t bytes_of(const JointTrajectory& motion) noexcept {
+  return sizeof motion + sizeof(std::string) * motion.joints.size() +
+         sizeof(double) *
+             (motion.times.size() + motion.positions.size() + motion.velocities.size());
+}
+
 QuestionResult refusal(const MotionQuestion& question, QuestionStatus status, std::string reason) {
   return {.client = question.client,
           .request = question.request,
@@ -26,11 +35,20 @@ QuestionResult refusal(const MotionQuestion& question, QuestionStatus status, st
 
 std::size_t bytes_of(const QueuedQuestion& queued) noexcept {
   const Question& question = queued.question.question;
-  return sizeof(QueuedQuestion) + queued.bytes_to_make +
-         sizeof(double) * (question.motion.times.size() + question.motion.positions.size() +
-                           question.motion.velocities.size() + question.margins.size()) +
-         sizeof(std::string) * question.motion.joints.size() +
-         sizeof(HeldJoint) * question.held.size() + sizeof(StatedPose) * question.poses.size();
+  std::size_t bytes =
+      sizeof(QueuedQuestion) + queued.bytes_to_make + bytes_of(question.motion) +
+      sizeof(double) * question.margins.size() + sizeof(HeldJoint) * question.held.size() +
+      sizeof(StatedJoint) * question.joints.size() + sizeof(StatedPose) * question.poses.size();
+  for (const JointTrajectory& motion : question.beside) bytes += bytes_of(motion);
+  for (const ObjectMotion& motion : question.moving) {
+    bytes += sizeof motion + (sizeof(double) + sizeof(Pose)) * motion.times.size();
+  }
+  for (const Payload& payload : question.payloads) {
+    bytes += sizeof payload + sizeof(std::string) * payload.touch.size();
+    if (payload.shape) bytes += kBytesOfVertex * payload.shape->vertices.size();
+  }
+  if (question.contacts) bytes += sizeof(MeantContact) * question.contacts->size();
+  return bytes;
 }
 
 QuestionDesk::QuestionDesk(std::shared_ptr<const Cell> cell, TickLoop& loop,

@@ -18,17 +18,17 @@ TEST(Questions, ThatNoMessageHoldsAreRefusedAndNotSentWithoutAPart) {
   client::Connection connection(test::own_dds());
   client::Questions questions(connection, "planner");
   const std::function<void(Question&)> unsent[] = {
-      [](Question& q) { q.joints.push_back({.name = "elbow", .position = 1.0}); },
       [](Question& q) { q.seen.emplace_back().sensor = "eye"; },
-      [](Question& q) { q.contacts.emplace(); },
       [](Question& q) {
-        q.payloads.emplace_back().shape = std::get<ConvexBody>(box(Vec3(0.1, 0.1, 0.1)));
+        const HalfSpace floor[] = {{Vec3(0, 0, 1), 0.0}};
+        q.payloads.emplace_back().shape = std::get<ConvexBody>(polyhedron_from_halfspaces(floor));
       },
       [](Question& q) {
-        q.poses.push_back({.object = "cart", .world_from_object = {}, .age = 0.1});
-      },
-      [](Question& q) {
-        q.poses.push_back({.object = "cart", .world_from_object = {}, .turn_speed = 1.0});
+        const HalfSpace rows[] = {{Vec3(1, 1, 3), 0.1},
+                                  {Vec3(-3, 1, -1), 0.1},
+                                  {Vec3(1, -3, -1), 0.1},
+                                  {Vec3(1, 1, -1), 0.1}};
+        q.payloads.emplace_back().shape = std::get<ConvexBody>(polyhedron_from_halfspaces(rows));
       },
   };
   for (const auto& change : unsent) {

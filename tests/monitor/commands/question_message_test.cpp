@@ -7,7 +7,10 @@
 #include <limits>
 #include <string>
 #include <variant>
+#include <vector>
 
+#include "core/shapes.hpp"
+#include "monitor/commands/body_message.hpp"
 #include "tests/shared/poses.hpp"
 
 namespace clearance {
@@ -22,13 +25,22 @@ MotionQuestion whole_question() {
                      .velocities = {5, 6, 7, 8}};
   question.beside = {{.joints = {"c"}, .times = {0.5}, .positions = {9}, .velocities = {}}};
   question.held = {{"d", 0.25}};
-  question.poses = {{.object = "cart", .world_from_object = test::at(1, 2, 3)}};
+  question.poses = {{.object = "cart", .world_from_object = test::at(1, 2, 3), .age = 0.1},
+                    {.object = "base", .world_from_object = Pose(), .turn_speed = 0.5}};
+  question.joints = {{.name = "e", .position = -0.5, .age = 0.02}};
+  question.contacts = {{.first = "part", .second = "bin", .depth = 0.01, .until = 2.0},
+                       {.first = "hand", .second = "bin", .depth = 0.02, .distance = 0.3}};
   question.moving = {{.object = "box", .times = {0.0}, .world_from_object = {test::at(4, 5, 6)}}};
   question.payloads = {{.name = "part",
                         .shape = {},
                         .link = "hand",
                         .link_from_object = test::at(0, 0, 1),
-                        .touch = {"finger"}}};
+                        .touch = {"finger"}},
+                       {.name = "new part",
+                        .shape = std::get<ConvexBody>(box(Vec3(0.1, 0.2, 0.3))),
+                        .link = "hand",
+                        .link_from_object = Pose(),
+                        .touch = {}}};
   question.others = OthersMove::kNot;
   question.margins = {0.0, 0.1};
   question.tolerance = 0.002;
@@ -65,11 +77,28 @@ TEST(QuestionMessage, ComesBackAsItWas) {
   ASSERT_EQ(a.held.size(), 1u);
   EXPECT_EQ(a.held[0].name, "d");
   EXPECT_EQ(a.held[0].position, 0.25);
-  ASSERT_EQ(a.poses.size(), 1u);
+  ASSERT_EQ(a.poses.size(), 2u);
   EXPECT_EQ(a.poses[0].world_from_object.position, Vec3(1, 2, 3));
+  EXPECT_EQ(a.poses[0].age, 0.1);
+  EXPECT_EQ(a.poses[0].turn_speed, kInfinity);
+  EXPECT_EQ(a.poses[1].turn_speed, 0.5);
+  ASSERT_EQ(a.joints.size(), 1u);
+  EXPECT_EQ(a.joints[0].name, "e");
+  EXPECT_EQ(a.joints[0].position, -0.5);
+  EXPECT_EQ(a.joints[0].age, 0.02);
+  ASSERT_TRUE(a.contacts);
+  ASSERT_EQ(a.contacts->size(), 2u);
+  EXPECT_EQ((*a.contacts)[0].first + (*a.contacts)[0].second, "partbin");
+  EXPECT_EQ((*a.contacts)[0].depth, 0.01);
+  EXPECT_EQ((*a.contacts)[0].until, 2.0);
+  EXPECT_EQ((*a.contacts)[0].distance, kInfinity);
+  EXPECT_EQ((*a.contacts)[1].distance, 0.3);
   ASSERT_EQ(a.moving.size(), 1u);
   EXPECT_EQ(a.moving[0].world_from_object[0].position, Vec3(4, 5, 6));
-  ASSERT_EQ(a.payloads.size(), 1u);
+  ASSERT_EQ(a.payloads.size(), 2u);
+  EXPECT_FALSE(a.payloads[0].shape);
+  ASSERT_TRUE(a.payloads[1].shape);
+  EXPECT_EQ(a.payloads[1].shape->vertices.size(), 8u);
   EXPECT_EQ(a.payloads[0].name + a.payloads[0].link + a.payloads[0].touch.at(0), "parthandfinger");
   EXPECT_EQ(a.others, OthersMove::kNot);
   EXPECT_EQ(a.margins, b.margins);
@@ -113,10 +142,66 @@ TEST(QuestionMessage, RefusesEachFieldByItsPath) {
   EXPECT_EQ(with([](auto&, auto& q) { q.moving[0].object = std::string(65, 'n'); }),
             "moving[0].object");
   EXPECT_EQ(with([](auto&, auto& q) { q.payloads[0].link = ""; }), "payloads[0].link");
+  EXPECT_EQ(with([](auto&, auto& q) { q.poses[0].age = -1.0; }), "poses[0].age");
+  EXPECT_EQ(with([](auto&, auto& q) { q.poses[1].turn_speed = kNaN; }), "poses[1].turn_speed");
+  EXPECT_EQ(with([](auto&, auto& q) { q.joints[0].position = kNaN; }), "joints[0].position");
+  EXPECT_EQ(with([](auto&, auto& q) { q.joints[0].age = kInfinity; }), "joints[0].age");
+  EXPECT_EQ(with([](auto&, auto& q) { (*q.contacts)[0].second = ""; }), "contacts[0].second");
+  EXPECT_EQ(with([](auto&, auto& q) { (*q.contacts)[0].until = kNaN; }), "contacts[0].until");
+  EXPECT_EQ(with([](auto&, auto& q) { q.payloads[1].shape->radius = -1.0; }), "payloads[1].body");
   EXPECT_EQ(with([](auto&, auto& q) { q.others = static_cast<OthersMove>(7); }), "others");
   EXPECT_EQ(with([](auto&, auto& q) { q.margins[1] = kNaN; }), "margins[1]");
   EXPECT_EQ(with([](auto&, auto& q) { q.tolerance = kNaN; }), "tolerance");
   EXPECT_EQ(with([](auto&, auto& q) { q.profile->most_points = kMostProfile + 1; }), "profile");
+}
+
+// Every kind of body comes back with the same vertices, sizes and radius, to the bit.
+TEST(QuestionMessage, BringsBodiesToTheBit) {
+  const std::vector<Vec3> corners = {
+      {0, 0, 0}, {0.1, 0, 0}, {0, 0.1, 0}, {0, 0, 0.3}, {0.07, 0.08, 0.09}};
+  const ShapeResult bodies[] = {point(Vec3(0.1, 0.2, 0.3), 0.05),
+                                segment(Vec3(0, 0, 0.1), Vec3(0.3, 0, 0), 0.02),
+                                box(Vec3(0.1, 0.2, 0.3)),
+                                polyhedron_from_vertices(corners),
+                                ellipsoid(Vec3(0.1, 0.2, 0.3)),
+                                cylinder(0.1, 0.2, 0.01),
+                                cone(0.1, 0.2),
+                                truncated_cone(0.1, 0.3, 0.2)};
+  for (const ShapeResult& made : bodies) {
+    const auto& body = std::get<ConvexBody>(made);
+    EXPECT_EQ(unsent_part(body), "");
+    MotionQuestion asked = whole_question();
+    asked.question.payloads[1].shape = body;
+    const auto read = from_wire(*to_wire(asked));
+    ASSERT_TRUE(std::holds_alternative<MotionQuestion>(read));
+    const auto& got = std::get<MotionQuestion>(read).question.payloads[1].shape;
+    ASSERT_TRUE(got);
+    EXPECT_EQ(got->radius, body.radius);
+    EXPECT_EQ(got->curved, body.curved);
+    EXPECT_EQ(got->anchors, body.anchors);
+    EXPECT_EQ(got->position_error, body.position_error);
+  }
+}
+
+TEST(QuestionMessage, RefusesBodiesOfTooManyPointsAndOfUnknownKinds) {
+  const auto refused = [](const auto& change) {
+    Sample<clearance_msg_Question> message = to_wire(whole_question());
+    clearance_msg_StatedBody& body = message->payloads._buffer[1].body;
+    change(body);
+    const auto read = from_wire(*message);
+    const auto* fault = std::get_if<MalformedField>(&read);
+    return fault != nullptr && fault->path == "payloads[1].body";
+  };
+  EXPECT_FALSE(refused([](auto&) {}));
+  EXPECT_TRUE(refused([](auto& body) { body.kind = 4; }));
+  EXPECT_TRUE(refused([](auto& body) { body.points._length = 3; }));
+  EXPECT_TRUE(refused([](auto& body) { body.points._buffer[2].y = 1 / 0.0; }));
+  EXPECT_TRUE(refused([](auto& body) {
+    dds_free(body.points._buffer);
+    body.points = {};
+    reserve_sequence(body.points, kMostBodyPoints + 1);
+    body.points._length = kMostBodyPoints + 1;
+  }));
 }
 
 TEST(QuestionMessage, OfAnAnswerComesBackAsItWas) {
