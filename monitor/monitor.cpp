@@ -87,7 +87,8 @@ struct Monitor::State {
 
   // The objects of sensors, by their numbers.
   struct Shown {
-    SensorFrame frame;  // that the next tick takes; its cloud is null: none
+    SensorFrame frame;   // that the next tick takes; its cloud is null: none
+    SensorFrame in_use;  // likewise
     SourceClock clock;
   };
   std::vector<Shown> shown;
@@ -259,6 +260,10 @@ bool Monitor::uses(const SeenCloud* cloud) const noexcept {
   return false;
 }
 
+SensorFrame Monitor::frame_in_use(std::uint32_t sensor) const noexcept {
+  return state_->shown[sensor].in_use;
+}
+
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
 
 SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
@@ -425,6 +430,7 @@ void Monitor::State::take_frames() noexcept {
     }
     culling.forget_object(object, table);
     clouds->set(sensor, {frame.cloud, frame.pose_error});
+    shown[sensor].in_use = frame;
     hidden.take(sensor, *frame.cloud);
     inputs.visits.visit(object);
   }

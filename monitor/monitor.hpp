@@ -126,6 +126,8 @@ class Monitor {
   bool show(std::uint32_t sensor, const SensorFrame& frame) noexcept;
   // True if the cloud is that of a frame in use, or of one that the next tick takes.
   [[nodiscard]] bool uses(const SeenCloud* cloud) const noexcept;
+  // The frame of a sensor that the last tick used; its cloud is null: none.
+  [[nodiscard]] SensorFrame frame_in_use(std::uint32_t sensor) const noexcept;
 
   // Any pair at the last tick, whether it is published or not. All are unknown before the first
   // tick.

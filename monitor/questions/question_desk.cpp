@@ -4,9 +4,9 @@
 #include <exception>
 #include <utility>
 
+#include "monitor/ask/completion.hpp"
 #include "monitor/ask/named_answer.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/questions/completion.hpp"
 
 namespace clearance {
 namespace {

@@ -16,7 +16,7 @@
 #include "monitor/ask/asker.hpp"
 #include "monitor/loop/request_queue.hpp"
 #include "monitor/motion_question.hpp"
-#include "monitor/questions/input_state.hpp"
+#include "monitor/questions/input_states.hpp"
 
 namespace clearance {
 

@@ -71,6 +71,19 @@ def test_an_object_comes_nearer_by_its_largest_speed_unless_it_is_still(planar):
     assert slow.lower == pytest.approx(5.0 - 0.35 - 4.5, abs=2e-3)
 
 
+def test_an_age_widens_and_a_meant_contact_keeps_the_margin(planar):
+    at = dict(held={"elbow": 0.0}, poses={"ball": [2.0, 5.0, 0, 0, 0, 0, 1]})
+    rest = dict(joints=["shoulder"], times=[0.0, 0.005], positions=[[0.0], [0.0]])
+    aged = planar.ask(Question(**rest, **at, ages={"ball": 0.04}))
+    assert aged.lower == pytest.approx(5.0 - 0.35 - 4.5, abs=2e-3)
+    contact = ("lower", "wall", 0.01)
+    meant = planar.ask(Question(**SWING, **REST, margins=[0.95], contacts=[contact]))
+    assert meant.margins[0].verdict is Verdict.FREE and meant.upper == pytest.approx(0.9, abs=1e-3)
+    # The least distance is reached after 4/3 s.
+    ended = planar.ask(Question(**SWING, **REST, margins=[0.95], contacts=[(*contact, 1.3, None)]))
+    assert ended.margins[0].verdict is Verdict.BELOW
+
+
 @pytest.mark.parametrize(
     "change, match",
     [
@@ -101,6 +114,9 @@ def test_what_does_not_fit_the_cell_is_refused_with_the_reason(planar, change, m
         (dict(moving={"ball": ([0.0],)}), ValueError, "moving"),
         (dict(payloads={"part": ("lower",)}), ValueError, "payloads"),
         (dict(held={"elbow": "x"}), TypeError, ""),
+        (dict(ages={"wall": 1.0}), ValueError, "wall"),
+        (dict(turn_speeds={"wall": 1.0}), ValueError, "wall"),
+        (dict(contacts=[("lower", "wall")]), ValueError, "contacts"),
     ],
 )
 def test_wrong_shapes_are_refused_at_once(change, error, match):
@@ -135,6 +151,13 @@ def test_a_daemon_answers_for_where_everything_is_now(daemon, planar):
         assert (answer.lower, answer.upper, answer.time) == (here.lower, here.upper, here.time)
         assert answer.is_free(0.8) and answer.revision == planar.revision and answer.cycle > 0
         assert answer.start_joint == "shoulder" and answer.start_deviation == 0.25
+        part = ("lower", [0.1, 0, 0, 0, 0, 0, 1], [], clearance.box([0.3, 0.01, 0.01]))
+        carried = questions.ask(Question(**SWING, payloads={"part": part}, others="still"), LIMIT_S)
+        there = planar.ask(Question(**SWING, **REST, payloads={"part": part}))
+        assert (carried.lower, carried.upper) == (there.lower, there.upper)
+        assert "part" in carried.pair and carried.upper < answer.upper
+        stated = Question(**SWING, margins=[0.95], others="still", contacts=[("lower", "wall", 0.01)])
+        assert questions.ask(stated, LIMIT_S).is_free(0.95)
         refused = questions.ask(Question(**{**SWING, "joints": ["knee"]}), LIMIT_S)
         assert refused.status is QuestionStatus.REFUSED and "knee" in refused.reason
         stale = questions.ask(question, LIMIT_S, revision=1)

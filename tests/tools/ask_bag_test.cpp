@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/bags/ros_camera.hpp"
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -154,6 +154,67 @@ TEST_F(AskOfABag, WritesProfilesAPlotAndAPage) {
             std::string::npos);
   EXPECT_NE(page.find("<svg"), std::string::npos) << output;
   EXPECT_NE(read_text(path("p.svg")).find("</svg>"), std::string::npos);
+}
+
+// The cart comes to where the finger passes by. Each motion meets it where it is by then.
+TEST_F(AskOfABag, TakesObjectsWhereTheBagHasThem) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 5000}\n"
+             "ros2: {world_frame: map}\nrobots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+             "  - {name: cart, frame: cart_link, may_jump: true, max_speed: 0.1, sphere: {radius: "
+             "0.1}}\npairs: [{between: [arm, cart]}]\n");
+  const auto cart = [](std::int64_t ns, double x) {
+    return transforms(ns, ns, {{"map", "cart_link", {x, 0.0, 0.0}}});
+  };
+  const std::vector<PointText> swing = {{0.0, {-1.0}}, {2.0, {0.6}}};
+  ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest), cart(kSecondNs, 3.3),
+                 trajectory(2 * kSecondNs, {"shoulder"}, swing), cart(3 * kSecondNs, 2.3),
+                 trajectory(4 * kSecondNs, {"shoulder"}, swing),
+                 trajectory(4 * kSecondNs, {"nothing"}, swing), cart(5 * kSecondNs, 2.3),
+                 trajectory(9 * kSecondNs, {"shoulder"}, swing)},
+                {"--others-still"}),
+            1)
+      << output;
+  ASSERT_EQ(answers.size(), 4u);
+  EXPECT_NEAR(answers[0]["upper"], 1.15, 1e-6) << answers[0];
+  EXPECT_NEAR(answers[1]["upper"], 0.15, 1e-6) << answers[1];
+  EXPECT_TRUE(answers[2].contains("error"));
+  EXPECT_TRUE(answers[3].contains("error")) << "nothing says where the cart is by then";
+  // Unless it stands still, it comes nearer by its speed x the age of its pose and the time since.
+  ask({joint_state(kSecondNs, kSecondNs, kRest), cart(kSecondNs, 3.3),
+       trajectory(2 * kSecondNs, {"shoulder"}, swing), cart(3 * kSecondNs, 2.3)});
+  EXPECT_NEAR(answers.at(0)["upper"], 1.15 - 0.1 * (1.0 + 1.25), 0.01) << answers[0];
+}
+
+// A camera looks down on a plate 0.1 m above the way of the finger.
+TEST_F(AskOfABag, TakesWhatACameraSawBeforeTheMotion) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 5000}\n"
+             "robots: [{name: arm, urdf: scara.urdf}]\n"
+             "sensors:\n  - {name: eye, depth_image: /cam/depth, size: [80, 60], depth_error: "
+             "{constant: 0.002}, range: [0.3, 5], own_shell: 0.005, age_limit_ms: 5000, "
+             "mount: {pose: {xyz: [2.2, 0, 1], rpy: [3.141592653589793, 0, 0]}}}\n"
+             "pairs: [{between: [arm, eye]}]\n");
+  const PinholeCamera view{80, 60, 60.0, 60.0, 39.5, 29.5};
+  const auto plate = [&](std::int64_t ns, float depth) {
+    return depth_image(ns, view, std::vector<float>(80 * 60, depth));
+  };
+  const JointStateText rest{{"elbow", "push", "shoulder"}, {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}};
+  const std::vector<PointText> swing = {{0.0, {-1.0}}, {2.0, {0.6}}};
+  ASSERT_EQ(ask({camera_info(kSecondNs, view), joint_state(kSecondNs, kSecondNs, rest),
+                 plate(kSecondNs + 1000, 0.9F), joint_state(2 * kSecondNs, 2 * kSecondNs, rest),
+                 trajectory(2 * kSecondNs, {"shoulder"}, swing),
+                 plate(2 * kSecondNs + kSecondNs / 2, 0.7F),
+                 joint_state(3 * kSecondNs, 3 * kSecondNs, rest),
+                 trajectory(3 * kSecondNs, {"shoulder"}, swing),
+                 joint_state(4 * kSecondNs, 4 * kSecondNs, rest)},
+                {"--others-still"}),
+            0)
+      << output;
+  ASSERT_EQ(answers.size(), 2u);
+  EXPECT_NEAR(answers[0]["upper"], 0.1 - 0.05 - 0.002, 1e-3) << answers[0];
+  EXPECT_NEAR(answers[1]["upper"], 0.3 - 0.05 - 0.002, 1e-3) << answers[1];
+  EXPECT_EQ(answers[0]["pair"], (nlohmann::json{"eye", "finger"}));
 }
 
 TEST_F(AskOfABag, AnswersHaveTheSameBytesInSeveralThreads) {

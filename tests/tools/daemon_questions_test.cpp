@@ -13,6 +13,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/shapes.hpp"
 #include "monitor/ask/asker.hpp"
 #include "monitor/client/client.hpp"
 #include "monitor/client/commands.hpp"
@@ -220,6 +221,33 @@ TEST_F(DaemonQuestions, IncludeWhatIsAttached) {
   ASSERT_TRUE(result.done()) << result.reason;
   EXPECT_EQ(result.first + "-" + result.second, "pin-part");
   EXPECT_NEAR(result.upper, 0.03, 1e-3);
+}
+
+// What a client states counts, whatever the daemon knows.
+TEST_F(DaemonQuestions, TakeBodiesAgesAndContactsThatTheyState) {
+  start();
+  client::Questions questions(connection, "planner");
+  send(-1.0);
+  Question question = swing(-1.0, 0.6);
+  question.poses = {
+      {.object = "cart", .world_from_object = {.position = {-5.0, 0.0, 0.0}}, .age = 0.5}};
+  question.payloads = {{.name = "tool",
+                        .shape = std::get<ConvexBody>(box(Vec3(0.15, 0.01, 0.01))),
+                        .link = "finger",
+                        .link_from_object = Pose(),
+                        .touch = {"lower"}}};
+  question.margins = {0.1};
+  question.contacts = {{.first = "pin", .second = "tool", .depth = 0.01}};
+  const QuestionResult result = answer_of(questions, question);
+  ASSERT_TRUE(result.done()) << result.reason;
+  Question stated = question;
+  stated.held = {{"elbow", 0.0}, {"push", 0.0}};
+  const auto expected = std::get<Answer>(ask(cell->scene, stated));
+  EXPECT_EQ(result.lower, expected.lower);
+  EXPECT_EQ(result.upper, expected.upper);
+  EXPECT_EQ(result.first + "-" + result.second, "pin-tool");
+  EXPECT_NEAR(result.upper, 0.05, 1e-3);
+  EXPECT_TRUE(result.is_free(0.1)) << "its contact is meant";
 }
 
 TEST_F(DaemonQuestions, ThatDoNotFitAreRefusedWithTheReason) {

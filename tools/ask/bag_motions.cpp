@@ -25,6 +25,7 @@ class Reader {
     if (message.topic->type != kTrajectory) return std::nullopt;
     BagMotion found{fmt::format("{} at {:.3f} s", message.topic->name,
                                 1e-9 * static_cast<double>(message.log_ns - *first_ns_))};
+    found.log_ns = message.log_ns;
     std::vector<HeldJoint> present;
     for (const auto& [name, joint] : joints_) {
       present.push_back({name, joint.position});

@@ -18,6 +18,7 @@ struct BagMotion {
   // The motion, and all other joints of the bag where they were then; or why there is none.
   std::variant<JointTrajectory, std::string> motion = {};
   std::vector<StatedJoint> joints = {};
+  std::int64_t log_ns = 0;
 };
 
 // Calls `take` for each motion of a bag, in order. Returns an empty text, or what is wrong with the

@@ -94,6 +94,15 @@ Payload payload_of(const Json& entry) {
   return payload;
 }
 
+MeantContact contact_of(const Json& entry) {
+  const auto pair = entry.at("pair").get<std::array<std::string, 2>>();
+  return {.first = pair[0],
+          .second = pair[1],
+          .depth = entry.at("depth").get<double>(),
+          .until = entry.value("until", kInfinity),
+          .distance = entry.value("distance", kInfinity)};
+}
+
 std::optional<ProfileRequest> profile_of(const Json& entry) {
   if (entry.is_boolean()) {
     return entry.get<bool>() ? std::optional(ProfileRequest()) : std::nullopt;
@@ -202,6 +211,10 @@ Question read_question(const Json& line, const Question& defaults) {
   }
   if (line.contains("payloads")) {
     for (const Json& payload : line["payloads"]) question.payloads.push_back(payload_of(payload));
+  }
+  if (line.contains("contacts")) {
+    question.contacts.emplace();
+    for (const Json& contact : line["contacts"]) question.contacts->push_back(contact_of(contact));
   }
   if (line.contains("profile")) question.profile = profile_of(line["profile"]);
   if (line.contains("time_scaling")) question.time_scaling = line["time_scaling"].get<bool>();

@@ -5,11 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 
 #include "monitor/monitor.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/bags/ros_camera.hpp"
 #include "tests/monitor/clouds/rendered_scene.hpp"
 #include "tests/monitor/scara_cell.hpp"
 
@@ -63,34 +62,6 @@ double distance_to(const RenderedBody& body, const Vec3& point) {
   return (local.cwiseAbs() - body.half).cwiseMax(0.0).norm();
 }
 
-RosMessage image(std::int64_t stamp, const std::vector<float>& depth) {
-  RosCdr cdr;
-  cdr.header(stamp, "optical").number(kView.height).number(kView.width).text("32FC1");
-  cdr.number(std::uint8_t{0}).number(kView.width * 4);
-  cdr.number(static_cast<std::uint32_t>(depth.size() * 4));
-  for (const float z : depth) {
-    std::array<std::uint8_t, 4> bytes{};
-    std::memcpy(bytes.data(), &z, 4);
-    for (const std::uint8_t byte : bytes) cdr.number(byte);
-  }
-  return {"/cam/depth", "sensor_msgs/msg/Image", stamp, cdr.bytes()};
-}
-RosMessage camera_info(std::int64_t stamp) {
-  RosCdr cdr;
-  cdr.header(stamp, "optical").number(kView.height).number(kView.width).text("plumb_bob");
-  cdr.numbers({0, 0, 0, 0, 0});
-  for (const double k : {kView.fx, 0.0, kView.cx, 0.0, kView.fy, kView.cy, 0.0, 0.0, 1.0})
-    cdr.number(k);
-  for (const double r : {1, 0, 0, 0, 1, 0, 0, 0, 1}) cdr.number(static_cast<double>(r));
-  for (const double p :
-       {kView.fx, 0.0, kView.cx, 0.0, 0.0, kView.fy, kView.cy, 0.0, 0.0, 0.0, 1.0, 0.0})
-    cdr.number(p);
-  cdr.number(std::uint32_t{0}).number(std::uint32_t{0});
-  for (int i = 0; i < 4; ++i) cdr.number(std::uint32_t{0});
-  cdr.number(std::uint8_t{0});
-  return {"/cam/camera_info", "sensor_msgs/msg/CameraInfo", stamp, cdr.bytes()};
-}
-
 // A point that a pixel has seen, and the size of the slab around it.
 struct SeenPoint {
   Vec3 at;
@@ -107,7 +78,7 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
       "{pose: {xyz: [0.9, 0, 2.2], rpy: [3.141592653589793, 0, 0]}}}\n"
       "pairs:\n  - {between: [arm, eye]}\n",
       folder / "cell.yaml");
-  std::vector<RosMessage> bag{camera_info(kBagStart)};
+  std::vector<RosMessage> bag{camera_info(kBagStart, kView)};
   std::map<std::int64_t, std::vector<SeenPoint>> frames;  // by stamp: what is not the robot
   Random random(5);
   for (int step = 0; step < kSteps; ++step) {
@@ -118,7 +89,7 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
     if (step % kFrameSteps != 0) continue;
     const std::vector<RenderedPixel> pixels = render(scene_at(q), kView, camera_place());
     const std::vector<float> depth = measured(pixels, kError, 0.9, random);
-    bag.push_back(image(stamp, depth));
+    bag.push_back(depth_image(stamp, kView, depth));
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (pixels[i].number < 10 || std::isnan(depth[i])) continue;
       const double z = depth[i], e = kError.at(z);

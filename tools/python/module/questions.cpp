@@ -77,18 +77,44 @@ Payload payload_of(const std::string& object, const py::tuple& value) {
   return payload;
 }
 
-Question question_of(const std::vector<std::string>& joints, const py::object& times,
-                     const py::object& positions, const py::object& velocities,
-                     const std::map<std::string, double>& held,
-                     const std::map<std::string, double>& joints_of_others,
-                     const std::map<std::string, py::object>& poses,
-                     const std::vector<py::tuple>& beside,
-                     const std::map<std::string, py::tuple>& moving,
-                     const std::map<std::string, py::tuple>& payloads, const std::string& others,
-                     const std::vector<double>& margins, double tolerance, bool only_margins,
-                     std::uint32_t profile, double profile_tolerance,
-                     const std::optional<std::pair<std::string, std::string>>& profile_pair,
-                     bool time_scaling, std::uint64_t work_limit) {
+void set_age(const std::string& name, double age, Question& question) {
+  const auto pose = std::ranges::find(question.poses, name, &StatedPose::object);
+  if (pose != question.poses.end()) {
+    pose->age = age;
+    return;
+  }
+  const auto joint = std::ranges::find(question.joints, name, &StatedJoint::name);
+  if (joint == question.joints.end())
+    throw py::value_error("ages: '" + name + "' is neither in `poses` nor in `joints_of_others`");
+  joint->age = age;
+}
+
+MeantContact contact_of(const py::tuple& value) {
+  if (value.size() < 3 || value.size() > 5)
+    throw py::value_error("contacts: expected (first, second, depth[, until[, distance]]) each");
+  const auto number = [&](std::size_t at) {
+    return value.size() > at && !value[at].is_none() ? value[at].cast<double>() : kInfinity;
+  };
+  return {.first = value[0].cast<std::string>(),
+          .second = value[1].cast<std::string>(),
+          .depth = value[2].cast<double>(),
+          .until = number(3),
+          .distance = number(4)};
+}
+
+Question question_of(
+    const std::vector<std::string>& joints, const py::object& times, const py::object& positions,
+    const py::object& velocities, const std::map<std::string, double>& held,
+    const std::map<std::string, double>& joints_of_others,
+    const std::map<std::string, py::object>& poses, const std::vector<py::tuple>& beside,
+    const std::map<std::string, py::tuple>& moving,
+    const std::map<std::string, py::tuple>& payloads, const std::map<std::string, double>& ages,
+    const std::map<std::string, double>& turn_speeds,
+    const std::optional<std::vector<py::tuple>>& contacts, const std::string& others,
+    const std::vector<double>& margins, double tolerance, bool only_margins, std::uint32_t profile,
+    double profile_tolerance,
+    const std::optional<std::pair<std::string, std::string>>& profile_pair, bool time_scaling,
+    std::uint64_t work_limit) {
   Question question;
   question.motion = trajectory_of(joints, times, positions, velocities);
   for (const py::tuple& each : beside) {
@@ -107,6 +133,17 @@ Question question_of(const std::vector<std::string>& joints, const py::object& t
   }
   for (const auto& [name, value] : moving) question.moving.push_back(object_motion(name, value));
   for (const auto& [name, value] : payloads) question.payloads.push_back(payload_of(name, value));
+  for (const auto& [name, age] : ages) set_age(name, age, question);
+  for (const auto& [name, speed] : turn_speeds) {
+    const auto at = std::ranges::find(question.poses, name, &StatedPose::object);
+    if (at == question.poses.end())
+      throw py::value_error("turn_speeds: '" + name + "' has no pose in `poses`");
+    at->turn_speed = speed;
+  }
+  if (contacts) {
+    question.contacts.emplace();
+    for (const py::tuple& each : *contacts) question.contacts->push_back(contact_of(each));
+  }
   if (others != "max_speed" && others != "still") {
     throw py::value_error(
         fmt::format("others: found '{}'; expected 'max_speed' or 'still'", others));
@@ -223,7 +260,10 @@ void add_question(py::module_& module) {
           py::arg("joints_of_others") = std::map<std::string, double>(), py::arg("poses") = Empty(),
           py::arg("beside") = std::vector<py::tuple>(),
           py::arg("moving") = std::map<std::string, py::tuple>(),
-          py::arg("payloads") = std::map<std::string, py::tuple>(), py::arg("others") = "max_speed",
+          py::arg("payloads") = std::map<std::string, py::tuple>(),
+          py::arg("ages") = std::map<std::string, double>(),
+          py::arg("turn_speeds") = std::map<std::string, double>(),
+          py::arg("contacts") = py::none(), py::arg("others") = "max_speed",
           py::arg("margins") = std::vector<double>{0.0}, py::arg("tolerance") = 1e-3,
           py::arg("only_margins") = false, py::arg("profile") = 0,
           py::arg("profile_tolerance") = 5e-3, py::arg("profile_pair") = py::none(),
@@ -232,10 +272,15 @@ void add_question(py::module_& module) {
 linearly between waypoints. velocities: (n, k), per second; then along cubic polynomials.
 
 held: positions of joints that stay, by name. joints_of_others: of robots that do nothing here, which
-`others` is about; a daemon takes these from its inputs only. poses: of objects that are neither fixed
-nor part of a robot. A daemon knows both; what is left out is where it is now. beside: motions of other robots, each
+`others` is about. poses: of objects that are neither fixed nor part of a robot. A daemon knows all
+three; what is left out is where it is now. ages: how long before the first waypoint a pose or one of
+`joints_of_others` was so, s. turn_speeds: the fastest rotation of objects on which robots stand,
+rad/s. beside: motions of other robots, each
 (joints, times, positions[, velocities]). moving: {object: (times (n,), poses (n, 7))}. payloads:
 {object: (link, pose in the link[, names that it may touch[, Body of a new object]])}.
+contacts: those that are meant, each (first, second, depth[, until[, distance]]): down to this depth, m,
+up to this instant, s, and until the objects may have been this far apart, m. None: those of the cell,
+or with a daemon those in force now.
 others: "max_speed": such objects and joints stay within their largest speed x time of where they are;
 "still": they do not move.
 
@@ -374,8 +419,8 @@ program uses. Raises ValueError and DdsError.)")
            R"(Asks, and waits for the answer.
 
 revision: refused unless this scene is in force; 0: any. Returns a MotionAnswer, also of a refusal:
-look at `answered`, or at is_free(). Raises ValueError for a payload with a Body, and TimeoutError when
-no answer came within `timeout` s. Releases the interpreter's lock; Ctrl-C ends it.)")
+look at `answered`, or at is_free(). Raises ValueError for a payload with a Body that has more than 256
+vertices or rounded ones, as half-spaces have, and TimeoutError when no answer came within `timeout` s. Releases the interpreter's lock; Ctrl-C ends it.)")
       .def_property_readonly(
           "is_heard", [](Questions& self) { return self.use()->questions.is_heard(); },
           "True when a daemon answers questions on this topic.");

@@ -1,5 +1,5 @@
 // A question is completed by what the daemon knows, and by nothing that it does not know.
-#include "monitor/questions/completion.hpp"
+#include "monitor/ask/completion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "monitor/questions/completion.hpp"
+#include "monitor/ask/completion.hpp"
 
 #include <fmt/format.h>
 

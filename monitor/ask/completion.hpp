@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/ask/present_inputs.hpp"
 #include "monitor/motion_question.hpp"
-#include "monitor/questions/input_state.hpp"
 
 namespace clearance {
 
@@ -16,10 +16,10 @@ namespace clearance {
 // m/s. Drives at rest report less.
 inline constexpr double kRestSpeed = 2e-3;
 
-// Adds to `held`, `joints`, `poses`, `seen` and `contacts` what the question lacks. `frames` are the last ones
-// of the sensors; their ages are those of the frames in use. Returns why it cannot: a sentence that
-// names the inputs which are unknown, late or contradicted, or a joint that is taken to stay and
-// moves. Names that the scene lacks stay, for Asker to refuse.
+// Adds to `held`, `joints`, `poses`, `seen` and `contacts` what the question lacks. `frames` are
+// the last ones of the sensors; their ages are those of the frames in use. Returns why it cannot: a
+// sentence that names the inputs which are unknown, late or contradicted, or a joint that is taken
+// to stay and moves. Names that the scene lacks stay, for Asker to refuse.
 [[nodiscard]] std::optional<std::string> complete(const Scene& scene, const InputState& state,
                                                   std::vector<SeenFrame> frames,
                                                   Question& question);

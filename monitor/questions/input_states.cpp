@@ -1,13 +1,9 @@
-#include "monitor/questions/input_state.hpp"
+#include "monitor/questions/input_states.hpp"
 
-#include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace clearance {
 namespace {
-
-constexpr double kSecond = 1e-9;  // s in a ns
 
 class StateQuestion final : public LoopQuestion {
  public:
@@ -23,18 +19,7 @@ class StateQuestion final : public LoopQuestion {
     if (!is_of_scene_) return;
     state_.cycle = loop.statistics.cycle;
     state_.now_ns = loop.statistics.now_ns;
-    const auto seconds = [](std::int64_t age_ns) {
-      return kSecond * static_cast<double>(std::max<std::int64_t>(age_ns, 0));
-    };
-    for (std::uint32_t i = 0; i < state_.joints.size(); ++i) {
-      state_.joints[i] = loop.monitor.present_joint(i);
-      state_.joint_ages[i] = seconds(loop.monitor.joint_age(i).age_ns);
-    }
-    for (PresentObject& object : state_.objects) {
-      object.pose = loop.monitor.present_pose(object.object);
-      object.age = seconds(loop.monitor.input_age(object.object).age_ns);
-    }
-    std::ranges::copy(loop.monitor.contacts(), state_.contacts.begin());
+    read_inputs(loop.monitor, state_);
   }
 
   const Scene& scene_;
@@ -43,22 +28,6 @@ class StateQuestion final : public LoopQuestion {
 };
 
 }  // namespace
-
-InputState room_for_inputs(const Scene& scene) {
-  std::vector<bool> is_link(scene.objects.size(), false);
-  for (const Robot& robot : scene.robots) {
-    for (const RobotLink& link : robot.links) {
-      if (link.object != RobotLink::kNoObject) is_link[link.object] = true;
-    }
-  }
-  InputState state{.joints = std::vector<PresentJoint>(scene.variables.size()),
-                   .joint_ages = std::vector<double>(scene.variables.size(), 0.0),
-                   .contacts = std::vector<ContactReport>(contact_pairs(scene).size())};
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    if (!scene.objects[i].fixed && !is_link[i]) state.objects.push_back({.object = i});
-  }
-  return state;
-}
 
 // The time of asking is read before the loop is asked, so that its answer is not older.
 std::shared_ptr<const InputState> InputStates::of(const std::shared_ptr<const Cell>& cell,

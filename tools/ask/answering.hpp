@@ -1,0 +1,78 @@
+// Answers motions of a file or a bag, one after another or in several threads.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <iosfwd>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tools/ask/asked_motion.hpp"
+#include "tools/ask/bag_motions.hpp"
+#include "tools/ask/motion_report.hpp"
+
+namespace clearance {
+
+struct AskOptions {
+  std::string cell, motions, out;
+  std::vector<double> margins{0.0, 0.01, 0.05};
+  double tolerance = 1e-3;
+  std::optional<double> expected;
+  std::uint64_t work_limit = 1'000'000;
+  bool others_still = false, only_verdicts = false;
+  int repeat = 1;
+  unsigned threads = 1;
+  MotionReportFiles files;
+};
+
+class Answering {
+ public:
+  // The options must outlive this.
+  explicit Answering(const AskOptions& options);
+  // Reads the cell of all motions; a folder is read as motions name its cells.
+  [[nodiscard]] bool read();
+  [[nodiscard]] std::string begin_report();
+  // A motion a line. Both return the exit status.
+  int answer_all(std::istream& in, std::ostream& out);
+  // The motions of a bag. Where the cell has moving objects or sensors, the bag is read twice.
+  int answer_bag(std::ostream& out);
+
+ private:
+  // Several threads answer so many motions each at a time.
+  static constexpr std::size_t kWaitingForThread = 256;
+
+  AskedMotion asked(const BagMotion& found, AskedPlace& place) const;
+  std::string answer_with_inputs(const Cell& cell, std::ostream& out);
+  // The bag may change the cell.
+  AskedPlace& place_of(const Cell& cell);
+  // One thread answers each motion at once; with several of them it may wait.
+  void take(AskedMotion motion, std::ostream& out);
+  void ask(AskedMotion& motion);
+  // Place by place, since the memory for questions is that of one scene.
+  void answer_waiting(std::ostream& out);
+  void write(AskedMotion& motion, std::ostream& out);
+  // `error` says why the input could not be read to its end.
+  int conclude(std::string error, const std::string& expected, std::ostream& out);
+  bool add(const std::string& scene, const std::filesystem::path& file);
+  AskedPlace& place_of(const nlohmann::json& motion);
+  // A bag has joint states of robots that the cell does not have, too.
+  [[nodiscard]] Question question_of(const BagMotion& motion, const Scene& scene) const;
+  // The expected distance is the last margin.
+  void expect(AskedMotion& motion);
+  void summarise();
+
+  const AskOptions& options_;
+  Question defaults_;
+  MotionReport report_;
+  std::vector<AskedMotion> waiting_;
+  std::map<std::string, std::unique_ptr<AskedPlace>> places_;
+  std::vector<double> times_us_;
+  std::size_t lines_ = 0, bad_ = 0, undecided_ = 0, failed_ = 0, bad_cells_ = 0;
+};
+
+}  // namespace clearance
