@@ -291,7 +291,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
   ros_ = map.optional("ros2");
-  if (ros_ != nullptr) read_ros(*ros_, cell.ros, diagnostics_);
+  if (ros_ != nullptr) read_ros(*ros_, quantities, cell.ros);
   if (const YamlNode* commands = map.optional("commands"))
     cell.commands = read_commands(*commands, file_.parent_path(), diagnostics_);
   if (const YamlNode* questions = map.optional("questions"))

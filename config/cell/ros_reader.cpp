@@ -47,6 +47,25 @@ void refuse_same_topics(const YamlNode& node, const RosSettings& settings,
       take(fmt::format("{}/{}", space, name), "messages");
   }
   for (const MoveItInput& input : kMoveItInputs) take(settings.moveit.*input.topic, input.key);
+  for (const std::string& topic : settings.trajectories.topics) take(topic, "trajectories");
+}
+
+void read_trajectories(MapReader& map, const Quantities& quantities,
+                       RosTrajectories& trajectories) {
+  Diagnostics& diagnostics = quantities.diagnostics();
+  if (const YamlNode* topics = map.optional("trajectories")) {
+    for (const YamlNode& item : read_list(*topics, "topics of trajectories", diagnostics)) {
+      const std::string topic = read_topic(item, "/joint_trajectory", diagnostics);
+      if (!topic.empty()) trajectories.topics.push_back(topic);
+    }
+  }
+  const YamlNode* margins = map.optional("trajectory_margins");
+  if (margins == nullptr) return;
+  trajectories.margins.clear();
+  for (const YamlNode& item : read_list(*margins, "margins", diagnostics)) {
+    if (const auto margin = quantities.length(item, "a margin of trajectories", kNotNegative))
+      trajectories.margins.push_back(*margin);
+  }
 }
 
 bool is_word(char c) noexcept {
@@ -89,7 +108,8 @@ RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics) {
   return text == "sent" ? RosStamps::kSent : RosStamps::kMessage;
 }
 
-void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnostics) {
+void read_ros(const YamlNode& node, const Quantities& quantities, RosSettings& settings) {
+  Diagnostics& diagnostics = quantities.diagnostics();
   MapReader map(node, "the settings of ROS 2", diagnostics);
   for (const RosOutput& output : kRosOutputs) {
     if (const YamlNode* topic = map.optional(output.key))
@@ -103,6 +123,7 @@ void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnost
     settings.moveit.group = read_name(*group, "the group of what MoveIt adds", diagnostics)
                                 .value_or(settings.moveit.group);
   }
+  read_trajectories(map, quantities, settings.trajectories);
   refuse_same_topics(node, settings, diagnostics);
   if (const YamlNode* rate = map.optional("markers_hz")) {
     settings.markers_hz =

@@ -6,11 +6,12 @@
 
 #include "config/cell/ros_settings.hpp"
 #include "config/yaml/diagnostics.hpp"
+#include "config/yaml/quantities.hpp"
 #include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
 
-void read_ros(const YamlNode& node, RosSettings& settings, Diagnostics& diagnostics);
+void read_ros(const YamlNode& node, const Quantities& quantities, RosSettings& settings);
 
 // Reads "message" or "sent"; anything else is reported and counts as the former.
 [[nodiscard]] RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/scene/ros_stamps.hpp"
 
@@ -62,9 +63,18 @@ inline constexpr std::array<MoveItInput, 3> kMoveItInputs = {{
     {"planning_scene", &MoveItInputs::planning_scene, "/planning_scene"},
 }};
 
+// Topics of trajectory_msgs/JointTrajectory, in ROS 2's spelling: each motion is asked about. The
+// answers come on /diagnostics and TOPIC/clearance.
+struct RosTrajectories {
+  std::vector<std::string> topics;   // none: off
+  std::vector<double> margins{0.0};  // m, from 0 on
+  bool operator==(const RosTrajectories&) const = default;
+};
+
 struct RosSettings {
   RosOutputs outputs;
   MoveItInputs moveit;
+  RosTrajectories trajectories;
   double markers_hz = 30.0;
   // The frame of tf that is the cell's world; required where an object or a base follows a frame.
   // Empty: outputs call it "world".

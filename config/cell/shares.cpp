@@ -85,6 +85,7 @@ void select_share(Cell& cell, std::uint32_t share) {
   cell.topics = topics_of_share(cell.topics, shares.all[share].name);
   cell.questions.from.clear();
   cell.ros.outputs = {};
+  cell.ros.trajectories.topics.clear();
 }
 
 // Costs as measured on one core (tools/bench/measured): a tracked query of two polyhedra takes 65

@@ -67,7 +67,7 @@ std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cel
 // ROS 2 knows the default partition only.
 void warn_of_partition(const Cell& cell, const DaemonOptions& all) {
   const DdsOptions& options = all.dds;
-  const bool wants_ros = !all.trajectories.topics.empty() || writes_ros(cell) ||
+  const bool wants_ros = !cell.ros.trajectories.topics.empty() || writes_ros(cell) ||
                          !cell.ros.outputs.messages.empty() || TrackedFrames(cell).any() ||
                          !cell.scene.sensors.empty();
   if (options.partition.empty() || !wants_ros) return;
@@ -120,7 +120,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
         cell, cell.commands.from, participant_, reports_.daemon(),
         [this](QueuedCommand command) { return put(std::move(command)); }, revision);
   }
-  const TrajectoryOptions& trajectories = options.trajectories;
+  const RosTrajectories& trajectories = cell.ros.trajectories;
   const auto put_question = [this](QueuedQuestion question) {
     return desk_->put(std::move(question));
   };

@@ -43,7 +43,6 @@ struct DaemonOptions {
   std::optional<int> cpu;            // processor that the tick thread is pinned to
   CommanderOptions commander;        // how commands and SIGHUP change the cell
   std::string partner;               // this daemon's name among partners; empty: it has none
-  TrajectoryOptions trajectories;    // motions on topics of ROS 2 that are asked about
   bool reload = false;               // read the cell again when its files have changed
   ReportWriter::OnHealth on_health;  // once a second; may be empty
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.

@@ -57,7 +57,8 @@ struct Arguments {
   std::vector<std::string> ros;        // ROS 2 outputs in addition to the cell's
   std::vector<std::string> commands;   // clients in addition to the cell's
   std::vector<std::string> questions;  // likewise
-  std::filesystem::path metrics;       // a socket; empty: none
+  RosTrajectories trajectories{.topics = {}, .margins = {}};
+  std::filesystem::path metrics;  // a socket; empty: none
   DaemonOptions daemon;
 };
 
@@ -136,17 +137,16 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(is_client)
       ->excludes(share);
   app.add_option(
-         "--ros2-trajectories", arguments.daemon.trajectories.topics,
-         "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic, and answer on "
+         "--ros2-trajectories", arguments.trajectories.topics,
+         "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic too, and answer on "
          "/diagnostics and TOPIC/clearance (idl/ROS.md); repeatable")
       ->allow_extra_args(false)
       ->check(is_ros_topic)
       ->excludes(share);
-  app.add_option("--trajectory-margin", arguments.daemon.trajectories.margins,
-                 "Margin for these, m; 0 asks for contact; repeatable")
+  app.add_option("--trajectory-margin", arguments.trajectories.margins,
+                 "Margin for these in place of the cell's, m; 0 asks for contact; repeatable")
       ->allow_extra_args(false)
-      ->check(number_from_zero())
-      ->capture_default_str();
+      ->check(number_from_zero());
   app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
                  "Keep the changed scene in this file, and begin with it after a crash");
   app.add_option("--partner", arguments.daemon.partner,
@@ -191,9 +191,9 @@ int check_only(const CellArguments& cell) {
   return kOk;
 }
 
-void add_clients(const std::vector<std::string>& asked, std::vector<std::string>& from) {
-  for (const std::string& client : asked) {
-    if (std::ranges::find(from, client) == from.end()) from.push_back(client);
+void add_names(const std::vector<std::string>& asked, std::vector<std::string>& names) {
+  for (const std::string& name : asked) {
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
 }
 
@@ -201,8 +201,11 @@ void add_clients(const std::vector<std::string>& asked, std::vector<std::string>
 void finish(const Arguments& arguments, Cell& cell) {
   cell.scene.gradients = cell.scene.gradients || arguments.gradients;
   add_ros_outputs(arguments.ros, cell.ros.outputs);
-  add_clients(arguments.commands, cell.commands.from);
-  add_clients(arguments.questions, cell.questions.from);
+  add_names(arguments.commands, cell.commands.from);
+  add_names(arguments.questions, cell.questions.from);
+  add_names(arguments.trajectories.topics, cell.ros.trajectories.topics);
+  if (!arguments.trajectories.margins.empty())
+    cell.ros.trajectories.margins = arguments.trajectories.margins;
 }
 
 // The summary goes to stdout at the end; the log goes to stderr during the run.

@@ -43,8 +43,8 @@ std::string make_motion(std::span<const std::byte> cdr, const Scene& scene, cons
 
 }  // namespace
 
-TrajectoryPort::TrajectoryPort(std::string cell, TrajectoryOptions options,
-                               Participant& participant, Put put, RosWrites::Leads leads)
+TrajectoryPort::TrajectoryPort(std::string cell, RosTrajectories options, Participant& participant,
+                               Put put, RosWrites::Leads leads)
     : cell_(std::move(cell)),
       options_(std::move(options)),
       put_(std::move(put)),

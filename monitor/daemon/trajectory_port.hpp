@@ -11,17 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include "config/cell/ros_settings.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/questions/question_desk.hpp"
 #include "monitor/ros/ros_writes.hpp"
 
 namespace clearance {
-
-struct TrajectoryOptions {
-  std::vector<std::string> topics = {};  // in ROS 2's spelling: "/arm/joint_trajectory"; none: off
-  std::vector<double> margins = {0.0};   // m
-};
 
 // The number on TOPIC/clearance is the certified lower bound of the distance over the whole motion,
 // m; -infinity if nothing is known of it.
@@ -30,7 +26,7 @@ class TrajectoryPort {
   using Put = std::function<bool(QueuedQuestion)>;
 
   // The participant must outlive this. `leads`: see RosWrites. Throws DdsError.
-  TrajectoryPort(std::string cell, TrajectoryOptions options, Participant& participant, Put put,
+  TrajectoryPort(std::string cell, RosTrajectories options, Participant& participant, Put put,
                  RosWrites::Leads leads);
   // Nothing may be answered any more (QuestionDesk::end).
   ~TrajectoryPort();
@@ -51,7 +47,7 @@ class TrajectoryPort {
   void write(const Topic& topic, const QuestionResult& result);
 
   const std::string cell_;
-  const TrajectoryOptions options_;
+  const RosTrajectories options_;
   const Put put_;
   std::vector<Topic> topics_;
   dds_entity_t diagnostics_;

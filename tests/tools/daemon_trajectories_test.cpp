@@ -53,14 +53,16 @@ class RosTrajectories {
 // The finger is a sphere of 0.05 m that circles at 2 m around the origin.
 class DaemonTrajectories : public WatchedDaemon {
  protected:
-  void start(const std::vector<std::string>& more = {}) {
-    watch(
-        "name: motions\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
-        "defaults: {age_limit_ms: 20000}\n"
-        "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
-        "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
-        "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n",
-        with({"--ros2-trajectories", kTopic, "--trajectory-margin", "0.1"}, more));
+  // The cell names the topic and a margin; options add to the topics, and replace the margins.
+  void start(const std::vector<std::string>& options = {}) {
+    watch("name: motions\nunits: {length: m, angle: rad}\nrate_hz: 200\nros2: {trajectories: [" +
+              kTopic +
+              "], trajectory_margins: [0.1]}\n"
+              "defaults: {age_limit_ms: 20000}\n"
+              "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+              "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
+              "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n",
+          options);
     diagnostics = client.ros_reader(kRosDiagnostics, "rt/diagnostics");
     number = client.ros_reader(kRosFloat64, "rt" + kTopic + "/clearance");
   }
@@ -124,7 +126,8 @@ TEST_F(DaemonTrajectories, AreAnsweredByDiagnosticsAndANumber) {
 
 // The controller moves from where the joints are, at -1 rad, to the only point.
 TEST_F(DaemonTrajectories, BeginWhereTheJointsAre) {
-  start({"--trajectory-margin", "0.2"});
+  start({"--ros2-trajectories", kTopic, "--ros2-trajectories", "/other", "--trajectory-margin",
+         "0.1", "--trajectory-margin", "0.2"});
   wait_for_joints();
   ask("shoulder", 2, {0.6});
   EXPECT_EQ(level, 2) << "0.15 m is below 0.2 m";

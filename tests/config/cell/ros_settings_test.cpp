@@ -24,6 +24,23 @@ TEST(RosSettingsOfACell, NameTopicsOrTakeTheStandardOnes) {
   EXPECT_EQ(cell.ros.world(), "world");
 }
 
+TEST(RosSettingsOfACell, NameTrajectoriesAndTheirMarginsInUnitsOfTheCell) {
+  const std::string keys =
+      "ros2: {trajectories: [/arm/joint_trajectory, true], trajectory_margins: [0, 20]}\n";
+  const Cell cell = read_good("name: cell\nunits: {length: mm, angle: deg}\n" + keys +
+                              "objects:\n  - {name: a, sphere: {radius: 100}}\n"
+                              "  - {name: b, fixed: true, sphere: {radius: 100}}\n"
+                              "pairs: [{between: [a, b]}]\n");
+  EXPECT_THAT(cell.ros.trajectories.topics,
+              testing::ElementsAre("/arm/joint_trajectory", "/joint_trajectory"));
+  EXPECT_THAT(cell.ros.trajectories.margins, testing::ElementsAre(0.0, 0.02));
+  EXPECT_THAT(read_good(cell_text(kBoxes)).ros.trajectories, RosTrajectories{});
+  EXPECT_THAT(errors_of(cell_text("ros2: {trajectories: [/a, /a]}\n" + kBoxes)),
+              mistake_at("cell.yaml:4:7", "'/a'"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {trajectory_margins: [-1]}\n" + kBoxes)),
+              mistake_at("cell.yaml:4:29", "-1"));
+}
+
 TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
   for (const char* topic : {"markers", "/", "/a/", "/a//b", "/1a", "/a/1", "/a-b", "/a b"}) {
     EXPECT_THAT(errors_of(cell_text(std::string("ros2: {markers: '") + topic + "'}\n" + kBoxes)),
