@@ -19,6 +19,7 @@
 #include "config/cell/planning_scene_reader.hpp"
 #include "config/cell/robot_reader.hpp"
 #include "config/cell/ros_reader.hpp"
+#include "config/cell/sensor_places.hpp"
 #include "config/cell/sensor_reader.hpp"
 #include "config/cell/shape_reader.hpp"
 #include "config/cell/share_reader.hpp"

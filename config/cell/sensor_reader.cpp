@@ -9,9 +9,7 @@
 #include <utility>
 #include <variant>
 
-#include "config/cell/robot_base_reader.hpp"
 #include "config/cell/ros_reader.hpp"
-#include "config/scene/robot_reach.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/scalar.hpp"
 #include "core/shapes.hpp"
@@ -25,7 +23,8 @@ constexpr std::int64_t kMostColumns = 65535;                              // mon
 constexpr std::int64_t kMostPoints = 4'000'000;                           // 200 MB of memory
 constexpr Range kDepths{.least = 0.0, .most = 1e4, .above_least = true};  // m, monitor/clouds
 constexpr std::int64_t kMostFrames = 16;                                  // a megabyte each
-constexpr double kMapRange = 20.0;  // m, from the origin of an octomap
+constexpr double kMapRange = 20.0;                             // m, from the origin of an octomap
+constexpr Range kFrameRates{.least = 0.01, .most = 10'000.0};  // Hz
 constexpr Range kSpacings{.least = 0.0, .most = 0.1};
 
 class SensorReader {
@@ -42,6 +41,7 @@ class SensorReader {
   void read_range(const YamlNode& node, Sensor& sensor) const;
   void read_capacity(MapReader& map, Sensor& sensor) const;
   void read_points(MapReader& map, Sensor& sensor) const;
+  void read_shell(MapReader& map, Sensor& sensor) const;
   void read_persistence(const YamlNode& node, Sensor& sensor) const;
   void refuse_large_error(const YamlNode& node, const Sensor& sensor) const;
   void read_object(MapReader& map, Object& object, bool& groups_known) const;
@@ -213,6 +213,25 @@ void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
   sensor.along_ray = axis == "ray";
 }
 
+void SensorReader::read_shell(MapReader& map, Sensor& sensor) const {
+  if (const YamlNode* shell = map.optional("own_shell")) {
+    sensor.own_shell =
+        quantities_.length(*shell, "the shell around the robot", kNotNegative).value_or(0.0);
+  }
+  const YamlNode* most = map.optional("most_shell");
+  if (most != nullptr) {
+    sensor.most_shell =
+        quantities_.length(*most, "the thickest shell around the robot", kNotNegative)
+            .value_or(sensor.own_shell);
+    if (sensor.most_shell < sensor.own_shell) {
+      diagnostics_.add(*most, fmt::format("found a most_shell of {} m below the own_shell of {} m; "
+                                          "expected at least that",
+                                          sensor.most_shell, sensor.own_shell));
+    }
+  }
+  sensor.most_shell = std::max(sensor.most_shell, sensor.own_shell);
+}
+
 void SensorReader::read_persistence(const YamlNode& node, Sensor& sensor) const {
   MapReader map(node, "'persist' of a sensor", diagnostics_);
   const YamlNode* frames = map.required("frames");
@@ -267,9 +286,11 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   }
   read_capacity(map, sensor);
   read_points(map, sensor);
-  if (const YamlNode* shell = map.optional("own_shell")) {
-    sensor.own_shell =
-        quantities_.length(*shell, "the shell around the robot", kNotNegative).value_or(0.0);
+  read_shell(map, sensor);
+  if (const YamlNode* rate = map.optional("most_hz")) {
+    const auto hz =
+        read_number(*rate, kFrameRates, "the largest rate of frames in Hz", diagnostics_);
+    if (hz) sensor.least_interval_ns = static_cast<std::int64_t>(1e9 / *hz);
   }
   if (const YamlNode* unseen = map.optional("unseen")) {
     sensor.unseen = read_flag(*unseen, diagnostics_).value_or(false);
@@ -304,35 +325,6 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   list.sensors.push_back(std::move(sensor));
 }
 
-void mount(const YamlNode& node, const RobotList& robots, const ObjectList& objects,
-           const Quantities& quantities, Sensor& sensor) {
-  Diagnostics& diagnostics = quantities.diagnostics();
-  RobotBase& base = sensor.mount;
-  MapReader map(node, "a sensor's mount", diagnostics);
-  const YamlNode* given = map.optional("pose");
-  const Pose pose = given == nullptr ? Pose{} : quantities.pose(*given).value_or(Pose{});
-  const YamlNode* on = map.optional("on");
-  const YamlNode* frame = map.optional("frame");
-  map.refuse_unknown_keys();
-  sensor.frames_by_message = false;
-  if (frame != nullptr) {
-    base.frame = read_frame(*frame, diagnostics).value_or("");
-    base.frame_from_root = pose;
-    if (on != nullptr)
-      diagnostics.add(*on, "found 'on' of a sensor in a frame of tf; expected one of the two");
-    return;
-  }
-  base.base_from_root = pose;
-  if (on != nullptr) {
-    read_what_carries(*on, robots.robots, robots.at_rest, objects,
-                      "an object, or a link of a robot", diagnostics, base);
-  } else if (given == nullptr) {
-    diagnostics.add(node,
-                    "found a mount without 'pose', 'on' and 'frame'; expected one of these, "
-                    "or no mount: the frame of tf that each message names");
-  }
-}
-
 }  // namespace
 
 SensorList read_sensors(const YamlNode& node, const ObjectDefaults& defaults,
@@ -350,34 +342,6 @@ SensorList read_sensors(const YamlNode& node, const ObjectDefaults& defaults,
   for (const YamlNode& item : items) reader.read(item, list, objects);
   if (node.kind != YamlNode::Kind::kSequence) objects.names_known = false;
   return list;
-}
-
-void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
-                   SensorList& list) {
-  for (std::size_t i = 0; i < list.sensors.size(); ++i) {
-    if (list.mounts[i] != nullptr)
-      mount(*list.mounts[i], robots, objects, quantities, list.sensors[i]);
-  }
-}
-
-void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene) {
-  for (std::size_t i = 0; i < scene.sensors.size(); ++i) {
-    Sensor& sensor = scene.sensors[i];
-    if (list.reaches[i] == nullptr) continue;
-    const auto reach = robots_reach(scene);
-    if (const auto* const reason = std::get_if<std::string>(&reach)) {
-      diagnostics.add(
-          *list.reaches[i],
-          fmt::format("found 'reach', but {}; expected robots that stand still", *reason));
-      return;
-    }
-    const Object& object = scene.objects[sensor.object];
-    const double moves = object.max_speed < kInfinity
-                             ? object.max_speed * 1e-9 * static_cast<double>(object.age_limit_ns)
-                             : 0.0;
-    sensor.crop_centre = std::get<ReachBall>(reach).centre;
-    sensor.crop_radius = std::get<ReachBall>(reach).radius + sensor.reach + moves;
-  }
 }
 
 }  // namespace clearance

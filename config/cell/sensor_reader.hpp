@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "config/cell/object_reader.hpp"
-#include "config/cell/robot_reader.hpp"
 #include "config/scene/sensor.hpp"
 #include "config/yaml/quantities.hpp"
 
@@ -23,12 +22,5 @@ struct SensorList {
 // links of robots.
 [[nodiscard]] SensorList read_sensors(const YamlNode& node, const ObjectDefaults& defaults,
                                       const Quantities& quantities, ObjectList& objects);
-
-// Reads where the sensors are mounted, once all robots and attached objects are known.
-void mount_sensors(const RobotList& robots, const ObjectList& objects, const Quantities& quantities,
-                   SensorList& list);
-
-// Computes the balls to which sensors crop, once the scene has all else.
-void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene);
 
 }  // namespace clearance

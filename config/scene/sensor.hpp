@@ -55,6 +55,12 @@ struct Sensor {
   // Elements that come within this of a part of a robot, at the stamp of the frame, are left out,
   // m. The error of the part's pose is added.
   double own_shell = 0.0;
+  // However uncertain a pose is, elements farther than this from where the part is believed to be
+  // are not taken for its image, m. At least own_shell.
+  double most_shell = 0.3;
+
+  // A frame whose stamp is less than this after that of the frame before is refused; 0: none is.
+  std::int64_t least_interval_ns = 0;
 
   // Elements stay only if this many of the last frames have one near it (1: all stay).
   std::uint32_t persist_frames = 1, persist_of = 1;

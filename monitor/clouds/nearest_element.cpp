@@ -22,6 +22,10 @@ constexpr double kPivotMoves = 0.25;
 // out by this, m.
 constexpr std::uint32_t kManyGroups = CloudCut::kSlots / 2;
 constexpr double kSpareToRemove = 2e-3;
+// A part that is deep in a cloud overlaps thousands of elements. Once an overlap is known and the
+// queries have cost this much, no further element is queried. A query of a polyhedron and a point
+// costs 1, some 0.4 us, and any other one in an overlap up to 30 to 60 us.
+constexpr std::uint32_t kMostInOverlap = 2048, kCostOfOthers = 32;
 // Planes towards more children of a group than this cost more queries than they save.
 constexpr int kAsksOfAGroup = 2;
 
@@ -76,6 +80,7 @@ class Search {
     at.translation = pose_.rotation * p + pose_.translation;
     at.translation_error = moved_;
     ++best_.queries;
+    cost_ += part_.is_curved() ? kCostOfOthers : 1;
     const DistanceResult r = distance(part_, elements_.origin(), at, tracking_.features, options);
     keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
@@ -87,6 +92,7 @@ class Search {
     at.translation += pose_.rotation * p;
     at.translation_error = moved_;
     ++best_.queries;
+    cost_ += kCostOfOthers;
     const DistanceResult r = distance(part_, body, at, tracking_.body_features);
     keep_plane(r, [&] {
       return element.least_along(in_cloud(r.normal)) + r.normal.dot(pose_.translation) + error_;
@@ -169,6 +175,11 @@ class Search {
     cut_.last_error = moved_;
   }
 
+  // The bounds of what is left then come from planes alone. They hold, but may be far apart.
+  [[nodiscard]] bool is_exhausted() const noexcept {
+    return best_.upper < 0.0 && cost_ >= kMostInOverlap;
+  }
+
   void invalidate(std::uint32_t slot) noexcept {
     cut_.carried[slot] = -kInfinity;
     cut_.farthest[slot] = -1.0;
@@ -244,6 +255,7 @@ class Search {
     best_.lower = std::min(best_.lower, r.lower);
     if (!(r.upper < best_.upper)) return r.lower;
     best_.upper = r.upper;
+    best_plane_ = has_newest_ ? newest_ : PartPlane();
     best_.normal = r.normal;
     best_.point_on_part = r.point_on_a;
     best_.point_on_element = r.point_on_b;
@@ -281,6 +293,12 @@ class Search {
         if ((done >> i & 1U) == 0 && (k == kCloudLanes || lower[i] < lower[k])) k = i;
       }
       if (k == kCloudLanes || is_left_out(lower[k])) break;
+      if (is_exhausted()) {
+        best_.within_work_limit = false;
+        newest_ = best_plane_;
+        adopt_plane(group, planes, done, lower);
+        break;
+      }
       if (group.level == 0) {
         done |= 1U << k;
         const double element = evaluate(group.index, k, {planes.x[k], planes.y[k], planes.z[k]});
@@ -352,12 +370,14 @@ class Search {
   PlaneBounds bounds_;
   double moved_ = 0.0;  // an element's place in the part's frame is at most this far off, m
   double error_ = 0.0;  // of a plane's bound, m
-  Vec3 witness_ = Vec3::Zero();    // the part's point in the last answer, in the cloud's frame
-  PartPlane newest_, hint_plane_;  // of the last query, of the hint; in the part's frame
+  Vec3 witness_ = Vec3::Zero();  // the part's point in the last answer, in the cloud's frame
+  // Of the last query, of the hint, of the element with the least upper bound; in the part's frame.
+  PartPlane newest_, hint_plane_, best_plane_;
   bool has_newest_ = false, has_hint_ = false, has_hint_plane_ = false, bad_pose_ = false;
   std::size_t hint_block_ = 0, hint_lane_ = 0;
   double hint_lower_ = 0.0;
   double left_out_ = kInfinity;
+  std::uint32_t cost_ = 0;
   NearestElement best_;
 };
 

@@ -19,8 +19,9 @@ enum class CloudAnswer : std::uint8_t {
 
 // lower <= signed distance of the part and the nearest element <= upper, rounding included, as in
 // DistanceResult. If the core's queries converge and all coordinates are below 100 m, upper - lower
-// is at most 1e-9 m. Points and normal are in the frame of the part. They belong to the element
-// that has the least upper bound.
+// is at most 1e-9 m within the work limit, which only an overlap with many elements exceeds. Both
+// bounds hold beyond it, too. Points and normal are in the frame of the part. They belong to the
+// element that has the least upper bound.
 struct NearestElement {
   CloudAnswer answer = CloudAnswer::kEmpty;
   double lower = kInfinity, upper = kInfinity;  // m
@@ -29,6 +30,7 @@ struct NearestElement {
   // Index of the point in the input of PointCloud::build(), or DepthCloud::source() of the pixel.
   std::uint32_t source = 0;
   std::uint32_t queries = 0;  // of the core
+  bool within_work_limit = true;
 };
 
 // noexcept, no heap, deterministic. Any hint is accepted. The body at the address `tracking.part`

@@ -20,8 +20,8 @@ class OwnImage {
 
   // A frame of the sensor, before any element is left out. The postures are placed at its stamp.
   // Writes the blind shells of SeenCloud::hidden(), too. A link whose pose at the stamp is not
-  // known is not left out: its image counts as an obstacle. Neither are elements farther than 0.3 m
-  // from where a link is believed to be, or `own_shell` if that is more. Call refit() afterwards.
+  // known is not left out: its image counts as an obstacle. Neither are elements farther than
+  // Sensor::most_shell from where a link is believed to be. Call refit() afterwards.
   void leave_out(const Sensor& sensor, const PastPose& place, const PostureHistory& postures,
                  SeenCloud& cloud, SlabBody& body);
   // The places that this frame has not seen, after leave_out(); null: they are not asked for.

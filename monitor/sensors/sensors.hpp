@@ -110,6 +110,7 @@ class Sensors {
   void add_transforms(const RawSensorMessage& message);
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
+  void take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& state, std::int64_t now_ns);
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
                                     SeenCloud& cloud, const Use& use);

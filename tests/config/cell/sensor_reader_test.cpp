@@ -49,6 +49,17 @@ TEST(SensorsOfACell, AreObjectsThatPairsName) {
   EXPECT_EQ(scene.pairs.size(), 4u);  // two boxes against floor and sensor
 }
 
+TEST(SensorsOfACell, StateTheirShellsAndTheirRate) {
+  const auto sensor = [](const std::string& keys) {
+    return scene_of(with_sensor(kDepth + keys)).sensors[0];
+  };
+  EXPECT_EQ(sensor("").most_shell, 0.3);
+  EXPECT_EQ(sensor(", own_shell: 0.4").most_shell, 0.4);
+  EXPECT_EQ(sensor(", own_shell: 0.02, most_shell: 0.05").most_shell, 0.05);
+  EXPECT_EQ(sensor("").least_interval_ns, 0);
+  EXPECT_EQ(sensor(", most_hz: 50").least_interval_ns, 20'000'000);
+}
+
 TEST(SensorsOfACell, ContainAllThatTheySeeInABall) {
   for (const std::string& keys : {kDepth, kPoints + ", spacing: 0.01"}) {
     const Scene scene = scene_of(with_sensor(keys));
@@ -145,6 +156,8 @@ TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   refuses("depth_image: /b, depth_error: {constant: 0.1}, range: [4, 2]", "least");
   refuses("depth_image: /b, depth_error: {constant: 0.1}, range: 4", "[0.3, 4]");
   refuses(kDepth + ", shell: 1", "'shell'");
+  refuses(kDepth + ", own_shell: 0.2, most_shell: 0.1", "most_shell of 0.1 m");
+  refuses(kDepth + ", most_hz: 0", "rate of frames");
   refuses(kPoints + ", unseen: true", "'unseen'");
   refuses(kDepth + ", persist: {frames: 2, of: 3}", "'max_speed'");
   refuses(kDepth + ", max_speed: 1, persist: {frames: 4, of: 3}", "4");

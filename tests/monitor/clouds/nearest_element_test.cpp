@@ -172,6 +172,32 @@ TEST(NearestElement, InsideThePartIsTheDeepestBall) {
   EXPECT_EQ(r.source, 0U);
 }
 
+// A query of a cylinder and a point in it takes some 30 us, and 2,500 points are in it.
+TEST(NearestElement, DeepInACloudTheWorkIsBoundedAndBothBoundsHold) {
+  Random random(17);
+  Points points;
+  for (int i = 0; i < 4000; ++i) points.push_back(measured(random.in_box(0.1), 0.002));
+  const PointCloud cloud = built(points);
+  const ConvexBody part = made(cylinder(0.1, 0.3));
+  CloudTracking tracking;
+  for (int step = 0; step < 5; ++step) {
+    const Pose pose = {.position = {0.01 * step, 0.0, 0.0}};
+    const NearestElement got = nearest_element(part, cloud, relative_pose(pose, Pose()), tracking);
+    const NearestElement truth = by_brute_force(part, points, pose, Pose());
+    EXPECT_FALSE(got.within_work_limit);
+    EXPECT_LE(got.queries, 64u);
+    EXPECT_LE(got.lower, truth.upper);
+    EXPECT_GE(got.upper, truth.lower);
+    EXPECT_LT(got.upper, 0.0);
+    EXPECT_GT(got.lower, -0.5) << "planes bound what was not queried";
+  }
+  // Apart, as many elements as it takes are looked at.
+  const NearestElement apart =
+      nearest_element(part, cloud, relative_pose({.position = {0.3, 0.0, 0.0}}, Pose()), tracking);
+  EXPECT_TRUE(apart.within_work_limit);
+  EXPECT_LE(apart.upper - apart.lower, 1e-9);
+}
+
 // Every point of a wall that is parallel to a face is nearest.
 TEST(NearestElement, OfAWallThatIsParallelToAFaceNeedsFewQueries) {
   Points points;

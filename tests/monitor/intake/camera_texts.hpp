@@ -36,10 +36,11 @@ struct InfoText {
   std::vector<double> r = {1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::vector<double> p = {10, 0, 3.5, 0, 0, 11, 2.5, 0, 0, 0, 1, 0};
   std::uint32_t binning = 0, x_offset = 0;
+  std::int64_t stamp_ns = kStart;
 
   [[nodiscard]] std::vector<std::byte> cdr() const {
     RosCdr out;
-    out.header(kStart, "camera").number(height).number(width).text("plumb_bob").numbers(d);
+    out.header(stamp_ns, "camera").number(height).number(width).text("plumb_bob").numbers(d);
     for (const auto* matrix : {&k, &r, &p}) {
       for (const double x : *matrix) out.number(x);
     }

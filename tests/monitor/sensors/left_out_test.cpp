@@ -98,6 +98,14 @@ TEST_F(LeftOutTest, LateJointsHideNothingThatIsFarFromWhereTheLinksWere) {
   EXPECT_EQ(elements(flat(31, 1850)), 0u) << "0.15 m above it: the frame has nothing but the arm";
 }
 
+TEST_F(LeftOutTest, TheCellStatesHowThickTheShellOfALateLinkMayBe) {
+  make(kImage + kAbove + ", own_shell: 0.02, most_shell: 0.1");
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  EXPECT_EQ(elements(flat(31, 1800)), 48u) << "0.15 m above the arm";
+  EXPECT_EQ(elements(flat(32, 1900)), 0u) << "0.05 m above it";
+}
+
 TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
   Sensor sensor;
   sensor.persist_frames = 2;

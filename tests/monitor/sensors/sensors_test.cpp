@@ -44,6 +44,71 @@ TEST_F(SensorsTest, UseAnImageThatCameBeforeItsFirstCameraInfo) {
   EXPECT_EQ(settle(kStart + 3000).size(), 1u);
 }
 
+// Once infos have come with the stamps of images, an image is not used with the info before its
+// own: the camera may have changed in between.
+TEST_F(SensorsTest, WaitForTheCameraInfoOfAnImagesOwnStamp) {
+  make(kImage + kAbove);
+  const auto add_info = [&](int number, double focal_length) {
+    InfoText info;
+    info.stamp_ns = kStart + number * kFrame;
+    info.k[0] = info.p[0] = focal_length;
+    add(Type::kCameraInfo, info.cdr(), info.stamp_ns + 2000);
+  };
+  const auto add_image = [&](int number) {
+    add(flat(number, static_cast<std::uint16_t>(1000 + 10 * number)));
+  };
+  const auto settled = [&](int number, std::int64_t after_ns = 3000) {
+    return settle(kStart + number * kFrame + after_ns).size();
+  };
+  add_info(0, 10);
+  for (int i = 0; i < 2; ++i) {
+    add_image(i);
+    EXPECT_EQ(settled(i), 1u) << "whether infos come with images is not known yet";
+    add_info(i, 10);
+  }
+  add_image(2);
+  EXPECT_EQ(settled(2), 0u);
+  add_info(2, 10);
+  EXPECT_EQ(settled(2), 1u);
+  add_info(3, 10);
+  add_image(3);
+  EXPECT_EQ(settled(3), 1u) << "its info came first";
+  add_image(4);
+  EXPECT_EQ(settled(4), 0u);
+  EXPECT_EQ(settled(4, 21'000'000), 1u) << "its info is lost";
+  add_image(5);
+  add_info(5, 12);
+  EXPECT_EQ(settled(5), 0u);
+  EXPECT_EQ(settled(5, 30'000'000), 0u);
+  EXPECT_EQ(count(FrameFault::kCameraInfoChanged), 2u) << "the info, and the image";
+}
+
+// Other drivers send an info now and then, with any stamp.
+TEST_F(SensorsTest, WaitForNoCameraInfoWhereInfosDoNotComeWithImages) {
+  make(kImage + kAbove);
+  for (int i = 0; i < 20; ++i) {
+    if (i % 3 == 0) {
+      InfoText info;
+      info.stamp_ns = kStart + i * kFrame - 5'000'000;
+      add(Type::kCameraInfo, info.cdr(), info.stamp_ns);
+    }
+    add(flat(i, static_cast<std::uint16_t>(1000 + i)));
+    EXPECT_EQ(settle(kStart + i * kFrame + 2000).size(), 1u) << i;
+  }
+}
+
+TEST_F(SensorsTest, RefuseFramesThatComeMoreOftenThanTheCellStates) {
+  make(kImage + kAbove + ", most_hz: 60");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(flat(0, 1000));
+  ImageText soon = flat(0, 1100);
+  soon.stamp_ns += 10'000'000;
+  add(soon);
+  add(flat(1, 1200));
+  EXPECT_EQ(count(FrameFault::kTooOften), 1u);
+  EXPECT_EQ(settle(kStart + kFrame + 2000).size(), 1u);
+}
+
 TEST_F(SensorsTest, FindTheirPlaceByTheFrameOfTheMessageThroughLinksAndTheWorld) {
   make(kImage);
   add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
