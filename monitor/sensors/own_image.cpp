@@ -7,10 +7,6 @@
 namespace clearance {
 namespace {
 
-// However uncertain a pose is, elements farther than this from where the link is believed to be are
-// not taken for its image, m.
-constexpr double kMostShell = 0.3;
-
 // No point of a part is farther from the origin of its object, m.
 double radius_of(const Part& part) noexcept {
   return part.object_from_part.position.norm() + part.shape.bounding_radius + part.shape.radius +
@@ -51,10 +47,9 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
     for (const Part& part : scene_.objects[link.object].parts) {
       const double error = place_error + past.error(radius_of(part));
       const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
-      const BlindShell blind = cloud.shelve(
-          part.shape, relative_pose(world_from_part, place.world_from_body),
-          std::max(sensor.own_shell, std::min(kMostShell, rounded_up(sensor.own_shell + error))),
-          body);
+      const BlindShell blind =
+          cloud.shelve(part.shape, relative_pose(world_from_part, place.world_from_body),
+                       std::min(sensor.most_shell, rounded_up(sensor.own_shell + error)), body);
       near.shell.elements += blind.elements;
       if (blind.elements > 0)
         near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));

@@ -37,7 +37,7 @@ Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.optio
     for (const std::unique_ptr<State>& old : before.states_) {
       const Sensor &a = old->sensor, &b = state->sensor;
       if (a.name == b.name && a.topic == b.topic && a.camera_info == b.camera_info &&
-          a.most_points == b.most_points) {
+          a.most_points == b.most_points && a.least_interval_ns == b.least_interval_ns) {
         state->stream = old->stream;
         state->pairing = old->pairing;
       }
