@@ -225,7 +225,7 @@ void PoseReader::take_all(const Now& now) {
   }
   for (const std::uint64_t name : std::exchange(ended_, {})) names_.forget_name(name);
   for (const RosReaders::Reader& reader : ros_.readers()) {
-    take_into(intake_, reader.topic, reader.handle, now, taken_);
+    ros_.take(reader, now, taken_);
   }
   intake_.settle(now);
 }

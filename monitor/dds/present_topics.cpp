@@ -29,11 +29,17 @@ std::string first_partition(const dds_qos_t* qos) {
   return first;
 }
 
+bool is_latched(const dds_qos_t* qos) {
+  dds_durability_kind_t kind = DDS_DURABILITY_VOLATILE;
+  return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
+}
+
 PresentWriter writer_of(const dds_builtintopic_endpoint_t& endpoint) {
   return {.topic = endpoint.topic_name,
           .type = endpoint.type_name,
           .partition = first_partition(endpoint.qos),
-          .participant = text_of(endpoint.participant_key)};
+          .participant = text_of(endpoint.participant_key),
+          .is_latched = is_latched(endpoint.qos)};
 }
 
 }  // namespace

@@ -17,6 +17,7 @@ struct PresentWriter {
   std::string topic, type;
   std::string partition;    // the first; empty: the default one
   std::string participant;  // GUID
+  bool is_latched = false;  // a late reader may get its last samples
 };
 
 class PresentTopics {

@@ -14,8 +14,15 @@ bool RosReaders::look() {
     const TopicName name = as_in_ros(writer.topic, writer.type);
     const auto wanted = intake_.topic(name);
     if (!wanted || wanted->delivery == nullptr) continue;
-    if (std::ranges::find(readers_, wanted->number, &Reader::topic) != readers_.end()) continue;
-    readers_.push_back({participant_.ros_reader(*wanted->delivery, writer.topic), wanted->number});
+    const bool is_latched = wanted->delivery->may_be_latched && writer.is_latched;
+    const auto is_there = [&](const Reader& reader) {
+      return reader.topic == wanted->number && reader.is_latched == is_latched;
+    };
+    if (std::ranges::any_of(readers_, is_there)) continue;
+    RosType delivery = *wanted->delivery;
+    if (is_latched) delivery.is_latched = delivery.is_reliable = true;
+    readers_.push_back(
+        {participant_.ros_reader(delivery, writer.topic), wanted->number, is_latched});
   }
   return true;
 }
@@ -26,13 +33,31 @@ std::vector<std::uint64_t> RosReaders::writers() const {
   return writers;
 }
 
+bool RosReaders::is_read_by_other(const Reader& reader, std::uint64_t writer) const {
+  const auto of_writer = present_.writers().find(writer);
+  if (of_writer == present_.writers().end() || !of_writer->second.is_latched) return false;
+  return std::ranges::any_of(readers_, [&](const Reader& other) {
+    return other.topic == reader.topic && other.is_latched;
+  });
+}
+
+void RosReaders::take(const Reader& reader, const Now& now, std::vector<CdrSample>& taken) {
+  const bool is_one_of_two =
+      !reader.is_latched && std::ranges::count(readers_, reader.topic, &Reader::topic) > 1;
+  if (!is_one_of_two) return take_into(intake_, reader.topic, reader.handle, now, taken);
+  take_into(intake_, reader.topic, reader.handle, now, taken, nullptr,
+            [&](std::uint64_t writer) { return !is_read_by_other(reader, writer); });
+}
+
 // A sample without a time of sending counts as sent now.
 void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
-               std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended) {
+               std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended,
+               const std::function<bool(std::uint64_t writer)>& counts) {
   std::size_t count = kMostAtOnce;
   while (count == kMostAtOnce) {
     count = take_cdr(reader, taken, ended);
     for (const CdrSample& sample : taken) {
+      if (counts && !counts(sample.writer())) continue;
       intake.take({.topic = topic,
                    .cdr = sample.bytes(),
                    .sent_ns = sample.source_ns() > 0 ? sample.source_ns() : now.realtime_ns,

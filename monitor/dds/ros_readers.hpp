@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "monitor/dds/present_topics.hpp"
@@ -17,6 +18,9 @@ class RosReaders {
   struct Reader {
     dds_entity_t handle = 0;
     std::uint32_t topic = 0;  // the intake's number
+    // A reader of writers that keep their last sample for it. A topic may have one beside the other
+    // one, which then leaves those writers to it: both would hand out their samples.
+    bool is_latched = false;
   };
 
   // Participant and intake must outlive this.
@@ -32,17 +36,22 @@ class RosReaders {
   // The topics that other programs publish, and the publication handles of all their writers.
   [[nodiscard]] const PresentTopics& present() const noexcept { return present_; }
   [[nodiscard]] std::vector<std::uint64_t> writers() const;
+  // Takes all waiting samples of one of readers() into the intake. `taken` is empty before and
+  // after, and keeps its memory.
+  void take(const Reader& reader, const Now& now, std::vector<CdrSample>& taken);
 
  private:
+  [[nodiscard]] bool is_read_by_other(const Reader& reader, std::uint64_t writer) const;
+
   Participant& participant_;
   Intake& intake_;
   PresentTopics present_;
   std::vector<Reader> readers_;
 };
 
-// Takes all waiting samples of a reader into the intake. `taken` is empty before and after, and
-// keeps its memory.
+// The same for any reader. Samples of a writer that does not count are dropped; empty: all count.
 void take_into(Intake& intake, std::uint32_t topic, dds_entity_t reader, const Now& now,
-               std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended = nullptr);
+               std::vector<CdrSample>& taken, std::vector<std::uint64_t>* ended = nullptr,
+               const std::function<bool(std::uint64_t writer)>& counts = {});
 
 }  // namespace clearance

@@ -135,8 +135,7 @@ void SensorReader::take_all() {
     static_cast<void>(ids_.append(*batch, poses_, joints_));
   sensors_->add(poses_, joints_);
   const Now now{.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = now_ns_};
-  for (const RosReaders::Reader& reader : ros_.readers())
-    take_into(intake_, reader.topic, reader.handle, now, taken_);
+  for (const RosReaders::Reader& reader : ros_.readers()) ros_.take(reader, now, taken_);
 }
 
 void SensorReader::build() {

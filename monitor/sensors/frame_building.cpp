@@ -23,6 +23,8 @@ CloudCrop crop_of(const Sensor& sensor, const PastPose& place) noexcept {
 
 }  // namespace
 
+// A map may be older than the daemon. If nothing is known of the robot at its stamp, what it has of
+// the robot is an obstacle.
 void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
   postures_.place(frame.stamp_ns);
   PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
@@ -31,7 +33,7 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   FrameFault fault = FrameFault::kNoFault;
   if (!place.known) {
     fault = FrameFault::kNoPlace;
-  } else if (!postures_.began_by(frame.stamp_ns)) {
+  } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
     fault = build_at(state, frame, place, cloud, use);

@@ -58,10 +58,16 @@ inline constexpr RosType kRosPlanningScene{
     16,
     true};
 
-// Maps are large and come seldom, and servers of maps publish them reliably.
+// Maps are large and come seldom. Servers of maps publish them reliably, and most keep the last one
+// for late readers.
 inline constexpr RosType kRosOctomap{
     &octomap_msgs_msg_dds__Octomap__desc,
-    "typehash=RIHS01_9891a19a05b70ec20aa8f45db3f8300b9ab80afff32c61c549d25087da9625b0;", false, 2};
+    "typehash=RIHS01_9891a19a05b70ec20aa8f45db3f8300b9ab80afff32c61c549d25087da9625b0;",
+    false,
+    2,
+    2,
+    false,
+    true};
 
 // A motion that a controller gets: each one counts.
 inline constexpr RosType kRosJointTrajectory{

@@ -51,6 +51,7 @@ struct RosType {
   // Samples that a writer keeps. There are few of a state, as in kTopics.
   std::int32_t writer_depth = depth;
   bool is_reliable = is_latched;  // a reader of it is; other readers take what comes
+  bool may_be_latched = false;    // some writers keep their last sample for late readers
 };
 
 inline constexpr RosType kRosJointState{

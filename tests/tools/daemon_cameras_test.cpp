@@ -73,30 +73,55 @@ TEST_F(DaemonCameras, GivesTheExactDistanceToTheBallsOfPoints) {
   EXPECT_LT(ball_pair().upper - ball_pair().lower, 1e-8);
 }
 
+Sample<octomap_msgs_msg_dds__Octomap_> map_of(const std::string& tree) {
+  Sample<octomap_msgs_msg_dds__Octomap_> message;
+  const std::int64_t stamp = dds_time();
+  message->header.stamp.sec = static_cast<std::int32_t>(stamp / 1'000'000'000);
+  message->header.stamp.nanosec = static_cast<std::uint32_t>(stamp % 1'000'000'000);
+  message->header.frame_id = dds_string_dup("map");
+  message->binary = true;
+  message->id = dds_string_dup("OcTree");
+  message->resolution = 0.1;
+  reserve_sequence(message->data, tree.size());
+  message->data._length = static_cast<std::uint32_t>(tree.size());
+  std::memcpy(message->data._buffer, tree.data(), tree.size());
+  return message;
+}
+
 // A cube of 0.1 m below the ball, whose upper side is at z = 0.8.
+const std::string kCubeBelow = one_cube({0, 0, 7});
+
 TEST_F(DaemonCameras, GivesTheExactDistanceToTheCubesOfAnOctomap) {
   start("octomap: /map, age_limit_ms: 1000, mount: {pose: {xyz: [0, 0, 0]}}");
   const dds_entity_t writer = client.ros_writer(kRosOctomap, ros_dds_name("/map"));
   ASSERT_TRUE(eventually([&] { return matched_readers(writer) > 0; })) << daemon->output();
-  const std::string tree = one_cube({0, 0, 7});
-  const auto send = [&] {
-    Sample<octomap_msgs_msg_dds__Octomap_> message;
-    const std::int64_t stamp = dds_time();
-    message->header.stamp.sec = static_cast<std::int32_t>(stamp / 1'000'000'000);
-    message->header.stamp.nanosec = static_cast<std::uint32_t>(stamp % 1'000'000'000);
-    message->header.frame_id = dds_string_dup("map");
-    message->binary = true;
-    message->id = dds_string_dup("OcTree");
-    message->resolution = 0.1;
-    reserve_sequence(message->data, tree.size());
-    message->data._length = static_cast<std::uint32_t>(tree.size());
-    std::memcpy(message->data._buffer, tree.data(), tree.size());
-    ASSERT_EQ(dds_write(writer, &*message), DDS_RETCODE_OK);
-  };
+  const auto send = [&] { ASSERT_EQ(dds_write(writer, &*map_of(kCubeBelow)), DDS_RETCODE_OK); };
   ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
   EXPECT_LE(ball_pair().lower, 2.0 - 0.8 - kRadius);
   EXPECT_NEAR(ball_pair().upper, 2.0 - 0.8 - kRadius, 1e-6) << "cubes contain the exact ones";
   dds_delete(writer);
+}
+
+// Servers of maps publish a map that does not change once, for readers that come later as well.
+TEST_F(DaemonCameras, GetsAMapThatWasPublishedBeforeItStarted) {
+  const RosType latched{kRosOctomap.descriptor, kRosOctomap.user_data, true, 1};
+  const dds_entity_t writer = client.ros_writer(latched, ros_dds_name("/map"));
+  ASSERT_EQ(dds_write(writer, &*map_of(kCubeBelow)), DDS_RETCODE_OK);
+  start("octomap: /map, age_limit_ms: 60000, mount: {pose: {xyz: [0, 0, 0]}}");
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [] {}, [&] { return is_measured(); }))
+      << daemon->output();
+  EXPECT_NEAR(ball_pair().upper, 2.0 - 0.8 - kRadius, 1e-6);
+  // Another server may have no memory for late readers: the daemon reads both kinds.
+  dds_delete(writer);
+  const dds_entity_t other = client.ros_writer(kRosOctomap, ros_dds_name("/map"));
+  ASSERT_TRUE(eventually([&] { return matched_readers(other) > 0; })) << daemon->output();
+  const std::string higher = one_cube({0, 0, 9});
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [&] { ASSERT_EQ(dds_write(other, &*map_of(higher)), DDS_RETCODE_OK); },
+      [&] { return ball_pair().upper < 2.0 - 0.9 - kRadius; }))
+      << daemon->output();
+  dds_delete(other);
 }
 
 // The camera hangs on a frame that moves past the ball. Each report is that of a frame whose place

@@ -151,7 +151,7 @@ void LiveSource::take_from_ros(const Now& now) {
     if (seen_) seen_->keep(writers);
   }
   for (const RosReaders::Reader& reader : ros_.readers()) {
-    take_into(intake_, reader.topic, reader.handle, now, taken_);
+    ros_.take(reader, now, taken_);
   }
   intake_.settle(now);
   static_cast<void>(intake_.take_news());
