@@ -107,12 +107,11 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   revision_ = revision;
   store_.take_in();
   listen();
-  const bool is_late = clock_.monotonic_ns() > deadline + options_.period_ns / 2;
+  const std::int64_t late_ns = clock_.monotonic_ns() - deadline;
   const bool knows_more = standing_ == kFollowing && known(cycle_) != nullptr;
   const bool is_in_step = standing_ == kLeading || standing_ == kFollowing;
-  if (is_late && partner_present_ && is_in_step && !knows_more) {
-    hear_out();
-  }
+  if (late_ns > options_.period_ns / 2 && partner_present_ && is_in_step && !knows_more)
+    hear_out(late_ns);
   if (standing_ == kLeading) yield();
   switch (standing_) {
     case kLeading:
@@ -135,10 +134,12 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
 }
 
 // The whole process may have been stopped. Two passes of the other thread, the second of which
-// began after this call, have taken in everything.
-void TickPartner::hear_out() noexcept {
+// began after this call, have taken in everything. A tick that is a little late waits no longer
+// than a period: the partner may have nothing to say any more.
+void TickPartner::hear_out(std::int64_t late_ns) noexcept {
   const std::uint64_t passes = passes_.load(std::memory_order_acquire) + 2;
-  const std::int64_t end = clock_.monotonic_ns() + kHearNs;
+  const std::int64_t most = std::min(kHearNs, std::max(late_ns, options_.period_ns));
+  const std::int64_t end = clock_.monotonic_ns() + most;
   while (passes_.load(std::memory_order_acquire) < passes && clock_.monotonic_ns() < end) {
     clock_.sleep_until(clock_.monotonic_ns() + kLookNs);
     listen();

@@ -86,7 +86,7 @@ class TickPartner final : public PoseSource, public TickPace {
 
   void listen() noexcept;
   [[nodiscard]] std::int64_t lost_after() const noexcept;
-  void hear_out() noexcept;
+  void hear_out(std::int64_t late_ns) noexcept;
   void yield() noexcept;
   [[nodiscard]] const TickNotice* known(std::uint64_t cycle) const noexcept;
   [[nodiscard]] bool outranks_this(const TickNotice& notice) const noexcept;

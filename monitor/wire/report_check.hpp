@@ -21,7 +21,9 @@ struct ReportCheck {
   bool other_daemon = false;
   // The report is of another scene than the one before it, with other ids.
   bool other_scene = false;
-  std::uint64_t missed = 0;  // reports between the one before and this one
+  // Reports between the one before and this one. Partners that tick apart need not count alike:
+  // between two lineages the time of the ticks counts.
+  std::uint64_t missed = 0;
 
   [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
 };
@@ -49,7 +51,8 @@ class ReportChecker {
     const bool is_partner = has_partner && had_partner_;
     had_partner_ = has_partner;
     found.other_daemon = cycle_ != 0 && ((report.daemon != daemon_ && !is_partner) || again);
-    if (cycle_ != 0 && !found.other_daemon) found.missed = report.cycle - cycle_ - 1;
+    if (cycle_ != 0 && !found.other_daemon) found.missed = missed_before(report);
+    note_lineage(report);
     daemon_ = report.daemon;
     cycle_ = report.cycle;
     revision_ = report.scene_revision;
@@ -63,9 +66,31 @@ class ReportChecker {
     return false;
   }
 
+  template <class Message>
+  [[nodiscard]] std::uint64_t missed_before(const Message& report) const noexcept {
+    if constexpr (requires { report.lineage; }) {
+      if (report.lineage != lineage_ && step_ns_ > 0) {
+        const std::int64_t steps = (report.now_ns - now_ns_ + step_ns_ / 2) / step_ns_;
+        return steps > 1 ? static_cast<std::uint64_t>(steps - 1) : 0;
+      }
+    }
+    return report.cycle - cycle_ - 1;
+  }
+  template <class Message>
+  void note_lineage(const Message& report) noexcept {
+    if constexpr (requires { report.lineage; }) {
+      if (report.lineage == lineage_ && report.cycle == cycle_ + 1) {
+        step_ns_ = report.now_ns - now_ns_;
+      }
+      lineage_ = report.lineage;
+      now_ns_ = report.now_ns;
+    }
+  }
+
   std::int64_t limit_ns_;
   bool had_partner_ = false;  // the report before was one of two partners
-  std::uint64_t daemon_ = 0, cycle_ = 0, revision_ = 0;
+  std::uint64_t daemon_ = 0, cycle_ = 0, revision_ = 0, lineage_ = 0;
+  std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the report before, and since the one before it
 };
 
 }  // namespace clearance

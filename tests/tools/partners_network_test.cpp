@@ -67,7 +67,9 @@ TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
 }
 
 // The campaign: CLEARANCE_CUTS=100. A client beside one of the two hears that one, whatever becomes
-// of the link: it misses no cycle, and sees the zone as the reports have it.
+// of the link: it misses no cycle, and sees the zone as the reports have it. A machine that cannot
+// keep its rate counts less than the other one during a cut. The stream may then lose a period when
+// both meet again.
 TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
   test::NetworkNamespace one(1), other(2);
   for (const auto* machine : {&one, &other}) {
@@ -84,7 +86,7 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
   std::optional<test::SendingRobot> robot;
   const char* const asked = std::getenv("CLEARANCE_CUTS");
   const int cuts = asked == nullptr ? 2 : std::atoi(asked);
-  int done = 0, missing = 0, other_bits = 0, zones_wrong = 0, came = 0;
+  int done = 0, missing = 0, late = 0, other_bits = 0, zones_wrong = 0, came = 0;
   one.run([&] {
     robot.emplace(dds, cell);
     left.emplace(kDaemon, test::with(arguments, {"left"}));
@@ -98,7 +100,7 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
     client::Zones zones(connection);
     client::Pair boxes(catalogue, "left", "right");
     Random random(34);
-    std::uint64_t cycle = 0;
+    std::uint64_t lineage = 0;
     bool is_inside = false;
     int agreed = 0;
     const auto read_for = [&](double seconds, const auto& until) {
@@ -106,8 +108,8 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
       while (dds_time() < end) {
         if (!reports.next(std::chrono::milliseconds(50))) continue;
         ++came;
-        if (cycle != 0 && reports->cycle > cycle + 1) ++missing;
-        cycle = std::max(cycle, reports->cycle);
+        (reports->lineage == lineage ? missing : late) += static_cast<int>(reports.check().missed);
+        lineage = reports->lineage;
         const auto state = reports.partner().state;
         other_bits +=
             state == client::PartnerState::kDifferent || state == client::PartnerState::kCorrupt;
@@ -138,8 +140,11 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
     }
     if (!agree()) --done;
   });
-  std::printf("%d cuts, %d reports, %d gaps, %d with other bits, %d zones wrong\n", done, came,
-              missing, other_bits, zones_wrong);
+  std::printf(
+      "%d cuts, %d reports, %d missing, %d periods lost where the halves had counted apart, %d "
+      "with "
+      "other bits, %d zones wrong\n",
+      done, came, missing, late, other_bits, zones_wrong);
   EXPECT_EQ(done, cuts) << left->output() << right->output();
   EXPECT_EQ(missing, 0);
   EXPECT_EQ(other_bits, 0);

@@ -124,6 +124,22 @@ TEST(ReportCheck, TheOtherPartnerIsNoOtherDaemonButOneThatBeginsAgainIs) {
   EXPECT_TRUE(check("right", 1).other_daemon);
 }
 
+// While a network was cut, the other partner may have counted further: no report is missing then.
+TEST(ReportCheck, PartnersThatCountApartMissWhatIsMissingInTime) {
+  ReportChecker checker(100'000'000);
+  const auto missed = [&](std::uint64_t cycle, std::uint64_t lineage, std::int64_t now_ns) {
+    auto message = report("left", cycle, lineage);
+    message.now_ns = kStart + now_ns;
+    return checker.check(message, kStart).missed;
+  };
+  EXPECT_EQ(missed(5, 7, 0), 0u);
+  EXPECT_EQ(missed(6, 7, 1'000'000), 0u);
+  EXPECT_EQ(missed(16, 8, 2'100'000), 0u) << "the next tick, under another number";
+  EXPECT_EQ(missed(17, 8, 3'100'000), 0u);
+  EXPECT_EQ(missed(18, 9, 7'100'000), 3u) << "the next number, four periods later";
+  EXPECT_EQ(missed(21, 9, 10'100'000), 2u) << "within a lineage the numbers count";
+}
+
 // A report with every kind of field, as a partner sends it.
 Sample<clearance_msg_Distances> full_report(Random& random) {
   Sample<clearance_msg_Distances> sample;
