@@ -54,7 +54,7 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       files_(by_event_ ? 0 : 1),
       clouds_every_(options.clouds_every),
       poses_(poses),
-      built_(options.events.any() ? nullptr : poses.keep_frames()),
+      built_(poses.keep_frames()),
       health_(health),
       recorder_(file, *cell, SystemClock().realtime_ns(), options) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));

@@ -115,10 +115,23 @@ void EventFiles::follow(std::uint32_t scene, std::int64_t log_ns) {
 void EventFiles::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                        std::span<const std::byte> cdr, bool repeated) {
   if (options_.left_out.contains(kind) || !ok()) return;
-  const bool is_start = std::exchange(next_is_start_, false);
-  if (is_start) started_ns_ = log_ns;
-  ring_.put({kind, is_start, repeated, scenes_.back().number, log_ns, publish_ns, cdr});
+  keep(
+      {.kind = kind, .repeated = repeated, .log_ns = log_ns, .publish_ns = publish_ns, .cdr = cdr});
   if (writer_ && !repeated) writer_->write(kind, log_ns, publish_ns, cdr);
+}
+
+void EventFiles::write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
+                             std::span<const std::byte> cdr) {
+  if (!ok()) return;
+  keep({.is_frame = true, .log_ns = log_ns, .publish_ns = stamp_ns, .cdr = cdr});
+  if (writer_) writer_->write_frame(log_ns, stamp_ns, cdr);
+}
+
+void EventFiles::keep(RingMessage message) {
+  message.is_start = std::exchange(next_is_start_, false);
+  if (message.is_start) started_ns_ = message.log_ns;
+  message.scene = scenes_.back().number;
+  ring_.put(message);
 }
 
 bool EventFiles::end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) {
@@ -151,6 +164,8 @@ void EventFiles::begin(std::int64_t now_ns) {
   std::optional<std::int64_t> first_tick_ns;
   ring_.for_each([&](const RingMessage& message) {
     follow(message.scene, message.log_ns);
+    if (message.is_frame)
+      return writer_->write_frame(message.log_ns, message.publish_ns, message.cdr);
     if (message.kind == TopicKind::kDistances && !first_tick_ns) first_tick_ns = message.log_ns;
     if (message.repeated && first_tick_ns && message.log_ns > *first_tick_ns) return;
     writer_->write(message.kind, message.log_ns, message.publish_ns, message.cdr);

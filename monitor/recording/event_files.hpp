@@ -30,6 +30,8 @@ class EventFiles final : public RecordingSink {
                           std::int64_t log_ns) override;
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
              std::span<const std::byte> cdr, bool repeated) override;
+  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
+                   std::span<const std::byte> cdr) override;
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) override;
   bool check() override;
   bool close() override;
@@ -52,6 +54,7 @@ class EventFiles final : public RecordingSink {
     Sample<clearance_msg_Catalogue> catalogue;
   };
 
+  void keep(RingMessage message);
   void begin(std::int64_t now_ns);
   void end();
   void follow(std::uint32_t scene, std::int64_t log_ns);

@@ -13,6 +13,7 @@ namespace clearance {
 
 struct RingMessage {
   TopicKind kind = TopicKind::kPoses;
+  bool is_frame = false;  // of a sensor, and of no kind
   bool is_start = false;  // a file may begin here
   bool repeated = false;  // a file needs this message only in its first tick
   std::uint32_t scene = 0;
@@ -52,7 +53,7 @@ class EventRing {
     std::uint64_t bytes;
     std::uint32_t scene;
     TopicKind kind;
-    bool is_start, repeated;
+    bool is_frame, is_start, repeated;
   };
   struct Found {
     RingMessage message;

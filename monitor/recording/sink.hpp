@@ -10,7 +10,6 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/recording/recorded_event.hpp"
-#include "monitor/recording/topic_schema.hpp"
 #include "monitor/recording/writer.hpp"
 
 namespace clearance {
@@ -29,9 +28,9 @@ class RecordingSink {
   // written.
   virtual void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                      std::span<const std::byte> cdr, bool repeated) = 0;
-  // A frame of a sensor. Files by event do not have them.
-  virtual void write_frame(std::int64_t /*log_ns*/, std::int64_t /*stamp_ns*/,
-                           std::span<const std::byte> /*cdr*/) {}
+  // A frame of a sensor.
+  virtual void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
+                           std::span<const std::byte> cdr) = 0;
   // A tick ends, in which this happened. Returns true if a file may begin with the next tick, which
   // then states every zone.
   virtual bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) = 0;
@@ -63,8 +62,7 @@ class ContinuousFiles final : public RecordingSink {
   }
   void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
                    std::span<const std::byte> cdr) override {
-    if (!frames_) frames_ = writer_.add_channel(frames_schema(), kFramesTopic);
-    writer_.write(*frames_, log_ns, stamp_ns, cdr);
+    writer_.write_frame(log_ns, stamp_ns, cdr);
   }
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& /*event*/) override {
     return writer_.roll(now_ns);
@@ -82,7 +80,6 @@ class ContinuousFiles final : public RecordingSink {
 
  private:
   RecordingWriter writer_;
-  std::optional<std::uint16_t> frames_;  // their channel, from the first one on
 };
 
 }  // namespace clearance

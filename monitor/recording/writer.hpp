@@ -91,6 +91,12 @@ class RecordingWriter {
                  static_cast<std::uint64_t>(publish_ns), cdr);
   }
 
+  // A frame of a sensor, on kFramesTopic.
+  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns, std::span<const std::byte> cdr) {
+    if (!frames_) frames_ = add_channel(frames_schema(), kFramesTopic);
+    write(*frames_, log_ns, stamp_ns, cdr);
+  }
+
   // Afterwards everything written so far survives a crash.
   void flush() { mcap_->flush(); }
   // Calls McapWriter::check.
@@ -121,6 +127,7 @@ class RecordingWriter {
   std::optional<McapWriter> mcap_;
   std::array<std::uint16_t, kRecordedTopics.size()> channels_{};
   std::vector<std::pair<McapSchema, std::string>> more_channels_;  // and their topics, in order
+  std::optional<std::uint16_t> frames_;  // the channel of frames, from the first one on
   CdrEncoder encoder_;
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <csignal>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <string>
 
@@ -259,6 +260,37 @@ TEST_F(DaemonCameras, AreRecordedSoThatAReplayMakesTheSameReports) {
   ChildProcess replay(kReplay, {"check", file, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
   EXPECT_THAT(replay.output(), testing::HasSubstr("sensor 'eye'"));
+}
+
+// The camera falls silent, which is a fault: the file has the frames of the seconds before it.
+TEST_F(DaemonCameras, AreInARecordingByEvent) {
+  start(kImage + kAbove, {"--record", (folder / "run.mcap").string(), "--record-around", "1"});
+  RosCamera camera(client, {});
+  RosJoints joints(client);
+  ASSERT_TRUE(camera.is_heard() && joints.is_heard());
+  int steps = 0;
+  const auto send_joints = [&] {
+    joints.send({"shoulder", "elbow", "push"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
+  };
+  const auto send = [&] {
+    camera.send_image({.wall = 2.5 + 0.01 * ++steps, .ball = {}});
+    send_joints();
+  };
+  ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return steps > 30 && is_measured(); }))
+      << daemon->output();
+  ASSERT_TRUE(step_until(
+      kPeriodMs, [] {}, [&] { return daemon->told("event-recorded", {}); }))
+      << daemon->output();
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  std::string file;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / ".")) {
+    if (entry.path().filename().string().starts_with("run-")) file = entry.path().string();
+  }
+  ChildProcess replay(kReplay, {"check", file, "--compare-bounds"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
+  EXPECT_THAT(replay.output(), testing::HasSubstr("sensor 'eye'"));
+  EXPECT_THAT(replay.output(), testing::Not(testing::HasSubstr("'eye': 0 frames")));
 }
 
 // A recording that leaves out the content of frames says so instead of an answer.

@@ -7,6 +7,7 @@
 #include "monitor/mcap/attachments.hpp"
 #include "monitor/recording/event_files.hpp"
 #include "monitor/recording/event_ring.hpp"
+#include "monitor/replay/frame_feed.hpp"
 #include "tests/monitor/replay/offline_replay_run.hpp"
 
 namespace clearance::test {
@@ -94,6 +95,32 @@ TEST_F(EventRecording, AFileHoldsTheTicksAroundTheEntryOfAZone) {
   ASSERT_THAT(happened, SizeIs(1));
   EXPECT_EQ("zone", happened[0].at("cause"));
   EXPECT_EQ(std::to_string(kStart + 500 * kTick), happened[0].at("t_ns"));
+}
+
+// A frame every ten ticks, in front of its report.
+TEST_F(EventRecording, AFileHoldsTheFramesOfSensorsAroundTheEvent) {
+  cell.scene.objects[0].max_speed = 1000.0;
+  CdrEncoder encoder;
+  const auto add_frame = [&](int tick, Recorder& recorder) {
+    if (tick % 10 != 9) return;
+    Sample<clearance_msg_SensorFrame> frame;
+    frame->stamp_ns = kStart + tick * kTick;
+    recorder.frame(frame->stamp_ns, encoder.encode(*frame));
+  };
+  run_with(around(100), 1000, near_between(500, 520), add_frame);
+  ASSERT_THAT(files(), SizeIs(1));
+  const auto ticks = cycles(files()[0]);
+  FrameFeed feed(files());
+  std::vector<std::int64_t> stamps;
+  for (; const clearance_msg_SensorFrame* const frame = feed.front(); feed.pop())
+    stamps.push_back(frame->stamp_ns);
+  std::vector<std::int64_t> expected;
+  for (int tick = 9; tick < 1000; tick += 10) {  // it is recorded with the report of the next tick
+    const auto cycle = static_cast<std::uint64_t>(tick + 2);
+    if (cycle >= ticks.front() && cycle <= ticks.back()) expected.push_back(kStart + tick * kTick);
+  }
+  EXPECT_GE(expected.size(), 20u);
+  EXPECT_EQ(stamps, expected);
 }
 
 TEST_F(EventRecording, AFileStandsAloneAndItsReplayAgrees) {
