@@ -59,6 +59,21 @@ TEST_F(OctomapsTest, AreCubesOfTheirResolutionAtThePlaceThatTheCellStates) {
   EXPECT_EQ(settle(kStart + kFrame + 1000).size(), 1u);
 }
 
+// A map may be from before the daemon's start. The cube is within the arm.
+TEST_F(OctomapsTest, FromBeforeTheFirstJointsHaveTheRobotAsAnObstacle) {
+  make(kMap + ", own_shell: 0.05, mount: {pose: {xyz: [0, 0, 0]}}");
+  add_joints(0.0, kStart + kFrame);
+  add_map(Type::kOctomap, map_message(one_cube({5, 0, 0}), kStart), kStart + kFrame);
+  const auto old = settle(kStart + 2 * kFrame);
+  ASSERT_EQ(old.size(), 1u);
+  EXPECT_EQ(old[0].cloud->size(), 1u);
+  add_joints(0.0, kStart + 3 * kFrame);
+  add_map(Type::kOctomap, map_message(one_cube({5, 0, 0}), kStart + 3 * kFrame),
+          kStart + 3 * kFrame);
+  EXPECT_TRUE(settle(kStart + 4 * kFrame).empty());
+  EXPECT_EQ(count(FrameFault::kNothingSeen), 1u) << "now it is known to be the arm";
+}
+
 TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {
   make(kMap, "ros2: {world_frame: map}\n");
   test::RosCdr with_map, without;
