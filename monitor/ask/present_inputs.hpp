@@ -1,4 +1,4 @@
-// What a monitor knows at one tick: all that a question need not state.
+// The inputs that a monitor knows at one tick, which a question need not state.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ inline constexpr std::size_t kMostBodyPoints = 256;
 [[nodiscard]] std::variant<std::optional<ConvexBody>, ShapeError> from_wire(
     const clearance_msg_StatedBody& message);
 
-// Why a message cannot state exactly this body, and what can; empty: it can. A message has no
+// Returns why a message cannot state exactly this body; empty: it can. A message has no
 // room for unbounded bodies, for too many vertices, and for those whose vertices were rounded. It
 // makes the body once more, which may take milliseconds.
 [[nodiscard]] std::string unsent_part(const ConvexBody& body);

@@ -38,7 +38,7 @@ class Reader {
       return refuse(path, fmt::format("found {}; expected a finite number from 0 on", from));
     to = from;
   }
-  // What is not stated leaves what is there.
+  // A number that is not stated leaves what is there.
   void stated(const std::string& path, const clearance_msg_StatedNumber& from, double& to) {
     if (from.is_stated) number(path, from.value, to);
   }
@@ -113,7 +113,7 @@ void put_list(const std::vector<From>& from, Sequence& to, const Put& put) {
 clearance_msg_Vector3 vector_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
 Vec3 vector_of(const clearance_msg_Vector3& v) { return {v.x, v.y, v.z}; }
 
-// Infinity is not stated. What is no number is, and is refused.
+// Infinity is not stated. A value that is no number is stated, so that it is refused.
 clearance_msg_StatedNumber stated_number(double value) { return {value != kInfinity, value}; }
 
 void read_profile(const clearance_msg_Question& message, Reader& read, Question& question) {

@@ -1,4 +1,4 @@
-// How Sensors makes a cloud of a frame.
+// The part of Sensors that makes a cloud of a frame.
 #include <algorithm>
 #include <chrono>
 #include <optional>

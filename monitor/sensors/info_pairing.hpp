@@ -1,5 +1,5 @@
-// Whether an image has its own CameraInfo: most drivers send one with each image, with the same
-// stamp.
+// Tells whether the CameraInfo of an image is still to come. Most drivers send one with each image,
+// with the same stamp.
 #pragma once
 
 #include <algorithm>

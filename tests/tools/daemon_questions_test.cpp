@@ -223,7 +223,7 @@ TEST_F(DaemonQuestions, IncludeWhatIsAttached) {
   EXPECT_NEAR(result.upper, 0.03, 1e-3);
 }
 
-// What a client states counts, whatever the daemon knows.
+// The client's statements count, whatever the daemon knows.
 TEST_F(DaemonQuestions, TakeBodiesAgesAndContactsThatTheyState) {
   start();
   client::Questions questions(connection, "planner");

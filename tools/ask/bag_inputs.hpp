@@ -1,5 +1,5 @@
-// What a monitor of the cell knows when each motion of a bag comes: poses, frames of sensors, the
-// scene of MoveIt.
+// The inputs of a monitor of the cell when each motion of a bag comes: poses, frames of sensors,
+// and MoveIt's scene.
 #pragma once
 
 #include <cstddef>
