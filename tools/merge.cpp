@@ -101,7 +101,7 @@ int run_merge(const Cell& cell, const Arguments& arguments, StopSignal& signal) 
       log_line(lines::kSystemRefuses, *refusal);
   }
   client::Connection connection(arguments.dds.resolve(cell), cell.topics);
-  client::SharedCellOptions options;
+  client::SharedCellOptions options{.gradients = true};
   options.late_after = std::chrono::nanoseconds(std::llround(1e6 * arguments.late_ms));
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
   client::SharedCell whole(connection, options);

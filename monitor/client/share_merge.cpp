@@ -229,6 +229,30 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
   }
 }
 
+void join_gradients(const ShareMap& map, std::span<const ShareView> views,
+                    clearance_msg_Gradients& out) {
+  reserve_sequence(out.pairs, map.published().size());
+  reserve_sequence(out.alternatives, map.published().size());
+  std::vector<std::uint32_t> next(views.size(), 0);
+  for (const ShareMap::Published& published : map.published()) {
+    const ShareView& view = views[published.share];
+    if (view.state != ShareState::kWhole || view.gradients == nullptr) continue;
+    const auto pairs = list(view.gradients->pairs);
+    const auto alternatives = list(view.gradients->alternatives);
+    std::uint32_t& at = next[published.share];
+    while (at < pairs.size() && pairs[at].pair < published.pair) ++at;
+    if (at == pairs.size() || pairs[at].pair != published.pair) continue;
+    clearance_msg_PairGradient& to = out.pairs._buffer[out.pairs._length++];
+    to = pairs[at];
+    to.joints = {};
+    reserve_sequence(to.joints, pairs[at].joints._length);
+    for (const clearance_msg_JointGradient& joint : list(pairs[at].joints))
+      append(to.joints, joint);
+    append(out.alternatives,
+           at < alternatives.size() ? alternatives[at] : clearance_msg_GradientAlternative{});
+  }
+}
+
 clearance_msg_ZoneState join_zone(const ShareMap& map, std::uint32_t zone,
                                   std::span<const clearance_msg_ZoneState* const> of_shares) {
   clearance_msg_ZoneState joined{};

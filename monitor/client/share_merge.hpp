@@ -27,6 +27,7 @@ struct ShareView {
   ShareState state = ShareState::kMissing;
   const clearance_msg_Distances* report = nullptr;       // kWhole: not null
   const clearance_msg_Separation* separation = nullptr;  // null: it has none, or none of that time
+  const clearance_msg_Gradients* gradients = nullptr;    // likewise
 };
 
 // Which pairs and zones of a scene depend on which share.
@@ -76,6 +77,11 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
 // `separation` that any share has reported.
 void join_separations(const ShareMap& map, std::span<const ShareView> views,
                       const std::vector<std::uint32_t>& zones, clearance_msg_Separation& out);
+
+// Fills an empty message with the pairs of all shares that are whole and have gradients, in the
+// order of the cell. Pairs of other shares are left out.
+void join_gradients(const ShareMap& map, std::span<const ShareView> views,
+                    clearance_msg_Gradients& out);
 
 // The state of a zone by those of its shares; null: not known. It is active if one of them is, or
 // if one is not known (ZoneCause::kNoShare). The least clearance decides what it says.

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -30,7 +31,9 @@ struct SharedCell::OfShare {
         catalogue(connection),
         health(connection),
         zones(connection.participant().reader_of_several(TopicKind::kZones,
-                                                         connection.topics().zones)) {}
+                                                         connection.topics().zones)) {
+    if (options.gradients) gradients.emplace(connection);
+  }
   ~OfShare() { dds_delete(zones); }
 
   // Up to two reports: the second one waits while the first one is not used yet.
@@ -43,6 +46,8 @@ struct SharedCell::OfShare {
     }
     std::erase_if(heard, [now_ns](const auto& one) { return one.second + kHeardFor < now_ns; });
     while (separations.next()) {
+    }
+    while (gradients && gradients->next()) {
     }
     catalogue.update();
     clearance_msg_ZoneState state{};
@@ -96,6 +101,7 @@ struct SharedCell::OfShare {
   Connection connection;
   Reports reports;
   client::Separation separations;
+  std::optional<Gradients> gradients;  // none: they are not asked for
   Catalogue catalogue;
   client::Health health;
   dds_entity_t zones;

@@ -207,10 +207,12 @@ void SharedCell::join(std::int64_t now_ns) {
     ShareView& view = views.emplace_back();
     view.state = checks_[i].state;
     view.report = &*share.current;
-    const clearance_msg_Separation& separation = *share.separations;
-    const bool is_of_now = separation.scene_revision == map_.revision() &&
-                           now_ns - separation.publish_ns <= options_.late_after.count();
-    if (is_of_now) view.separation = &separation;
+    const auto is_of_now = [&](const auto& message) {
+      return message.scene_revision == map_.revision() &&
+             now_ns - message.publish_ns <= options_.late_after.count();
+    };
+    if (is_of_now(*share.separations)) view.separation = &*share.separations;
+    if (share.gradients && is_of_now(**share.gradients)) view.gradients = &**share.gradients;
   }
   const std::int64_t before_ns = message_->now_ns, published_ns = message_->publish_ns;
   join_reports(map_, views, *message_);
@@ -232,13 +234,25 @@ void SharedCell::join(std::int64_t now_ns) {
   }
   if (!separated_.empty()) {
     join_separations(map_, views, separated_, *separation_);
-    separation_->daemon = daemon_;
-    separation_->cycle = message_->cycle;
-    separation_->now_ns = message_->now_ns;
-    separation_->publish_ns = message_->publish_ns;
-    separation_->scene_revision = message_->scene_revision;
+    sign(*separation_);
+  }
+  gradients_ = {};
+  has_gradients_ =
+      std::ranges::any_of(views, [](const ShareView& view) { return view.gradients != nullptr; });
+  if (has_gradients_) {
+    join_gradients(map_, views, *gradients_);
+    sign(*gradients_);
   }
   for (const auto& share : shares_) share->use();
+}
+
+template <class Message>
+void SharedCell::sign(Message& message) const {
+  message.daemon = daemon_;
+  message.cycle = message_->cycle;
+  message.now_ns = message_->now_ns;
+  message.publish_ns = message_->publish_ns;
+  message.scene_revision = message_->scene_revision;
 }
 
 void SharedCell::join_zones() {

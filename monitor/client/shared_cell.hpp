@@ -20,6 +20,7 @@ struct SharedCellOptions {
   // longer than the time that partners take to go on without each other: two periods.
   std::chrono::nanoseconds late_after = std::chrono::milliseconds(20);
   std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // as StreamOptions'
+  bool gradients = false;  // they are read and joined, too
   // The names of the shares. If empty, they are those of the first share that is met.
   std::vector<std::string> names = {};
 };
@@ -67,6 +68,11 @@ class SharedCell {
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
     return separated_.empty() ? nullptr : &*separation_;
   }
+  // Gradients of the report at hand, if they are asked for; null: no share has any. A pair of a
+  // share that is not whole is not in them.
+  [[nodiscard]] const clearance_msg_Gradients* gradients() const noexcept {
+    return has_gradients_ ? &*gradients_ : nullptr;
+  }
   // The catalogue of the report's scene; null before the first report. Its `share` is that of one
   // daemon.
   [[nodiscard]] const clearance_msg_Catalogue* catalogue() const noexcept;
@@ -90,7 +96,9 @@ class SharedCell {
   void judge(std::int64_t now_ns);
   void join(std::int64_t now_ns);
   void join_zones();
-  void join_separation();
+  // Writes who made a message beside the report.
+  template <class Message>
+  void sign(Message& message) const;
 
   Connection& connection_;
   SharedCellOptions options_;
@@ -102,6 +110,8 @@ class SharedCell {
   std::vector<ShareCheck> checks_;
   Sample<clearance_msg_Distances> message_;
   Sample<clearance_msg_Separation> separation_;
+  Sample<clearance_msg_Gradients> gradients_;
+  bool has_gradients_ = false;
   std::vector<std::uint32_t> separated_;  // zones of which any share has reported separations
   std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
   ReportChecker checker_;

@@ -12,10 +12,12 @@
 #include <string>
 #include <vector>
 
+#include "config/cell/cell_file.hpp"
 #include "config/cell/share_topics.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/report.hpp"
+#include "tests/monitor/scara_cell.hpp"
 #include "tests/tools/meeting_boxes.hpp"
 
 namespace clearance {
@@ -25,6 +27,8 @@ using client::ShareState;
 using std::chrono::milliseconds;
 using test::ChildProcess;
 using test::kDaemon;
+using test::ScratchFolder;
+using test::write_text;
 
 const std::string kMerge = test::places::programs() + "/clearance-merge";
 
@@ -310,6 +314,54 @@ TEST_F(SparseSharedCells, AreWholeWhereReportsCarryOnlyWhatChanged) {
     missed = whole.missed();
     return whole->cycle > cycle + 200 || HasFailure();
   })) << logs();
+}
+
+// One joint moves the finger past a pin. The gradient of each pair comes from the share that has
+// it.
+TEST(SharedGradients, AreThoseOfAllSharesAndClearanceMergeWritesThem) {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", test::kScaraUrdf);
+  write_text(folder / "cell.yaml",
+             "name: gradients\nunits: {length: m, angle: rad}\nrate_hz: 100\ngradients: true\n"
+             "defaults: {age_limit_ms: 10000}\nrobots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+             "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
+             "pairs:\n  - {between: [arm, pin], publish: true}\n"
+             "  - {between: [finger, foot], publish: true}\nshares:\n"
+             "  - {name: hand, pairs: [{between: [finger, pin]}, {between: [finger, foot]}]}\n"
+             "  - {name: rest, pairs: [{between: [upper, pin]}, {between: [lower, pin]}]}\n");
+  const std::string file = (folder / "cell.yaml").string();
+  const Cell cell = std::get<Cell>(read_cell(file));
+  const DdsOptions dds = test::own_dds();
+  client::Connection connection(dds, cell.topics);
+  const auto arguments = test::dds_arguments(dds);
+  ChildProcess hand(kDaemon, test::with({file, "--share", "hand"}, arguments));
+  ChildProcess rest(kDaemon, test::with({file, "--share", "rest"}, arguments));
+  ChildProcess merge(kMerge, test::with({file, "--late-ms", "500"}, arguments));
+  client::JointWriter joints(connection, "driver",
+                             std::vector<std::string>{"shoulder", "elbow", "push"});
+  client::SharedCell whole(connection, {.late_after = milliseconds(500), .gradients = true});
+  client::Gradients merged(connection);
+  // The finger stands at (0, 2): the pin is at its right, and nearer if the shoulder turns back.
+  const auto are_right = [](const clearance_msg_Gradients& gradients) {
+    const double rate = 2.0 * 2.3 / std::hypot(2.0, 2.3);
+    bool is_right = false;
+    for (std::uint32_t i = 0; i < gradients.pairs._length; ++i) {
+      const clearance_msg_PairGradient& pair = gradients.pairs._buffer[i];
+      is_right = is_right ||
+                 (pair.joints._length == 3 && std::abs(pair.joints._buffer[0].rate - rate) < 1e-6);
+    }
+    return is_right && gradients.pairs._length == 4 && gradients.alternatives._length == 4;
+  };
+  EXPECT_TRUE(test::eventually([&] {
+    joints.write(std::vector{1.5707963267948966, 0.0, 0.0}, std::vector{0.0, 0.0, 0.0});
+    return whole.newest(milliseconds(20)) && whole.gradients() != nullptr &&
+           are_right(*whole.gradients());
+  })) << hand.output()
+      << rest.output();
+  EXPECT_TRUE(test::eventually([&] {
+    joints.write(std::vector{1.5707963267948966, 0.0, 0.0}, std::vector{0.0, 0.0, 0.0});
+    return merged.newest(milliseconds(20)) && are_right(*merged);
+  })) << merge.output();
 }
 
 // The demonstration: two partners of each of three shares, one of them killed now and then.

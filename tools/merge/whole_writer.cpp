@@ -25,9 +25,9 @@ WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64
     : participant_(participant),
       identity_(identity_of(daemon)),
       topics_(cell.topics),
-      distances_(participant.writer(
-          TopicKind::kDistances, topics_.distances,
-          {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
+      lease_ns_(lease_ns(cell.scene.rate_hz)),
+      distances_(participant.writer(TopicKind::kDistances, topics_.distances,
+                                    {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)})),
       catalogue_(participant.writer(TopicKind::kCatalogue, topics_.catalogue)),
       zones_(participant.writer(TopicKind::kZones, topics_.zones)),
       health_(participant.writer(TopicKind::kHealth, topics_.health)),
@@ -85,6 +85,14 @@ void WholeWriter::write(client::SharedCell& whole) {
     if (separation_ == 0)
       separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
     put(separation_, separation);
+  }
+  if (const clearance_msg_Gradients* const gradients = whole.gradients()) {
+    if (gradients_ == 0) {
+      gradients_ =
+          participant_.writer(TopicKind::kGradients, topics_.gradients,
+                              {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)});
+    }
+    put(gradients_, gradients);
   }
   write_zones(whole, is_new);
   zone_check_.look(whole);

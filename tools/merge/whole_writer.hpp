@@ -36,8 +36,9 @@ class WholeWriter {
   Participant& participant_;
   DaemonIdentity identity_;
   Topics topics_;
+  std::int64_t lease_ns_;
   dds_entity_t distances_, catalogue_, zones_, health_;
-  dds_entity_t separation_ = 0;  // 0: no share has had any yet
+  dds_entity_t separation_ = 0, gradients_ = 0;  // 0: no share has had any yet
   OtherDaemons others_;
   std::uint64_t revision_ = 0;             // of the catalogue that was written; 0: none
   std::map<std::uint32_t, bool> written_;  // zones, and whether they were active

@@ -248,6 +248,45 @@ TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
   EXPECT_EQ(joined->zones._buffer[0].speed_limit, 0.0);
 }
 
+// The first two shares have gradients of all their pairs, the last one has none.
+TEST(ShareMerge, GradientsOfAllSharesComeInTheOrderOfPairs) {
+  Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
+  std::vector<Sample<clearance_msg_Gradients>> of(2);
+  std::size_t first_two = 0;
+  for (std::size_t share = 0; share < 2; ++share) {
+    const auto& pairs = shares.cell.shares.all[share].pairs;
+    first_two += pairs.size();
+    reserve_sequence(of[share]->pairs, pairs.size());
+    reserve_sequence(of[share]->alternatives, pairs.size());
+    for (const std::uint32_t pair : pairs) {
+      clearance_msg_PairGradient& to = of[share]->pairs._buffer[of[share]->pairs._length++];
+      to.pair = pair;
+      reserve_sequence(to.joints, 1);
+      to.joints._buffer[to.joints._length++] = {pair + 1, 0.5 * pair};
+      of[share]->alternatives._buffer[of[share]->alternatives._length++].farther = pair;
+    }
+    shares.views[share].gradients = &*of[share];
+  }
+  const auto joined = [&] {
+    Sample<clearance_msg_Gradients> out;
+    join_gradients(shares.map, shares.views, *out);
+    return out;
+  };
+  const Sample<clearance_msg_Gradients> both = joined();
+  ASSERT_EQ(both->pairs._length, first_two);
+  ASSERT_EQ(both->alternatives._length, first_two);
+  for (std::uint32_t i = 0; i < both->pairs._length; ++i) {
+    const clearance_msg_PairGradient& pair = both->pairs._buffer[i];
+    EXPECT_TRUE(i == 0 || pair.pair > both->pairs._buffer[i - 1].pair);
+    ASSERT_EQ(pair.joints._length, 1u);
+    EXPECT_EQ(pair.joints._buffer[0].joint, pair.pair + 1);
+    EXPECT_EQ(pair.joints._buffer[0].rate, 0.5 * pair.pair);
+    EXPECT_EQ(both->alternatives._buffer[i].farther, pair.pair);
+  }
+  shares.views[0].state = ShareState::kLate;
+  EXPECT_EQ(joined()->pairs._length, shares.cell.shares.all[1].pairs.size());
+}
+
 TEST(ShareMerge, AnInputIsAsOldAsTheShareThatKnowsLeastOfItSays) {
   std::vector<Sample<clearance_msg_Health>> of(2);
   const auto add = [](clearance_msg_Health& health, std::uint32_t object, std::int64_t age_ns) {
