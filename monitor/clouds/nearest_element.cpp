@@ -128,8 +128,10 @@ class Search {
   template <class Least>
   void keep_plane(const DistanceResult& r, const Least& least) noexcept {
     if (r.status == DistanceStatus::kBadPose) bad_pose_ = true;
-    has_newest_ =
-        r.status == DistanceStatus::kConverged || r.status == DistanceStatus::kOverlapping;
+    // The error of the pose alone may keep the bounds of a curved part wider than rounding.
+    has_newest_ = r.status == DistanceStatus::kConverged ||
+                  r.status == DistanceStatus::kOverlapping ||
+                  (r.status == DistanceStatus::kIterationLimit && r.lower > 0.0);
     if (!has_newest_) return;
     newest_ = {r.normal, least() - r.lower + (r.upper - r.lower) + error_};
     witness_ = in_cloud(r.point_on_a - pose_.translation);

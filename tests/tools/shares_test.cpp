@@ -244,8 +244,9 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
     return boxes.in(*reports)->status == kUnknown && zones.states().at(0).active &&
            zones.states().at(0).cause == static_cast<std::uint8_t>(ZoneCause::kNoShare);
   })) << merge.output();
-  EXPECT_TRUE(merge.told("share-late", {"boxes"}) || merge.told("share-missing", {"boxes"}))
-      << merge.output();
+  EXPECT_TRUE(test::eventually([&] {
+    return merge.told("share-late", {"boxes"}) || merge.told("share-missing", {"boxes"});
+  })) << merge.output();
   start("boxes");
   EXPECT_TRUE(hears([&] { return boxes.in(*reports)->status != kUnknown; })) << merge.output();
   merge.signal(SIGTERM);

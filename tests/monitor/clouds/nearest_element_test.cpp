@@ -218,6 +218,31 @@ TEST(NearestElement, OfAWallThatIsParallelToAFaceNeedsFewQueries) {
   EXPECT_LE(nearest_element(test::cube(), cloud, {}, tracking).queries, 20U);
 }
 
+// Far from the origin, the pose's error makes the bounds of a curved part wider than its rounding.
+TEST(NearestElement, OfACurvedPartNeedsFewQueriesWhereverItIs) {
+  Random random(31);
+  Points points;
+  for (int i = 0; i < 200; ++i) {
+    for (int k = 0; k < 200; ++k)
+      points.push_back(
+          {0.02F * static_cast<float>(i), 0.02F * static_cast<float>(k), 2.0F, 0.001F});
+  }
+  const PointCloud cloud = built(points);
+  for (const ConvexBody& part : {made(cylinder(0.05, 0.12)), made(ellipsoid({0.3, 0.2, 0.1})),
+                                 made(truncated_cone(0.2, 0.1, 0.3, 0.01))}) {
+    CloudTracking tracking;
+    const Pose cloud_at{.position = {60.0, -40.0, 30.0}, .orientation = random.rotation()};
+    for (int step = 0; step < 20; ++step) {
+      Pose part_in_cloud = random.pose(1.0);
+      part_in_cloud.position.z() = 0.5;
+      const NearestElement found = nearest_element(
+          part, cloud, relative_pose(compose(cloud_at, part_in_cloud), cloud_at), tracking);
+      EXPECT_GT(found.lower, 0.5);
+      EXPECT_LE(found.queries, 400u) << "of 40,000 points";
+    }
+  }
+}
+
 TEST(NearestElement, AllocatesNothingAndRepeatsToTheBit) {
   Random random(9);
   const Points points = drawn(random, 3000);
