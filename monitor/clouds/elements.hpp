@@ -28,8 +28,7 @@ template <class Body, class Search>
   unsigned corner = body.corner_along(search.in_cloud(along));
   for (int i = 0; i < 3; ++i) {
     r = search.query(body.vertex(corner), {});
-    if (r.status != DistanceStatus::kConverged && r.status != DistanceStatus::kOverlapping)
-      return false;
+    if (!search.has_plane()) return false;
     const Vec3 n = search.in_cloud(r.normal);
     r.lower = std::min(r.lower, search.bound_by_newest(body.least_along(n)));
     if (r.upper - r.lower <= kTightVertex || search.is_left_out(r.lower)) return true;

@@ -107,6 +107,8 @@ class Search {
   [[nodiscard]] double bound_by_newest(double least) const noexcept {
     return least - (newest_.offset - newest_.normal.dot(pose_.translation)) - error_;
   }
+  // The last query proved a plane.
+  [[nodiscard]] bool has_plane() const noexcept { return has_newest_; }
   [[nodiscard]] bool is_left_out(double lower) const noexcept {
     return lower >= best_.lower - kGap;
   }
