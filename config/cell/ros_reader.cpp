@@ -66,6 +66,9 @@ void read_trajectories(MapReader& map, const Quantities& quantities,
     if (const auto margin = quantities.length(item, "a margin of trajectories", kNotNegative))
       trajectories.margins.push_back(*margin);
   }
+  // A motion would be free at all of no margins.
+  if (margins->kind == YamlNode::Kind::kSequence && margins->items.empty())
+    diagnostics.add(*margins, "found no margin; expected one or more, 0 for contact");
 }
 
 bool is_word(char c) noexcept {

@@ -1,4 +1,4 @@
-// Where the sensors of a cell are mounted, and which part of the world they crop to.
+// Reads where the sensors of a cell are mounted, and computes what they crop to.
 #pragma once
 
 #include "config/cell/robot_reader.hpp"

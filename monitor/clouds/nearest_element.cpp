@@ -375,7 +375,8 @@ class Search {
   double moved_ = 0.0;  // an element's place in the part's frame is at most this far off, m
   double error_ = 0.0;  // of a plane's bound, m
   Vec3 witness_ = Vec3::Zero();  // the part's point in the last answer, in the cloud's frame
-  // Of the last query, of the hint, of the element with the least upper bound; in the part's frame.
+  // The planes of the last query, of the hint, and of the element with the least upper bound; in
+  // the part's frame.
   PartPlane newest_, hint_plane_, best_plane_;
   bool has_newest_ = false, has_hint_ = false, has_hint_plane_ = false, bad_pose_ = false;
   std::size_t hint_block_ = 0, hint_lane_ = 0;

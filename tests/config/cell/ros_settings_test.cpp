@@ -39,6 +39,8 @@ TEST(RosSettingsOfACell, NameTrajectoriesAndTheirMarginsInUnitsOfTheCell) {
               mistake_at("cell.yaml:4:7", "'/a'"));
   EXPECT_THAT(errors_of(cell_text("ros2: {trajectory_margins: [-1]}\n" + kBoxes)),
               mistake_at("cell.yaml:4:29", "-1"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {trajectory_margins: []}\n" + kBoxes)),
+              mistake_at("cell.yaml:4:28", "no margin"));
 }
 
 TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {

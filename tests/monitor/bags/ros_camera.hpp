@@ -26,7 +26,7 @@ inline RosMessage depth_image(std::int64_t stamp, const PinholeCamera& view,
   return {"/cam/depth", "sensor_msgs/msg/Image", stamp, cdr.bytes()};
 }
 
-// Of a camera without distortion, on /cam/camera_info.
+// The info of a camera without distortion, on /cam/camera_info.
 inline RosMessage camera_info(std::int64_t stamp, const PinholeCamera& view) {
   RosCdr cdr;
   cdr.header(stamp, "optical").number(view.height).number(view.width).text("plumb_bob");
