@@ -8,6 +8,10 @@
 namespace clearance {
 namespace {
 
+// Shorter stretches are not divided for a pair whose bounds at an instant enclose the margin,
+// relative to the duration.
+constexpr double kUnclear = 0x1p-8;
+
 // A limit below 0 is that of a contact which is meant.
 bool proves(double lower, double limit) noexcept {
   return limit != 0.0 ? lower >= limit : lower > 0.0;
@@ -113,7 +117,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
       const double size = at.tip.sphere_in_world.radius;
       const bool may_be_below = apart - at.approach.nearing.until_middle < enough;
       const bool may_decide = apart + size >= enough + kShareAlongNormal * at.loss;
-      bool below = false, near = false;
+      bool below = false, near = false, unclear = false;
       if (may_be_below || may_decide || !divides) {
         const PairAtMiddle found = query(at, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
@@ -127,6 +131,10 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         below = is_below(upper, limit_until(middle, pair, answer.margin));
         near = !below && lower >= limit - question_->margin_tolerance &&
                upper <= limit + question_->margin_tolerance;
+        // No division helps where the distance at the middle itself is not known well enough.
+        unclear = !below && rounded_down(found.lower - nearing) < limit &&
+                  found.upper - found.lower > question_->margin_tolerance &&
+                  stretch.to - stretch.from <= kUnclear * duration_;
       }
       if (below && (!found_ || middle < answer.below_at)) {
         found_ = true;
@@ -135,7 +143,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
       }
       const bool located = found_ && answer.below_at <= stretch.to &&
                            answer.below_at - stretch.from <= kInstant * duration_;
-      if (near || located || !divides) {
+      if (near || unclear || located || !divides) {
         note_uncertain(pair);
         continue;
       }

@@ -44,6 +44,13 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
       middle, closest);
 }
 
+// Whether a division raises the pair's lower bound by the tolerance at most: the distance at the
+// middle itself is not known better. Part of a frame that was cropped is such a case.
+bool MotionSearch::is_as_good_as_at_middle(double lower, const PairAtMiddle& found,
+                                           const Pair& at) const noexcept {
+  return lower >= found.lower - at.approach.nearing.until_middle - question_->tolerance;
+}
+
 void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double known) noexcept {
   if (list.is_empty()) return;
   if (is_exhausted()) {
@@ -83,7 +90,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough()));
         speed = closing_speed(found, at.tip, motion, at.approach);
-        decided = std::max(0.0, lower) >= enough();
+        decided = std::max(0.0, lower) >= enough() || is_as_good_as_at_middle(lower, found, at);
       }
       if (decided || !divides) {
         closed_lower_ = std::min(closed_lower_, lower);

@@ -90,6 +90,8 @@ class MotionSearch {
   // The least distance (least_distance.cpp).
   void find_least();
   void seed_upper(const OpenList& all) noexcept;
+  [[nodiscard]] bool is_as_good_as_at_middle(double lower, const PairAtMiddle& found,
+                                             const Pair& at) const noexcept;
   void minimise(const Stretch& stretch, const OpenList& list, double known) noexcept;
 
   // Contacts that are meant (meant_contacts.cpp).

@@ -112,6 +112,28 @@ TEST(SeenFrames, AgeSpeedAndErrorOfAFrameWidenTheBounds) {
   EXPECT_GE(still.upper, now - 1e-9);
 }
 
+// The finger circles at 2 m. Elements farther than 3 m from the origin were cropped.
+TEST(SeenFrames, WhatMayHaveBeenCroppedBoundsAnAnswerWithoutEndlessDivision) {
+  std::vector<MeasuredPoint> measured = {{-2.875F, 0.0F, 0.0F, static_cast<float>(kRadius)}};
+  auto cloud = std::make_shared<SeenCloud>(SeenCloud::of_points(1));
+  ASSERT_EQ(cloud->points()->build(measured, {Vec3::Zero(), 10.0}), CloudBuild::kBuilt);
+  cloud->note_crop({.centre = Vec3::Zero(), .radius = 3.0});
+  Question question = swing(-1.0, 0.4);
+  question.others = OthersMove::kNot;
+  question.margins = {0.0, 0.5, 1.0};
+  question.seen = {{.sensor = "eye", .cloud = cloud, .world_from_sensor = {}}};
+  const Answer answer = answered(scara_with_an_eye(), question);
+  EXPECT_TRUE(answer.within_work_limit);
+  EXPECT_LT(answer.queries, 10'000u);
+  EXPECT_LE(answer.lower, 0.95);
+  EXPECT_GT(answer.lower, 0.95 - 2.0 * question.tolerance);
+  EXPECT_GT(answer.upper, 1.0);
+  ASSERT_EQ(answer.margins.size(), 3u);
+  EXPECT_EQ(answer.margins[0].verdict, Verdict::kFree);
+  EXPECT_EQ(answer.margins[1].verdict, Verdict::kFree);
+  EXPECT_EQ(answer.margins[2].verdict, Verdict::kUndecided) << "a cropped element may be nearer";
+}
+
 // Unseen is not clear.
 TEST(SeenFrames, ASensorWithoutAFrameIsRefusedByItsName) {
   const Scene scene = scara_with_an_eye(", max_speed: 0.1");
