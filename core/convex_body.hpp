@@ -107,6 +107,7 @@ struct ConvexBody {
   std::array<std::uint32_t, 3> features{};  // how many vertices, edges, facets
   QueryClass query_class = QueryClass::kPlain;
   StartTable start;
+  BoxFeatures box;
 
   // A point far inside the body (for a point or segment, in its relative interior).
   Vec3 interior = Vec3::Zero();
@@ -168,6 +169,6 @@ static_assert(sizeof(std::vector<Facet>) == 3 * sizeof(void*),
               "compiled with _GLIBCXX_DEBUG: the library has the containers without it");
 static_assert(sizeof(Facet) == 48 && sizeof(Edge) == 128 && alignof(Edge) == 16);
 static_assert(sizeof(Vertex) == 32 && sizeof(Ray) == 32 && sizeof(RecessionCone) == 112);
-static_assert(sizeof(ConvexBody) == 2112 && alignof(ConvexBody) == 8);
+static_assert(sizeof(ConvexBody) == 2240 && alignof(ConvexBody) == 8);
 
 }  // namespace clearance

@@ -117,6 +117,23 @@ class StartTable {
   std::array<std::int32_t, kCells> cells_{};
 };
 
+// The features of a box whose faces are across the axes of its frame. A cold query of two boxes with
+// parallel axes begins at the features that face each other.
+struct BoxFeatures {
+  // Centre and half of the edge lengths, m; `half` is zero if the body is no such box. Reads of
+  // four go on in the next member.
+  Vec3 centre = Vec3::Zero();
+  double unused = 0.0;
+  Vec3 half = Vec3::Zero();
+  double length = 0.0;  // of `half`, m
+  // The feature that lies farthest in a direction: a facet for one axis, an edge for two, and a
+  // vertex for three. Bit i of the index: the direction has a component along axis i; bit 3 + i: it
+  // is negative. Without such a component, bit 3 + i does not matter.
+  std::array<std::int8_t, 64> farthest{};
+
+  [[nodiscard]] bool exist() const noexcept { return length > 0.0; }
+};
+
 // The last step of the factories: makes all members of ConvexBody that it documents as made here,
 // and frees spare memory.
 void add_query_tables(ConvexBody& body);

@@ -299,7 +299,7 @@ HWY_INLINE void to_edge_between(const ConvexBody& body, const Vertex& vertex, st
 
 // Replaces two vertices by the parallel facets around them that face each other at a distance. If
 // there are two pairs of such facets, the edges between them are closer than either pair.
-inline HWY_NOINLINE void start_level(TrackedPair& pair) {
+HWY_INLINE void start_level(TrackedPair& pair) {
   const Vertex& of_a = pair.a.vertices[pair.on_a.feature];
   const Vertex& of_b = pair.b.vertices[pair.on_b.feature];
   if (of_a.edges != 3 || of_b.edges != 3) return;  // other corners are rare among level bodies
@@ -328,25 +328,66 @@ inline HWY_NOINLINE void start_level(TrackedPair& pair) {
   }
 }
 
-// Is an axis of A's frame parallel to one of B's within rounding? Boxes and other bodies with
-// faces across their axes are then level.
-HWY_INLINE bool shares_an_axis(const RelativePose4& pose) {
-  const auto& [main, next, last] = pose.rotation;
+// The axes of A's frame that are parallel to one of B's within rounding, a bit each. Boxes and other
+// bodies with faces across their axes are then level. `squares`: of the rotation's elements.
+HWY_INLINE unsigned shared_axes(const Diagonals& squares) {
   const Vec4 limit = spread(1.0 - 0x1p-46);
-  return ((less(limit, main * main) | less(limit, next * next) | less(limit, last * last)) & 7u) !=
-         0;
+  return (less(limit, squares.main) | less(limit, squares.next) | less(limit, squares.last)) & 7u;
+}
+HWY_INLINE Diagonals squares_of(const Diagonals& m) {
+  return {m.main * m.main, m.next * m.next, m.last * m.last};
+}
+
+inline constexpr FeatureKind kKindByAxes[8] = {
+    FeatureKind::kUnknown, FeatureKind::kFacet, FeatureKind::kFacet, FeatureKind::kEdge,
+    FeatureKind::kFacet,   FeatureKind::kEdge,  FeatureKind::kEdge,  FeatureKind::kVertex};
+
+HWY_INLINE void to_farthest(const BoxFeatures& box, unsigned axes, unsigned negative, Side& side) {
+  side.kind = kKindByAxes[axes];
+  side.feature = box.farthest[axes | (negative & 7u) << 3];
+}
+
+// Chooses the features of two boxes that face each other, if they are apart along shared axes and
+// not along others. False: they are not.
+HWY_INLINE bool start_boxes(TrackedPair& pair) {
+  const BoxFeatures &a = pair.a.box, &b = pair.b.box;
+  if (!a.exist() || !b.exist()) return false;
+  const Diagonals squares = squares_of(pair.a_from_b.rotation);
+  const unsigned shared = shared_axes(squares);
+  const Vec4 between = point_to_a(pair.a_from_b, load3_of_4(b.centre)) - load3_of_4(a.centre);
+  const Vec4 halves = load3_of_4(a.half) + squares * load3_of_4(b.half);
+  const Vec4 zero = spread(0.0);
+  const unsigned negative = less(between, zero);
+  const unsigned axes = (less(halves, between) | less(halves, -between)) & 7u;
+  if (axes == 0 || (axes & ~shared) != 0) return false;
+  if (shared != 7u && axes != shared) return false;
+  // The axes in B's frame: its features face the other way.
+  const Vec4 gap = where_less(halves * halves, between * between,
+                              with_signs(spread(1.0), where_less(between, zero, spread(-0.0), zero)),
+                              zero);
+  const Vec4 in_b = direction_to_b(pair.a_from_b, gap);
+  to_farthest(a, axes, negative, pair.on_a);
+  to_farthest(b, less(spread(0.25), in_b * in_b) & 7u, less(zero, in_b), pair.on_b);
+  return true;
+}
+
+HWY_INLINE void start_at_vertices(TrackedPair& pair) {
+  const Vec4 a_to_b = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
+  start(pair.a, a_to_b, pair.on_a);
+  start(pair.b, -direction_to_b(pair.a_from_b, a_to_b), pair.on_b);
+}
+
+inline HWY_NOINLINE void begin_level(TrackedPair& pair) {
+  if (start_boxes(pair)) return;
+  start_at_vertices(pair);
+  if (pair.features() == FeaturePair::kVertexVertex) start_level(pair);
 }
 
 // Chooses features if the state has none.
 HWY_INLINE void begin(TrackedPair& pair) {
   if (exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b)) return;
-  const Vec4 a_to_b = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
-  start(pair.a, a_to_b, pair.on_a);
-  start(pair.b, -direction_to_b(pair.a_from_b, a_to_b), pair.on_b);
-  if (HWY_UNLIKELY(shares_an_axis(pair.a_from_b)) &&
-      pair.features() == FeaturePair::kVertexVertex) {
-    start_level(pair);
-  }
+  if (HWY_UNLIKELY(shared_axes(squares_of(pair.a_from_b.rotation)) != 0)) return begin_level(pair);
+  start_at_vertices(pair);
 }
 
 // Below this distance, m, squares of coordinates underflow: a normal then is not of unit length,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <vector>
 
 #include "core/convex_body.hpp"
 #include "core/model/support_function.hpp"
@@ -133,6 +134,68 @@ QueryClass query_class(const ConvexBody& body) {
   return body.is_thin() && body.edges.empty() ? QueryClass::kPoint : QueryClass::kPlain;
 }
 
+// The facet across an axis in this direction; kNone: there is none.
+std::int32_t facet_across(const ConvexBody& body, int axis, bool negative) {
+  const Vec3 normal = (negative ? -1.0 : 1.0) * Vec3::Unit(axis);
+  for (std::size_t i = 0; i < body.facets.size(); ++i) {
+    if (body.facets[i].normal == normal) return static_cast<std::int32_t>(i);
+  }
+  return kNone;
+}
+
+// The feature of the body that lies in all of these facets.
+std::int32_t common_feature(const ConvexBody& body, const std::vector<std::int32_t>& facets) {
+  if (facets.size() == 1) return facets.front();
+  const auto is_beside = [&](std::int32_t edge, std::int32_t facet) {
+    return body.edges[edge].facet[0] == facet || body.edges[edge].facet[1] == facet;
+  };
+  if (facets.size() == 2) {
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.edges.size()); ++i) {
+      if (is_beside(i, facets[0]) && is_beside(i, facets[1])) return i;
+    }
+    return kNone;
+  }
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.vertices.size()); ++i) {
+    const Vertex& vertex = body.vertices[i];
+    const bool in_all = std::all_of(facets.begin(), facets.end(), [&](std::int32_t facet) {
+      for (std::int32_t k = 0; k < vertex.edges; ++k) {
+        if (is_beside(body.vertex_edges[vertex.first_edge + k].edge, facet)) return true;
+      }
+      return false;
+    });
+    if (in_all) return i;
+  }
+  return kNone;
+}
+
+BoxFeatures box_features(const ConvexBody& body) {
+  if (!body.bounded() || body.features != std::array<std::uint32_t, 3>{8, 12, 6}) return {};
+  BoxFeatures box;
+  std::int32_t across[3][2];
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int negative = 0; negative < 2; ++negative) {
+      across[axis][negative] = facet_across(body, axis, negative == 1);
+      if (across[axis][negative] == kNone) return {};
+    }
+    const double up = body.facets[across[axis][0]].offset;
+    const double down = body.facets[across[axis][1]].offset;
+    box.centre[axis] = 0.5 * (up - down);
+    box.half[axis] = 0.5 * (up + down);
+  }
+  for (unsigned index = 1; index < box.farthest.size(); ++index) {
+    std::vector<std::int32_t> facets;
+    for (unsigned axis = 0; axis < 3; ++axis) {
+      if ((index >> axis & 1U) != 0) facets.push_back(across[axis][index >> (3 + axis) & 1U]);
+    }
+    if (facets.empty()) continue;
+    const std::int32_t feature = common_feature(body, facets);
+    assert(feature != kNone);
+    box.farthest[index] = static_cast<std::int8_t>(feature);
+  }
+  box.length = box.half.norm();
+  return box;
+}
+
 // Frees the spare capacity of the tables, which no longer grow.
 void release_spare_capacity(ConvexBody& body) {
   const auto release = [](auto&... tables) { (tables.shrink_to_fit(), ...); };
@@ -158,6 +221,7 @@ void add_query_tables(ConvexBody& body) {
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
   body.query_class = query_class(body);
+  body.box = box_features(body);
   add_outgoing(body);
   add_neighbours(body);
   add_facet_limits(body);
