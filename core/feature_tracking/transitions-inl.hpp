@@ -347,26 +347,31 @@ HWY_INLINE void to_farthest(const BoxFeatures& box, unsigned axes, unsigned nega
   side.feature = box.farthest[axes | (negative & 7u) << 3];
 }
 
+// The axis of the greatest of three numbers, as a bit.
+HWY_INLINE unsigned greatest_axis(Vec4 v) {
+  const double x = lane(v, 0), y = lane(v, 1), z = lane(v, 2);
+  return x >= y && x >= z ? 1u : y >= z ? 2u : 4u;
+}
+
 // Chooses the features of two boxes that face each other, if they are apart along shared axes and
-// not along others. False: they are not.
+// not along others; and facets across the axis along which they overlap least, if they are apart
+// along none. False: neither is the case.
 HWY_INLINE bool start_boxes(TrackedPair& pair) {
   const BoxFeatures &a = pair.a.box, &b = pair.b.box;
   if (!a.exist() || !b.exist()) return false;
   const Diagonals squares = squares_of(pair.a_from_b.rotation);
   const unsigned shared = shared_axes(squares);
   const Vec4 between = point_to_a(pair.a_from_b, load3_of_4(b.centre)) - load3_of_4(a.centre);
-  const Vec4 halves = load3_of_4(a.half) + squares * load3_of_4(b.half);
-  const Vec4 zero = spread(0.0);
-  const unsigned negative = less(between, zero);
-  const unsigned axes = (less(halves, between) | less(halves, -between)) & 7u;
-  if (axes == 0 || (axes & ~shared) != 0) return false;
-  if (shared != 7u && axes != shared) return false;
-  // The axes in B's frame: its features face the other way.
-  const Vec4 gap = where_less(halves * halves, between * between,
-                              with_signs(spread(1.0), where_less(between, zero, spread(-0.0), zero)),
-                              zero);
-  const Vec4 in_b = direction_to_b(pair.a_from_b, gap);
-  to_farthest(a, axes, negative, pair.on_a);
+  const Vec4 zero = spread(0.0), up = where_less(between, zero, spread(-1.0), spread(1.0));
+  const Vec4 gaps = up * between - (load3_of_4(a.half) + squares * load3_of_4(b.half));
+  unsigned axes = less(zero, gaps) & 7u;
+  if (axes == 0) axes = greatest_axis(gaps);
+  if ((axes & ~shared) != 0 || (shared != 7u && axes != shared)) return false;
+  // The same axes in B's frame. B's features face the other way.
+  const auto chosen = [axes](unsigned axis) { return (axes & axis) != 0 ? 1.0 : 0.0; };
+  const Vec4 in_b =
+      direction_to_b(pair.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
+  to_farthest(a, axes, less(between, zero), pair.on_a);
   to_farthest(b, less(spread(0.25), in_b * in_b) & 7u, less(zero, in_b), pair.on_b);
   return true;
 }
