@@ -127,6 +127,36 @@ HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
   return radius > height && d * (1.0 - k * k) - 2.0 * k * l > height * (1.0 + k * k);
 }
 
+HWY_INLINE bool are_facets_of_boxes(const TrackedPair& pair) {
+  return pair.features() == FeaturePair::kFacetFacet && pair.a.box.exist() && pair.b.box.exist();
+}
+
+// The same for parallel facets of two boxes. A - B is a prism over a polygon whose sides are
+// across the boxes' other axes. So the displacement is the shortest if those along these axes and
+// past the opposite facets are longer.
+HWY_NOINLINE bool is_shortest_of_boxes(const TrackedPair& pair, double size) {
+  const BoxFeatures &a = pair.a.box, &b = pair.b.box;
+  const auto magnitude = [](Vec4 v) HWY_ATTR { return where_less(v, spread(0.0), -v, v); };
+  const auto magnitudes = [&](const Diagonals& m) HWY_ATTR {
+    return Diagonals{magnitude(m.main), magnitude(m.next), magnitude(m.last)};
+  };
+  const Diagonals to_a = magnitudes(pair.a_from_b.rotation);
+  const Diagonals to_b = magnitudes(pair.a_from_b.transposed);
+  const Vec4 half_a = load3_of_4(a.half), half_b = load3_of_4(b.half);
+  const Vec4 between = point_to_a(pair.a_from_b, load3_of_4(b.centre)) - load3_of_4(a.centre);
+  const Vec4 gaps_a = magnitude(between) - (half_a + to_a * half_b);
+  const Vec4 gaps_b =
+      magnitude(direction_to_b(pair.a_from_b, between)) - (half_b + to_b * half_a);
+  const auto all_others_longer = [&](Vec4 gaps, const Facet& facet) HWY_ATTR {
+    const Vec4 n = load3_of_4(facet.normal), limit = spread(pair.distance - kAmple * size);
+    return ((less(gaps, limit) | less(spread(0.5), n * n)) & 7u) == 7u;
+  };
+  const Vec4 n = load3_of_4(pair.a.facets[pair.on_a.feature].normal);
+  return dot(n, between) > kAmple * size &&
+         all_others_longer(gaps_a, pair.a.facets[pair.on_a.feature]) &&
+         all_others_longer(gaps_b, pair.b.facets[pair.on_b.feature]);
+}
+
 // The features meet within rounding, so the bodies are neither certainly disjoint nor certainly
 // overlapping. The plane of the features bounds the distance from below, as for all bodies. The
 // points on them are points of the bodies, so their distance bounds it from above.
@@ -143,11 +173,15 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   pair.error_bound = p.error_bound;
   pair.touching = is_contact(pair, p);
   if (!pair.touching) {
+    const double noise = pair.distance - pair.certified;
+    // A tilt of the facets counts for a prism's height, too.
+    if (are_facets_of_boxes(pair)) pair.depth_error = noise;
     const bool certified =
         pair.distance > 0.0
             ? pair.certified > p.error_bound
-            : pair.distance + pair.depth_error < -p.error_bound && is_shortest(pair, p.size);
-    const double noise = pair.distance - pair.certified;
+            : pair.distance + pair.depth_error < -p.error_bound &&
+                  (is_shortest(pair, p.size) ||
+                   (are_facets_of_boxes(pair) && is_shortest_of_boxes(pair, p.size)));
     const double gap = noise + pair.depth_error + 2.0 * p.error_bound;
     if (!certified || !(noise <= p.gap_tolerance) ||
         !converges_with_radii(pair.a, pair.b, p.size, pair.distance, gap)) {

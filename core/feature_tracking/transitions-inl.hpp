@@ -373,6 +373,9 @@ HWY_INLINE bool start_boxes(TrackedPair& pair) {
       direction_to_b(pair.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
   to_farthest(a, axes, less(between, zero), pair.on_a);
   to_farthest(b, less(spread(0.25), in_b * in_b) & 7u, less(zero, in_b), pair.on_b);
+  // The witness points of whole facets and edges will be halfway between these.
+  pair.on_a.point = a.centre;
+  pair.on_b.point = b.centre;
   return true;
 }
 

@@ -171,7 +171,8 @@ DistanceResult from_contact(const ConvexBody& a, const ConvexBody& b, const Rela
 // part of the size, they seldom certify a depth.
 inline constexpr double kShallow = 0x1p-5;
 HWY_INLINE bool may_touch(const TrackedPair& pair, TrackingEnd end) {
-  return end != TrackingEnd::kExhausted && !(pair.distance < -kShallow * size_of(pair));
+  if (end == TrackingEnd::kExhausted) return false;
+  return !(pair.distance < -kShallow * size_of(pair)) || are_facets_of_boxes(pair);
 }
 
 HWY_INLINE DistanceResult rounded_result_of(const TrackedPair& pair) {
@@ -398,11 +399,17 @@ HWY_INLINE DistanceResult penetrating_result_of(const TrackedPair& pair) {
   return result;
 }
 
+// Level boxes slide from one pair of features to another, and the last one may certify nothing.
+HWY_NOINLINE bool restart_boxes(TrackedPair& pair) {
+  return shared_axes(squares_of(pair.a_from_b.rotation)) != 0 && start_boxes(pair) &&
+         track_penetrating_features(pair);
+}
+
 // The bodies touched or penetrated each other in the last query.
 HWY_NOINLINE DistanceResult from_penetration(const ConvexBody& a, const ConvexBody& b,
                                              const RelativePose4& a_from_b, TrackingState& state) {
   TrackedPair pair(a, b, a_from_b, state);
-  if (track_penetrating_features(pair)) return penetrating_result_of(pair);
+  if (track_penetrating_features(pair) || restart_boxes(pair)) return penetrating_result_of(pair);
   return penetrating_distance(a, b, pose_of(a_from_b), state);
 }
 

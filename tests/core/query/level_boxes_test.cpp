@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
@@ -131,6 +132,90 @@ TEST(LevelBoxes, ThatRestOnEachOtherTouchAndTheirFeaturesCertifyIt) {
   // The others are the first query of each motion, and those whose features change.
   EXPECT_GT(all, 10'000);
   EXPECT_GT(at_once, 0.8 * all);
+}
+
+// The 24 rotations that permute the axes.
+std::vector<Quat> axis_rotations() {
+  std::vector<Quat> all;
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int quarters = 0; quarters < 8; ++quarters) {
+      const Quat about_x = turned(Vec3::UnitX(), 0.5 * std::numbers::pi * (quarters % 4));
+      const Quat flip = quarters < 4 ? Quat::Identity() : turned(Vec3::UnitZ(), std::numbers::pi);
+      const Quat cycle = turned({1, 1, 1}, 2.0 * std::numbers::pi / 3.0 * axis);
+      all.push_back((cycle * flip * about_x).normalized());
+    }
+  }
+  return all;
+}
+
+// Closed form: the gaps along the axes. One box has its origin outside.
+TEST(LevelBoxes, WithParallelAxesStartColdAtTheFeaturesThatFaceEachOther) {
+  const Vec3 half_a(0.5, 0.4, 0.3), low_b(1.0, -0.2, 0.1), high_b(1.2, 0.4, 0.9);
+  oracle::Body off_centre;
+  for (int corner = 0; corner < 8; ++corner) {
+    off_centre.points.push_back({(corner & 1) != 0 ? high_b.x() : low_b.x(),
+                                 (corner & 2) != 0 ? high_b.y() : low_b.y(),
+                                 (corner & 4) != 0 ? high_b.z() : low_b.z()});
+  }
+  DistanceJudge judge(hard::box(half_a), off_centre);
+  ASSERT_EQ(judge.refusal(), "");
+  Random random(5);
+  for (const Quat& rotation : axis_rotations()) {
+    const Vec3 half_b = (rotation * (0.5 * (high_b - low_b))).cwiseAbs();
+    for (int way = 0; way < 27; ++way) {
+      const Vec3 sign(way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1);
+      if (sign.isZero()) continue;
+      const Vec3 gap(0.11, 0.23, 0.37);
+      const Vec3 centre = sign.cwiseProduct(half_a + half_b + gap) + Vec3(0.01, -0.02, 0.03);
+      const Pose a = random.pose(2.0);
+      const Pose b = {a.position + a.orientation * (centre - rotation * (0.5 * (low_b + high_b))),
+                      a.orientation * rotation};
+      const double expected =
+          (gap + sign.cwiseProduct(Vec3(0.01, -0.02, 0.03))).cwiseProduct(sign).norm();
+      TrackingState state;
+      const DistanceResult result = judge.ask(a, b, state);
+      EXPECT_NEAR(result.distance, expected, 1e-13) << way;
+      EXPECT_EQ(result.path, DistancePath::kFeatureTracking) << way;
+      EXPECT_EQ(result.iterations, 1) << way;
+      for (const std::string& fault : judge.faults(result, judge.truth(a, b), a, b))
+        ADD_FAILURE() << way << ": " << fault;
+    }
+  }
+}
+
+// B passes through A from one side to the other, spun about the common axis or not.
+TEST(LevelBoxes, ThatOverlapDeeplyHaveTheDepthOfTheirPrisms) {
+  int all = 0, by_features = 0;
+  for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+    Random random(seed);
+    const auto half = [&] { return random.uniform(0.1, 0.5); };
+    const Vec3 half_a(half(), half(), half()), half_b(half(), half(), half());
+    DistanceJudge judge(hard::box(half_a), hard::box(half_b));
+    const Pose a = random.pose(2.0);
+    const Quat turn = axis_rotations()[seed % 24] *
+                      (seed % 2 == 0 ? Quat::Identity()
+                                     : turned(Vec3::UnitZ(), random.uniform(0.0, 1.5)));
+    const Vec3 way = random.direction(), beside = 0.1 * random.direction();
+    TrackingState tracked;
+    for (int k = 0; k < kBoxSteps; ++k) {
+      const Vec3 centre = 0.02 * (k - kBoxSteps / 2) * way + beside;
+      const Pose b = {a.position + a.orientation * centre, a.orientation * turn};
+      TrackingState cold;
+      const DistanceResult kept = judge.ask(a, b, tracked), found = judge.ask(a, b, cold);
+      if (!(found.upper < -1e-9)) continue;
+      ++all;
+      by_features += kept.path == DistancePath::kPenetration && kept.iterations < 4 ? 1 : 0;
+      if (static_cast<std::uint64_t>(k) % 16 != seed % 16) continue;
+      const oracle::ExactDistance truth = judge.truth(a, b);
+      for (const DistanceResult& result : {kept, found}) {
+        EXPECT_EQ(result.status, DistanceStatus::kOverlapping) << "seed " << seed << " step " << k;
+        for (const std::string& fault : judge.faults(result, truth, a, b))
+          ADD_FAILURE() << "seed " << seed << " step " << k << ": " << fault;
+      }
+    }
+  }
+  EXPECT_GT(all, 1'000);
+  EXPECT_GT(by_features, all / 2);
 }
 
 TEST(LevelBoxes, ARelativePoseGivesTheBitsOfTwoPoses) {
