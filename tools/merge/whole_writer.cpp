@@ -13,6 +13,18 @@ namespace {
 constexpr std::int64_t kHealthEvery = 1'000'000'000;
 constexpr std::size_t kDelays = 1 << 20;
 
+constexpr double kUsPerNs = 1e-3;
+
+std::string percentiles(std::vector<double> delays) {
+  std::ranges::sort(delays);
+  const auto at = [&delays](double share) {
+    return delays.empty()
+               ? 0.0
+               : delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
+  };
+  return fmt::format("p50 {:.0f} us, p99.9 {:.0f} us", at(0.5), at(0.999));
+}
+
 DaemonIdentity identity_of(std::uint64_t daemon) {
   DaemonIdentity identity = make_identity();
   identity.id = daemon;
@@ -79,8 +91,14 @@ void WholeWriter::write(client::SharedCell& whole) {
   put(distances_, &report);
   ++reports_;
   not_whole_ += whole.is_whole() ? 0 : 1;
-  if (delays_us_.size() < kDelays)
-    delays_us_.push_back(1e-3 * static_cast<double>(dds_time() - oldest_ns));
+  if (delays_us_.merging.size() < kDelays) {
+    const std::int64_t now = dds_time();
+    delays_us_.merging.push_back(kUsPerNs * static_cast<double>(now - oldest_ns));
+    if (const std::int64_t pose_ns = report.oldest_pose_ns; pose_ns != 0) {
+      delays_us_.published.push_back(kUsPerNs * static_cast<double>(oldest_ns - pose_ns));
+      delays_us_.joined.push_back(kUsPerNs * static_cast<double>(now - pose_ns));
+    }
+  }
   if (const clearance_msg_Separation* const separation = whole.separation()) {
     if (separation_ == 0)
       separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
@@ -106,19 +124,14 @@ void WholeWriter::write(client::SharedCell& whole) {
 }
 
 std::string WholeWriter::summary(const client::SharedCell& whole) const {
-  std::vector<double> delays = delays_us_;
-  std::ranges::sort(delays);
-  const auto at = [&delays](double share) {
-    return delays.empty()
-               ? 0.0
-               : delays[static_cast<std::size_t>(share * static_cast<double>(delays.size() - 1))];
-  };
   return fmt::format(
       "{} reports of the whole cell, {} of them with a share missing, late or of another revision; "
-      "{} "
-      "cycles lost, {} zones wrong, {} reports not taken by DDS\n"
-      "delay from the oldest share's report to that of the whole: p50 {:.0f} us, p99.9 {:.0f} us",
-      reports_, not_whole_, whole.missed(), zone_check_.wrong(), failed_, at(0.5), at(0.999));
+      "{} cycles lost, {} zones wrong, {} reports not taken by DDS\n"
+      "from the oldest pose in use to the oldest share's report: {}; to that of the whole: {}\n"
+      "delay from the oldest share's report to that of the whole: {}",
+      reports_, not_whole_, whole.missed(), zone_check_.wrong(), failed_,
+      percentiles(delays_us_.published), percentiles(delays_us_.joined),
+      percentiles(delays_us_.merging));
 }
 
 }  // namespace clearance::merge

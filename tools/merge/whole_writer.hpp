@@ -45,7 +45,13 @@ class WholeWriter {
   std::int64_t health_ns_ = 0;
   std::uint64_t reports_ = 0, not_whole_ = 0, failed_ = 0;
   ZoneCheck zone_check_;
-  std::vector<double> delays_us_;  // of reports, from the publishing of the last share to here
+  // Times of the joined reports, us.
+  struct Delays {
+    std::vector<double> merging;    // from the oldest share's report to that of the whole
+    std::vector<double> published;  // from the oldest pose in use to the oldest share's report
+    std::vector<double> joined;     // from the same pose to the report of the whole
+  };
+  Delays delays_us_;
 };
 
 }  // namespace clearance::merge

@@ -257,7 +257,10 @@ TEST(Distance, SaysWhichMethodHasAnswered) {
   EXPECT_EQ(path(cube(), at(0.95, 0.3, 0.2)), DistancePath::kPenetration);
   EXPECT_EQ(path(cube(), at(0.3, 0.2, 0.1)), DistancePath::kPenetration);
   state = {};
-  EXPECT_EQ(path(cube(), at(0.3, 0.2, 0.1)), DistancePath::kActiveSet);
+  EXPECT_EQ(path(cube(), at(0.3, 0.2, 0.1)), DistancePath::kPenetration) << "level";
+  state = {};
+  const Pose tilted{{0.3, 0.2, 0.1}, Eigen::Quaterniond(0.9, 0.1, 0.2, 0.3).normalized()};
+  EXPECT_EQ(path(cube(), tilted), DistancePath::kActiveSet);
   const Pose leaning{{3, 1, 0}, {1.0, 1e-14, 0, 0}};
   EXPECT_EQ(path(column, leaning), DistancePath::kGjk);
 }
