@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "core/convex_body.hpp"
 #include "core/vec.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 

@@ -60,15 +60,15 @@ void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene
     if (const auto* const reason = std::get_if<std::string>(&reach)) {
       diagnostics.add(
           *list.reaches[i],
-          fmt::format("found 'reach', but {}; expected robots that stand still", *reason));
+          fmt::format("found 'reach', but {}; expected robots on one base", *reason));
       return;
     }
     const Object& object = scene.objects[sensor.object];
     const double moves = object.max_speed < kInfinity
                              ? object.max_speed * 1e-9 * static_cast<double>(object.age_limit_ns)
                              : 0.0;
-    sensor.crop_centre = std::get<ReachBall>(reach).centre;
-    sensor.crop_radius = std::get<ReachBall>(reach).radius + sensor.reach + moves;
+    sensor.crop = std::get<ReachBall>(reach);
+    sensor.crop.radius += sensor.reach + moves;
   }
 }
 

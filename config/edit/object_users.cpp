@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "config/edit/change_document.hpp"
+#include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scene/reach_ball.hpp"
 #include "config/scene/robot.hpp"
 
 namespace clearance {
@@ -67,10 +68,9 @@ struct Sensor {
 
   // Elements beyond this from everywhere that links can come to are cropped, m; infinity: none are.
   double reach = std::numeric_limits<double>::infinity();
-  // The ball in the world that contains all other elements, widened by the motion of what is seen
-  // within the age limit.
-  Vec3 crop_centre = Vec3::Zero();
-  double crop_radius = std::numeric_limits<double>::infinity();
+  // The ball that contains all other elements, widened by the motion of what is seen within the age
+  // limit.
+  ReachBall crop{.radius = std::numeric_limits<double>::infinity()};
 
   // Reports say how near each link is to a place in the picture that the frame has not seen. Of
   // depth images only.

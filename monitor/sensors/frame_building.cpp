@@ -12,13 +12,23 @@ namespace {
 
 using Type = RawSensorMessage::Type;
 
-// The ball of the cell's robots in the frame of the sensor. Its place is off by the error of the
-// sensor's, which counts as the error of every element.
-CloudCrop crop_of(const Sensor& sensor, const PastPose& place) noexcept {
+// What is not in the ball of the cell's robots is cropped, in the frame of the sensor. The ball's
+// place is off by the errors of both, which costs only some of the elements that it was to keep.
+// Without a place of the base, nothing is cropped.
+std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
+                                 const PostureHistory& postures) noexcept {
+  const ReachBall& ball = sensor.crop;
+  if (!(ball.radius < kInfinity)) return std::nullopt;
+  Vec3 centre = ball.centre;
+  if (ball.is_carried) {
+    const PastPose base = postures.link(ball.robot, ball.link);
+    if (!base.known) return std::nullopt;
+    centre = base.world_from_body.position;
+  }
   const Pose& world_from_sensor = place.world_from_body;
-  return {.centre = world_from_sensor.orientation.conjugate() *
-                    (sensor.crop_centre - world_from_sensor.position),
-          .radius = sensor.crop_radius};
+  return CloudCrop{.centre = world_from_sensor.orientation.conjugate() *
+                             (centre - world_from_sensor.position),
+                   .radius = ball.radius};
 }
 
 }  // namespace
@@ -146,7 +156,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
   // A map is cropped to the range, and nothing of it is dropped.
   const CloudCrop whole{.centre = Vec3::Zero(),
                         .radius = is_map ? sensor.greatest_depth : sensor.extent()};
-  CloudCrop crop = sensor.crop_radius < kInfinity ? crop_of(sensor, place) : whole;
+  CloudCrop crop = crop_of(sensor, place, postures_).value_or(whole);
   CloudBuild result = built(crop);
   // If all points are beyond the links' reach, none are cropped: the frame shows something.
   if (result == CloudBuild::kBuilt && points.size() == 0 && points.cropped() > 0) {
@@ -172,10 +182,11 @@ void Sensors::leave_out(State& state, const PastPose& place, std::int64_t stamp_
     if (unseen != nullptr) unseen->refit();
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);
-  if (DepthCloud* const depth = cloud.depth(); depth != nullptr && sensor.crop_radius < kInfinity) {
-    const CloudCrop crop = crop_of(sensor, place);
-    state.status.cropped = depth->crop(crop.centre, crop.radius);
-    if (state.status.cropped > 0) cloud.note_crop(crop);
+  if (DepthCloud* const depth = cloud.depth()) {
+    if (const auto crop = crop_of(sensor, place, postures_)) {
+      state.status.cropped = depth->crop(crop->centre, crop->radius);
+      if (state.status.cropped > 0) cloud.note_crop(*crop);
+    }
   }
   cloud.refit();
   std::vector<OwnImageStatus>& own = state.status.own;

@@ -146,6 +146,23 @@ TEST_F(CameraFaults, OfTwoPublishersOfItsPlaceMakeItUnknown) {
       << daemon->output();
 }
 
+TEST_F(CameraFaults, OfNoPublisherAndOfRefusedImagesAreNamedAfterAWhile) {
+  start(kImage + kAbove);
+  EXPECT_TRUE(step_until(kPeriodMs, [] {}, told("frames-silent", {"eye", "no publisher"})))
+      << daemon->output();
+  EXPECT_TRUE(is("ball", PairStatus::kUnknown));
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  start(kImage + kAbove);
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  camera.change_image = [](Image& image) { image.step = 0; };
+  EXPECT_TRUE(step_until(
+      kPeriodMs, [&] { camera.send_image(scene_of_wall); },
+      told("frames-silent", {"eye", "refused"})))
+      << daemon->output();
+}
+
 // At ten times the rate, some frames are skipped and the newest one counts.
 TEST_F(CameraFaults, OfTenTimesTheRateCostFramesAndNothingElse) {
   start(kImage + kAbove);

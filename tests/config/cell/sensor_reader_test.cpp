@@ -126,7 +126,7 @@ TEST(SensorsOfACell, StateWhatIsLeftOutAndLookedFor) {
   const Sensor plain = scene_of(with_sensor(kDepth)).sensors[0];
   EXPECT_EQ(plain.persist_frames, 1u);
   EXPECT_FALSE(plain.unseen);
-  EXPECT_EQ(plain.crop_radius, kInfinity);
+  EXPECT_EQ(plain.crop.radius, kInfinity);
   EXPECT_EQ(notes_of(plain).size(), 1u) << "unseen places are not looked for";
   const Sensor sensor =
       scene_of(with_sensor(kDepth + ", unseen: true, max_speed: 1, persist: {frames: 3, of: 5}"))

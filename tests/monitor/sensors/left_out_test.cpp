@@ -167,8 +167,9 @@ TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
 TEST_F(LeftOutTest, ReachFollowsFromTheChainOfJointsAndTheMotionOfWhatIsSeen) {
   make(kImage + ", reach: 0.5, max_speed: 2" + kAbove);
   const Sensor& sensor = cell.scene.sensors[0];
-  EXPECT_NEAR(sensor.crop_radius, 2.25 + 0.5 + 0.2, 0.01) << "with 2 m/s for 100 ms";
-  EXPECT_EQ(sensor.crop_centre, Vec3::Zero());
+  EXPECT_NEAR(sensor.crop.radius, 2.25 + 0.5 + 0.2, 0.01) << "with 2 m/s for 100 ms";
+  EXPECT_FALSE(sensor.crop.is_carried);
+  EXPECT_EQ(sensor.crop.centre, Vec3::Zero());
 }
 
 // An element beyond the reach is left out, but the distance is never said to be larger than that of
@@ -234,6 +235,39 @@ TEST_F(LeftOutTest, AFrameThatIsBeyondTheReachAsAWholeIsKept) {
   for (std::size_t pixel = 0; pixel < 8; ++pixel) put(image, pixel, 3999);
   EXPECT_EQ(elements(image), 8u);
   EXPECT_EQ(sensors->status(0).cropped, 40u);
+}
+
+// The camera looks down from 6 m. One row of the picture is 2 m above the floor, the others 5 m.
+TEST_F(LeftOutTest, TheReachOfARobotOnAMovingBaseIsAroundThatBase) {
+  struct Case {
+    double base;  // its height, m
+    std::size_t left;
+  };
+  for (const Case& each : {Case{0.0, 8}, Case{4.0, 48}, Case{7.0, 40}}) {
+    const test::ScratchFolder folder;
+    test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+    cell = read_good(
+        "name: test\nunits: {length: m, angle: rad}\n"
+        "objects: [{name: cart, sphere: {radius: 0.1}}]\n"
+        "robots: [{name: arm, urdf: scara.urdf, base: {on: cart}}]\nsensors:\n  - {name: eye, " +
+            kImage +
+            ", reach: 0, own_shell: 0, mount: {pose: {xyz: [0, 0, 6], rpy: [3.14159, 0, 0]}}}\n"
+            "pairs:\n  - {between: [arm, eye]}\n",
+        folder / "cell.yaml");
+    ASSERT_TRUE(cell.scene.sensors[0].crop.is_carried);
+    sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
+    std::uint32_t cart = 0;
+    while (cell.scene.objects[cart].name != "cart") ++cart;
+    ImageText image = flat(0, 1000);
+    for (std::size_t pixel = 0; pixel < 8; ++pixel) put(image, pixel, 3999);
+    for (int ms = -20; ms <= 20; ms += 10) {
+      const std::int64_t stamp = image.stamp_ns + 1'000'000 * ms;
+      sensors->add(std::vector{test::sample(cart, test::at(0, 0, each.base), stamp)},
+                   test::joints(0.0, 0.0, 0.0, stamp));
+    }
+    add(Type::kCameraInfo, narrow().cdr(), kStart);
+    EXPECT_EQ(elements(image), each.left) << each.base;
+  }
 }
 
 }  // namespace
