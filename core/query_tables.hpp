@@ -117,8 +117,8 @@ class StartTable {
   std::array<std::int32_t, kCells> cells_{};
 };
 
-// The features of a box whose faces are across the axes of its frame. A cold query of two boxes with
-// parallel axes begins at the features that face each other.
+// The features of a box whose faces are across the axes of its frame. A cold query of two boxes
+// with parallel axes begins at the features that face each other.
 struct BoxFeatures {
   // Centre and half of the edge lengths, m; `half` is zero if the body is no such box. Reads of
   // four go on in the next member.

@@ -58,9 +58,8 @@ void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene
     if (list.reaches[i] == nullptr) continue;
     const auto reach = robots_reach(scene);
     if (const auto* const reason = std::get_if<std::string>(&reach)) {
-      diagnostics.add(
-          *list.reaches[i],
-          fmt::format("found 'reach', but {}; expected robots on one base", *reason));
+      diagnostics.add(*list.reaches[i],
+                      fmt::format("found 'reach', but {}; expected robots on one base", *reason));
       return;
     }
     const Object& object = scene.objects[sensor.object];

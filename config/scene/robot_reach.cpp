@@ -88,9 +88,10 @@ std::variant<ReachBall, std::string> robots_reach(const Scene& scene) {
     for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
       const RobotJoint& of = robot.joints[joint];
       const bool is_of_base = joint == 0 && follows_a_frame(robot);
-      reach[i][joint + 1] = is_of_base ? root
-                                       : reach[i][of.parent] + of.parent_from_joint.position.norm() +
-                                             travel(of, scene.variables);
+      reach[i][joint + 1] = is_of_base
+                                ? root
+                                : reach[i][of.parent] + of.parent_from_joint.position.norm() +
+                                      travel(of, scene.variables);
     }
     for (std::size_t link = 0; link < robot.links.size(); ++link) {
       if (robot.links[link].object == RobotLink::kNoObject) continue;

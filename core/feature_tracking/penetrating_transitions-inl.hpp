@@ -145,8 +145,7 @@ HWY_NOINLINE bool is_shortest_of_boxes(const TrackedPair& pair, double size) {
   const Vec4 half_a = load3_of_4(a.half), half_b = load3_of_4(b.half);
   const Vec4 between = point_to_a(pair.a_from_b, load3_of_4(b.centre)) - load3_of_4(a.centre);
   const Vec4 gaps_a = magnitude(between) - (half_a + to_a * half_b);
-  const Vec4 gaps_b =
-      magnitude(direction_to_b(pair.a_from_b, between)) - (half_b + to_b * half_a);
+  const Vec4 gaps_b = magnitude(direction_to_b(pair.a_from_b, between)) - (half_b + to_b * half_a);
   const auto all_others_longer = [&](Vec4 gaps, const Facet& facet) HWY_ATTR {
     const Vec4 n = load3_of_4(facet.normal), limit = spread(pair.distance - kAmple * size);
     return ((less(gaps, limit) | less(spread(0.5), n * n)) & 7u) == 7u;

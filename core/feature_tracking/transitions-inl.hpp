@@ -328,8 +328,8 @@ HWY_INLINE void start_level(TrackedPair& pair) {
   }
 }
 
-// The axes of A's frame that are parallel to one of B's within rounding, a bit each. Boxes and other
-// bodies with faces across their axes are then level. `squares`: of the rotation's elements.
+// The axes of A's frame that are parallel to one of B's within rounding, a bit each. Boxes and
+// other bodies with faces across their axes are then level. `squares`: of the rotation's elements.
 HWY_INLINE unsigned shared_axes(const Diagonals& squares) {
   const Vec4 limit = spread(1.0 - 0x1p-46);
   return (less(limit, squares.main) | less(limit, squares.next) | less(limit, squares.last)) & 7u;
@@ -369,8 +369,7 @@ HWY_INLINE bool start_boxes(TrackedPair& pair) {
   if ((axes & ~shared) != 0 || (shared != 7u && axes != shared)) return false;
   // The same axes in B's frame. B's features face the other way.
   const auto chosen = [axes](unsigned axis) { return (axes & axis) != 0 ? 1.0 : 0.0; };
-  const Vec4 in_b =
-      direction_to_b(pair.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
+  const Vec4 in_b = direction_to_b(pair.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
   to_farthest(a, axes, less(between, zero), pair.on_a);
   to_farthest(b, less(spread(0.25), in_b * in_b) & 7u, less(zero, in_b), pair.on_b);
   // The witness points of whole facets and edges will be halfway between these.

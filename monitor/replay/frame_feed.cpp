@@ -32,9 +32,10 @@ bool FrameFeed::read_one() {
   McapMessage message;
   while (reader_ == nullptr || !reader_->next(message)) {
     if (next_file_ == files_.size()) return false;
-    reader_ = std::make_unique<McapReader>(files_[next_file_++]);
+    reader_ = std::make_unique<McapReader>(files_[next_file_++], window_);
     if (!may_have_frames(*reader_)) reader_ = nullptr;
   }
+  log_ns_ = static_cast<std::int64_t>(message.log_time);
   is_there_ = is_of_frames(*message.channel) && decoder_.decode(message.payload, frame_);
   return true;
 }

@@ -18,16 +18,21 @@ namespace clearance {
 // they have frames.
 class FrameFeed {
  public:
-  explicit FrameFeed(std::vector<std::filesystem::path> files) : files_(std::move(files)) {}
+  explicit FrameFeed(std::vector<std::filesystem::path> files, const McapWindow& window = {})
+      : files_(std::move(files)), window_(window) {}
 
   // The next frame; null at the end or the damage. Valid until pop().
   [[nodiscard]] const clearance_msg_SensorFrame* front();
+  // Its log time, ns.
+  [[nodiscard]] std::int64_t front_ns() const noexcept { return log_ns_; }
   void pop() noexcept { is_there_ = false; }
 
  private:
   [[nodiscard]] bool read_one();
 
   std::vector<std::filesystem::path> files_;
+  McapWindow window_;
+  std::int64_t log_ns_ = 0;
   std::size_t next_file_ = 0;
   std::unique_ptr<McapReader> reader_;
   CdrDecoder decoder_;

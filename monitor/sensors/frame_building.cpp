@@ -26,9 +26,9 @@ std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
     centre = base.world_from_body.position;
   }
   const Pose& world_from_sensor = place.world_from_body;
-  return CloudCrop{.centre = world_from_sensor.orientation.conjugate() *
-                             (centre - world_from_sensor.position),
-                   .radius = ball.radius};
+  return CloudCrop{
+      .centre = world_from_sensor.orientation.conjugate() * (centre - world_from_sensor.position),
+      .radius = ball.radius};
 }
 
 }  // namespace

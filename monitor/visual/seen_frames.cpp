@@ -50,12 +50,20 @@ void SeenFrames::keep(std::span<const std::uint64_t> writers) { sensors_->keep(w
 void SeenFrames::settle(std::int64_t now_ns, const Use& use) {
   sensors_->settle(
       now_ns, [](const SeenCloud*) { return false; },
-      [&](std::uint32_t sensor, const SensorFrame& frame) {
-        shown_[sensor] = {frame.stamp_ns, frame.world_from_sensor};
-        const auto message = seen_points_message(*frame.cloud, frame.world_from_sensor, sensor,
-                                                 frame.stamp_ns, kMostPoints);
-        use(sensor, frame.stamp_ns, encoder_.encode(*message));
-      });
+      [&](std::uint32_t sensor, const SensorFrame& frame) { hand_on(sensor, frame, use); });
+}
+
+void SeenFrames::show(const BuiltFrame& built, const Use& use) {
+  static_cast<void>(sensors_->rebuild(
+      built, [](const SeenCloud*) { return false; },
+      [&](std::uint32_t sensor, const SensorFrame& frame) { hand_on(sensor, frame, use); }));
+}
+
+void SeenFrames::hand_on(std::uint32_t sensor, const SensorFrame& frame, const Use& use) {
+  shown_[sensor] = {frame.stamp_ns, frame.world_from_sensor};
+  const auto message = seen_points_message(*frame.cloud, frame.world_from_sensor, sensor,
+                                           frame.stamp_ns, kMostPoints);
+  use(sensor, frame.stamp_ns, encoder_.encode(*message));
 }
 
 std::vector<SeenState> SeenFrames::states() const {

@@ -22,6 +22,8 @@
 namespace clearance {
 
 class Sensors;
+struct BuiltFrame;
+struct SensorFrame;
 
 // The last frame of a sensor, and what came of its messages.
 struct SeenState {
@@ -59,6 +61,8 @@ class SeenFrames {
                                  std::span<const std::byte> cdr)>;
   // Hands on the frames that can be made now.
   void settle(std::int64_t now_ns, const Use& use);
+  // Hands on a frame that a daemon has built, if it is of this cell.
+  void show(const BuiltFrame& built, const Use& use);
   [[nodiscard]] std::vector<SeenState> states() const;  // by sensor
 
  private:
@@ -66,6 +70,8 @@ class SeenFrames {
     std::int64_t stamp_ns = 0;
     std::optional<Pose> world_from_sensor;
   };
+
+  void hand_on(std::uint32_t sensor, const SensorFrame& frame, const Use& use);
 
   const Cell* cell_;
   SourceNumbers numbers_;

@@ -148,7 +148,8 @@ TEST_F(CameraFaults, OfTwoPublishersOfItsPlaceMakeItUnknown) {
 
 TEST_F(CameraFaults, OfNoPublisherAndOfRefusedImagesAreNamedAfterAWhile) {
   start(kImage + kAbove);
-  EXPECT_TRUE(step_until(kPeriodMs, [] {}, told("frames-silent", {"eye", "no publisher"})))
+  EXPECT_TRUE(step_until(
+      kPeriodMs, [] {}, told("frames-silent", {"eye", "no publisher"})))
       << daemon->output();
   EXPECT_TRUE(is("ball", PairStatus::kUnknown));
   daemon->signal(SIGTERM);

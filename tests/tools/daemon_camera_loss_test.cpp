@@ -15,8 +15,8 @@
 namespace clearance::test {
 namespace {
 
-constexpr double kWall = 2.5;                                   // m, from the camera
-constexpr double kExact = kWall - kError - 1.0 - kRadius;       // m, of the ball 1 m below it
+constexpr double kWall = 2.5;                              // m, from the camera
+constexpr double kExact = kWall - kError - 1.0 - kRadius;  // m, of the ball 1 m below it
 constexpr std::int64_t kFrameNs = 33'333'333, kStartNs = 700'000'000, kLossNs = 3'000'000'000;
 
 TEST(CameraOnALossyNetwork, GivesWholeFramesOrNone) {
@@ -51,7 +51,7 @@ TEST(CameraOnALossyNetwork, GivesWholeFramesOrNone) {
     const std::int64_t start_ns = next_ns;
     for (; next_ns < start_ns + kStartNs + kLossNs; next_ns += kFrameNs) {
       if (begin_ns == 0 && next_ns > start_ns + kStartNs) {
-        wire.lose(0.01);  // a frame has 110 fragments: a third of them comes whole
+        wire.lose(0.003);  // an image has more than a hundred fragments
         begin_ns = next_ns;
       }
       camera.send_image({.wall = kWall, .ball = {}}, dds_time());
@@ -82,7 +82,7 @@ TEST(CameraOnALossyNetwork, GivesWholeFramesOrNone) {
     }
   }
   const auto came = static_cast<std::int64_t>(used.size());
-  EXPECT_GT(came, sent / 20) << "of " << sent << " frames\n" << daemon->output();
+  EXPECT_GT(came, sent / 10) << "of " << sent << " frames\n" << daemon->output();
   EXPECT_LT(came, sent) << "none was lost";
 }
 

@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <thread>
 
 #include "monitor/zone_cause.hpp"
 #include "tests/monitor/scara_cell.hpp"
@@ -190,47 +192,82 @@ TEST_F(ViewPage, MeasuresAnyTwoBodiesSavesTheTableAndPlotsMinutes) {
 }
 
 // The shipped cell with a camera, whose simulation renders a person whom the cell does not know.
-// The nearest element to a link is on the person, or on what stands around.
-TEST(ViewOfACamera, DrawsItsPointsTheBlindShellsAndTheNearestElement) {
-  const std::string cell = places::sources() + "/config/cells/camera.yaml";
-  const auto dds = dds_arguments(own_dds());
-  const ChildProcess daemon(kDaemon, with({cell}, dds));
-  const ChildProcess robot(kRobot, with({cell, "--swing", "0.3", "--person", "1.5,-0.2:1.45,-0.1",
-                                         "--person-speed", "0.05", "--camera-rate", "10"},
-                                        dds));
-  const View view(with({cell}, dds));
-  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "seen"});
-  EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
-  std::map<std::string, json> found;
-  for (const json& line : lines_of(page)) {
-    if (line.contains("step")) found[line["step"]] = line["found"];
+class ViewOfACamera : public testing::Test {
+ protected:
+  [[nodiscard]] std::vector<std::string> daemon_arguments(
+      const std::vector<std::string>& more = {}) const {
+    return with(with({cell}, more), dds);
   }
-  EXPECT_EQ(found["errors"], json::array()) << page.output();
-  const json seen = found["seen"];
-  ASSERT_TRUE(seen.is_object());
-  EXPECT_EQ(seen["bodies"], 0) << "the ball of the camera's view is drawn";
+  [[nodiscard]] ChildProcess robot() const {
+    return {kRobot, with({cell, "--swing", "0.3", "--person", "1.5,-0.2:1.45,-0.1",
+                          "--person-speed", "0.05", "--camera-rate", "10"},
+                         dds)};
+  }
+  // What a page shows of the sensors.
+  static json seen_at(const std::string& address) {
+    ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", address, "seen"});
+    EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
+    std::map<std::string, json> found;
+    for (const json& line : lines_of(page)) {
+      if (line.contains("step")) found[line["step"]] = line["found"];
+    }
+    EXPECT_EQ(found["errors"], json::array()) << page.output();
+    return found["seen"];
+  }
   // Points on the floor, on the shelf, and on the person, within the stated error.
-  const std::vector<double> places = seen["places"];
-  ASSERT_GT(places.size(), 3u * 1000);
-  std::size_t floor = 0, person = 0, below = 0;
-  for (std::size_t i = 0; i + 2 < places.size(); i += 3) {
-    const Vec3 at(places[i], places[i + 1], places[i + 2]);
-    floor += std::abs(at.z()) < 0.07;
-    below += at.z() < -0.1;
-    person += at.z() > 0.9 && (at - Vec3(1.5, -0.2, at.z())).norm() < 0.5;
+  static void expect_floor_and_person(const json& seen) {
+    ASSERT_TRUE(seen.is_object());
+    EXPECT_EQ(seen["bodies"], 0) << "the ball of the camera's view is drawn";
+    const std::vector<double> places = seen["places"];
+    ASSERT_GT(places.size(), 3u * 1000);
+    std::size_t floor = 0, person = 0, below = 0;
+    for (std::size_t i = 0; i + 2 < places.size(); i += 3) {
+      const Vec3 at(places[i], places[i + 1], places[i + 2]);
+      floor += std::abs(at.z()) < 0.07;
+      below += at.z() < -0.1;
+      person += at.z() > 0.9 && (at - Vec3(1.5, -0.2, at.z())).norm() < 0.5;
+    }
+    EXPECT_GT(floor, 100u);
+    EXPECT_GT(person, 20u);
+    EXPECT_EQ(below, 0u);
+    EXPECT_GT(seen.value("drawn", 0), 500);
+    EXPECT_GT(seen["shells"].value("hand", 0.0), 0.001);
+    EXPECT_LT(seen["shells"].value("hand", 9.0), 2.0);
+    EXPECT_NEAR(seen["pose"][2], 1.9, 1e-9);
+    EXPECT_EQ(seen["row"][0], "camera");
   }
-  EXPECT_GT(floor, 100u);
-  EXPECT_GT(person, 20u);
-  EXPECT_EQ(below, 0u);
-  EXPECT_GT(seen.value("drawn", 0), 500);
+
+  std::string cell = places::sources() + "/config/cells/camera.yaml";
+  DdsOptions own = own_dds();
+  std::vector<std::string> dds = dds_arguments(own);
+};
+
+// The nearest element to a link is on the person, or on what stands around.
+TEST_F(ViewOfACamera, DrawsItsPointsTheBlindShellsAndTheNearestElement) {
+  const ChildProcess daemon(kDaemon, daemon_arguments());
+  const ChildProcess simulated = robot();
+  const View view(with({cell}, dds));
+  const json seen = seen_at(view.page());
+  expect_floor_and_person(seen);
   EXPECT_LT(10 * seen.value("without", 9999), seen.value("drawn", 0));
-  EXPECT_GT(seen["shells"].value("hand", 0.0), 0.001);
-  EXPECT_LT(seen["shells"].value("hand", 9.0), 2.0);
-  EXPECT_NEAR(seen["pose"][2], 1.9, 1e-9);
-  EXPECT_EQ(seen["row"][0], "camera");
   EXPECT_GE(seen.value("lines", 0), 1) << "the pair with the nearest element has a line";
   EXPECT_EQ(seen["modes"], json::parse(R"([{"all": true, "shells": false},
       {"all": false, "shells": false}, {"all": true, "shells": true}])"));
+}
+
+TEST_F(ViewOfACamera, DrawsTheSameOfARecording) {
+  const ScratchFolder folder;
+  const std::string file = (folder / "run.mcap").string();
+  {
+    ChildProcess daemon(kDaemon, daemon_arguments({"--record", file}));
+    const ChildProcess simulated = robot();
+    wait_for_poses(own, std::get<Cell>(read_cell(cell)));
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  }
+  const View view({cell, "--replay", file});
+  expect_floor_and_person(seen_at(view.page() + "?t=2"));
 }
 
 void expect_causes(const json& found, PlacedBy placed_by) {

@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "monitor/loop/ports.hpp"
+#include "tools/view/channels.hpp"
+#include "tools/view/sensors_json.hpp"
 
 namespace clearance::view {
 namespace {
@@ -27,7 +29,10 @@ RecordingSource::RecordingSource(std::shared_ptr<const Cell> cell,
       file_(std::move(file)),
       timeline_(std::move(timeline)),
       frame_(std::make_unique<Frame>(cell_->scene)),
-      time_ns_(timeline_.begin_ns) {}
+      sensors_(file_),
+      time_ns_(timeline_.begin_ns) {
+  sensors_.change(*cell_);
+}
 
 std::string RecordingSource::history(double end_s, double width_s,
                                      std::span<const std::uint32_t> pairs) const {
@@ -51,6 +56,7 @@ void RecordingSource::follow_the_time() {
   // The history owns it, and the first one is ours.
   cell_ = cell == first_.get() ? first_ : std::shared_ptr<const Cell>(first_, cell);
   frame_ = std::make_unique<Frame>(cell_->scene);
+  sensors_.change(*cell_);
   reader_ = nullptr;
   changed_ = true;
 }
@@ -106,8 +112,22 @@ void RecordingSource::advance(Server& server) {
   read_up_to(time_ns_);
   server.set_time(time_ns_);
   frame_->publish(server);
+  if (server.is_wanted(kSeen)) show_what_is_seen(server);
   if (std::exchange(changed_, false)) server.parameters_changed();
 }
+
+void RecordingSource::show_what_is_seen(Server& server) {
+  std::vector<Message> shown;
+  sensors_.show(
+      time_ns_, [&](std::uint32_t sensor, std::int64_t stamp_ns, std::span<const std::byte> cdr) {
+        shown.push_back({kSeen, sensor, stamp_ns,
+                         std::make_shared<const std::vector<std::byte>>(cdr.begin(), cdr.end())});
+      });
+  if (sensors_.have_begun_anew()) server.forget(kSeen);
+  for (Message& message : shown) server.publish(std::move(message));
+}
+
+std::string RecordingSource::sensors() const { return sensors_json(sensors_.states()); }
 
 void RecordingSource::go_on(std::int64_t steady_ns) {
   const std::int64_t passed = steady_ns - std::exchange(steady_ns_, steady_ns);

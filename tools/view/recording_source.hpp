@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "monitor/recording/reader.hpp"
+#include "monitor/visual/recorded_sensors.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
 #include "tools/view/timeline.hpp"
@@ -32,6 +33,7 @@ class RecordingSource final : public Source {
     return frame_->distance_json(a, b);
   }
   void set(const std::string& name, const nlohmann::json& value) override;
+  [[nodiscard]] std::string sensors() const override;
   [[nodiscard]] std::string timeline() const override { return timeline_.json(); }
   [[nodiscard]] std::string history(double end_s, double width_s,
                                     std::span<const std::uint32_t> pairs) const override;
@@ -43,6 +45,7 @@ class RecordingSource final : public Source {
   void read_up_to(std::int64_t time_ns);
   void follow_the_time();
   void begin_reading_at(std::int64_t time_ns);
+  void show_what_is_seen(Server& server);
   [[nodiscard]] std::int64_t at(double seconds) const;
   [[nodiscard]] const SceneSince* scene_now() const;  // null: before the first report
 
@@ -51,6 +54,7 @@ class RecordingSource final : public Source {
   std::filesystem::path file_;
   Timeline timeline_;
   std::unique_ptr<Frame> frame_;
+  RecordedSensors sensors_;
   std::unique_ptr<RecordingReader> reader_;
   RecordedMessage next_;  // read, but still to come
   bool has_next_ = false;

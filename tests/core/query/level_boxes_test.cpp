@@ -192,9 +192,9 @@ TEST(LevelBoxes, ThatOverlapDeeplyHaveTheDepthOfTheirPrisms) {
     const Vec3 half_a(half(), half(), half()), half_b(half(), half(), half());
     DistanceJudge judge(hard::box(half_a), hard::box(half_b));
     const Pose a = random.pose(2.0);
-    const Quat turn = axis_rotations()[seed % 24] *
-                      (seed % 2 == 0 ? Quat::Identity()
-                                     : turned(Vec3::UnitZ(), random.uniform(0.0, 1.5)));
+    const Quat turn =
+        axis_rotations()[seed % 24] *
+        (seed % 2 == 0 ? Quat::Identity() : turned(Vec3::UnitZ(), random.uniform(0.0, 1.5)));
     const Vec3 way = random.direction(), beside = 0.1 * random.direction();
     TrackingState tracked;
     for (int k = 0; k < kBoxSteps; ++k) {

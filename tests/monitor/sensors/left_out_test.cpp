@@ -252,7 +252,7 @@ TEST_F(LeftOutTest, TheReachOfARobotOnAMovingBaseIsAroundThatBase) {
         "robots: [{name: arm, urdf: scara.urdf, base: {on: cart}}]\nsensors:\n  - {name: eye, " +
             kImage +
             ", reach: 0, own_shell: 0, mount: {pose: {xyz: [0, 0, 6], rpy: [3.14159, 0, 0]}}}\n"
-            "pairs:\n  - {between: [arm, eye]}\n",
+            "pairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
         folder / "cell.yaml");
     ASSERT_TRUE(cell.scene.sensors[0].crop.is_carried);
     sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});

@@ -275,7 +275,7 @@ const causes = () => page.evaluate(() => {
 async function seen() {
   await page.waitForFunction(() => {
     const { seen: { sensors, status } } = window.clearance.view;
-    return sensors[0].ns > 0 && status[0]?.frames > 2 && Object.keys(status[0].shells).length > 0;
+    return sensors[0].ns > 0 && status[0]?.frames > 0 && Object.keys(status[0].shells).length > 0;
   });
   await page.waitForFunction(() => /^[0-9]/.test(document.querySelector("#sensors tbody tr")?.cells[1].textContent ?? ""));
   // The line to the nearest element of the pair that is chosen.

@@ -133,7 +133,7 @@ export class Seen extends THREE.Group {
   // The age of a sensor's points, ns, and whether they are too old.
   age(sensor, timeNs) {
     const { ns } = this.sensors[sensor];
-    return ns ? { ns: timeNs - ns, isLate: timeNs - ns > this.cell.sensors[sensor].age_limit_ns + 1e9 } : { ns: -1, isLate: true };
+    return ns ? { ns: timeNs - ns, isLate: Math.abs(timeNs - ns) > this.cell.sensors[sensor].age_limit_ns + 1e9 } : { ns: -1, isLate: true };
   }
 
   update(timeNs) {

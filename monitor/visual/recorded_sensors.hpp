@@ -1,0 +1,41 @@
+// What the sensors of a cell saw, from the frames in a recording, for viewers.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "monitor/visual/seen_frames.hpp"
+
+namespace clearance {
+
+class FrameFeed;
+
+class RecordedSensors {
+ public:
+  explicit RecordedSensors(std::filesystem::path file);
+  ~RecordedSensors();
+
+  // The cell at the time of the view; it must outlive this, or the next call.
+  void change(const Cell& cell);
+  // Hands on the newest frames up to this time. After a step back or far ahead it begins anew, a
+  // little before.
+  void show(std::int64_t time_ns, const SeenFrames::Use& use);
+  // Tells that nothing which was handed on is of this time any more; once.
+  [[nodiscard]] bool have_begun_anew() noexcept { return std::exchange(anew_, false); }
+  [[nodiscard]] std::vector<SeenState> states() const;
+
+ private:
+  [[nodiscard]] std::vector<BuiltFrame> frames_until(std::int64_t time_ns);
+
+  std::filesystem::path file_;
+  const Cell* cell_ = nullptr;
+  std::unique_ptr<SeenFrames> seen_;  // null: the cell has no sensors
+  std::unique_ptr<FrameFeed> feed_;
+  std::int64_t read_ns_ = 0;  // all frames before this time were taken
+  bool anew_ = false;
+};
+
+}  // namespace clearance
