@@ -58,10 +58,11 @@ class DistanceTool : public testing::Test {
 constexpr const char* kCube =
     R"({"halfspaces":[[2,0,0,1],[-1,0,0,0.5],[0,1,0,0.5],[0,-1,0,0.5],[0,0,1,0.5],[0,0,-1,0.5]]})";
 
-std::string cubes(const std::string& id, double x) {
+// `turn`: the quaternion of B.
+std::string cubes(const std::string& id, double x, const std::string& turn = "1,0,0,0") {
   std::ostringstream out;
   out << R"({"id":")" << id << R"(","a":)" << kCube << R"(,"b":)" << kCube
-      << R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[)" << x << R"(,0,0,1,0,0,0]})" << '\n';
+      << R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[)" << x << ",0,0," << turn << "]}\n";
   return out.str();
 }
 
@@ -300,10 +301,13 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
 }
 
 TEST_F(DistanceTool, CountsWhichWayTheAnswersCame) {
-  std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n' << cubes("overlapping", 0.25);
+  std::ofstream(path("cases.jsonl"))
+      << cubes("apart", 1.5) << '\n'
+      << cubes("overlapping", 0.25) << '\n'
+      << cubes("tilted", 0.25, "0.8,0.36,0.48,0");
   const Outcome r = run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl"));
   EXPECT_NE(r.err.find("by feature tracking 1, by the active set 1 (1 touch or overlap, 0 by GJK), "
-                       "by the last penetration 0"),
+                       "by features that overlap 1"),
             std::string::npos)
       << r.err;
 }

@@ -99,7 +99,7 @@ void Answerer::print_paths() const {
   print(stderr,
         "clearance-distance: by feature tracking {}, by the active set {} ({} touch or overlap, {} "
         "by "
-        "GJK), by the last penetration {}\n",
+        "GJK), by features that overlap {}\n",
         paths_[DistancePath::kFeatureTracking], paths_[DistancePath::kActiveSet] + robust,
         paths_.met, robust, paths_[DistancePath::kPenetration]);
 }

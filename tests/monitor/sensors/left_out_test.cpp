@@ -172,6 +172,22 @@ TEST_F(LeftOutTest, ReachFollowsFromTheChainOfJointsAndTheMotionOfWhatIsSeen) {
   EXPECT_EQ(sensor.crop.centre, Vec3::Zero());
 }
 
+// A base that follows a frame is the second link: a floating joint leads to it.
+TEST_F(LeftOutTest, ReachOfABaseThatFollowsAFrameIsAroundThatBase) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: map}\n"
+      "robots: [{name: arm, urdf: scara.urdf, base: {frame: cart}}]\n"
+      "sensors: [{name: eye, " +
+          kImage + ", reach: 0.5" + kAbove + "}]\npairs: [{between: [arm, eye]}]\n",
+      folder / "cell.yaml");
+  const ReachBall& ball = cell.scene.sensors[0].crop;
+  EXPECT_TRUE(ball.is_carried);
+  EXPECT_EQ(ball.link, 1u);
+  EXPECT_NEAR(ball.radius, 2.25 + 0.5, 0.01);
+}
+
 // An element beyond the reach is left out, but the distance is never said to be larger than that of
 // what may be there.
 TEST_F(LeftOutTest, BoundsHoldForWhatWasCropped) {

@@ -28,15 +28,12 @@ void watch_for_the_end();
 class Unlocked {
  public:
   Unlocked() : state_(PyEval_SaveThread()) {}
-  ~Unlocked() {
-    if (is_ending() && !is_main_thread()) stay();
-    PyEval_RestoreThread(state_);
-  }
+  ~Unlocked() { lock_again(state_); }
   Unlocked(const Unlocked&) = delete;
   Unlocked& operator=(const Unlocked&) = delete;
 
  private:
-  [[noreturn]] static void stay() noexcept;
+  static void lock_again(PyThreadState* state) noexcept;
 
   PyThreadState* state_;
 };
