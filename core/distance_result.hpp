@@ -23,7 +23,7 @@ enum class DistancePath : std::uint8_t {
   kFeatureTracking,  // feature tracking certified it
   kActiveSet,        // the active-set iteration, and for bodies that touch or overlap the depth
   kGjk,              // the active-set iteration and then GJK
-  kPenetration,      // depth or contact, at once from the features of the last one
+  kPenetration,      // depth or contact, at once from features
   kDirection,        // of curved bodies: the search for the separating direction (core/curved)
 };
 
