@@ -308,13 +308,21 @@ TEST_F(SparseSharedCells, AreWholeWhereReportsCarryOnlyWhatChanged) {
   // The same holds where a report did not come, as on a busy machine.
   std::uint64_t cycle = whole->cycle, missed = whole.missed();
   bool is_full = true;
+  int checked = 0;
+  // A machine that is busy enough makes poses late, too. Then no daemon knows the pairs.
+  const auto are_late = [&] { return whole->now_ns - whole->oldest_pose_ns > 40'000'000; };
   EXPECT_TRUE(read_until(whole, [&] {
-    is_full = (is_full || knows_all()) && whole.missed() == missed;
-    EXPECT_TRUE(!is_full || knows_all()) << whole.what_is_missing();
+    is_full = (is_full || knows_all()) && whole.missed() == missed && !are_late();
+    EXPECT_TRUE(!is_full || knows_all())
+        << whole.what_is_missing() << "\nstatus of the pairs: " << int{status(whole, 0)} << " "
+        << int{status(whole, 1)} << " " << int{status(whole, 2)} << "; poses are "
+        << whole->now_ns - whole->oldest_pose_ns << " ns old";
+    checked += is_full ? 1 : 0;
     if (!is_full) cycle = whole->cycle;
     missed = whole.missed();
     return whole->cycle > cycle + 200 || HasFailure();
   })) << logs();
+  EXPECT_GT(checked, 50);
 }
 
 // One joint moves the finger past a pin. The gradient of each pair comes from the share that has
