@@ -301,10 +301,9 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
 }
 
 TEST_F(DistanceTool, CountsWhichWayTheAnswersCame) {
-  std::ofstream(path("cases.jsonl"))
-      << cubes("apart", 1.5) << '\n'
-      << cubes("overlapping", 0.25) << '\n'
-      << cubes("tilted", 0.25, "0.8,0.36,0.48,0");
+  std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n'
+                                     << cubes("overlapping", 0.25) << '\n'
+                                     << cubes("tilted", 0.25, "0.8,0.36,0.48,0");
   const Outcome r = run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl"));
   EXPECT_NE(r.err.find("by feature tracking 1, by the active set 1 (1 touch or overlap, 0 by GJK), "
                        "by features that overlap 1"),
