@@ -9,6 +9,7 @@
 #include <set>
 #include <sstream>
 
+#include "tests/shared/places.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -138,6 +139,19 @@ INSTANTIATE_TEST_SUITE_P(Every, Manual,
                            std::erase(name, '-');
                            return name;
                          });
+
+// It reads its options, and stops at the cell that is not there, before it builds anything.
+TEST(Demo, TakesEachOfItsOptionsAndOneOfThemOnly) {
+  const std::string demo = places::sources() + "/tools/demo";
+  for (const char* option : {"--avoid", "--pick", "--ask", "--camera"}) {
+    ChildProcess child("/usr/bin/env", {"bash", demo, option, "/nowhere.yaml"});
+    EXPECT_EQ(child.wait(), 2);
+    EXPECT_TRUE(child.wrote("cannot read /nowhere.yaml")) << option << '\n' << child.output();
+  }
+  ChildProcess both("/usr/bin/env", {"bash", demo, "--camera", "--ask"});
+  EXPECT_EQ(both.wait(), 2);
+  EXPECT_TRUE(both.wrote("one of --avoid")) << both.output();
+}
 
 }  // namespace
 }  // namespace clearance::test
