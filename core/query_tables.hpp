@@ -120,7 +120,7 @@ class StartTable {
 // The features of a box whose faces are across the axes of its frame. A cold query of two boxes
 // with parallel axes begins at the features that face each other.
 struct BoxFeatures {
-  // Centre and half of the edge lengths, m; `half` is zero if the body is no such box. Reads of
+  // The centre and half of the edge lengths, m; `half` is zero if the body is no such box. Reads of
   // four go on in the next member.
   Vec3 centre = Vec3::Zero();
   double unused = 0.0;

@@ -102,7 +102,7 @@ std::variant<ReachBall, std::string> robots_reach(const Scene& scene) {
       }
       if (robot.is_attached) continue;  // to an object that moves: no robot carries it
       return fmt::format(
-          "'{}' of robot '{}' can go anywhere: its base moves apart from that of another robot, or "
+          "'{}' of robot '{}' can go anywhere: its base moves without that of another robot, or "
           "a joint slides without limits",
           robot.links[link].name, robot.name);
     }

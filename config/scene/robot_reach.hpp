@@ -1,4 +1,4 @@
-// How far the links of a cell's robots can come, by their chains of joints.
+// The reach of a cell's robots follows from their chains of joints.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace clearance {
 
 // The ball around all links, and what they carry, as long as joints are within their limits. Else a
-// reason, as the end of a sentence: no robot, bases that move apart, or a joint that slides without
-// limits.
+// reason, as the end of a sentence: no robot, bases that do not move together, or a joint that
+// slides without limits.
 [[nodiscard]] std::variant<ReachBall, std::string> robots_reach(const Scene& scene);
 
 }  // namespace clearance

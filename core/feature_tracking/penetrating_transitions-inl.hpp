@@ -134,7 +134,7 @@ HWY_INLINE bool are_facets_of_boxes(const TrackedPair& pair) {
 // The same for parallel facets of two boxes. A - B is a prism over a polygon whose sides are
 // across the boxes' other axes. So the displacement is the shortest if those along these axes and
 // past the opposite facets are longer.
-HWY_NOINLINE bool is_shortest_of_boxes(const TrackedPair& pair, double size) {
+inline HWY_NOINLINE bool is_shortest_of_boxes(const TrackedPair& pair, double size) {
   const BoxFeatures &a = pair.a.box, &b = pair.b.box;
   const auto magnitude = [](Vec4 v) HWY_ATTR { return where_less(v, spread(0.0), -v, v); };
   const auto magnitudes = [&](const Diagonals& m) HWY_ATTR {

@@ -12,7 +12,7 @@ namespace {
 
 using Type = RawSensorMessage::Type;
 
-// What is not in the ball of the cell's robots is cropped, in the frame of the sensor. The ball's
+// The crop is the ball of the cell's robots, in the frame of the sensor. The ball's
 // place is off by the errors of both, which costs only some of the elements that it was to keep.
 // Without a place of the base, nothing is cropped.
 std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,

@@ -1,4 +1,4 @@
-// What the sensors of a cell saw, from the frames in a recording, for viewers.
+// Shows viewers what the sensors of a cell saw, from the frames in a recording.
 #pragma once
 
 #include <cstdint>

@@ -203,7 +203,7 @@ class ViewOfACamera : public testing::Test {
                           "--person-speed", "0.05", "--camera-rate", "10"},
                          dds)};
   }
-  // What a page shows of the sensors.
+  // Returns what a page shows of the sensors.
   static json seen_at(const std::string& address) {
     ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", address, "seen"});
     EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
