@@ -3,8 +3,11 @@
 #include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -14,12 +17,14 @@
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/app/ros_outputs.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "tools/merge/command_relay.hpp"
+#include "tools/merge/ros_relay.hpp"
 #include "tools/merge/whole_writer.hpp"
 
 namespace clearance {
@@ -44,6 +49,7 @@ struct Arguments {
   CellArguments cell;
   double late_ms = 20.0, seconds = 0.0;
   int fifo_priority = 0;
+  std::vector<std::string> ros;  // ROS 2 outputs in addition to the cell's
   std::string log_level = "info";
   DdsArguments dds;
 };
@@ -59,6 +65,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->check(number_from_zero());
   app.add_option("--priority", arguments.fifo_priority, "Run under SCHED_FIFO with this priority")
       ->check(CLI::Range(1, 99));
+  add_ros_outputs(app, arguments.ros);
   arguments.dds.add_to(app);
   add_log_level(app, arguments.log_level);
   app.footer(kFooter);
@@ -93,19 +100,26 @@ class ShareLog {
   std::map<std::string, client::ShareState> states_;
 };
 
-int run_merge(const Cell& cell, const Arguments& arguments, StopSignal& signal) {
+int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
   use_precise_timers();
   route_dds_log();
   if (arguments.fifo_priority > 0) {
     if (const Refusal refusal = use_fifo_scheduling(arguments.fifo_priority))
       log_line(lines::kSystemRefuses, *refusal);
   }
-  client::Connection connection(arguments.dds.resolve(cell), cell.topics);
+  add_asked(arguments.ros, cell.ros.outputs);
+  const DdsOptions dds = arguments.dds.resolve(cell);
+  if (!dds.partition.empty() && (writes_ros(cell) || !cell.ros.outputs.messages.empty()))
+    log_line(lines::kPartitionWithoutRos, dds.partition);
+  client::Connection connection(dds, cell.topics);
   client::SharedCellOptions options{.gradients = true};
   options.late_after = std::chrono::nanoseconds(std::llround(1e6 * arguments.late_ms));
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
   client::SharedCell whole(connection, options);
-  merge::WholeWriter writer(connection.participant(), cell, whole.daemon());
+  merge::RosRelay ros(connection.participant(), cell, arguments.cell.reading(), arguments.ros);
+  merge::WholeWriter writer(
+      connection.participant(), cell, whole.daemon(),
+      [&ros](Sample<clearance_msg_Health> health) { ros.tell(std::move(health)); });
   merge::CommandRelay commands(connection, cell, whole.daemon());
   log_line(lines::kMergeStarted, cell.scene.name, cell.shares.all.size(), connection.where());
   ShareLog log;
@@ -120,6 +134,7 @@ int run_merge(const Cell& cell, const Arguments& arguments, StopSignal& signal) 
     commands.note(whole);
     log.note(whole);
     if (writer.gives_way()) return kDdsFailed;
+    ros.write(whole);
   }
   print(stdout, "{}\n", writer.summary(whole));
   return kOk;
@@ -132,14 +147,14 @@ int run(int argc, char** argv, StopSignal& signal) {
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   start_log("clearance-merge", arguments.log_level);
-  const auto cell = cell_or_errors(arguments.cell.read());
+  auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;
   if (cell->shares.all.empty()) {
     print(stderr, "clearance-merge: {} has no 'shares': a daemon of its own watches it whole\n",
           arguments.cell.name());
     return kBadCell;
   }
-  return run_merge(*cell, arguments, signal);
+  return run_merge(*std::move(cell), arguments, signal);
 }
 
 }  // namespace

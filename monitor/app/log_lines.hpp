@@ -25,7 +25,7 @@ inline constexpr LogLine<Text> kSystemRefuses{"system-refuses", kWarn, "{}"};
 inline constexpr LogLine<Text> kPartitionWithoutRos{
     "partition-without-ros", kWarn,
     "ROS 2 uses the default partition only: in partition {}, tf does not arrive and no node of ROS "
-    "2 receives what this daemon writes for it"};
+    "2 receives what this program writes for it"};
 inline constexpr LogLine<Text> kNoSpeedScaling{
     "no-speed-scaling", kWarn,
     "{} is not published: no zone of the cell defines the scaling of speeds. Add a zone to the "
@@ -274,6 +274,11 @@ inline constexpr LogLine<Text, double> kShareLate{
     "share-late", kWarn,
     "the last report of the share '{}' is {:.0f} ms old: its pairs are unknown, and its zones "
     "active"};
+inline constexpr LogLine<Count, Text> kCellNotRead{
+    "cell-not-read", kError,
+    "ROS 2 gets no markers, numbers and diagnostics: the shares have changed to revision {:016x} "
+    "of "
+    "the cell, which cannot be read here: {}"};
 inline constexpr LogLine<Text, Count, Count> kShareOtherRevision{
     "share-other-revision", kError,
     "the share '{}' has revision {:016x} of the cell and most others have {:016x}: its pairs are "
@@ -377,6 +382,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kShareHeard,
                                  kShareMissing,
                                  kShareLate,
-                                 kShareOtherRevision};
+                                 kShareOtherRevision,
+                                 kCellNotRead};
 
 }  // namespace clearance::lines

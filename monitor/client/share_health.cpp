@@ -122,8 +122,12 @@ void join_health(Views views, clearance_msg_Health& out) {
       out.*largest = std::max(out.*largest, view->*largest);
     for (auto Message::*const sum : kSums) out.*sum += view->*sum;
     out.now_ns = std::max(out.now_ns, view->now_ns);
-    if (*view->recording != '\0')
-      recording += (recording.empty() ? "" : "; ") + std::string(view->recording);
+    // A recording that has failed is told first, and decides what readers think of all.
+    if (const std::string text = view->recording; text.starts_with("recording ")) {
+      recording += (recording.empty() ? "" : "; ") + text;
+    } else if (!text.empty()) {
+      recording = text + (recording.empty() ? "" : "; ") + recording;
+    }
   }
   out.recording = dds_string_dup(recording.c_str());
   join_rejected(views, out);

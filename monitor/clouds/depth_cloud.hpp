@@ -2,9 +2,9 @@
 //
 // The slab of a pixel is the part of its square cone between the depths z - e(z) and z + e(z): a
 // convex body of eight vertices. Coordinates are in the optical frame, where z leads forward, x to
-// the right and y down. Depth is z, not the length of the ray. Pixels are sorted in tiles of four
-// by two, and eight tiles make the next larger one. A tile spans the least and the greatest depth
-// of its pixels, so it is a slab as well. All memory is allocated by the constructor.
+// the right and y down. Depth is z, not the length of the ray. A tile (depth_tiling.hpp) spans the
+// least and the greatest depth of its pixels, so it is a slab as well. All memory is allocated by
+// the constructor.
 #pragma once
 
 #include <algorithm>
@@ -16,17 +16,9 @@
 #include <vector>
 
 #include "core/vec.hpp"
+#include "monitor/clouds/depth_tiling.hpp"
 
 namespace clearance {
-
-// A pinhole without distortion (sensor_msgs/CameraInfo: K). The centre of column u and row v has
-// the ray ((u - cx) / fx, (v - cy) / fy, 1). Lengths are in pixels.
-struct PinholeCamera {
-  std::uint32_t width = 0, height = 0;
-  double fx = 0.0, fy = 0.0, cx = 0.0, cy = 0.0;
-
-  friend bool operator==(const PinholeCamera&, const PinholeCamera&) = default;
-};
 
 // The stated bound of a depth's error: |measured - true| <= constant + quadratic z^2, m. It must
 // hold for the measured z, and includes quantisation.
@@ -66,7 +58,7 @@ inline constexpr double kWidestSine = 7.0 / 9.0;
 
 class DepthCloud {
  public:
-  static constexpr std::size_t kFanOut = 8;  // pixels a tile, children a node
+  static constexpr std::size_t kFanOut = DepthTiling::kFanOut;
 
   // A tile of columns [column, column + width), rows likewise; the sizes follow from its level. It
   // is empty if low > high.
@@ -80,13 +72,12 @@ class DepthCloud {
     std::array<float, kFanOut> low{}, high{};  // m, rounded outward
   };
   // The eight children of a tile as vector lanes: between these rays and depths.
-  struct Lanes {
-    const double *x0, *x1, *y0, *y1;
+  struct Lanes : DepthTiling::RayLanes {
     const float *low, *high;
   };
   // A slab between rays: x from x0 z to x1 z, y likewise, z from low to high.
-  struct Slab {
-    double x0 = 0.0, x1 = 0.0, y0 = 0.0, y1 = 0.0, low = 0.0, high = 0.0;
+  struct Slab : DepthTiling::Rays {
+    double low = 0.0, high = 0.0;
 
     // min n.p over the slab: it is attained at a vertex.
     [[nodiscard]] double least_along(const Vec3& n) const noexcept {
@@ -151,13 +142,13 @@ class DepthCloud {
   // Another number after each build, of any cloud. Copies of a cloud share it.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
 
-  [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : count_[0]; }
+  [[nodiscard]] std::size_t blocks() const noexcept { return levels_ == 0 ? 0 : tiling_.tiles(0); }
   [[nodiscard]] const Block& block(std::size_t i) const noexcept { return blocks_[i]; }
   [[nodiscard]] std::size_t levels() const noexcept { return levels_; }
-  [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return count_[level]; }
+  [[nodiscard]] std::size_t nodes(std::size_t level) const noexcept { return tiling_.tiles(level); }
   [[nodiscard]] Node node(std::size_t level, std::size_t i) const noexcept {
-    const Block& group = tiles_[first_tiles_[level] + i / kFanOut];
-    const Place& place = places_[first_[level] + i];
+    const Block& group = tiles_[tiling_.first_group(level) + i / kFanOut];
+    const DepthTiling::Place& place = tiling_.place(level, i);
     return {group.low[i % kFanOut], group.high[i % kFanOut], place.column, place.row};
   }
   [[nodiscard]] static bool is_empty(const Node& node) noexcept { return node.low > node.high; }
@@ -170,37 +161,23 @@ class DepthCloud {
   [[nodiscard]] std::uint32_t source(std::size_t block, std::size_t lane) const noexcept;
 
  private:
-  static constexpr std::size_t kMostLevels = 12;
-
-  struct Place {
-    std::uint16_t column = 0, row = 0;
-  };
-  // The edges of eight children, as vector lanes.
-  struct EdgeLanes {
-    std::array<double, kFanOut> low{}, high{};
+  struct Depths {
+    float low = 0.0F, high = 0.0F;  // m, rounded outward
   };
 
   [[nodiscard]] DepthBuild judge(const PinholeCamera& camera, const DepthImage& image,
                                  const DepthError& error, const DepthRange& range) const noexcept;
-  void set_camera(const PinholeCamera& camera) noexcept;
-  void set_tiling() noexcept;
-  void set_edge_lanes() noexcept;
+  template <class DepthsOf>
+  void fill(const DepthsOf& depths_of) noexcept;
   template <class Pixel>
-  void fill_blocks(const DepthImage& image, const DepthError& error,
-                   const DepthRange& range) noexcept;
+  void fill_from(const DepthImage& image, const DepthError& error,
+                 const DepthRange& range) noexcept;
   void add_levels() noexcept;
   void finish() noexcept;
 
-  std::uint32_t most_columns_, most_rows_;
-  PinholeCamera camera_;
-  std::vector<double> column_edges_, row_edges_;  // (u - 1/2 - cx) / fx for u = 0 .. width
-  std::vector<Block> blocks_, tiles_;
-  std::vector<Place> places_;
-  std::vector<EdgeLanes> column_lanes_, row_lanes_;
-  // By level: the first place, the first group of tiles, the first lanes of a column and of a row.
-  std::array<std::size_t, kMostLevels> first_{}, first_tiles_{}, first_columns_{}, first_rows_{};
-  std::array<std::size_t, kMostLevels> count_{};
-  std::size_t tree_levels_ = 0, levels_ = 0;  // of this size of image; 0 if no pixel has a slab
+  DepthTiling tiling_;
+  std::vector<Block> blocks_, tiles_;  // the pixels, and the tiles level by level
+  std::size_t levels_ = 0;             // 0 if no pixel has a slab
   std::size_t size_ = 0, missing_ = 0;
   std::uint64_t revision_ = 0;
   double extent_ = 0.0;

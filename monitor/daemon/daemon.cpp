@@ -164,8 +164,11 @@ Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   parts.queue = std::make_unique<ReportQueue>(parts.cell->scene,
                                               ReportQueueOptions{.reports = kQueuedReports});
   if (writes_ros(*parts.cell)) {
-    parts.ros = std::make_unique<RosWriter>(*parts.cell, participant_, poses_, *parts.queue,
-                                            recording_health_, leads());
+    const auto health = [this, &scene = parts.cell->scene,
+                         queue = parts.queue.get()](const LoopStatistics& statistics) {
+      return make_health(scene, statistics, poses_, queue->dropped_reports(), recording_health_);
+    };
+    parts.ros = std::make_unique<RosWriter>(*parts.cell, participant_, health, leads());
   }
   return parts;
 }

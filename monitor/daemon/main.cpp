@@ -16,6 +16,7 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/app/ros_outputs.hpp"
 #include "monitor/daemon/daemon.hpp"
 #include "monitor/daemon/recording_arguments.hpp"
 #include "monitor/dds/dds_arguments.hpp"
@@ -62,26 +63,6 @@ struct Arguments {
   DaemonOptions daemon;
 };
 
-constexpr std::string_view kAllOutputs = "all";
-
-std::string is_ros_output(const std::string& text) {
-  std::vector<std::string> keys = {std::string(kAllOutputs)};
-  for (const RosOutput& output : kRosOutputs) keys.emplace_back(output.key);
-  if (std::ranges::find(keys, text) != keys.end()) return {};
-  return fmt::format("found '{}'; expected {}", text, one_of(keys));
-}
-
-// Adds the ROS 2 outputs that the command line asks for, under their standard topics. A topic that
-// the cell names stays.
-void add_ros_outputs(const std::vector<std::string>& asked, RosOutputs& outputs) {
-  for (const RosOutput& output : kRosOutputs) {
-    const bool is_asked = std::ranges::find(asked, output.key) != asked.end() ||
-                          std::ranges::find(asked, kAllOutputs) != asked.end();
-    std::string& topic = outputs.*output.topic;
-    if (is_asked && topic.empty()) topic = output.standard_topic;
-  }
-}
-
 std::string is_client(const std::string& text) {
   if (!text.empty() && text.size() <= kMaxSourceLength) return {};
   return fmt::format("found '{}'; expected the name of a client with 1 to {} bytes", text,
@@ -118,13 +99,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--gradients", arguments.gradients,
                "Publish how the distances of published pairs change with joint positions, as "
                "'gradients: true' in the cell does");
-  app.add_option("--ros2", arguments.ros,
-                 "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
-                 "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
-                 "repeatable")
-      ->allow_extra_args(false)
-      ->check(is_ros_output)
-      ->excludes(share);
+  add_ros_outputs(app, arguments.ros)->excludes(share);
   app.add_option("--commands", arguments.commands,
                  "Take commands of this client too, which change the scene (idl/COMMANDS.md); "
                  "repeatable")
@@ -200,7 +175,7 @@ void add_names(const std::vector<std::string>& asked, std::vector<std::string>& 
 // Adds to a cell, and to every changed one, what the command line asks for.
 void finish(const Arguments& arguments, Cell& cell) {
   cell.scene.gradients = cell.scene.gradients || arguments.gradients;
-  add_ros_outputs(arguments.ros, cell.ros.outputs);
+  add_asked(arguments.ros, cell.ros.outputs);
   add_names(arguments.commands, cell.commands.from);
   add_names(arguments.questions, cell.questions.from);
   add_names(arguments.trajectories.topics, cell.ros.trajectories.topics);

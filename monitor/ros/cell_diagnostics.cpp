@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/text/sentences.hpp"
+#include "monitor/client/share_merge.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/zone_cause.hpp"
 
@@ -92,7 +93,8 @@ Status joints_status(const Scene& scene, std::uint32_t robot, const clearance_ms
   Status status{.name = "joints of " + scene.robots[robot].name, .message = "on time"};
   for (std::uint32_t i = 0; i < health.joints._length; ++i) {
     const clearance_msg_JointAge& joint = health.joints._buffer[i];
-    if (scene.variables[joint.variable].robot == robot) add_input(joint, status);
+    if (joint.variable < scene.variables.size() && scene.variables[joint.variable].robot == robot)
+      add_input(joint, status);
   }
   return status;
 }
@@ -123,18 +125,35 @@ Status recording_status(const clearance_msg_Health& health) {
   return status;
 }
 
+Status share_status(const clearance_msg_ShareHealth& share) {
+  Status status{.name = fmt::format("share {}", share.share),
+                .message = client::name(static_cast<client::ShareState>(share.state))};
+  if (share.state != 0) status.level = DiagnosticLevel::kError;
+  status.values = {{"cycle", std::to_string(share.cycle)},
+                   {"age", share.age_ns < 0 ? "never heard" : milliseconds(share.age_ns)}};
+  return status;
+}
+
+// Returns by how much a count has grown. A sum over shares falls while one is not heard, and grows
+// again when that one is back.
+std::uint64_t more_than(std::uint64_t& largest, std::uint64_t count) {
+  const std::uint64_t before = std::exchange(largest, std::max(largest, count));
+  return count > before ? count - before : 0;
+}
+
 }  // namespace
 
 Sample<DiagnosticArray> CellDiagnostics::make(const clearance_msg_Health& health,
                                               const Report& report, std::int64_t stamp_ns) {
-  std::vector<Status> statuses = {
-      tick_status(health, health.overruns - std::exchange(overruns_, health.overruns),
-                  health.dropped_reports - std::exchange(dropped_, health.dropped_reports)),
-      distances_status(scene_, report), poses_status(health)};
+  std::vector<Status> statuses = {tick_status(health, more_than(overruns_, health.overruns),
+                                              more_than(dropped_, health.dropped_reports)),
+                                  distances_status(scene_, report), poses_status(health)};
   for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot)
     if (!scene_.robots[robot].is_attached) statuses.push_back(joints_status(scene_, robot, health));
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone)
     statuses.push_back(zone_status(scene_, zone, report.zones[zone]));
+  for (std::uint32_t share = 0; share < health.shares._length; ++share)
+    statuses.push_back(share_status(health.shares._buffer[share]));
   if (*health.recording != '\0') statuses.push_back(recording_status(health));
   return diagnostic_array(scene_.name, statuses, stamp_ns);
 }

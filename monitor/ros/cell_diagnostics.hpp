@@ -19,8 +19,8 @@ class CellDiagnostics {
   explicit CellDiagnostics(const Scene& scene) : scene_(scene) {}
 
   // Called with every health sample, in order, and with the report before it. The statuses are:
-  // tick, distances, poses, joints of each robot, each zone, and the recording if there is one.
-  // Allocates.
+  // tick, distances, poses, joints of each robot, each zone, each share of a joined cell, and the
+  // recording if there is one. Allocates.
   [[nodiscard]] Sample<DiagnosticArray> make(const clearance_msg_Health& health,
                                              const Report& report, std::int64_t stamp_ns);
 

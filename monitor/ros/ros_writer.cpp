@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/dds/health.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/wire/convert.hpp"
@@ -51,14 +50,11 @@ bool writes_ros(const Cell& cell) noexcept {
   });
 }
 
-RosWriter::RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
-                     const ReportQueue& published, const RecordingHealth& recording,
+RosWriter::RosWriter(const Cell& cell, Participant& participant, MakeHealth make_health,
                      RosWrites::Leads leads)
     : scene_(cell.scene),
       settings_(cell.ros),
-      poses_(poses),
-      published_(published),
-      recording_(recording),
+      make_health_(std::move(make_health)),
       markers_(make_writer(participant, kRosMarkers, cell.ros.outputs.markers)),
       diagnostics_(make_writer(participant, kRosDiagnostics, cell.ros.outputs.diagnostics)),
       minimum_distance_(make_writer(participant, kRosFloat64, cell.ros.outputs.minimum_distance)),
@@ -167,9 +163,9 @@ void RosWriter::write_markers(const QueuedReport& queued) {
 }
 
 void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
-  const auto health =
-      make_health(scene_, statistics, poses_, published_.dropped_reports(), recording_);
-  const auto sample = cell_diagnostics_.make(*health, last_, dds_time());
+  const auto health = make_health_(statistics);
+  if (!health) return;
+  const auto sample = cell_diagnostics_.make(**health, last_, dds_time());
   if (writes_.may_write()) writes_.write(diagnostics_, &*sample);
 }
 

@@ -1,20 +1,19 @@
-// The daemon's output for ROS 2: the markers, diagnostics, numbers and scenes that the cell asks
+// The output of a cell for ROS 2: the markers, diagnostics, numbers and scenes that the cell asks
 // for.
 //
-// A thread of its own makes and writes them. The tick thread copies a number in each tick, a report
-// as often as markers are drawn, and statistics once a second. It never waits: a full queue loses
-// its newest entry, and the next one replaces it.
+// A thread of its own makes and writes them. The thread that reports, mostly that of the tick,
+// copies a number in each tick, a report as often as markers are drawn, and statistics once a
+// second. It never waits: a full queue loses its newest entry, and the next one replaces it.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <thread>
 
 #include "config/cell/cell.hpp"
-#include "monitor/dds/pose_reader.hpp"
-#include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/spsc_ring.hpp"
@@ -32,12 +31,15 @@ namespace clearance {
 
 class RosWriter final : public ReportSink {
  public:
+  // Returns the health for these statistics. If it returns none, no diagnostics are written. The
+  // writer's thread calls it.
+  using MakeHealth =
+      std::function<std::optional<Sample<clearance_msg_Health>>(const LoopStatistics&)>;
+
   // Joins the topics that the scene names and starts the thread. The scaling of speeds is left out,
-  // with a line in the log, if the cell has no zone. Everything given must outlive this.
-  // `published` is the queue of the reports on DDS; diagnostics name its losses. Nothing is written
-  // while `leads` is false.
-  RosWriter(const Cell& cell, Participant& participant, const PoseReader& poses,
-            const ReportQueue& published, const RecordingHealth& recording,
+  // with a line in the log, if the cell has no zone. The cell, the participant and what
+  // `make_health` refers to must outlive this. Nothing is written while `leads` is false.
+  RosWriter(const Cell& cell, Participant& participant, MakeHealth make_health,
             RosWrites::Leads leads = {});
   ~RosWriter() override;
   RosWriter(const RosWriter&) = delete;
@@ -64,9 +66,7 @@ class RosWriter final : public ReportSink {
 
   const Scene& scene_;
   const RosSettings& settings_;
-  const PoseReader& poses_;
-  const ReportQueue& published_;
-  const RecordingHealth& recording_;
+  const MakeHealth make_health_;
   dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_,
       planning_scene_;  // 0: not asked for
   ReportQueue queue_;

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "monitor/wire/from_wire.hpp"
 #include "monitor/wire/to_wire.hpp"
 
 namespace clearance {
@@ -139,6 +140,20 @@ void to_wire(const Report& report, std::int64_t publish_ns,
   out.publish_ns = publish_ns;
   kToWire(Field{"pairs"}, report.separated_pairs, out.pairs);
   kToWire(Field{"zones"}, report.separated_zones, out.zones);
+}
+
+void from_wire(const clearance_msg_Distances& message, Report& out) {
+  DistanceFields::for_each(FromWire{}, message, out);
+}
+
+void from_wire(const clearance_msg_ZoneState& message, ZoneReport& out) {
+  PublishedZoneFields::for_each(FromWire{}, message, out);
+}
+
+void from_wire(const clearance_msg_Separation& message, Report& out) {
+  constexpr FromWire kFromWire;
+  kFromWire(Field{"pairs"}, message.pairs, out.separated_pairs);
+  kFromWire(Field{"zones"}, message.zones, out.separated_zones);
 }
 
 // Ids are places in the lists, as in the scene.

@@ -38,6 +38,11 @@ void to_wire(const Scene& scene, const Report& report, std::uint32_t zone,
 [[nodiscard]] Sample<clearance_msg_Separation> make_separation(const Scene& scene);
 void to_wire(const Report& report, std::int64_t publish_ns, clearance_msg_Separation& out) noexcept;
 
+// These convert messages back to reports. They allocate if a list has to grow.
+void from_wire(const clearance_msg_Distances& message, Report& out);
+void from_wire(const clearance_msg_ZoneState& message, ZoneReport& out);
+void from_wire(const clearance_msg_Separation& message, Report& out);
+
 // Names, pairs, zones, joints and the text of the cell, and since when it is in force. It
 // allocates. Pairs are those of the scene, as in recordings, or those of the whole cell.
 enum class CataloguePairs : std::uint8_t { kOfScene, kOfWholeCell };

@@ -71,8 +71,8 @@ class CameraStream : public DaemonCameras {
     moving.join();
     return late_ms;
   }
-  // The largest delay of a wake-up, and the longest tick, of each second, us; the ticks that ended
-  // too late.
+  // The largest delay of a wake-up and the longest tick of each second, in us, and the number of
+  // overruns.
   struct Ticks {
     std::vector<double> wakeups, ticks;
     std::uint64_t overruns = 0;
@@ -91,13 +91,13 @@ class CameraStream : public DaemonCameras {
     while (dds_take(health_reader, &pointer, &info, 1, 1) == 1) {
       of.wakeups.push_back(health->wakeup_second_max_us);
       of.ticks.push_back(health->tick_second_max_us);
-      of.overruns += health->overruns - overruns;
+      of.overruns += health->overruns - overruns.value_or(health->overruns);
       overruns = health->overruns;
     }
   }
   Ticks with_stream, without;
-  std::uint64_t overruns = 0;  // of the last sample of health
-  int sent = 0;                // frames
+  std::optional<std::uint64_t> overruns;  // in the last health sample
+  int sent = 0;                           // frames
   Sample<clearance_msg_Health> health;
   dds_entity_t health_reader = client.reader(TopicKind::kHealth, Topics{}.health);
   std::optional<RosCamera> camera;

@@ -18,7 +18,7 @@
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/report.hpp"
 #include "tests/monitor/scara_cell.hpp"
-#include "tests/tools/meeting_boxes.hpp"
+#include "tests/tools/shared_cells.hpp"
 
 namespace clearance {
 namespace {
@@ -27,64 +27,11 @@ using client::ShareState;
 using std::chrono::milliseconds;
 using test::ChildProcess;
 using test::kDaemon;
+using test::kMerge;
+using test::kUnknown;
 using test::ScratchFolder;
+using test::SharedCells;
 using test::write_text;
-
-const std::string kMerge = test::places::programs() + "/clearance-merge";
-
-// The boxes that meet are one share, and each with the floor another one.
-std::string shared_cell(const std::string& more = {}) {
-  return test::meeting_cell() +
-         R"(shares:
-  - {name: boxes, pairs: [{between: [arm, arm]}]}
-  - {name: left floor, pairs: [{between: [left, floor]}]}
-  - {name: right floor, pairs: [{between: [right, floor]}]}
-)" + more;
-}
-
-class SharedCells : public testing::Test {
- protected:
-  explicit SharedCells(const std::string& more = {}) : file(shared_cell(more)) {}
-
-  DdsOptions dds = test::own_dds();
-  test::CellFile file;
-  Cell cell = file.cell();
-  test::SendingRobot robot{dds, cell};
-  client::Connection connection{dds, cell.topics};
-  std::map<std::string, std::unique_ptr<ChildProcess>> daemons;
-
-  ChildProcess& start(const std::string& share, const std::vector<std::string>& more = {},
-                      const std::string& as = {}) {
-    auto& daemon = daemons[as.empty() ? share : as];
-    daemon = std::make_unique<ChildProcess>(
-        kDaemon,
-        test::with(test::with({file.path(), "--share", share}, test::dds_arguments(dds)), more));
-    return *daemon;
-  }
-  void start_all() {
-    for (const Share& share : cell.shares.all) start(share.name);
-  }
-  std::string logs() {
-    std::string text;
-    for (const auto& [name, daemon] : daemons) text += "== " + name + "\n" + daemon->output();
-    return text;
-  }
-  template <class IsSo>
-  static bool read_until(client::SharedCell& whole, const IsSo& is_so, int seconds = 20) {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
-    while (std::chrono::steady_clock::now() < end) {
-      if (whole.next(milliseconds(100)) && is_so()) return true;
-    }
-    return false;
-  }
-  static std::uint8_t status(const client::SharedCell& whole, std::uint32_t pair) {
-    for (std::uint32_t i = 0; i < whole->pairs._length; ++i) {
-      if (whole->pairs._buffer[i].pair == pair) return whole->pairs._buffer[i].status;
-    }
-    return 255;
-  }
-};
-constexpr auto kUnknown = static_cast<std::uint8_t>(PairStatus::kUnknown);
 
 TEST_F(SharedCells, AreOneReportWithTheBoundsOfOneDaemonOfTheWholeCell) {
   start_all();

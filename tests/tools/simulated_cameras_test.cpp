@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "monitor/wire/camera_types.hpp"
+#include "tests/shared/ros_reader.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tools/rendering/person.hpp"
 #include "tools/rendering/simulated_world.hpp"
@@ -55,27 +56,6 @@ simulation:
 )";
 double error_at(double z) { return 0.002 + 0.001 * z * z; }
 
-// The newest message of a ROS 2 topic.
-template <class Message>
-class Newest {
- public:
-  Newest(Participant& participant, const RosType& type, const std::string& topic)
-      : reader_(participant.ros_reader(type, "rt" + topic)) {}
-  // Waits for another one; null: none has come.
-  const Message* next() {
-    const bool came = eventually([this] {
-      void* sample = &*message_;
-      dds_sample_info_t info{};
-      return dds_take(reader_, &sample, &info, 1, 1) == 1 && info.valid_data;
-    });
-    return came ? &*message_ : nullptr;
-  }
-
- private:
-  dds_entity_t reader_;
-  Sample<Message> message_;
-};
-
 class SimulatedCamerasTest : public testing::Test {
  protected:
   // Starts the robot on the cell with more arguments.
@@ -100,8 +80,8 @@ std::int64_t stamp_of(const std_msgs_msg_dds__Header_& header) {
 }
 
 TEST_F(SimulatedCamerasTest, SendDepthImagesOfTheBodiesOfTheCell) {
-  Newest<Image> images(client, kRosImage, "/eye/depth");
-  Newest<Info> infos(client, kRosCameraInfo, "/eye/camera_info");
+  RosReader<Image> images(client, kRosImage, "rt/eye/depth");
+  RosReader<Info> infos(client, kRosCameraInfo, "rt/eye/camera_info");
   start(kBoxBelow);
   const Info* const info = infos.next();
   ASSERT_NE(info, nullptr) << robot->output();
@@ -142,7 +122,7 @@ TEST_F(SimulatedCamerasTest, SendDepthImagesOfTheBodiesOfTheCell) {
 }
 
 TEST_F(SimulatedCamerasTest, SendPointsAndWhatTheCellDoesNotKnow) {
-  Newest<Points> clouds(client, kRosPointCloud2, "/scanner/points");
+  RosReader<Points> clouds(client, kRosPointCloud2, "rt/scanner/points");
   start(kBoxBelow, {"--camera-missing", "0", "--person", "0.7,0:0.9,0", "--person-speed", "0.1"});
   const Points* const cloud = clouds.next();
   ASSERT_NE(cloud, nullptr) << robot->output();

@@ -6,12 +6,16 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <utility>
 #include <variant>
 
 #include "config/cell/cell_file.hpp"
 #include "config/cell/simulation.hpp"
 #include "config/write/warehouse_cell.hpp"
 #include "core/shapes.hpp"
+#include "monitor/app/program.hpp"
 #include "tools/bench/bodies.hpp"
 #include "tools/bench/random.hpp"
 
@@ -187,7 +191,12 @@ Crowd warehouse_crowd(std::uint32_t objects) {
 
 Crowd shipped_crowd(const std::string& name) {
   const auto file = fmt::format("{}{}.yaml", CLEARANCE_CELLS "/", name);
-  return crowd_of(name, std::get<Cell>(read_cell(file)));
+  std::optional<Cell> cell = cell_or_errors(read_cell(file));
+  if (!cell) {
+    throw std::runtime_error(fmt::format(
+        "rows of shipped cells read {}, the path at compile time; it is missing or wrong", file));
+  }
+  return crowd_of(name, *std::move(cell));
 }
 
 }  // namespace clearance::bench

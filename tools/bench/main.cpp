@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <exception>
 #include <filesystem>
 #include <iterator>
 #include <string>
@@ -120,9 +121,7 @@ constexpr Part kParts[] = {
     {"--sweeps", "^(tick|sweep)/"},
 };
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "--suite") {
     return clearance::bench::run_suite(std::vector<std::string>(argv + 2, argv + argc));
   }
@@ -161,4 +160,15 @@ int main(int argc, char** argv) {
   const bool any = benchmark::RunSpecifiedBenchmarks() > 0;
   benchmark::Shutdown();
   return any ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    clearance::print(stderr, "clearance-bench: {}\n", error.what());
+    return 1;
+  }
 }

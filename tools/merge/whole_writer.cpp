@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <utility>
 
 #include "monitor/dds/report_writer.hpp"
 
@@ -33,21 +34,26 @@ DaemonIdentity identity_of(std::uint64_t daemon) {
 
 }  // namespace
 
-WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon)
+WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon,
+                         OnHealth on_health)
     : participant_(participant),
       identity_(identity_of(daemon)),
       topics_(cell.topics),
+      on_health_(std::move(on_health)),
       lease_ns_(lease_ns(cell.scene.rate_hz)),
       distances_(participant.writer(TopicKind::kDistances, topics_.distances,
                                     {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)})),
       catalogue_(participant.writer(TopicKind::kCatalogue, topics_.catalogue)),
       zones_(participant.writer(TopicKind::kZones, topics_.zones)),
       health_(participant.writer(TopicKind::kHealth, topics_.health)),
+      messages_(cell, participant),
       others_(participant, topics_.distances, identity_),
       zone_check_(cell) {}
 
-void WholeWriter::put(dds_entity_t writer, const void* sample) {
-  if (!others_.give_way() && dds_write(writer, sample) != DDS_RETCODE_OK) ++failed_;
+void WholeWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
+  if (others_.give_way()) return;
+  if (dds_write(writer, sample) != DDS_RETCODE_OK) ++failed_;
+  messages_.published(kind, sample);
 }
 
 // The strings belong to the share's sample. Cycles are those of this program.
@@ -56,7 +62,7 @@ void WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
   whole.daemon = identity_.id;
   whole.share[0] = '\0';
   whole.began_after = whole.in_force_from = 0;
-  put(catalogue_, &whole);
+  put(TopicKind::kCatalogue, catalogue_, &whole);
 }
 
 // Ids that a changed cell no longer has are withdrawn, and all others are written again.
@@ -65,7 +71,8 @@ void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
   for (const auto& [id, state] : whole.zones()) {
     now[id] = state.active;
     const auto before = written_.find(id);
-    if (again || before == written_.end() || before->second != state.active) put(zones_, &state);
+    if (again || before == written_.end() || before->second != state.active)
+      put(TopicKind::kZones, zones_, &state);
   }
   for (const auto& [id, active] : written_) {
     if (now.contains(id)) continue;
@@ -88,7 +95,7 @@ void WholeWriter::write(client::SharedCell& whole) {
   }
   clearance_msg_Distances report = *whole;
   const std::int64_t oldest_ns = report.publish_ns;
-  put(distances_, &report);
+  put(TopicKind::kDistances, distances_, &report);
   ++reports_;
   not_whole_ += whole.is_whole() ? 0 : 1;
   if (delays_us_.merging.size() < kDelays) {
@@ -102,7 +109,7 @@ void WholeWriter::write(client::SharedCell& whole) {
   if (const clearance_msg_Separation* const separation = whole.separation()) {
     if (separation_ == 0)
       separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
-    put(separation_, separation);
+    put(TopicKind::kSeparation, separation_, separation);
   }
   if (const clearance_msg_Gradients* const gradients = whole.gradients()) {
     if (gradients_ == 0) {
@@ -110,9 +117,10 @@ void WholeWriter::write(client::SharedCell& whole) {
           participant_.writer(TopicKind::kGradients, topics_.gradients,
                               {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)});
     }
-    put(gradients_, gradients);
+    put(TopicKind::kGradients, gradients_, gradients);
   }
   write_zones(whole, is_new);
+  if (!others_.give_way()) messages_.report_ended();
   zone_check_.look(whole);
   if (dds_time() - health_ns_ < kHealthEvery) return;
   health_ns_ = dds_time();
@@ -120,7 +128,8 @@ void WholeWriter::write(client::SharedCell& whole) {
   health->dropped_reports += failed_;
   health->other_writers = others_.writers();
   health->foreign_reports = others_.reports();
-  put(health_, &*health);
+  put(TopicKind::kHealth, health_, &*health);
+  on_health_(std::move(health));
 }
 
 std::string WholeWriter::summary(const client::SharedCell& whole) const {

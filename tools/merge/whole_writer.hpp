@@ -1,7 +1,9 @@
-// Publishes a joined cell on the topics of the cell, as a daemon of the whole cell would.
+// Publishes a joined cell on the topics of the cell, as a daemon of the whole cell would, and once
+// more as messages of ROS 2 if the cell asks for them.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -11,14 +13,19 @@
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/ros/ros_messages.hpp"
 #include "tools/merge/zone_check.hpp"
 
 namespace clearance::merge {
 
 class WholeWriter {
  public:
-  // `daemon` is the number in all messages. Both outlive this. Throws DdsError.
-  WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon);
+  // Gets the health that was written last.
+  using OnHealth = std::function<void(Sample<clearance_msg_Health>)>;
+
+  // `daemon` is the number in all messages. The participant and the cell outlive this. Throws
+  // DdsError.
+  WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon, OnHealth on_health);
 
   // Writes the report at hand, and what has changed with it: catalogue, separations, zones. Health
   // goes out once a second.
@@ -31,14 +38,16 @@ class WholeWriter {
  private:
   void write_catalogue(const clearance_msg_Catalogue& catalogue);
   void write_zones(const client::SharedCell& whole, bool again);
-  void put(dds_entity_t writer, const void* sample);
+  void put(TopicKind kind, dds_entity_t writer, const void* sample);
 
   Participant& participant_;
   DaemonIdentity identity_;
   Topics topics_;
+  const OnHealth on_health_;
   std::int64_t lease_ns_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0, gradients_ = 0;  // 0: no share has had any yet
+  RosMessages messages_;
   OtherDaemons others_;
   std::uint64_t revision_ = 0;             // of the catalogue that was written; 0: none
   std::map<std::uint32_t, bool> written_;  // zones, and whether they were active

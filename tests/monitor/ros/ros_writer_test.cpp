@@ -5,15 +5,19 @@
 
 #include <map>
 
+#include "monitor/dds/health.hpp"
+#include "monitor/dds/pose_reader.hpp"
 #include "monitor/monitor.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/ros_reader.hpp"
 
 namespace clearance {
 namespace {
 
 using test::eventually;
+using test::RosReader;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
 using Float64 = std_msgs_msg_dds__Float64_;
 
@@ -31,25 +35,6 @@ Cell told_cell() {
   cell.ros.markers_hz = 1000.0;
   return cell;
 }
-
-template <class T>
-class RosReader {
- public:
-  RosReader(Participant& participant, const RosType& type, const std::string& topic)
-      : reader_(participant.ros_reader(type, topic)) {}
-  [[nodiscard]] dds_entity_t handle() const { return reader_; }
-  // Takes the next message if there is one.
-  bool take() {
-    void* pointer = &*sample_;
-    dds_sample_info_t info;
-    return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data;
-  }
-  T& last() { return *sample_; }
-
- private:
-  dds_entity_t reader_;
-  Sample<T> sample_;
-};
 
 class RosWriterTest : public testing::Test {
  protected:
@@ -72,7 +57,10 @@ class RosWriterTest : public testing::Test {
   PoseReader poses{cell, participant};
   ReportQueue published{scene, {}};
   RecordingHealth recording;
-  RosWriter ros{cell, participant, poses, published, recording};
+  RosWriter ros{cell, participant, [this](const LoopStatistics& statistics) {
+                  return make_health(scene, statistics, poses, published.dropped_reports(),
+                                     recording);
+                }};
   Monitor monitor{scene};
   std::int64_t now = test::kStart;
 };
@@ -131,14 +119,11 @@ TEST(RosWriter, PublishesNoScalingInACellWithoutZones) {
   cell.scene.zones.clear();
   const DdsOptions dds = test::own_dds();
   Participant participant(dds), client(dds);
-  const PoseReader poses(cell, participant);
-  const ReportQueue published(cell.scene, {});
-  const RecordingHealth recording;
   RosReader<Float64> minimum(client, kRosFloat64, "rt/told/clearance/minimum_distance");
   RosReader<Float64> scaling(client, kRosFloat64, "rt/told/clearance/speed_scaling");
   const auto log = std::make_shared<test::Logged>();
   const test::LoggedTo logged(log);
-  RosWriter ros(cell, participant, poses, published, recording);
+  RosWriter ros(cell, participant, [](const LoopStatistics&) { return std::nullopt; });
   EXPECT_TRUE(log->has("[no-speed-scaling]"));
   EXPECT_TRUE(log->has("/told/clearance/speed_scaling"));
   Monitor monitor(cell.scene);

@@ -34,6 +34,9 @@ std::vector<Rival> all_rivals() {
 #ifdef CLEARANCE_BENCH_BOX3D
   add(box3d_rivals());
 #endif
+#ifdef CLEARANCE_BENCH_MUJOCO
+  add(mujoco_rivals());
+#endif
   return all;
 }
 

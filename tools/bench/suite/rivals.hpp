@@ -23,6 +23,7 @@ namespace clearance::bench {
 [[nodiscard]] CLEARANCE_RIVAL std::vector<Rival> vclip_rivals();
 [[nodiscard]] CLEARANCE_RIVAL std::vector<Rival> jolt_rivals();
 [[nodiscard]] CLEARANCE_RIVAL std::vector<Rival> box3d_rivals();
+[[nodiscard]] CLEARANCE_RIVAL std::vector<Rival> mujoco_rivals();
 
 // All that this program was compiled with, Clearance first.
 [[nodiscard]] std::vector<Rival> all_rivals();

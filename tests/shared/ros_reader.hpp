@@ -1,0 +1,36 @@
+// Reads the messages of a ROS 2 topic one by one, as C structs.
+#pragma once
+
+#include <string>
+
+#include "monitor/participant/participant.hpp"
+#include "monitor/wire/dds_sample.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance::test {
+
+template <class T>
+class RosReader {
+ public:
+  // `topic` is the name on DDS: "rt/diagnostics".
+  RosReader(Participant& participant, const RosType& type, const std::string& topic)
+      : reader_(participant.ros_reader(type, topic)) {}
+  [[nodiscard]] dds_entity_t handle() const { return reader_; }
+  // Takes the next message if there is one.
+  bool take() {
+    void* pointer = &*sample_;
+    dds_sample_info_t info;
+    return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data;
+  }
+  // Waits for the next message. Returns null if none comes.
+  const T* next() {
+    return eventually([this] { return take(); }) ? &*sample_ : nullptr;
+  }
+  T& last() { return *sample_; }
+
+ private:
+  dds_entity_t reader_;
+  Sample<T> sample_;
+};
+
+}  // namespace clearance::test
