@@ -9,8 +9,9 @@
 
 namespace clearance {
 
-// What places an object. A link of a robot that is driven by joints has joint states, not poses.
-enum class PlacedBy { kPoses, kJointStates, kEither };
+// What places an object. A link of a robot that is driven by joints has joint states, not poses,
+// and what a sensor sees has frames.
+enum class PlacedBy { kPoses, kJointStates, kEither, kFrames };
 
 // "poses of hand".
 [[nodiscard]] inline std::string inputs_of(const std::string& object, PlacedBy placed_by) {
@@ -21,6 +22,8 @@ enum class PlacedBy { kPoses, kJointStates, kEither };
       return "joint states for " + object;
     case PlacedBy::kEither:
       return "poses or joint states of " + object;
+    case PlacedBy::kFrames:
+      return "frames of " + object;
   }
   return object;
 }
@@ -54,6 +57,7 @@ enum class PlacedBy { kPoses, kJointStates, kEither };
 }
 
 [[nodiscard]] inline PlacedBy placed_by(const Scene& scene, std::uint32_t object) {
+  if (scene.objects[object].is_seen()) return PlacedBy::kFrames;
   const bool is_link = std::ranges::any_of(scene.robots, [=](const Robot& robot) {
     return std::ranges::find(robot.links, object, &RobotLink::object) != robot.links.end();
   });

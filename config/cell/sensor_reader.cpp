@@ -25,6 +25,7 @@ constexpr Range kDepths{.least = 0.0, .most = 1e4, .above_least = true};  // m, 
 constexpr std::int64_t kMostFrames = 16;                                  // a megabyte each
 constexpr double kMapRange = 20.0;                             // m, from the origin of an octomap
 constexpr Range kFrameRates{.least = 0.01, .most = 10'000.0};  // Hz
+constexpr Range kStampErrors{.least = 0.0, .most = 1000.0};    // ms
 constexpr Range kSpacings{.least = 0.0, .most = 0.1};
 
 class SensorReader {
@@ -291,6 +292,10 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
     const auto hz =
         read_number(*rate, kFrameRates, "the largest rate of frames in Hz", diagnostics_);
     if (hz) sensor.least_interval_ns = static_cast<std::int64_t>(1e9 / *hz);
+  }
+  if (const YamlNode* error = map.optional("stamp_error_ms")) {
+    const auto ms = read_number(*error, kStampErrors, "how far a stamp is off in ms", diagnostics_);
+    if (ms) sensor.stamp_error_ns = static_cast<std::int64_t>(std::ceil(1e6 * *ms));
   }
   if (const YamlNode* unseen = map.optional("unseen")) {
     sensor.unseen = read_flag(*unseen, diagnostics_).value_or(false);

@@ -129,6 +129,25 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
                           objects.objects[person].name));
     return separation;
   }
+  // What a sensor sees has no measured speed.
+  const auto is_seen = [&](std::uint32_t object) { return objects.objects[object].is_seen(); };
+  if (const auto robot = std::ranges::find_if(robots, is_seen); robot != robots.end()) {
+    quantities.diagnostics().add(
+        node,
+        fmt::format("found the sensor '{}' on the robot's side of the zone; expected it on that "
+                    "of people: 'human' names the other side",
+                    objects.objects[*robot].name));
+    return separation;
+  }
+  if (const auto person = std::ranges::find_if(people, is_seen);
+      person != people.end() && separation.human_speed_is_measured) {
+    quantities.diagnostics().add(
+        node,
+        fmt::format("found human_speed_measured with the sensor '{}', which measures no speeds; "
+                    "expected human_speed alone",
+                    objects.objects[*person].name));
+    return separation;
+  }
   for (const std::uint32_t pair : zone.pairs)
     separation.human_is_first.push_back(std::ranges::binary_search(people, pairs[pair].first));
   return separation;

@@ -63,6 +63,10 @@ struct Sensor {
   // A frame whose stamp is less than this after that of the frame before is refused; 0: none is.
   std::int64_t least_interval_ns = 0;
 
+  // The true time of a frame is within this of its stamp. The poses of links and mounts at that
+  // time are known accordingly less well, and what is seen counts as seen that much earlier.
+  std::int64_t stamp_error_ns = 0;
+
   // Elements stay only if this many of the last frames have one near it (1: all stay).
   std::uint32_t persist_frames = 1, persist_of = 1;
 

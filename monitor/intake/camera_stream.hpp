@@ -44,6 +44,8 @@ class CameraStream {
                                 const FrameOrigin& origin, OctomapView& out) noexcept;
   // Counts bytes that could not be decoded.
   void refuse() noexcept { static_cast<void>(counted(FrameFault::kUndecodable)); }
+  // Does not count the message that was refused last, because it is kept for later.
+  void take_back(FrameFault fault) noexcept { --counts_[static_cast<std::size_t>(fault)]; }
 
   // Nothing before the first CameraInfo, or while another one is said.
   [[nodiscard]] const std::optional<PinholeCamera>& camera() const noexcept { return camera_; }

@@ -17,6 +17,7 @@
 #include "monitor/replay/recorded_loop.hpp"
 #include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_difference.hpp"
+#include "monitor/replay/sensor_notes.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/replay/zone_difference.hpp"
 
@@ -79,7 +80,6 @@ class Replay {
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
   void note_counts();
-  void note_sensors();
   void show_progress();
   void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
   [[nodiscard]] double seconds(std::int64_t now_ns) const {
@@ -325,44 +325,6 @@ void Replay::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& w
   result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
-// Notes what each sensor has seen, the messages of it that were refused, and how much the robot's
-// own image may hide.
-void Replay::note_sensors() {
-  const Sensors* const sensors = loop_.sensors();
-  if (sensors == nullptr) return;
-  const Scene& scene = loop_.cell().scene;
-  for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
-    const SensorStatus status = sensors->status(i);
-    const std::string& name = scene.sensors[i].name;
-    result_.notes.push_back(fmt::format(
-        "sensor '{}': {} frames used, the last one with {} elements; its place was known to {:.2g} "
-        "m at worst",
-        name, status.frames, status.elements, status.largest_pose_error));
-    for (std::size_t fault = 1; fault < kFrameFaults; ++fault) {
-      if (status.counts[fault] == 0) continue;
-      result_.notes.push_back(fmt::format("sensor '{}': {} messages were refused: {}", name,
-                                          status.counts[fault],
-                                          text(static_cast<FrameFault>(fault))));
-    }
-    if (status.hidden + status.cropped > 0) {
-      result_.notes.push_back(fmt::format(
-          "sensor '{}': of the last frame, {} elements were hidden because too few frames have "
-          "them, and {} were cropped because no link reaches them",
-          name, status.hidden, status.cropped));
-    }
-    if (!scene.sensors[i].unseen) {
-      result_.notes.push_back(
-          fmt::format("sensor '{}': places that it has not seen were not looked for", name));
-    }
-    const auto thickest = std::ranges::max_element(status.own, {}, &OwnImageStatus::thickest);
-    if (thickest == status.own.end() || thickest->thickest == 0.0) continue;
-    result_.notes.push_back(
-        fmt::format("sensor '{}': the robot's own image was left out; what is within {:.4f} m of "
-                    "'{}', and less of the other links, may have been left out with it",
-                    name, thickest->thickest, scene.objects[thickest->object].name));
-  }
-}
-
 // Notes at the end what was left out, as totals.
 void Replay::note_counts() {
   std::ranges::copy(feed_.notes(options_.compare.has_value()), std::back_inserter(result_.notes));
@@ -370,7 +332,9 @@ void Replay::note_counts() {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
   };
   note(loop_.of_other_scenes(), "batches were made for another scene and left out");
-  note_sensors();
+  if (const Sensors* const sensors = loop_.sensors())
+    std::ranges::copy(sensor_notes(*sensors, loop_.cell().scene),
+                      std::back_inserter(result_.notes));
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
     note(result_.rejected[cause],
          std::string("poses were refused: ") + name(static_cast<Reject>(cause)));

@@ -36,7 +36,7 @@ std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
 // A map may be older than the daemon. If nothing is known of the robot at its stamp, what it has of
 // the robot is an obstacle.
 void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
-  postures_.place(frame.stamp_ns);
+  postures_.place(frame.stamp_ns, state.sensor.stamp_error_ns);
   PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
   if (state.sensor.kind == SensorKind::kOctomap)
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);

@@ -75,11 +75,23 @@ void FrameHistory::keep(std::span<const std::uint64_t> writers) {
 }
 
 std::optional<FrameHistory::Step> FrameHistory::step(const std::string& child,
-                                                     std::int64_t stamp_ns) const {
+                                                     std::int64_t stamp_ns,
+                                                     std::int64_t within_ns) const {
   const auto found = frames_.find(child);
   if (found == frames_.end() || found->second.poses.empty()) return std::nullopt;
   if (is_disputed(found->second, stamp_ns)) return std::nullopt;
-  return place_of(found->second, stamp_ns);
+  auto step = place_of(found->second, stamp_ns);
+  if (!step || within_ns == 0 || found->second.is_static) return step;
+  for (const std::int64_t end : {stamp_ns - within_ns, stamp_ns + within_ns}) {
+    const auto other = place_of(found->second, end);
+    if (!other) return std::nullopt;
+    const Pose &a = step->parent_from_child, &b = other->parent_from_child;
+    step->shift_error =
+        std::max(step->shift_error, rounded_up(way_between(a, b) + other->shift_error));
+    step->turn_error =
+        std::max(step->turn_error, rounded_up(angle_between(a, b) + other->turn_error));
+  }
+  return step;
 }
 
 std::optional<FrameHistory::Step> FrameHistory::place_of(const Frame& frame,

@@ -39,8 +39,10 @@ class FrameHistory {
     Pose parent_from_child;
     double shift_error = 0.0, turn_error = 0.0;  // m, rad
   };
-  // Returns nothing if the frame has no transform at that time.
-  [[nodiscard]] std::optional<Step> step(const std::string& child, std::int64_t stamp_ns) const;
+  // Returns nothing if the frame has no transform at that time, which is known to `within_ns`: the
+  // errors reach to the transforms at both ends.
+  [[nodiscard]] std::optional<Step> step(const std::string& child, std::int64_t stamp_ns,
+                                         std::int64_t within_ns = 0) const;
 
  private:
   struct Frame {

@@ -30,13 +30,13 @@ std::optional<PastPose> Mounts::known_place(const std::string& frame,
 }
 
 // A path that is longer than the number of frames contains a cycle.
-PastPose Mounts::of_frame(const std::string& frame, std::int64_t stamp_ns,
+PastPose Mounts::of_frame(const std::string& frame, const FrameTime& time,
                           const FrameHistory& frames, const PostureHistory& postures) const {
   std::vector<FrameHistory::Step> path;
   std::string at = frame;
   std::optional<PastPose> place = known_place(at, postures);
   while (!place) {
-    auto step = frames.step(at, stamp_ns);
+    auto step = frames.step(at, time.stamp_ns, time.within_ns);
     if (!step) {
       if (any_root_ && cell_.ros.world_frame.empty() && !path.empty())
         place = PastPose{.known = true, .world_from_body = {}};
@@ -55,10 +55,11 @@ PastPose Mounts::of_frame(const std::string& frame, std::int64_t stamp_ns,
 
 PastPose Mounts::find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                       const FrameHistory& frames, const PostureHistory& postures) const {
-  if (sensor.frames_by_message) return of_frame(frame, stamp_ns, frames, postures);
+  const FrameTime time{stamp_ns, sensor.stamp_error_ns};
+  if (sensor.frames_by_message) return of_frame(frame, time, frames, postures);
   const RobotBase& mount = sensor.mount;
   if (!mount.frame.empty()) {
-    const PastPose place = of_frame(mount.frame, stamp_ns, frames, postures);
+    const PastPose place = of_frame(mount.frame, time, frames, postures);
     return place.known ? carried(place, mount.frame_from_root, 0.0, 0.0) : place;
   }
   PastPose base{.known = true, .world_from_body = {}};

@@ -27,7 +27,12 @@ class Mounts {
                               const FrameHistory& frames, const PostureHistory& postures) const;
 
  private:
-  [[nodiscard]] PastPose of_frame(const std::string& frame, std::int64_t stamp_ns,
+  // A time, and how well it is known.
+  struct FrameTime {
+    std::int64_t stamp_ns = 0, within_ns = 0;
+  };
+
+  [[nodiscard]] PastPose of_frame(const std::string& frame, const FrameTime& time,
                                   const FrameHistory& frames, const PostureHistory& postures) const;
   [[nodiscard]] std::optional<PastPose> known_place(const std::string& frame,
                                                     const PostureHistory& postures) const;

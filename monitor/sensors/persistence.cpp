@@ -43,6 +43,7 @@ Persistence::Persistence(const Sensor& sensor, double max_speed)
     : frames_(sensor.persist_frames),
       of_(sensor.persist_of),
       max_speed_(max_speed),
+      stamp_errors_s_(2e-9 * static_cast<double>(sensor.stamp_error_ns)),
       side_(std::max(kLeastSide, kSideTime * max_speed)),
       earlier_(std::max<std::size_t>(of_, 2) - 1),
       known_(kKnownBoxes) {
@@ -69,7 +70,8 @@ bool Persistence::stays(const Cells& cells, double error, std::int64_t stamp_ns)
   for (std::size_t i = 0; i < kept && found < frames_; ++i) {
     const Marks& marks = earlier_[i];
     const double seconds = 1e-9 * static_cast<double>(elapsed(marks.stamp_ns, stamp_ns));
-    const double apart = max_speed_ * std::max(0.0, seconds) + error + marks.error;
+    const double apart =
+        max_speed_ * std::max(0.0, seconds + stamp_errors_s_) + error + marks.error;
     // The cells of two points that are this far apart differ by no more along an axis.
     const double more = std::ceil(apart / side_ * (1.0 + 0x1p-40));
     const bool is_near =

@@ -52,6 +52,7 @@ class Persistence {
 
   std::uint32_t frames_, of_;
   double max_speed_, side_;
+  double stamp_errors_s_;       // of two frames
   std::vector<Marks> earlier_;  // a ring
   Marks newest_;
   std::vector<Known> known_;

@@ -39,6 +39,11 @@ double time_between(std::int64_t a_ns, std::int64_t b_ns) noexcept {
   return std::max(seconds_between(a_ns, b_ns), seconds_between(b_ns, a_ns));
 }
 
+// How far a value with this largest speed may be from where it is within this time.
+double way_within(double speed, std::int64_t within_ns) noexcept {
+  return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
+}
+
 Pose between(const Pose& a, const Pose& b, double share) noexcept {
   return {(1.0 - share) * a.position + share * b.position,
           a.orientation.slerp(share, b.orientation).normalized()};
@@ -128,7 +133,8 @@ bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {
          std::ranges::all_of(bodies_, [&](const auto& body) { return reaches(body.second.poses); });
 }
 
-void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns) {
+void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
+                                 std::int64_t within_ns) {
   const JointVariable& of = scene_.variables[variable];
   TrackedVariable& state = variables_[variable];
   state.may_have_moved = 0.0;
@@ -139,9 +145,10 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns) {
   const double speed = of.plausible_speed();
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   state.position = before->value;
+  state.may_have_moved = way_within(speed, within_ns);
   if (before == after) return;
   if (after == nullptr) {
-    state.may_have_moved = rounded_up(speed * since);
+    state.may_have_moved = rounded_up(speed * since + state.may_have_moved);
     return;
   }
   const double until = seconds_between(stamp_ns, after->stamp_ns);
@@ -149,12 +156,13 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns) {
   if (of.wraps) way = std::remainder(way, 2.0 * std::numbers::pi);
   state.position += way * (since / (since + until));
   const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
-  state.may_have_moved =
-      rounded_up(deviation(since, until, speed, way / (since + until)) + rounding);
+  state.may_have_moved = rounded_up(deviation(since, until, speed, way / (since + until)) +
+                                    rounding + state.may_have_moved);
 }
 
 // An object is nowhere faster than its largest speed, and neither is any point of it.
-PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) const {
+PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
+                                 std::int64_t within_ns) const {
   PastPose past;
   const Object& of = scene_.objects[object];
   if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
@@ -164,15 +172,18 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns) co
   if (before == nullptr) return past;
   past.known = true;
   past.world_from_body = before->value;
+  past.shift_error = way_within(of.plausible_speed(), within_ns);
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   if (before == after ||
       same_pose(before->value, after == nullptr ? before->value : after->value)) {
-    if (after == nullptr) past.shift_error = rounded_up(of.plausible_speed() * since);
+    if (after == nullptr)
+      past.shift_error = rounded_up(of.plausible_speed() * since + past.shift_error);
     return past;
   }
   const double until = seconds_between(stamp_ns, after->stamp_ns);
   past.world_from_body = between(before->value, after->value, since / (since + until));
-  past.shift_error = deviation(since, until, of.plausible_speed(), 0.0);
+  past.shift_error =
+      rounded_up(deviation(since, until, of.plausible_speed(), 0.0) + past.shift_error);
   return past;
 }
 
@@ -182,9 +193,9 @@ bool PostureHistory::began_by(std::int64_t stamp_ns) const noexcept {
   });
 }
 
-void PostureHistory::place(std::int64_t stamp_ns) {
-  for (std::size_t i = 0; i < joints_.size(); ++i) place_joint(i, stamp_ns);
-  for (std::uint32_t i = 0; i < objects_.size(); ++i) objects_[i] = pose_at(i, stamp_ns);
+void PostureHistory::place(std::int64_t stamp_ns, std::int64_t within_ns) {
+  for (std::size_t i = 0; i < joints_.size(); ++i) place_joint(i, stamp_ns, within_ns);
+  for (std::uint32_t i = 0; i < objects_.size(); ++i) objects_[i] = pose_at(i, stamp_ns, within_ns);
   place_links();
 }
 

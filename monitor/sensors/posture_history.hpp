@@ -60,8 +60,9 @@ class PostureHistory {
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const noexcept;
   // True if no joint that is heard has its first value after the stamp.
   [[nodiscard]] bool began_by(std::int64_t stamp_ns) const noexcept;
-  // Finds where everything was at this time, for the two functions below.
-  void place(std::int64_t stamp_ns);
+  // Finds where everything was at this time, for the two functions below. The time is known to
+  // `within_ns`, which the errors of all poses include.
+  void place(std::int64_t stamp_ns, std::int64_t within_ns = 0);
   // The same for what another history of this scene found. False: it is of another scene.
   [[nodiscard]] bool place(const PlacedPostures& placed);
   // As of the last place().
@@ -88,9 +89,10 @@ class PostureHistory {
     Disputed disputed;
   };
 
-  void place_joint(std::size_t variable, std::int64_t stamp_ns);
+  void place_joint(std::size_t variable, std::int64_t stamp_ns, std::int64_t within_ns);
   void place_links();
-  [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns) const;
+  [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns,
+                                 std::int64_t within_ns) const;
 
   const Scene& scene_;
   std::vector<Joint> joints_;             // by variable

@@ -87,7 +87,7 @@ struct Sensors::State {
   std::vector<std::unique_ptr<SeenCloud>> clouds;
   std::deque<std::unique_ptr<Waiting>> waiting;
   // The last image before the first CameraInfo: drivers publish the info of a frame after its
-  // image.
+  // image. It counts as refused once another one replaces it.
   RawSensorMessage without_info;
   std::optional<Persistence> persistence;  // none: all elements stay
   std::array<std::uint64_t, kFrameFaults> not_built{};

@@ -97,7 +97,11 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   }
   if constexpr (std::is_same_v<Message, sensor_msgs_msg_dds__Image_>)
     state.pairing.take_image(frame->stamp_ns);
-  if (fault == FrameFault::kNoCameraInfo) state.without_info = message;
+  if (fault == FrameFault::kNoCameraInfo) {
+    state.stream.take_back(fault);
+    if (!state.without_info.cdr.empty()) ++state.not_built[static_cast<std::size_t>(fault)];
+    state.without_info = message;
+  }
   if (fault != FrameFault::kNoFault) return;
   if (state.stream.camera()) frame->camera = *state.stream.camera();
   if (options_.keep) frame->message = message;

@@ -9,10 +9,12 @@ namespace {
 
 constexpr std::uint32_t kAnyObject = ~0u;
 
-// Returns the cause that this object alone would give for a pair of it being inside a zone.
-ZoneCause cause_of(const TrackedObject& object) noexcept {
+// Returns the cause that this object alone would give for a pair of it being inside a zone. What a
+// sensor sees may always have moved since its frame, and is late only as its frame is.
+ZoneCause cause_of(const Object& object_of_scene, const TrackedObject& object) noexcept {
   if (!object.input.has_value) return ZoneCause::kUnknown;
-  if (object.unobserved > 0.0)
+  const bool is_late = object.input.late || !object_of_scene.is_seen();
+  if (object.unobserved > 0.0 && (object.input.contradicted || is_late))
     return object.input.contradicted ? ZoneCause::kContradicted : ZoneCause::kLate;
   return object.discontinuous ? ZoneCause::kDiscontinuous : ZoneCause::kNear;
 }
@@ -174,10 +176,11 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     const double level = ZoneLevels::threshold(scene_.zones[z], !report.changed);
     const bool is_excused = contact != nullptr && contact->ended == ContactEnded::kNot;
     if (!is_excused && is_near(report, objects[a], objects[b], level)) continue;
-    const ZoneCause of_a = cause_of(objects[a]), of_b = cause_of(objects[b]);
+    const ZoneCause of_a = cause_of(scene_.objects[a], objects[a]);
+    const ZoneCause of_b = cause_of(scene_.objects[b], objects[b]);
     const bool is_a = of_a != of_b ? of_a > of_b : objects[a].unobserved >= objects[b].unobserved;
     report.cause = is_a ? of_a : of_b;
-    report.cause_object = is_a ? a : b;
+    if (report.cause >= ZoneCause::kLate) report.cause_object = is_a ? a : b;
   }
 }
 

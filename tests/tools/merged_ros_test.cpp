@@ -141,8 +141,8 @@ TEST_F(MergedForRos, ACellThatCannotBeReadThereIsToldByName) {
   write_text(std::filesystem::path(file.path()).parent_path() / "wedge.obj",
              "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n");
   std::string changed = text;
-  changed.insert(changed.find("pairs:\n"),
-                 "  - {name: wedge, groups: [far], fixed: true, mesh: {file: wedge.obj}}\n");
+  const std::string box = "box: {size: [0.2, 0.3, 0.2]}";
+  changed.replace(changed.find(box), box.size(), "mesh: {file: wedge.obj}");
   write_text(file.path(), changed);
   for (const auto& [name, daemon] : daemons) daemon->signal(SIGHUP);
   EXPECT_TRUE(eventually([&] { return merge->told("cell-not-read", {"wedge"}); }))

@@ -43,6 +43,12 @@ int record_from_log(const RecordArguments& arguments, const std::string& log, co
   for (const std::string& note : result.notes) {
     print(stderr, "clearance-record: {}\n", note);
   }
+  for (const Sensor& sensor : cell.scene.sensors) {
+    print(stderr,
+          "clearance-record: what sensor '{}' saw is not in the recording: replay the bag itself "
+          "for it\n",
+          sensor.name);
+  }
   if (!result.error.empty()) {
     print(stderr, "clearance-record: {}\n", result.error);
     if (result.begun) remove_unfinished("clearance-record", arguments.out);

@@ -98,14 +98,20 @@ class Meshes {
   json list_ = json::array();
 };
 
+// The keys of the lists of causes.
+const char* key(PlacedBy placed_by) {
+  return placed_by == PlacedBy::kFrames        ? "frames"
+         : placed_by == PlacedBy::kJointStates ? "joint_states"
+                                               : "poses";
+}
+
 json objects_json(const Scene& scene) {
   json list = json::array();
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    json entry = {
-        {"name", object.name},     {"groups", object.groups},
-        {"fixed", object.fixed},   {"by_joints", placed_by(scene, i) == PlacedBy::kJointStates},
-        {"margin", object.margin}, {"parts", json::array()}};
+    json entry = {{"name", object.name},     {"groups", object.groups},
+                  {"fixed", object.fixed},   {"placed_by", key(placed_by(scene, i))},
+                  {"margin", object.margin}, {"parts", json::array()}};
     for (const Part& part : object.parts) entry["parts"].push_back(part.name);
     if (object.fixed) entry["pose"] = pose_json(object.world_from_object);
     list.push_back(std::move(entry));
@@ -245,9 +251,9 @@ std::string scene_json(const Cell& cell) {
               {"blind_shells", blind_shells_json(scene, meshes)},
               {"zones", zones_json(scene, meshes)},
               {"contacts", contacts_json(scene)},
-              {"zone_causes",
-               {{"by_poses", causes_json(PlacedBy::kPoses)},
-                {"by_joints", causes_json(PlacedBy::kJointStates)}}}};
+              {"zone_causes", json::object()}};
+  for (const PlacedBy by : {PlacedBy::kPoses, PlacedBy::kJointStates, PlacedBy::kFrames})
+    all["zone_causes"][key(by)] = causes_json(by);
   all["meshes"] = meshes.take();
   return all.dump(-1, ' ', false, json::error_handler_t::replace);
 }

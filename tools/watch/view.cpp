@@ -100,8 +100,11 @@ PlacedBy placed_by(const Feed& feed, std::uint32_t object) {
     if (found != inputs.end() && found->follows_joints) return PlacedBy::kJointStates;
   }
   const auto* const catalogue = feed.catalogue();
-  return catalogue != nullptr && catalogue->joints._length > 0 ? PlacedBy::kEither
-                                                               : PlacedBy::kPoses;
+  if (catalogue == nullptr) return PlacedBy::kPoses;
+  // Only what a sensor sees has no parts.
+  if (object < catalogue->objects._length && catalogue->objects._buffer[object].parts._length == 0)
+    return PlacedBy::kFrames;
+  return catalogue->joints._length > 0 ? PlacedBy::kEither : PlacedBy::kPoses;
 }
 
 // A word for all that places the objects of the cell.

@@ -58,6 +58,8 @@ TEST(SensorsOfACell, StateTheirShellsAndTheirRate) {
   EXPECT_EQ(sensor(", own_shell: 0.02, most_shell: 0.05").most_shell, 0.05);
   EXPECT_EQ(sensor("").least_interval_ns, 0);
   EXPECT_EQ(sensor(", most_hz: 50").least_interval_ns, 20'000'000);
+  EXPECT_EQ(sensor("").stamp_error_ns, 0);
+  EXPECT_EQ(sensor(", stamp_error_ms: 20").stamp_error_ns, 20'000'000);
 }
 
 TEST(SensorsOfACell, ContainAllThatTheySeeInABall) {
@@ -166,6 +168,24 @@ TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   EXPECT_THAT(errors_of(cell_text("sensors:\n  - {name: a, " + kDepth + "}\n  - {name: b, " +
                                   kDepth + "}\n" + kBoxes)),
               in_line(6, "'/cam/depth/image'", "line 5"));
+}
+
+// A camera measures no speeds: a person whom it sees has the stated one.
+TEST(SensorsOfACell, StandForPeopleWithAStatedSpeedOnly) {
+  const std::string terms =
+      "reaction_time_ms: 10, stopping_time_ms: 100, stopping_distance: 0.1, "
+      "intrusion_distance: 0}}]\n";
+  const auto with = [&](const std::string& keys) {
+    return with_sensor(kDepth,
+                       "  - {between: [arm, eye]}\nzones: [{name: z, between: [arm, eye], "
+                       "enter_below: 0.1, leave_above: 0.2, separation: {" +
+                           keys + terms);
+  };
+  EXPECT_EQ(scene_of(with("human: eye, robot_speed: 1, ")).zones[0].separation->human_speed, 1.6);
+  EXPECT_THAT(errors_of(with("human: eye, human_speed_measured: true, human_acceleration: 5, ")),
+              testing::HasSubstr("the sensor 'eye', which measures no speeds"));
+  EXPECT_THAT(errors_of(with("human: arm, ")),
+              testing::HasSubstr("the sensor 'eye' on the robot's side"));
 }
 
 }  // namespace

@@ -99,6 +99,22 @@ TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove)
 }
 
 // A second source of a joint or an object, whose values the first one cannot have.
+// A cart at 1 m/s whose transforms come every 10 ms.
+TEST(PastPlaces, OfFramesAtATimeThatIsNotWellKnownEncloseTheMotionWithin) {
+  FrameHistory frames;
+  for (int i = 0; i <= 20; ++i)
+    frames.add("cart", "map", test::at(0.01 * i, 0, 0), kStart + 10 * i * kMs, false, 1);
+  for (const std::int64_t ms : {40, 105, 195}) {
+    const auto known = frames.step("cart", kStart + ms * kMs);
+    const auto step = frames.step("cart", kStart + ms * kMs, 20 * kMs);
+    ASSERT_TRUE(known && step);
+    EXPECT_EQ(step->parent_from_child.position, known->parent_from_child.position);
+    EXPECT_GE(step->shift_error, 0.02);
+    EXPECT_LT(step->shift_error, 0.06);
+  }
+  EXPECT_FALSE(frames.step("cart", kStart + 10 * kMs, 20 * kMs)) << "before the first one";
+}
+
 TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
   const Scene scene = test::scara_cell();
   PostureHistory history(scene);

@@ -10,6 +10,7 @@
 #include <optional>
 
 #include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/zone_cause.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
@@ -195,6 +196,46 @@ TEST_F(SeenObjects, CountInZonesAsOtherObjectsDoAndNeverClearThemWhenTheyAreUnkn
   EXPECT_FALSE(zone_is_active());
   for (int t = 0; t < 12; ++t) zone_is_active();
   EXPECT_TRUE(zone_is_active()) << "the frame is too old";
+}
+
+// A person at 2 m/s has walked 10 mm after 5 ms: what was 0.105 m away may be nearer than 0.1 m.
+// At 2 m/s, 5 ms are 10 mm.
+TEST_F(SeenObjects, AreAsOldAsTheStatedErrorOfTheirStampAllows) {
+  scene.objects[kSeen].max_speed = 2.0;
+  std::array<double, 2> lower{};
+  for (const std::size_t is_stated : {0, 1}) {
+    scene.sensors[0].stamp_error_ns = is_stated * 5'000'000;
+    now = test::kStart;
+    make();
+    tick();
+    show_point(1.0);
+    lower[is_stated] = tick().lower;
+  }
+  EXPECT_NEAR(lower[0] - lower[1], 0.01, 1e-9);
+}
+
+TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot) {
+  scene.objects[kSeen].max_speed = 2.0;
+  make();
+  const auto zone = [&] {
+    now += test::kTick;
+    return monitor
+        ->tick(std::vector{test::sample(0, {}, now), test::sample(1, test::at(0, 0, 9), now)}, now)
+        .zones[0];
+  };
+  zone();
+  show_point(0.155);
+  for (int t = 0; t < 9; ++t) {
+    const ZoneReport report = zone();
+    EXPECT_EQ(report.cause, report.active ? ZoneCause::kNear : ZoneCause::kInactive) << t;
+    EXPECT_EQ(report.cause_object, 0u);
+    if (t == 8) EXPECT_TRUE(report.active);
+  }
+  zone();
+  const ZoneReport late = zone();
+  EXPECT_EQ(late.cause, ZoneCause::kLate);
+  EXPECT_EQ(late.cause_object, kSeen);
+  EXPECT_EQ(cause_text(scene, late), "frames of seen are late");
 }
 
 TEST_F(SeenObjects, TakeNoPosesFromOthersAndNoFramesOutOfOrder) {

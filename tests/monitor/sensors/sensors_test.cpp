@@ -39,9 +39,12 @@ TEST_F(SensorsTest, UseAnImageThatCameBeforeItsFirstCameraInfo) {
   make(kImage + kAbove);
   add(flat(0, 1000));
   EXPECT_TRUE(settle(kStart + 1000).empty());
+  EXPECT_EQ(count(FrameFault::kNoCameraInfo), 0u) << "it waits";
+  add(flat(1, 1010));
+  EXPECT_EQ(count(FrameFault::kNoCameraInfo), 1u) << "the second one has replaced it";
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart + kFrame + 2000);
+  EXPECT_EQ(settle(kStart + kFrame + 3000).size(), 1u);
   EXPECT_EQ(count(FrameFault::kNoCameraInfo), 1u);
-  add(Type::kCameraInfo, InfoText{}.cdr(), kStart + 2000);
-  EXPECT_EQ(settle(kStart + 3000).size(), 1u);
 }
 
 // Once infos have come with the stamps of images, an image is not used with the info before its
@@ -173,6 +176,30 @@ TEST_F(SensorsTest, LeaveOutTheRobotWhereItWasAtTheStampAndNotWhereItIsNow) {
   const auto frames = settle(kStart + 1'000'000'000);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].cloud->size(), 48u);
+}
+
+// The arm turns at 2 rad/s, and the picture was made 100 ms after its stamp: the arm is along x in
+// it, and 0.2 rad off x at the stamp.
+TEST_F(SensorsTest, LeaveOutTheRobotWithinTheStatedErrorOfTheStamp) {
+  for (const bool is_stated : {false, true}) {
+    SCOPED_TRACE(is_stated);
+    make("depth_image: /cam/image, size: [8, 6], depth_error: {constant: 0.01}, range: [0.3, 4]" +
+         std::string(is_stated ? ", stamp_error_ms: 100" : "") +
+         ", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}");
+    InfoText narrow;
+    narrow.k = {400, 0, 3.5, 0, 400, 2.5, 0, 0, 1};
+    narrow.p = {400, 0, 3.5, 0, 0, 400, 2.5, 0, 0, 0, 1, 0};
+    add(Type::kCameraInfo, narrow.cdr(), kStart);
+    for (int ms = -20; ms <= 120; ms += 10)
+      add_joints(0.2 - 0.002 * ms, kStart + std::int64_t{ms} * 1'000'000);
+    add(flat(0, 1950));
+    const auto frames = settle(kStart + 200'000'000);
+    EXPECT_EQ(frames.size(), is_stated ? 0u : 1u);
+    EXPECT_EQ(count(FrameFault::kNothingSeen), is_stated ? 1u : 0u);
+    const auto own = sensors->status(0).own;
+    const double thickness = std::ranges::max(own, {}, &OwnImageStatus::thickness).thickness;
+    if (is_stated) EXPECT_GT(thickness, 0.1);
+  }
 }
 
 TEST_F(SensorsTest, CountTheUnknownMotionBetweenJointsAsAnErrorOfTheRobotsImage) {

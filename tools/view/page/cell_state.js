@@ -111,13 +111,12 @@ export class CellState {
   }
   // "by distance", "poses of hand are late": the server's text for the cause of an active zone.
   causeOf({ cause, cause_object }) {
-    const { name, by_joints } = this.scene.objects[cause_object] ?? {};
-    const { by_joints: ofJoints, by_poses: ofPoses } = this.scene.zone_causes;
-    return (by_joints ? ofJoints : ofPoses)[cause]?.replace("{}", () => name) ?? "";
+    const { name, placed_by = "poses" } = this.scene.objects[cause_object] ?? {};
+    return this.scene.zone_causes[placed_by][cause]?.replace("{}", () => name) ?? "";
   }
   // A word for what places the objects of the cell.
   get inputs() {
-    const moving = this.scene.objects.filter(({ fixed }) => !fixed), byJoints = moving.filter(({ by_joints }) => by_joints);
+    const moving = this.scene.objects.filter(({ fixed, placed_by }) => !fixed && placed_by !== "frames"), byJoints = moving.filter(({ placed_by }) => placed_by === "joint_states");
     return byJoints.length === 0 ? "poses" : byJoints.length === moving.length ? "joint states" : "poses or joint states";
   }
 
