@@ -118,6 +118,7 @@ void PartnerPort::write_notices() {
       out.now_ns = notice->time.now_ns;
       out.clock_offset_ns = notice->time.clock_offset_ns;
       out.due_ns = notice->due_ns + realtime_less_monotonic();
+      out.told_late_ns = notice->told_late_ns;
       out.inputs._length = static_cast<std::uint32_t>(notice->count);
       for (std::size_t i = 0; i < notice->count; ++i) {
         clearance_msg_TickInput& input = out.inputs._buffer[i];
@@ -161,6 +162,7 @@ void PartnerPort::hear_notices() {
     notice_.cycle = in.cycle;
     notice_.time = {in.now_ns, in.clock_offset_ns};
     notice_.due_ns = in.due_ns + delay - realtime_less_monotonic();
+    notice_.told_late_ns = in.told_late_ns;
     notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);
     for (std::size_t i = 0; i < notice_.count; ++i) {
       const clearance_msg_TickInput& input = in.inputs._buffer[i];

@@ -14,6 +14,11 @@ constexpr std::int64_t kLookNs = 50'000;
 // After a sleep that was too long, the thread that hears the partner gets so much time to take in
 // what came meanwhile.
 constexpr std::int64_t kHearNs = 20'000'000;
+// A leader's told time may differ from its own clock by what the delays of notices and the clocks
+// of two machines leave. It approaches the clock by this part of the time, which changes ages by as
+// little. Clocks that disagree by more are no matter of delays.
+constexpr std::int64_t kApproach = 1000;
+constexpr std::int64_t kMostApproachedNs = 100'000'000;
 
 }  // namespace
 
@@ -165,10 +170,22 @@ void TickPartner::yield() noexcept {
 // had to wait for a notice tells the tick the time that its leader has told it. The time goes on
 // from that of the last leader, whatever this machine's clock says.
 TickTime TickPartner::own_time(std::int64_t due) noexcept {
+  approach_own_clock();
   const TickTime read = steady_.read(clock_);
-  const std::int64_t early = std::max(-options_.period_ns / 2, due - clock_.monotonic_ns());
-  const std::int64_t now = read.now_ns + early + ahead_of_own_ns_;
-  return {std::max(now, time_.now_ns + 1), offset_ns_ + read.clock_offset_ns - own_offset_ns_};
+  const std::int64_t early = due - clock_.monotonic_ns();
+  const std::int64_t at_due = read.now_ns + early + ahead_of_own_ns_;
+  const std::int64_t now = at_due + std::max<std::int64_t>(0, -options_.period_ns / 2 - early);
+  const std::int64_t told = std::max(now, time_.now_ns + 1);
+  told_late_ns_ = told - at_due;
+  return {told, offset_ns_ + read.clock_offset_ns - own_offset_ns_};
+}
+
+// The sum is what the told time, as CLOCK_REALTIME, is ahead of that of this machine.
+void TickPartner::approach_own_clock() noexcept {
+  const std::int64_t ahead = ahead_of_own_ns_ + offset_ns_ - own_offset_ns_;
+  if (ahead > kMostApproachedNs || ahead < -kMostApproachedNs) return;
+  const std::int64_t most = options_.period_ns / kApproach;
+  ahead_of_own_ns_ -= std::clamp(ahead, -most, most);
 }
 
 std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
@@ -186,6 +203,7 @@ std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
     notice->cycle = cycle_;
     notice->time = time_;
     notice->due_ns = deadline;
+    notice->told_late_ns = told_late_ns_;
     notice->count = store_.chosen().size();
     std::ranges::copy(store_.chosen(), notice->inputs.begin());
     notices_.push();
@@ -229,7 +247,7 @@ std::int64_t TickPartner::follow(const TickNotice& notice) noexcept {
   term_ = notice.term;
   const TickTime own = steady_.read(clock_);
   const std::int64_t early = notice.due_ns - clock_.monotonic_ns();
-  ahead_of_own_ns_ = notice.time.now_ns - (own.now_ns + early);
+  ahead_of_own_ns_ = notice.time.now_ns - notice.told_late_ns - (own.now_ns + early);
   offset_ns_ = notice.time.clock_offset_ns;
   own_offset_ns_ = own.clock_offset_ns;
   time_ = notice.time;

@@ -98,6 +98,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t part(std::int64_t deadline) noexcept;
   std::int64_t tick_apart(std::int64_t deadline) noexcept;
   [[nodiscard]] TickTime own_time(std::int64_t due) noexcept;
+  void approach_own_clock() noexcept;
   void stand(PartnerStanding standing) noexcept;
   void begin_lineage(std::uint64_t lineage, std::uint64_t before) noexcept;
   void become(std::uint64_t lineage) noexcept;
@@ -118,6 +119,7 @@ class TickPartner final : public PoseSource, public TickPace {
   TickTime time_;
   // What the leader's time is ahead of this daemon's own, and the offsets of both at that tick.
   std::int64_t ahead_of_own_ns_ = 0, offset_ns_ = 0, own_offset_ns_ = 0;
+  std::int64_t told_late_ns_ = 0;  // see TickNotice
 
   std::vector<TickNotice> known_;  // by cycle
   std::uint64_t newest_cycle_ = 0, newest_daemon_ = 0, newest_revision_ = 0, newest_term_ = 0;

@@ -51,8 +51,8 @@ class Persistence {
   [[nodiscard]] bool stays(const Cells& cells, double error, std::int64_t stamp_ns) const noexcept;
 
   std::uint32_t frames_, of_;
-  double max_speed_, side_;
-  double stamp_errors_s_;       // of two frames
+  double max_speed_, stamp_errors_s_;  // the latter of two frames
+  double side_;
   std::vector<Marks> earlier_;  // a ring
   Marks newest_;
   std::vector<Known> known_;

@@ -253,6 +253,41 @@ TEST_F(TickPartners, TheFollowerTakesTheLeadInTheTickThatTheLeaderDidNotAnnounce
   EXPECT_EQ(right.used, std::vector{sent});
 }
 
+// The machine of both was busy for 20 ms, and the leader tells its late tick a later time.
+TEST_F(TickPartners, ALateTickOfTheLeaderDoesNotSetTheTimeOfItsSuccessorAhead) {
+  join();
+  const auto ahead = [](const auto& side) { return side.now_ns - side.clock.realtime_ns(); };
+  tick_both();
+  const std::int64_t before = ahead(right);
+  for (int round = 0; round < 3; ++round) {
+    left.clock.pass(20 * kTick);
+    right.clock.pass(20 * kTick);
+    tick_both();
+    for (int i = 0; i < 10 && right.ticks.standing() != kLeading; ++i) right.tick();
+  }
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  EXPECT_LT(std::abs(ahead(right) - before), kTick);
+}
+
+// The clocks of both differ by 50 us. Ages follow the clock that leads, and change by no more than
+// a thousandth of the time.
+TEST_F(TickPartners, TheToldTimeApproachesTheClockOfTheLeader) {
+  right.clock.pass(kTick / 20);
+  join();
+  tick_both();
+  for (int i = 0; i < 10 && right.ticks.standing() != kLeading; ++i) right.tick();
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  const auto ahead = [&] { return right.now_ns - right.clock.realtime_ns(); };
+  right.tick();
+  EXPECT_GT(std::abs(ahead()), kTick / 100);
+  for (int i = 0; i < 100; ++i) {
+    const std::int64_t before = ahead();
+    right.tick();
+    EXPECT_LE(std::abs(ahead() - before), kTick / 1000);
+  }
+  EXPECT_LE(std::abs(ahead()), kTick / 1000);
+}
+
 // The leader was stopped and goes on: it ticks what the other one has announced meanwhile, and then
 // has the same bits without another state.
 TEST_F(TickPartners, ALeaderThatWasStoppedFollowsTheOneThatWentOn) {

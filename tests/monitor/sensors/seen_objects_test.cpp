@@ -198,24 +198,10 @@ TEST_F(SeenObjects, CountInZonesAsOtherObjectsDoAndNeverClearThemWhenTheyAreUnkn
   EXPECT_TRUE(zone_is_active()) << "the frame is too old";
 }
 
-// A person at 2 m/s has walked 10 mm after 5 ms: what was 0.105 m away may be nearer than 0.1 m.
-// At 2 m/s, 5 ms are 10 mm.
-TEST_F(SeenObjects, AreAsOldAsTheStatedErrorOfTheirStampAllows) {
-  scene.objects[kSeen].max_speed = 2.0;
-  std::array<double, 2> lower{};
-  for (const std::size_t is_stated : {0, 1}) {
-    scene.sensors[0].stamp_error_ns = is_stated * 5'000'000;
-    now = test::kStart;
-    make();
-    tick();
-    show_point(1.0);
-    lower[is_stated] = tick().lower;
-  }
-  EXPECT_NEAR(lower[0] - lower[1], 0.01, 1e-9);
-}
-
+// At 20 m/s, what was 0.205 m away may be nearer than 0.1 m after 6 ms. It was farther than the zone
+// is left with, so that only its motion makes the zone active.
 TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot) {
-  scene.objects[kSeen].max_speed = 2.0;
+  scene.objects[kSeen].max_speed = 20.0;
   make();
   const auto zone = [&] {
     now += test::kTick;
@@ -224,12 +210,12 @@ TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot
         .zones[0];
   };
   zone();
-  show_point(0.155);
+  show_point(0.255);
   for (int t = 0; t < 9; ++t) {
     const ZoneReport report = zone();
     EXPECT_EQ(report.cause, report.active ? ZoneCause::kNear : ZoneCause::kInactive) << t;
     EXPECT_EQ(report.cause_object, 0u);
-    if (t == 8) EXPECT_TRUE(report.active);
+    EXPECT_TRUE(report.active || t < 8) << t;
   }
   zone();
   const ZoneReport late = zone();
