@@ -65,10 +65,6 @@ struct TransitionsMade {
   return static_cast<std::uint32_t>(a.query_class) + static_cast<std::uint32_t>(b.query_class);
 }
 inline constexpr std::uint32_t kTwoPoints = 2;
-// True if both bodies are spheres: points without their radii, whose queries need no features.
-[[nodiscard]] inline bool are_points(const ConvexBody& a, const ConvexBody& b) noexcept {
-  return query_class(a, b) == kTwoPoints;
-}
 
 // Moves the features of `state` by transitions until they are closest. If they are, `result` (of
 // the polyhedra, without radii) and the points of `state` belong to them.

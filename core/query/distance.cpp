@@ -31,8 +31,8 @@ DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b, const
                                  const Pose& world_from_b, TrackingState& state);
 DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
                                           const RelativePose& a_from_b, TrackingState& state);
-// These entries take poses. The state selects one of them, but two points always use the first.
-// Each accepts any state.
+// The two entries by poses: has_straight_features(state) decides which one. Either accepts any
+// state.
 DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                       const Pose& world_from_a, const Pose& world_from_b,
                                       TrackingState& state);
@@ -73,7 +73,7 @@ HWY_EXPORT(after_transitions);
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                         const Pose& world_from_b, TrackingState& state) noexcept {
-  if (has_straight_features(state) || are_points(a, b)) {
+  if (has_straight_features(state)) {
     return HWY_STATIC_DISPATCH(from_straight_features)(a, b, world_from_a, world_from_b, state);
   }
   return has_facets(state)
@@ -83,7 +83,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
-  if ((has_straight_features(state) || are_points(a, b)) && options.depth) {
+  if (has_straight_features(state) && options.depth) {
     return HWY_STATIC_DISPATCH(relative_from_straight_features)(a, b, a_from_b, state);
   }
   return has_facets(state) && options.depth
@@ -126,10 +126,9 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& wo
   if (HWY_UNLIKELY(chosen == nullptr)) {
     return first_distance(a, b, world_from_a, world_from_b, state);
   }
-  const auto& of_widths = has_straight_features(state) || are_points(a, b)
-                              ? HWY_DISPATCH_TABLE(from_straight_features)
-                          : has_facets(state) ? HWY_DISPATCH_TABLE(from_facets)
-                                              : HWY_DISPATCH_TABLE(from_any_state);
+  const auto& of_widths = has_straight_features(state) ? HWY_DISPATCH_TABLE(from_straight_features)
+                          : has_facets(state)          ? HWY_DISPATCH_TABLE(from_facets)
+                                                       : HWY_DISPATCH_TABLE(from_any_state);
   return unthrowing(of_widths[chosen->GetIndex()])(a, b, world_from_a, world_from_b, state);
 }
 
@@ -138,7 +137,7 @@ DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Relative
   const hwy::ChosenTarget* const chosen = chosen_vectors.load(std::memory_order_relaxed);
   if (HWY_UNLIKELY(chosen == nullptr)) return first_distance(a, b, a_from_b, state, options);
   if (HWY_LIKELY(options.depth)) {
-    const auto known = has_straight_features(state) || are_points(a, b)
+    const auto known = has_straight_features(state)
                            ? HWY_DISPATCH_TABLE(relative_from_straight_features)
                        : has_facets(state) ? HWY_DISPATCH_TABLE(relative_from_facets)
                                            : nullptr;
@@ -261,7 +260,7 @@ DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
 HWY_NOINLINE DistanceResult from_rare_classes(const ConvexBody& a, const ConvexBody& b,
                                               const Pose& world_from_a, const Pose& world_from_b,
                                               TrackingState& state) {
-  if (HWY_LIKELY(are_points(a, b))) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
     return between_points(a, b, world_from_a, world_from_b, state);
   }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
@@ -286,7 +285,7 @@ DistanceResult relative_from_straight_features(const ConvexBody& a, const Convex
 HWY_NOINLINE DistanceResult relative_from_rare_classes(const ConvexBody& a, const ConvexBody& b,
                                                        const RelativePose& a_from_b,
                                                        TrackingState& state) {
-  if (HWY_LIKELY(are_points(a, b))) {
+  if (HWY_LIKELY(query_class(a, b) == kTwoPoints)) {
     return between_points(a, b, a_from_b, state, true);
   }
   if (HWY_UNLIKELY(!can_be_tracked(a, b, state))) {
@@ -355,7 +354,7 @@ HWY_INLINE DistanceResult distance_from(const ConvexBody& a, const ConvexBody& b
     if (a.is_curved() || b.is_curved()) {
       return curved_pair_distance(a, b, world_from_a, world_from_b, state);
     }
-    if (are_points(a, b)) {
+    if (query_class(a, b) == kTwoPoints) {
       return between_points(a, b, world_from_a, world_from_b, state);
     }
     if (are_segments_without_features(a, b, state)) {
@@ -385,7 +384,7 @@ DistanceResult relative_from_any_state(const ConvexBody& a, const ConvexBody& b,
       return is_good(a_from_b) ? curved_pair_distance(a, b, a_from_b, state, depth)
                                : of_bad_pose(state);
     }
-    if (are_points(a, b)) return between_points(a, b, a_from_b, state, depth);
+    if (query_class(a, b) == kTwoPoints) return between_points(a, b, a_from_b, state, depth);
     if (are_segments_without_features(a, b, state) && depth) {
       return between_segments(a, b, good_pose4_of(a_from_b), state);
     }

@@ -256,7 +256,7 @@ TEST_F(TickPartners, TheFollowerTakesTheLeadInTheTickThatTheLeaderDidNotAnnounce
 // The machine of both was busy for 20 ms, and the leader tells its late tick a later time.
 TEST_F(TickPartners, ALateTickOfTheLeaderDoesNotSetTheTimeOfItsSuccessorAhead) {
   join();
-  const auto ahead = [](const auto& side) { return side.now_ns - side.clock.realtime_ns(); };
+  const auto ahead = [](auto& side) { return side.now_ns - side.clock.realtime_ns(); };
   tick_both();
   const std::int64_t before = ahead(right);
   for (int round = 0; round < 3; ++round) {
