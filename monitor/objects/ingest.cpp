@@ -37,13 +37,15 @@ std::optional<Reject> refuses_samples(std::uint32_t object, const Scene& scene,
   return std::nullopt;
 }
 
-// An object whose rest holds is one that samples may place. All that such a sample reads of it is
-// in two lines of memory: in large cells, fetching them takes most of its time.
+// An object whose rest holds is one that is read, and that samples may place. All that such a
+// sample reads of it is in two lines of memory: in large cells, fetching them takes most of its
+// time.
 std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs& inputs) noexcept {
   if (sample.object >= inputs.objects.size() || sample.source >= kMaxSources)
     return Reject::kUnknownObject;
   TrackedObject& state = inputs.objects[sample.object];
   if (!state.rest.holds) {
+    if (!scene.objects[sample.object].is_read) return std::nullopt;
     if (const auto cause = refuses_samples(sample.object, scene, inputs)) return cause;
   }
   const std::int64_t age_limit_ns = inputs.age_limits_ns[sample.object];
@@ -69,6 +71,7 @@ void visit_links(Inputs& inputs) noexcept {
 std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
   if (record_of(sample, inputs) == nullptr) return Reject::kUnknownObject;
   const JointVariable& variable = scene.variables[sample.variable];
+  if (!variable.is_read) return std::nullopt;
   const std::int64_t stamp_ns = tick_stamp(sample, variable.age_limit_ns, scene, inputs);
   const std::span<TrackedVariable> variables = inputs.robots.variables();
   const auto cause =

@@ -60,7 +60,8 @@ void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
 
 void RobotInputs::take_over(const RobotInputs& before, const SceneMap& map) noexcept {
   for (std::size_t i = 0; i < variables_.size(); ++i) {
-    if (map.variables[i] != SceneMap::kNone) variables_[i] = before.variables_[map.variables[i]];
+    if (map.variables[i] != SceneMap::kNone && scene_.variables[i].is_read)
+      variables_[i] = before.variables_[map.variables[i]];
   }
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (map.robots[i] != SceneMap::kNone) heard_[i] = before.heard_[map.robots[i]];

@@ -24,8 +24,9 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
   now.rejected = before.rejected;
   for (std::size_t i = 0; i < now.objects.size(); ++i) {
     const std::uint32_t old = map.objects[i];
-    // A sensor's object is unknown until the next frame.
-    if (old != SceneMap::kNone && !scene.objects[i].is_seen())
+    // A sensor's object is unknown until the next frame. Nothing newer comes of one that is not
+    // read: its last pose would stay the oldest one for ever.
+    if (old != SceneMap::kNone && !scene.objects[i].is_seen() && scene.objects[i].is_read)
       take_over(before.objects[old], now.objects[i]);
   }
   now.robots.take_over(before.robots, map);

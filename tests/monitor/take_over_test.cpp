@@ -67,6 +67,21 @@ class TakeOver : public testing::Test {
   std::int64_t now = kStart;
 };
 
+// Poses may still be sent for the scene before, which was read elsewhere with all objects.
+TEST_F(TakeOver, PosesThatAShareDoesNotReadAreNoneOfThoseInUse) {
+  begin(balls({"a", "b", "c"}));
+  tick({{"a", 0.0}, {"b", 1.0}, {"c", 2.0}});
+  Scene share = balls({"a", "b", "c"});
+  std::erase_if(share.pairs, [](const ObjectPair& pair) { return pair.second == 2; });
+  share.zones = {test::zone_over(share, 0.3, 0.4)};
+  share.objects[2].is_read = false;
+  change(share);
+  EXPECT_EQ(tick({{"a", 0.0}, {"b", 1.0}}).oldest_pose_ns, now);
+  tick({{"a", 0.0}, {"b", 1.0}, {"c", 2.0}});
+  EXPECT_EQ(tick({{"a", 0.0}, {"b", 1.0}}).oldest_pose_ns, now);
+  for (const std::uint64_t count : monitor->rejected(2)) EXPECT_EQ(count, 0u);
+}
+
 TEST_F(TakeOver, PosesOfObjectsThatStayAreKnownAtOnceWhereverTheyStandInTheList) {
   begin(balls({"a", "b"}));
   tick({{"a", 0.0}, {"b", 1.0}});
