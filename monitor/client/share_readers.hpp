@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
@@ -20,10 +22,36 @@ namespace clearance::client {
 // since its partner may have written nothing since.
 inline constexpr std::int64_t kHeardFor = 1'000'000'000;
 
+// The last message of each of two scenes: while the shares change one after another, the former one
+// still counts.
+template <class Message>
+struct OfTwoScenes {
+  Sample<Message> latest, former;
+
+  // Makes room for the next message, which is of this scene.
+  void before_next(std::uint64_t revision) {
+    if (latest->scene_revision != revision) std::swap(*latest, *former);
+  }
+  // Null: neither is of that scene.
+  [[nodiscard]] const Message* of(std::uint64_t revision) const {
+    if (revision == 0) return nullptr;
+    if (latest->scene_revision == revision) return &*latest;
+    return former->scene_revision == revision ? &*former : nullptr;
+  }
+  template <class Stream>
+  void take_all(Stream& stream) {
+    while (stream.next()) {
+      before_next(stream->scene_revision);
+      stream.exchange(latest);
+    }
+  }
+};
+
 // A share with all its readers.
 struct SharedCell::OfShare {
   OfShare(Connection& whole, std::string of, const SharedCellOptions& options)
       : name(std::move(of)),
+        late_ns(options.late_after.count()),
         connection(whole.participant().handle(), whole.participant().partition(),
                    topics_of_share(whole.topics(), name)),
         reports(connection, {.old_after = options.late_after}),
@@ -39,65 +67,97 @@ struct SharedCell::OfShare {
   // Up to two reports: the second one waits while the first one is not used yet.
   void take(std::int64_t now_ns) {
     while (!has_ahead && reports.next()) {
-      reports.exchange(is_new ? ahead : current);
-      (is_new ? has_ahead : is_new) = true;
+      heard[reports->daemon] = now_ns;
       missed += reports.check().missed;
-      heard[(has_ahead ? ahead : current)->daemon] = now_ns;
+      if (!is_new) current.before_next(reports->scene_revision);
+      reports.exchange(is_new ? ahead : current.latest);
+      (is_new ? has_ahead : is_new) = true;
     }
     std::erase_if(heard, [now_ns](const auto& one) { return one.second + kHeardFor < now_ns; });
-    while (separations.next()) {
-    }
-    while (gradients && gradients->next()) {
-    }
+    separation.take_all(separations);
+    if (gradients) gradient.take_all(*gradients);
     catalogue.update();
     clearance_msg_ZoneState state{};
     void* pointer = &state;
     dds_sample_info_t info;
     while (dds_take(zones, &pointer, &info, 1, 1) > 0) {
-      if (info.valid_data) states[{state.zone, state.daemon}] = state;
+      if (info.valid_data) note(state, now_ns);
     }
+  }
+  // Keeps the state at the last report of the former scene, as long as that counts, and all later
+  // ones. Of a zone with more of them than kMost, that state is unknown.
+  void note(const clearance_msg_ZoneState& state, std::int64_t now_ns) {
+    constexpr std::size_t kMost = 64;
+    const bool counts = now_ns - current.former->publish_ns <= late_ns;
+    const std::int64_t first_ns = (counts ? current.former : current.latest)->now_ns;
+    auto& all = states[{state.zone, state.daemon}];
+    all.push_back(state);
+    while (all.size() > 1 && (all[1].now_ns <= first_ns || all.size() > kMost)) all.pop_front();
   }
   void use() {
     is_new = false;
     if (!has_ahead) return;
-    std::swap(*current, *ahead);
+    current.before_next(ahead->scene_revision);
+    std::swap(*current.latest, *ahead);
     is_new = true;
     has_ahead = false;
   }
-  // The last state that was written by a daemon whose reports come now. Partners tick the same
-  // times.
-  [[nodiscard]] const clearance_msg_ZoneState* zone(std::uint32_t id,
-                                                    std::string_view zone_name) const {
+  // The report of that scene that counts now: the latest one, or the last one of the former scene
+  // as long as that is not late. Null: there is none.
+  [[nodiscard]] const clearance_msg_Distances* report_of(std::uint64_t revision,
+                                                         std::int64_t now_ns) const {
+    const clearance_msg_Distances* const report = current.of(revision);
+    const bool is_former = report == &*current.former;
+    return is_former && now_ns - report->publish_ns > late_ns ? nullptr : report;
+  }
+  // The last state at the time of this report that was written by a daemon whose reports come now.
+  // Partners tick the same times. With the latest report, later states count, too.
+  [[nodiscard]] const clearance_msg_ZoneState* zone(std::uint32_t id, std::string_view zone_name,
+                                                    const clearance_msg_Distances& report) const {
+    const std::int64_t until_ns =
+        &report == &*current.former ? report.now_ns : std::numeric_limits<std::int64_t>::max();
     const clearance_msg_ZoneState* latest = nullptr;
     for (auto at = states.lower_bound({id, 0}); at != states.end() && at->first.first == id; ++at) {
-      const clearance_msg_ZoneState& state = at->second;
-      const bool counts = *current->partner != '\0' ? heard.contains(state.daemon)
-                                                    : state.daemon == current->daemon;
-      if (!counts || zone_name.substr(0, sizeof state.name - 1) != state.name) continue;
-      if (latest == nullptr || state.now_ns > latest->now_ns ||
-          (state.now_ns == latest->now_ns && state.active)) {
-        latest = &state;
+      const std::uint64_t daemon = at->first.second;
+      const bool counts =
+          *report.partner != '\0' ? heard.contains(daemon) : daemon == report.daemon;
+      if (!counts) continue;
+      for (const clearance_msg_ZoneState& state : at->second) {
+        if (state.now_ns > until_ns) continue;
+        if (zone_name.substr(0, sizeof state.name - 1) != state.name) continue;
+        if (latest == nullptr || latest->daemon == daemon || state.now_ns > latest->now_ns ||
+            (state.now_ns == latest->now_ns && state.active)) {
+          latest = &state;
+        }
       }
     }
     return latest;
   }
 
-  // A report has come, and the states of all zones that have a pair of this share.
-  [[nodiscard]] bool is_heard() const {
-    const clearance_msg_Catalogue* const names = catalogue.message();
-    if (current->cycle == 0 || names == nullptr) return false;
+  // The latest report is of that scene, whose names have come, and so have the states of all zones
+  // that have a pair of this share.
+  [[nodiscard]] bool is_heard_in(std::uint64_t revision) const {
+    const clearance_msg_Catalogue* const names = catalogue.message(revision);
+    if (current.latest->scene_revision != revision || names == nullptr) return false;
     for (const clearance_msg_CatalogueShare& share : list(names->shares)) {
       if (name != share.name) continue;
       const bool has_all = std::ranges::all_of(list(names->zones), [&](const auto& of) {
         const auto ids = list(share.zones);
-        return std::ranges::find(ids, of.id) == ids.end() || zone(of.id, of.name) != nullptr;
+        return std::ranges::find(ids, of.id) == ids.end() ||
+               zone(of.id, of.name, *current.latest) != nullptr;
       });
       if (!has_all) return false;
     }
     return true;
   }
 
+  // A first report has come, and all that belongs to it.
+  [[nodiscard]] bool is_heard() const {
+    return current.latest->cycle != 0 && is_heard_in(current.latest->scene_revision);
+  }
+
   std::string name;
+  std::int64_t late_ns;
   Connection connection;
   Reports reports;
   client::Separation separations;
@@ -105,11 +165,16 @@ struct SharedCell::OfShare {
   Catalogue catalogue;
   client::Health health;
   dds_entity_t zones;
-  Sample<clearance_msg_Distances> current, ahead;
+  OfTwoScenes<clearance_msg_Distances> current;
+  OfTwoScenes<clearance_msg_Separation> separation;
+  OfTwoScenes<clearance_msg_Gradients> gradient;
+  Sample<clearance_msg_Distances> ahead;
+  const clearance_msg_Distances* used = nullptr;  // in the joined report; one of `current`
   bool is_new = false, has_ahead = false;
   std::uint64_t missed = 0;
   std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
-  std::map<std::pair<std::uint32_t, std::uint64_t>, clearance_msg_ZoneState> states;
+  // By zone and daemon, in the order in which they came.
+  std::map<std::pair<std::uint32_t, std::uint64_t>, std::deque<clearance_msg_ZoneState>> states;
 };
 
 }  // namespace clearance::client

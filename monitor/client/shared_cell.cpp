@@ -9,12 +9,15 @@
 #include <span>
 #include <string_view>
 
-#include "config/cell/share_topics.hpp"
 #include "monitor/client/sequence_view.hpp"
+#include "monitor/client/share_names.hpp"
 #include "monitor/client/share_readers.hpp"
 
 namespace clearance::client {
 namespace {
+
+// The first report waits so long for shares that may not have been met yet.
+constexpr std::int64_t kMeeting = 1'000'000'000;
 
 std::uint64_t random_number() {
   std::random_device random;
@@ -31,27 +34,23 @@ SharedCell::SharedCell(Connection& connection, SharedCellOptions options)
       daemon_(random_number()),
       checker_(options_.old_after.count()) {
   if (options_.names.empty()) {
-    discovery_ = check_dds(dds_create_reader(connection.participant().handle(),
-                                             DDS_BUILTIN_TOPIC_DCPSPUBLICATION, nullptr, nullptr),
-                           "making a reader of discovery");
-    wait_ = std::make_unique<DataWait>(connection.participant(), std::vector{discovery_});
+    discovery_ = std::make_unique<ShareNames>(connection);
+    wait_ = std::make_unique<DataWait>(connection.participant(), std::vector{discovery_->reader()});
   } else {
     open(options_.names);
   }
 }
 
-SharedCell::~SharedCell() {
-  wait_.reset();
-  if (discovery_ != 0) dds_delete(discovery_);
-}
+SharedCell::~SharedCell() { wait_.reset(); }
 
 void SharedCell::open(const std::vector<std::string>& names) {
   wait_.reset();
   map_ = {};
   shares_.clear();
+  joined_ns_ = 0;
   opened_ns_ = dds_time();
   std::vector<dds_entity_t> readers;
-  if (discovery_ != 0) readers.push_back(discovery_);
+  if (discovery_) readers.push_back(discovery_->reader());
   for (const std::string& name : names) {
     shares_.push_back(std::make_unique<OfShare>(connection_, name, options_));
     readers.push_back(shares_.back()->reports.reader());
@@ -59,22 +58,12 @@ void SharedCell::open(const std::vector<std::string>& names) {
   wait_ = std::make_unique<DataWait>(connection_.participant(), readers);
 }
 
-// Any share's catalogue names all of them. A topic has a share's name but for special characters.
+// Any share's catalogue names all of them.
 void SharedCell::look_for_names() {
-  const std::string prefix = share_topic(connection_.topics().distances, "");
   std::vector<std::string> names;
   for (const auto& share : shares_) names.push_back(share->name);
   const std::size_t before = names.size();
-  for (;;) {
-    void* sample = nullptr;
-    dds_sample_info_t info;
-    const dds_return_t count = dds_take(discovery_, &sample, &info, 1, 1);
-    if (count <= 0) break;
-    const std::string topic =
-        info.valid_data ? static_cast<const dds_builtintopic_endpoint_t*>(sample)->topic_name : "";
-    dds_return_loan(discovery_, &sample, count);
-    if (!topic.starts_with(prefix)) continue;
-    const std::string name = topic.substr(prefix.size());
+  for (const std::string& name : discovery_->look()) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
   if (names.size() != before) open(names);
@@ -82,7 +71,8 @@ void SharedCell::look_for_names() {
     share->catalogue.update();
     if (share->catalogue.message() == nullptr) continue;
     const ShareMap known(*share->catalogue.message());
-    dds_delete(std::exchange(discovery_, 0));
+    wait_.reset();
+    discovery_.reset();
     return open(known.names());
   }
 }
@@ -97,14 +87,20 @@ void SharedCell::take() {
 }
 
 bool SharedCell::waits_for_first(std::int64_t now_ns) const {
-  return joined_ns_ == 0 && now_ns - opened_ns_ <= options_.late_after.count() &&
-         !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); });
+  if (joined_ns_ != 0) return false;
+  const bool is_known = std::ranges::any_of(shares_, [this](const auto& share) {
+    return catalogue_of(share->current.latest->scene_revision) != nullptr;
+  });
+  const std::int64_t waits_ns = std::max(options_.late_after.count(), kMeeting);
+  return !is_known ||
+         (now_ns - opened_ns_ <= waits_ns &&
+          !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); }));
 }
 
 bool SharedCell::next(std::chrono::nanoseconds timeout) {
   const std::int64_t end_ns = dds_time() + timeout.count();
   for (;;) {
-    if (discovery_ != 0) look_for_names();
+    if (discovery_) look_for_names();
     take();
     const std::int64_t now = dds_time();
     if (is_due(now)) {
@@ -130,28 +126,49 @@ bool SharedCell::is_due(std::int64_t now_ns) const {
   for (const auto& share : shares_) {
     if (share->has_ahead) return true;
     has_any = has_any || share->is_new;
-    const std::int64_t age = now_ns - share->current->publish_ns;
+    const std::int64_t age = now_ns - share->current.latest->publish_ns;
     lacks_one = lacks_one || (!share->is_new && age <= options_.late_after.count());
   }
   if (has_any) return !lacks_one;
   return joined_ns_ != 0 && now_ns - joined_ns_ >= options_.late_after.count();
 }
 
-// The scene that most shares have; among equally many, that of the first share.
-void SharedCell::follow_revision() {
+bool SharedCell::is_here(const OfShare& share) const {
+  const clearance_msg_Distances& report = *share.current.latest;
+  return report.scene_revision != 0 && joined_ns_ - report.publish_ns < options_.late_after.count();
+}
+
+// The scene that most shares have; among equally many, the one in use, or that of the first share.
+std::uint64_t SharedCell::scene_of_most() const {
   std::map<std::uint64_t, int> counts;
-  std::uint64_t best = map_.revision();
-  int most = 0;
   for (const auto& share : shares_) {
-    const std::uint64_t revision = share->current->scene_revision;
-    const bool is_here =
-        revision != 0 && joined_ns_ - share->current->publish_ns < options_.late_after.count();
-    if (is_here && ++counts[revision] > most) {
-      most = counts[revision];
-      best = revision;
-    }
+    const std::uint64_t revision = share->current.latest->scene_revision;
+    if (is_here(*share) && catalogue_of(revision) != nullptr) ++counts[revision];
   }
+  std::uint64_t best = map_.revision();
+  for (const auto& share : shares_) {
+    const std::uint64_t revision = share->current.latest->scene_revision;
+    if (counts[revision] > counts[best]) best = revision;
+  }
+  return best;
+}
+
+// The shares change one after another. Until all have the next scene, with its names and zones,
+// each counts with its last report of this one. That is so only while none of these is late.
+bool SharedCell::can_stay(std::uint64_t next) const {
+  bool has_next = true, has_this = catalogue() != nullptr;
+  for (const auto& share : shares_) {
+    if (!is_here(*share)) continue;
+    has_next = has_next && share->is_heard_in(next);
+    has_this = has_this && share->report_of(map_.revision(), joined_ns_) != nullptr;
+  }
+  return has_this && !has_next;
+}
+
+void SharedCell::follow_revision() {
+  const std::uint64_t best = scene_of_most();
   if (best == map_.revision() && catalogue() != nullptr) return;
+  if (can_stay(best)) return;
   for (const auto& share : shares_) {
     const clearance_msg_Catalogue* const found =
         best == 0 ? share->catalogue.message() : share->catalogue.message(best);
@@ -170,8 +187,12 @@ void SharedCell::follow_revision() {
 }
 
 const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
+  return catalogue_of(map_.revision());
+}
+
+const clearance_msg_Catalogue* SharedCell::catalogue_of(std::uint64_t revision) const noexcept {
   for (const auto& share : shares_) {
-    const auto* const found = share->catalogue.message(map_.revision());
+    const auto* const found = share->catalogue.message(revision);
     if (found != nullptr) return found;
   }
   return nullptr;
@@ -180,7 +201,9 @@ const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
 void SharedCell::judge(std::int64_t now_ns) {
   checks_.clear();
   for (const auto& share : shares_) {
-    const clearance_msg_Distances& report = *share->current;
+    share->used = share->report_of(map_.revision(), now_ns);
+    if (share->used == nullptr) share->used = &*share->current.latest;
+    const clearance_msg_Distances& report = *share->used;
     ShareCheck& check = checks_.emplace_back();
     check.name = share->name;
     check.daemon = report.daemon;
@@ -206,13 +229,15 @@ void SharedCell::join(std::int64_t now_ns) {
     OfShare& share = *shares_[i];
     ShareView& view = views.emplace_back();
     view.state = checks_[i].state;
-    view.report = &*share.current;
-    const auto is_of_now = [&](const auto& message) {
-      return message.scene_revision == map_.revision() &&
-             now_ns - message.publish_ns <= options_.late_after.count();
+    view.report = share.used;
+    const auto of_now = [&](const auto& of_two) {
+      const auto* const message = of_two.of(map_.revision());
+      const bool is_late =
+          message != nullptr && now_ns - message->publish_ns > options_.late_after.count();
+      return is_late ? nullptr : message;
     };
-    if (is_of_now(*share.separations)) view.separation = &*share.separations;
-    if (share.gradients && is_of_now(**share.gradients)) view.gradients = &**share.gradients;
+    view.separation = of_now(share.separation);
+    view.gradients = of_now(share.gradient);
   }
   const std::int64_t before_ns = message_->now_ns, published_ns = message_->publish_ns;
   join_reports(map_, views, *message_);
@@ -263,7 +288,7 @@ void SharedCell::join_zones() {
   for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
     for (std::size_t i = 0; i < shares_.size(); ++i) {
       const bool is_used = checks_[i].state == ShareState::kWhole;
-      of_shares[i] = is_used ? shares_[i]->zone(zone.id, zone.name) : nullptr;
+      of_shares[i] = is_used ? shares_[i]->zone(zone.id, zone.name, *shares_[i]->used) : nullptr;
     }
     clearance_msg_ZoneState state = join_zone(map_, zone.id, of_shares);
     const std::string_view name = zone.name;

@@ -15,6 +15,8 @@
 
 namespace clearance::client {
 
+class ShareNames;
+
 struct SharedCellOptions {
   // A share whose last report is older is left out, and what hangs on it is unknown. It has to be
   // longer than the time that partners take to go on without each other: two periods.
@@ -43,9 +45,9 @@ class SharedCell {
   SharedCell& operator=(const SharedCell&) = delete;
 
   // Waits up to `timeout` for the next report of the whole cell. There is one each time that every
-  // share has reported again, or that one has reported twice. No report of a share is left out. If
-  // no share reports any longer, one that knows nothing follows after `late_after`, and again.
-  // Returns false when none came.
+  // share has reported again, or that one has reported twice. No report of a share is left out,
+  // unless the others still have another scene. If no share reports any longer, one that knows
+  // nothing follows after `late_after`, and again. Returns false when none came.
   bool next(std::chrono::nanoseconds timeout = {});
   // Does the same with the newest one.
   bool newest(std::chrono::nanoseconds timeout = {});
@@ -86,12 +88,18 @@ class SharedCell {
  private:
   struct OfShare;
 
+  [[nodiscard]] const clearance_msg_Catalogue* catalogue_of(std::uint64_t revision) const noexcept;
   void look_for_names();
   void open(const std::vector<std::string>& names);
   void take();
-  // No joined report has been made, a share has not been heard yet, and it is not late yet.
+  // No joined report has been made, and either no scene is known, or a share that may still be
+  // met has not been heard.
   [[nodiscard]] bool waits_for_first(std::int64_t now_ns) const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
+  // Its last report is not late.
+  [[nodiscard]] bool is_here(const OfShare& share) const;
+  [[nodiscard]] std::uint64_t scene_of_most() const;
+  [[nodiscard]] bool can_stay(std::uint64_t next) const;
   void follow_revision();
   void judge(std::int64_t now_ns);
   void join(std::int64_t now_ns);
@@ -103,7 +111,7 @@ class SharedCell {
   Connection& connection_;
   SharedCellOptions options_;
   std::uint64_t daemon_;
-  dds_entity_t discovery_ = 0;  // 0: the names are known
+  std::unique_ptr<ShareNames> discovery_;  // null: the names are known
   std::vector<std::unique_ptr<OfShare>> shares_;
   std::unique_ptr<DataWait> wait_;
   ShareMap map_;

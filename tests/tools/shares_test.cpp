@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -158,6 +159,10 @@ TEST_F(SharedCells, AnUnknownNameEndsTheDaemonWithTheNamesThatThereAre) {
 // Readers that know nothing of shares see one daemon.
 TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   start_all();
+  ChildProcess watch(test::kWatch, test::with({"--plain"}, test::dds_arguments(dds)));
+  EXPECT_TRUE(test::eventually([&] {
+    return watch.wrote("waiting for clearance-merge") && watch.wrote("'boxes', 'left_floor'");
+  })) << watch.output();
   ChildProcess merge(kMerge,
                      test::with({file.path(), "--late-ms", "300"}, test::dds_arguments(dds)));
   client::Reports reports(connection);
@@ -194,16 +199,100 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   EXPECT_TRUE(test::eventually([&] {
     return merge.told("share-late", {"boxes"}) || merge.told("share-missing", {"boxes"});
   })) << merge.output();
+  EXPECT_TRUE(test::eventually([&] {
+    return watch.wrote("not certified  1 of 3 pairs unknown  share 'boxes' is ");
+  })) << watch.output();
   start("boxes");
   EXPECT_TRUE(hears([&] { return boxes.in(*reports)->status != kUnknown; })) << merge.output();
   merge.signal(SIGTERM);
   EXPECT_EQ(merge.wait(), 0) << merge.output();
 }
 
+// A share whose catalogue has not come yet has no other revision than the others.
+TEST_F(SharedCells, BeginWithoutAFalseWordOfARevision) {
+  start_all();
+  ASSERT_TRUE(test::eventually([&] {
+    return std::ranges::all_of(daemons,
+                               [](const auto& each) { return each.second->told("started"); });
+  })) << logs();
+  client::SharedCellOptions options;  // as clearance-merge has them
+  for (const Share& share : cell.shares.all) options.names.push_back(share.name);
+  client::SharedCell whole(connection, options);
+  for (int report = 0; report < 20; ++report) {
+    ASSERT_TRUE(whole.next(std::chrono::seconds(10)));
+    EXPECT_EQ(whole->scene_revision, cell.scene.revision);
+    for (const client::ShareCheck& share : whole.shares())
+      EXPECT_NE(share.state, ShareState::kOtherRevision) << share.name;
+  }
+}
+
 class ChangedSharedCells : public SharedCells {
  protected:
   ChangedSharedCells() : SharedCells("commands: {from: [planner]}\n") {}
 };
+
+// Until all have changed, the last reports of the former scene count, as long as they are not late.
+TEST_F(ChangedSharedCells, AreWholeWhileOneChangesAfterAnother) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = std::chrono::seconds(20)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole() && whole->minimum_certified; }))
+      << logs();
+  const std::vector<CellChange> change = {
+      SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}};
+  std::vector<std::unique_ptr<client::Connection>> connections;
+  std::vector<std::unique_ptr<client::Commands>> commands;
+  for (const Share& share : cell.shares.all) {
+    connections.push_back(std::make_unique<client::Connection>(
+        connection.participant().handle(), connection.participant().partition(),
+        topics_of_share(cell.topics, share.name)));
+    commands.push_back(std::make_unique<client::Commands>(*connections.back(), "planner"));
+    const auto tried = commands.back()->send(change, {.dry_run = true});
+    ASSERT_TRUE(tried && tried->done()) << logs();
+  }
+  const auto expect_whole = [&] {
+    EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
+    EXPECT_EQ(whole->pairs_total, 3u);
+    for (std::uint32_t pair = 0; pair < 3; ++pair) EXPECT_NE(status(whole, pair), kUnknown);
+    EXPECT_NE(whole.zones().at(0).cause, static_cast<std::uint8_t>(ZoneCause::kNoShare));
+    return HasFailure();
+  };
+  std::uint64_t revision = 0;
+  for (const auto& each : commands) {
+    EXPECT_EQ(whole->scene_revision, cell.scene.revision) << "not all have changed";
+    const auto changed = each->send(change);
+    ASSERT_TRUE(changed && changed->done()) << logs();
+    revision = changed->scene_revision;
+    for (int report = 0; report < 30 && !HasFailure(); ++report) {
+      ASSERT_TRUE(whole.next(std::chrono::seconds(1)));
+      expect_whole();
+    }
+  }
+  EXPECT_TRUE(read_until(whole, [&] {
+    return expect_whole() || whole->scene_revision == revision;
+  })) << whole.what_is_missing();
+  EXPECT_EQ(whole->scene_revision, revision);
+}
+
+// One that changes alone counts with its last report for that time only.
+TEST_F(ChangedSharedCells, AreNotWholeOnceALastReportIsLate) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  client::Connection boxes(connection.participant().handle(), connection.participant().partition(),
+                           topics_of_share(cell.topics, "boxes"));
+  client::Commands commands(boxes, "planner");
+  const auto changed =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});
+  ASSERT_TRUE(changed && changed->done()) << logs();
+  EXPECT_TRUE(read_until(whole, [&] {
+    EXPECT_TRUE(!whole.is_whole() || dds_time() - whole->publish_ns < 1'000'000'000);
+    return !whole.is_whole();
+  }));
+  EXPECT_EQ(whole->scene_revision, cell.scene.revision) << "two of three have it";
+  EXPECT_EQ(whole.shares()[0].state, ShareState::kOtherRevision);
+  EXPECT_TRUE(whole.zones().at(0).active);
+  EXPECT_EQ(whole->lower_all, -kInfinity);
+}
 
 // A command reaches every share, in one order. One that a share refuses changes none.
 TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
@@ -233,6 +322,47 @@ TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
       whole, [] { return false; }, 1);
   EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
   EXPECT_EQ(whole->scene_revision, moved->scene_revision);
+}
+
+// A share that was killed comes back with the scene that all have, and follows the next command.
+TEST_F(ChangedSharedCells, AgreeAgainAfterARestartIfEachKeepsItsScene) {
+  const ScratchFolder folder;
+  const auto keep = [&](const std::string& share) {
+    return std::vector<std::string>{"--keep-scene", (folder / (share + ".yaml")).string()};
+  };
+  for (const Share& share : cell.shares.all) start(share.name, keep(share.name));
+  ChildProcess merge(kMerge,
+                     test::with({file.path(), "--late-ms", "1000"}, test::dds_arguments(dds)));
+  client::SharedCell whole(connection, {.late_after = milliseconds(1000)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  client::Commands commands(connection, "planner");
+  const auto moved =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});
+  ASSERT_TRUE(moved && moved->done()) << merge.output() << logs();
+  daemons["boxes"]->signal(SIGKILL);
+  daemons["boxes"]->wait();
+  const auto refused =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.1, .leave_above = 0.2}}, {},
+                    std::chrono::seconds(20));
+  ASSERT_TRUE(refused) << merge.output();
+  EXPECT_NE(refused->reason.find("'boxes'"), std::string::npos) << refused->reason;
+  start("boxes", keep("boxes"));
+  ASSERT_TRUE(read_until(
+      whole, [&] { return whole.is_whole() && whole->scene_revision == moved->scene_revision; }))
+      << whole.what_is_missing() << logs();
+  const auto again =
+      commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.1, .leave_above = 0.2}});
+  ASSERT_TRUE(again) << merge.output() << logs();
+  EXPECT_TRUE(again->done()) << again->reason;
+  // What another share has kept is the scene of the whole cell, too.
+  daemons["boxes"]->signal(SIGKILL);
+  daemons["boxes"]->wait();
+  std::filesystem::copy_file(folder / "left floor.yaml", folder / "boxes.yaml",
+                             std::filesystem::copy_options::overwrite_existing);
+  start("boxes", keep("boxes"));
+  EXPECT_TRUE(read_until(
+      whole, [&] { return whole.is_whole() && whole->scene_revision == again->scene_revision; }))
+      << whole.what_is_missing() << logs();
 }
 
 class SparseSharedCells : public SharedCells {

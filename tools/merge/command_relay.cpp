@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <chrono>
+#include <future>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -22,6 +23,14 @@ CommandResult refusal(const Command& command, CommandStatus status, std::string 
           .request = command.request,
           .status = status,
           .reason = std::move(reason)};
+}
+
+// The answer of a share, in the name of the client. Its cycles are not those of the whole cell.
+CommandResult answer_to(const Command& asked, CommandResult of_share) {
+  of_share.client = asked.client;
+  of_share.request = asked.request;
+  of_share.in_force_from = 0;
+  return of_share;
 }
 
 // Each share would find another pose, or none: the scenes would differ.
@@ -110,6 +119,17 @@ CommandResult CommandRelay::send(OfShare& share, const Command& command, bool dr
   return *result;
 }
 
+// All at once, so that they change within a short time of each other.
+std::vector<CommandResult> CommandRelay::send_to_all(const Command& command, bool dry_run) {
+  std::vector<std::future<CommandResult>> sent;
+  for (OfShare& share : shares_) {
+    sent.push_back(std::async(std::launch::async, [&] { return send(share, command, dry_run); }));
+  }
+  std::vector<CommandResult> results;
+  for (auto& each : sent) results.push_back(each.get());
+  return results;
+}
+
 // The first report of that scene; 0: it has not come in time.
 std::uint64_t CommandRelay::in_force_from(std::uint64_t revision) const {
   const std::int64_t end_ns = dds_time() + kReported.count();
@@ -134,37 +154,41 @@ CommandResult CommandRelay::pass_on(const Command& asked) {
   }
   Command command = asked;
   command.scene_revision = revision;
-  CommandResult last;
-  for (OfShare& share : shares_) {
-    last = send(share, command, true);
-    if (last.done()) continue;
-    last.client = asked.client;
-    last.request = asked.request;
-    last.reason = fmt::format("the share '{}' refuses it, and no share has changed: {}", share.name,
-                              last.reason);
-    return last;
+  std::vector<CommandResult> results = send_to_all(command, true);
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    if (results[i].done()) continue;
+    results[i].reason = fmt::format("the share '{}' refuses it, and no share has changed: {}",
+                                    shares_[i].name, results[i].reason);
+    return answer_to(asked, std::move(results[i]));
   }
-  if (!asked.dry_run) {
-    std::string others;
-    for (OfShare& share : shares_) {
-      const std::uint64_t before = last.scene_revision;
-      last = send(share, command, false);
-      const bool is_same = others.empty() || last.scene_revision == before;
-      if (last.done() && is_same) {
-        others += fmt::format("{}'{}'", others.empty() ? "" : ", ", share.name);
-        continue;
-      }
-      return refusal(
-          asked, CommandStatus::kFailed,
-          fmt::format("the share '{}' did not make it{}: {}; the cell is not whole until "
-                      "it has the same scene",
-                      share.name, others.empty() ? "" : fmt::format(", and {} did", others),
-                      last.done() ? "its scene is another one" : last.reason));
+  const std::uint64_t expected = results.front().scene_revision;
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    if (results[i].scene_revision == expected) continue;
+    return refusal(asked, CommandStatus::kFailed,
+                   fmt::format("the shares '{}' and '{}' would have different scenes, and no share "
+                               "has changed",
+                               shares_.front().name, shares_[i].name));
+  }
+  if (asked.dry_run) return answer_to(asked, std::move(results.back()));
+  results = send_to_all(command, false);
+  std::string made, not_made;
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    const bool is_same = results[i].scene_revision == expected;
+    if (results[i].done() && is_same) {
+      made += fmt::format("{}'{}'", made.empty() ? "" : ", ", shares_[i].name);
+    } else {
+      not_made += fmt::format("{}'{}': {}", not_made.empty() ? "" : ", ", shares_[i].name,
+                              results[i].done() ? "its scene is another one" : results[i].reason);
     }
   }
-  last.client = asked.client;
-  last.request = asked.request;
-  last.in_force_from = asked.dry_run ? 0 : in_force_from(last.scene_revision);
+  if (!not_made.empty()) {
+    return refusal(asked, CommandStatus::kFailed,
+                   fmt::format("not every share made it ({}){}; the cell is not whole until all "
+                               "have the same scene",
+                               not_made, made.empty() ? "" : fmt::format(", and {} did", made)));
+  }
+  CommandResult last = answer_to(asked, std::move(results.back()));
+  last.in_force_from = in_force_from(last.scene_revision);
   return last;
 }
 

@@ -1,5 +1,5 @@
-// Passes commands on to the shares of a cell, one after another: all shares get them in one order,
-// and each change is made by all or, as far as a dry run can tell, by none.
+// Passes commands on to the shares of a cell, one after another: all shares get each of them at the
+// same time, and each change is made by all or, as far as a dry run can tell, by none.
 #pragma once
 
 #include <atomic>
@@ -43,6 +43,7 @@ class CommandRelay {
   [[nodiscard]] std::uint64_t in_force_from(std::uint64_t revision) const;
   [[nodiscard]] CommandResult pass_on(const Command& command);
   [[nodiscard]] CommandResult send(OfShare& share, const Command& command, bool dry_run);
+  [[nodiscard]] std::vector<CommandResult> send_to_all(const Command& command, bool dry_run);
 
   client::Connection& connection_;
   std::vector<OfShare> shares_;
