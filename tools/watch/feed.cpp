@@ -20,7 +20,8 @@ Feed::Feed(client::Connection& connection)
       catalogue_(connection),
       health_(connection),
       zones_(connection),
-      separation_(connection, {.depth = kDepth}) {}
+      separation_(connection, {.depth = kDepth}),
+      shares_(std::make_unique<client::ShareNames>(connection)) {}
 
 void Feed::take(std::int64_t now_ns) {
   catalogue_.update();
@@ -31,6 +32,8 @@ void Feed::take(std::int64_t now_ns) {
     note_report(now_ns);
   }
   zones_.update();
+  if (any()) shares_.reset();
+  if (shares_) shares_->look();
 }
 
 void Feed::note_report(std::int64_t now_ns) {
@@ -62,6 +65,10 @@ void Feed::begin_again() {
   if (daemon == 0 || !daemons_.contains(daemon)) ++restarts_;
   smallest_ = {};
   zones_.keep_only(daemon);
+}
+
+std::set<std::string> Feed::shares() const {
+  return shares_ ? shares_->names() : std::set<std::string>();
 }
 
 const clearance_msg_Catalogue* Feed::catalogue() const noexcept {

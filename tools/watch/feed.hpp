@@ -4,10 +4,12 @@
 #include <chrono>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <set>
 #include <string>
 
 #include "monitor/client/client.hpp"
+#include "monitor/client/share_names.hpp"
 
 namespace clearance::watch {
 
@@ -67,6 +69,8 @@ class Feed {
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
   // The reason why the reports of a present daemon do not come; empty when none is known.
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
+  // While no report has come: the shares of a cell whose daemons are there (SHARES.md).
+  [[nodiscard]] std::set<std::string> shares() const;
   // The daemons are partners, whose reports are merged; and whether the two agree.
   [[nodiscard]] bool has_partner() const noexcept { return *reports_->partner != '\0'; }
   [[nodiscard]] const client::PartnerCheck& partner() const noexcept { return reports_.partner(); }
@@ -91,7 +95,8 @@ class Feed {
   Smallest smallest_;
   std::uint64_t count_ = 0, missed_ = 0, restarts_ = 0;
   OldReports old_;
-  std::set<std::uint64_t> daemons_;  // daemons whose reports have come
+  std::unique_ptr<client::ShareNames> shares_;  // null once a report has come
+  std::set<std::uint64_t> daemons_;             // daemons whose reports have come
   std::int64_t last_ns_ = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/client/share_merge.hpp"
 #include "monitor/zone_cause.hpp"
 #include "tools/watch/contact_lines.hpp"
 #include "tools/watch/number_text.hpp"
@@ -122,6 +123,33 @@ std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
   return text.empty() ? text : ": " + text;
 }
 
+// Of a joined cell: "share 'north' is missing, share 'south' is late"; empty: all are there.
+std::string absent_shares(const Feed& feed) {
+  const clearance_msg_Health* const health = feed.health();
+  if (health == nullptr) return {};
+  std::string text;
+  for (const clearance_msg_ShareHealth& share :
+       std::span(health->shares._buffer, health->shares._length)) {
+    const auto state = static_cast<client::ShareState>(share.state);
+    if (state == client::ShareState::kWhole) continue;
+    text += fmt::format("{}share '{}' is {}", text.empty() ? "" : ", ", share.share,
+                        client::name(state));
+  }
+  return text;
+}
+
+// Of a cell whose shares report, and which nobody joins.
+std::string what_it_waits_for(const Feed& feed) {
+  std::string names;
+  for (const std::string& share : feed.shares())
+    names += fmt::format("{}'{}'", names.empty() ? "" : ", ", share);
+  return names.empty() ? "waiting for clearanced"
+                       : fmt::format(
+                             "waiting for clearance-merge, which joins the shares of a "
+                             "cell (here are {}),",
+                             names);
+}
+
 // Of two partners: whether both report the same.
 Line& add_partner(Line& line, const Feed& feed) {
   using client::PartnerState;
@@ -143,7 +171,7 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
   line.add(context.where).add("  ");
   if (!feed.any()) {
     const bool is_refused = !feed.refusal().empty();
-    return line.add(is_refused ? feed.refusal() : "waiting for clearanced",
+    return line.add(is_refused ? feed.refusal() : what_it_waits_for(feed),
                     is_refused ? Style::kAlarm : Style::kWarning);
   }
   if (!trouble(feed, context.now_ns).empty()) return line.add("not live", Style::kAlarm);
@@ -214,6 +242,12 @@ void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
         .add("  ");
   }
   if (feed.zones().empty()) line.add("none");
+}
+
+void add_shares(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
+  const std::string absent = absent_shares(feed);
+  if (absent.empty()) return;
+  lines.emplace_back(width).add("shares    ", Style::kDim).add(absent, Style::kAlarm);
 }
 
 void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& context,
@@ -334,6 +368,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
     add_separation(lines, feed, size.columns);
     add_contacts(lines, feed, size.columns);
     add_counts(lines, feed, size.columns);
+    add_shares(lines, feed, size.columns);
     add_health(lines, feed, context, size.columns);
     add_inputs(lines, feed, size.columns);
     add_pairs(lines, feed, size);
@@ -345,7 +380,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
 
 std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (!feed.any() && !feed.refusal().empty()) return feed.refusal();
-  if (!feed.any()) return fmt::format("waiting for clearanced on {}", context.where);
+  if (!feed.any()) return fmt::format("{} on {}", what_it_waits_for(feed), context.where);
   if (const std::string why = frozen(feed, context.now_ns); !why.empty()) return why;
   const clearance_msg_Distances& report = feed.distances();
   std::string text = fmt::format("cycle {}", report.cycle);
@@ -359,9 +394,14 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
     const clearance_msg_PairDistance& pair = report.minimum;
     text += fmt::format("  minimum {:.4f} m [{:.4f}, {:.4f}] {}  {}", pair.distance, pair.lower,
                         pair.upper, feed.pair_name(pair), approach(pair));
+    if (!report.minimum_certified) text += "  not certified";
   } else {
     text += "  no pair known";
   }
+  if (report.unknown != 0)
+    text += fmt::format("  {} of {} pairs unknown", report.unknown, report.pairs_total);
+  if (const std::string absent = absent_shares(feed); !absent.empty())
+    text += fmt::format("  {}", absent);
   for (const auto& [id, zone] : feed.zones()) {
     if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
   }
