@@ -458,6 +458,8 @@ TEST(Several, LosesNoCycleAndHasNoZoneWrong) {
                         "--late-ms", "1000", "--domain", std::to_string(dds.domain)});
   EXPECT_EQ(several.wait(), 0) << several.output();
   EXPECT_TRUE(several.wrote(" 0 cycles lost, 0 zones wrong")) << several.output();
+  for (const char* complaint : {"No such file", "syntax error", "has not logged"})
+    EXPECT_FALSE(several.wrote(complaint)) << several.output();
 }
 
 }  // namespace
