@@ -169,7 +169,7 @@ void Recording::record_all(Part& part) {
     if (built_ != nullptr) record_frames(queued->report.cycle);
     if (command_came_.exchange(false))
       recorder_.ask_for_file({RecordedEvent::Cause::kCommand, "a command was answered"});
-    recorder_.report(queued->report, queued->sources(), queued->handed_over_ns);
+    recorder_.report(queued->report, queued->sources(), queued->handed_over_ns, queued->lineage);
     queue.reports().pop();
     count(1);
     tell_of_new_files();

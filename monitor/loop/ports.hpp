@@ -32,6 +32,8 @@ class ReportSink {
   virtual void input(const PoseBatch& batch) noexcept = 0;
   // The coming tick is shown the frame of this sensor with this stamp.
   virtual void frame(std::uint32_t /*sensor*/, std::int64_t /*stamp_ns*/) noexcept {}
+  // The report that follows is of this lineage (monitor/partners). Partners only.
+  virtual void lineage(std::uint64_t /*lineage*/) noexcept {}
   // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.
@@ -53,6 +55,8 @@ class TickPace {
   [[nodiscard]] virtual TickTime time() noexcept = 0;
   // After the tick, before its report is handed over.
   virtual void ticked(const Monitor& monitor) noexcept = 0;
+  // Of that tick: ticks of the same lineage and cycle rest on the same inputs.
+  [[nodiscard]] virtual std::uint64_t lineage() const noexcept = 0;
   // The tick that follows is due already: no deadline is to be skipped.
   [[nodiscard]] virtual bool is_behind() noexcept = 0;
 

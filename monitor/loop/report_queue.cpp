@@ -72,6 +72,7 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   std::copy(sources.begin(), sources.end(), slot->sources_used.begin());
   slot->source_count = sources.size();
   slot->handed_over_ns = SystemClock().realtime_ns();
+  slot->lineage = lineage_;
   reports_.push();
   ready_.post();
 }

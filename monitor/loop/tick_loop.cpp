@@ -107,7 +107,10 @@ void TickLoop::tick_once() noexcept {
   statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
-  if (pace != nullptr) pace->ticked(*monitor_);
+  if (pace != nullptr) {
+    pace->ticked(*monitor_);
+    for (ReportSink* sink : sinks_) sink->lineage(pace->lineage());
+  }
   for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
 }
 

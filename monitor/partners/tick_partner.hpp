@@ -75,6 +75,7 @@ class TickPartner final : public PoseSource, public TickPace {
                       std::uint64_t revision) noexcept override;
   [[nodiscard]] TickTime time() noexcept override { return time_; }
   void ticked(const Monitor& monitor) noexcept override;
+  [[nodiscard]] std::uint64_t lineage() const noexcept override { return lineage_; }
   [[nodiscard]] bool is_behind() noexcept override;
   void successor_began(bool same_scene) noexcept override;
   void successor_gave_up() noexcept override { become(0); }

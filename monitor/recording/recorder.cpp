@@ -100,24 +100,25 @@ void Recorder::poses(const PoseBatch& batch) {
 // Inputs stand in front of the report that they led to, in the order of use. A file ends behind the
 // zones of a report, and the next one begins with the state of every zone.
 void Recorder::report(const Report& report, std::span<const SourceUse> sources,
-                      std::int64_t publish_ns) {
+                      std::int64_t publish_ns, std::uint64_t lineage) {
   last_ns_ = report.now_ns;
   const bool is_kept = options_.ticks_every <= 1 || report.cycle % options_.ticks_every == 0;
   if (options_.ticks_every > 1) sources = thin_out(sources, is_kept);
-  if (is_kept) write_report(report, sources, publish_ns);
+  if (is_kept) write_report(report, sources, publish_ns, lineage);
   write_zones(report);
   if (is_kept) thin_uses_.clear();
   states_all_zones_ = sink_->end_tick(report.now_ns, event_of(report));
 }
 
 void Recorder::write_report(const Report& report, std::span<const SourceUse> sources,
-                            std::int64_t publish_ns) {
+                            std::int64_t publish_ns, std::uint64_t lineage) {
   write_used(sources, report.now_ns);
   for (const WaitingFrame& frame : std::exchange(frames_, {}))
     sink_->write_frame(report.now_ns, frame.stamp_ns, frame.cdr);
   if (!report.separated_zones.empty()) write_separation(report, publish_ns);
   if (holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *now_->distances);
+    now_->distances->lineage = lineage;
     if (!keeps_pairs(options_, report.cycle)) now_->distances->pairs._length = 0;
     write(TopicKind::kDistances, report.now_ns, report.now_ns, *now_->distances);
   }

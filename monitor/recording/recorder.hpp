@@ -47,9 +47,10 @@ class Recorder {
   }
 
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
-  // it was handed over; 0 where it was not published.
-  void report(const Report& report, std::span<const SourceUse> sources,
-              std::int64_t publish_ns = 0);
+  // it was handed over; 0 where it was not published. `lineage`: of partners (monitor/partners); 0
+  // of a daemon on its own.
+  void report(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns = 0,
+              std::uint64_t lineage = 0);
 
   void health(const clearance_msg_Health& health);
 
@@ -112,7 +113,7 @@ class Recorder {
   void begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue);
   [[nodiscard]] std::optional<RecordedEvent> event_of(const Report& report);
   void write_report(const Report& report, std::span<const SourceUse> sources,
-                    std::int64_t publish_ns);
+                    std::int64_t publish_ns, std::uint64_t lineage);
   [[nodiscard]] std::span<const SourceUse> thin_out(std::span<const SourceUse> sources,
                                                     bool is_kept);
   void write_used(std::span<const SourceUse> sources, std::int64_t log_ns);

@@ -101,16 +101,16 @@ bool RecordedTicks::read_one() {
   if (message.kind == TopicKind::kSeparation) {
     Sample<clearance_msg_Separation> separation;
     if (decoder_.decode(message.cdr, separation))
-      ticks_[separation->cycle].separation = std::move(separation);
+      tick_of(*separation).separation = std::move(separation);
   }
   if (message.kind == TopicKind::kGradients) {
     Sample<clearance_msg_Gradients> gradients;
     if (decoder_.decode(message.cdr, gradients))
-      ticks_[gradients->cycle].gradients = std::move(gradients);
+      tick_of(*gradients).gradients = std::move(gradients);
   }
   if (message.kind == TopicKind::kZones) {
     Sample<clearance_msg_ZoneState> zone;
-    if (decoder_.decode(message.cdr, zone)) ticks_[zone->cycle].zones.push_back(*zone);
+    if (decoder_.decode(message.cdr, zone)) tick_of(*zone).zones.push_back(*zone);
   }
   if (message.kind == TopicKind::kCatalogue) {
     Sample<clearance_msg_Catalogue> catalogue;
@@ -128,7 +128,7 @@ void RecordedTicks::add_report(const RecordedMessage& message) {
     return;
   }
   daemon_ = report->daemon;
-  RecordedTick& tick = ticks_[report->cycle];
+  RecordedTick& tick = tick_of(*report);
   tick.log_ns = message.log_ns;
   tick.report = std::move(report);
 }

@@ -17,7 +17,7 @@
 
 namespace clearance {
 
-// A tick, by its cycle number.
+// A tick, by its time and cycle.
 struct RecordedTick {
   std::optional<Sample<clearance_msg_Distances>> report;
   std::optional<Sample<clearance_msg_Separation>> separation;
@@ -71,11 +71,16 @@ class RecordedTicks {
   bool read_one();
   void add_report(const RecordedMessage& message);
   template <class Message>
+  [[nodiscard]] RecordedTick& tick_of(const Message& message) {
+    return ticks_[{message.now_ns, message.cycle}];
+  }
+  template <class Message>
   void add_batch(const RecordedMessage& message);
 
   RecordingReader reader_;
   CdrDecoder decoder_;
-  std::map<std::uint64_t, RecordedTick> ticks_;
+  // Partners that join go on with the cycles of the other one, so that numbers may come again.
+  std::map<std::pair<std::int64_t, std::uint64_t>, RecordedTick> ticks_;
   std::map<BatchKey, Batch> batches_;
   std::set<std::string> sources_;
   std::map<std::uint32_t, clearance_msg_ZoneState> zones_;

@@ -1,8 +1,15 @@
-// Goes through both recordings in step, one cycle at a time. Inputs are compared before results, so
-// that a difference of results is one of the daemons, not of what they were given.
+// Goes through both recordings in step, one cycle at a time. Ticks of one lineage were told the
+// same time, so the time shows which of two ticks that do not belong together comes first. Inputs
+// are compared before results, so that a difference of results is one of the daemons, not of what
+// they were given.
 #include "monitor/replay/recordings_difference.hpp"
 
 #include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/replay/recorded_ticks.hpp"
@@ -18,6 +25,10 @@ struct Finding {
   std::string what;
 };
 using Found = std::optional<Finding>;
+
+bool are_partners(const clearance_msg_Distances& a, const clearance_msg_Distances& b) {
+  return a.lineage != 0 && b.lineage != 0;
+}
 
 Numbers numbers_of(const clearance_msg_Distances& report) {
   Numbers numbers;
@@ -51,19 +62,25 @@ class TwoRecordings {
  private:
   // False: the comparison is over.
   bool compare(const RecordedTick& a, const RecordedTick& b) {
-    const std::uint64_t cycle_a = (*a.report)->cycle, cycle_b = (*b.report)->cycle;
-    if (cycle_a != cycle_b) {
-      const bool only_first = cycle_a < cycle_b;
-      if (result_.compared > 0) {
+    const clearance_msg_Distances& report_a = **a.report;
+    const clearance_msg_Distances& report_b = **b.report;
+    partners_ = are_partners(report_a, report_b);
+    if (partners_ && report_a.lineage != report_b.lineage) {
+      some_apart_ = true;
+      leave_out(report_a.now_ns <= report_b.now_ns, report_b.now_ns <= report_a.now_ns);
+      return true;
+    }
+    if (report_a.cycle != report_b.cycle) {
+      const bool only_first = report_a.cycle < report_b.cycle;
+      if (in_stretch_) {
         tell(only_first ? a : b, {Kind::kMissing, fmt::format("only {} has a report of this cycle",
                                                               names_[only_first ? 0 : 1])});
         return false;
       }
-      (only_first ? first_ : second_).pop();
+      leave_out(only_first, !only_first);
       return true;
     }
-    if (result_.compared++ == 0) result_.first_cycle = cycle_a;
-    result_.last_cycle = cycle_a;
+    note_compared(report_a);
     if (const Found found = difference(a, b)) {
       tell(a, *found);
       return false;
@@ -72,6 +89,26 @@ class TwoRecordings {
     first_.pop();
     second_.pop();
     return true;
+  }
+
+  void leave_out(bool of_first, bool of_second) {
+    in_stretch_ = false;
+    skipped_[0] += of_first ? 1 : 0;
+    skipped_[1] += of_second ? 1 : 0;
+    if (of_first) first_.pop();
+    if (of_second) second_.pop();
+  }
+
+  void note_compared(const clearance_msg_Distances& report) {
+    if (result_.compared++ == 0) result_.first_cycle = report.cycle;
+    result_.last_cycle = report.cycle;
+    result_.left_out = skipped_;
+    if (!std::exchange(in_stretch_, true)) {
+      result_.stretches.push_back({report.cycle, report.cycle});
+      stretch_began_ns_ = report.now_ns;
+      used_.clear();
+    }
+    result_.stretches.back().last = report.cycle;
   }
 
   Found difference(const RecordedTick& a, const RecordedTick& b) {
@@ -97,6 +134,11 @@ class TwoRecordings {
       if (a == first.end() || b == second.end())
         return Finding{Kind::kInputs, fmt::format("only in {} batches of source '{}' were used",
                                                   names_[a == first.end() ? 1 : 0], source)};
+      // Partners number some sources apart. They have compared the content when they ticked.
+      if (a->second != b->second && partners_) {
+        numbered_apart_ = source;
+        continue;
+      }
       if (a->second != b->second)
         return Finding{Kind::kInputs, both(fmt::format("the last batch of source '{}'", source),
                                            a->second, b->second)};
@@ -159,12 +201,15 @@ class TwoRecordings {
   }
 
   // States are written when they change, and again at other times. So states of one cycle are
-  // compared whole, and others only by what is active.
+  // compared whole, and others only by what is active. Before they joined, partners had cycles of
+  // the same numbers with other inputs.
   Found other_zones(const Scene& scene, const DifferenceOptions& options) const {
     for (const auto& [zone, first] : first_.zones()) {
       const clearance_msg_ZoneState* const second = second_.zone(zone);
       if (second == nullptr) continue;
-      if (first.cycle == second->cycle) {
+      const bool is_of_stretch =
+          std::min(first.now_ns, second->now_ns) >= stretch_began_ns_ || !partners_;
+      if (first.cycle == second->cycle && is_of_stretch) {
         if (const auto found = message_difference(scene, first, *second, options))
           return Finding{Kind::kResult, fmt::format("zone '{}'.{}", first.name, *found)};
       } else if (first.active != second->active) {
@@ -188,7 +233,12 @@ class TwoRecordings {
     if (found.kind != Kind::kResult) return;
     if (without_batches_)
       result_.what += "; a recording lacks the batches, so their content was not compared";
-    if (result_.first_cycle > 1)
+    if (!numbered_apart_.empty())
+      result_.what += fmt::format(
+          "; both number the batches of source '{}' apart, so their content was not "
+          "compared",
+          numbered_apart_);
+    if (result_.first_cycle > 1 && !partners_)
       result_.what +=
           fmt::format("; inputs before cycle {} are not in both recordings and may be the reason",
                       result_.first_cycle);
@@ -206,16 +256,23 @@ class TwoRecordings {
       if (const std::string damage = both[i]->damage(); !damage.empty())
         result_.damage = fmt::format("{}: {}", names_[i], damage);
     }
-    if (result_.error.empty() && result_.compared == 0 && !result_.stopped)
-      result_.error = fmt::format("no cycle has a report in both {} and {}{}{}", names_[0],
-                                  names_[1], result_.damage.empty() ? "" : "; ", result_.damage);
+    if (!result_.error.empty() || result_.compared > 0 || result_.stopped) return;
+    const std::string_view why = some_apart_ ? ": these partners never ticked the same inputs" : "";
+    result_.error = fmt::format("no cycle has a report in both {} and {}{}{}{}", names_[0],
+                                names_[1], why, result_.damage.empty() ? "" : "; ", result_.damage);
   }
 
   std::string names_[2];
   RecordedTicks first_, second_;
   bool some_without_pairs_ = false;
   bool without_batches_ = false;
-  Numbers used_;  // in the cycle before
+  bool partners_ = false;    // of the ticks at hand
+  bool some_apart_ = false;  // a tick was left out because of its lineage
+  bool in_stretch_ = false;  // the ticks before were compared
+  std::int64_t stretch_began_ns_ = 0;
+  std::array<std::uint64_t, 2> skipped_{};
+  std::string numbered_apart_;  // a source
+  Numbers used_;                // in the cycle before
   RecordingsDifference result_;
 };
 

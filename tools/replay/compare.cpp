@@ -1,5 +1,11 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
 #include <cstdio>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -28,6 +34,18 @@ std::string_view meaning_of(RecordingsDifference::Kind kind) {
   return {};
 }
 
+std::string text_of(const std::vector<RecordingsDifference::Stretch>& stretches) {
+  constexpr std::size_t kShown = 8;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(kShown, stretches.size()); ++i)
+    text += fmt::format("{}{} to {}", i == 0 ? "" : ", ", stretches[i].first, stretches[i].last);
+  if (stretches.size() > kShown) {
+    text += fmt::format(" and {} more stretches to {}", stretches.size() - kShown,
+                        stretches.back().last);
+  }
+  return text.empty() ? "none" : text;
+}
+
 }  // namespace
 
 int compare_two_recordings(const CompareArguments& arguments, StopSignal& stop) {
@@ -38,8 +56,14 @@ int compare_two_recordings(const CompareArguments& arguments, StopSignal& stop) 
     return kFailed;
   }
   if (!found.damage.empty()) print(stderr, "clearance-replay: {}\n", found.damage);
-  print(stdout, "{} cycles compared, {} to {}\n", found.compared, found.first_cycle,
-        found.last_cycle);
+  print(stdout, "{} cycles compared, {}\n", found.compared, text_of(found.stretches));
+  if (found.left_out != std::array<std::uint64_t, 2>{}) {
+    print(
+        stdout,
+        "left out before the last of these: {} cycles of {}, {} of {}, with inputs or numbers that "
+        "the other one does not have\n",
+        found.left_out[0], arguments.first, found.left_out[1], arguments.second);
+  }
   if (!found.is_same()) {
     print(stdout, "first difference: cycle {} (now_ns {}): {}: {}\n", found.cycle, found.now_ns,
           meaning_of(found.kind), found.what);

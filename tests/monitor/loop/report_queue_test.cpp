@@ -43,6 +43,18 @@ TEST(ReportQueue, CarriesReportsWithTheirSourcesInOrder) {
   EXPECT_TRUE(queue.reports().front()->sources().empty());
 }
 
+TEST(ReportQueue, CarriesTheLineageThatItWasToldLast) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  ReportQueue queue(scene, {.reports = 4});
+  for (const std::uint64_t lineage : {0, 7, 8}) {
+    if (lineage != 0) queue.lineage(lineage);
+    queue.report(monitor.tick({}, test::kStart + static_cast<std::int64_t>(lineage)), {});
+    EXPECT_EQ(queue.reports().front()->lineage, lineage);
+    queue.reports().pop();
+  }
+}
+
 TEST(ReportQueue, DropsAndCountsWhatFindsItFull) {
   const Scene scene = published_cell();
   Monitor monitor(scene);

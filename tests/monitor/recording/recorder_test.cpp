@@ -62,6 +62,22 @@ TEST(Recorder, BatchesOfLaterTicksWaitForTheirReport) {
   EXPECT_EQ("pdpdpd", order);
 }
 
+TEST(Recorder, KeepsTheLineageOfAPartnersReport) {
+  const ScratchFolder folder;
+  const Cell cell{bench_cell()};
+  Monitor monitor(cell.scene);
+  Recorder recorder(folder / "a.mcap", cell, kStart);
+  recorder.report(monitor.tick({}, kStart), {}, kStart, 7);
+  recorder.report(monitor.tick({}, kStart + kTick), {});
+  ASSERT_TRUE(recorder.close());
+  std::vector<std::uint64_t> lineages;
+  for (const Kept& message : messages_of(folder / "a.mcap")) {
+    if (message.kind == TopicKind::kDistances)
+      lineages.push_back(decoded<clearance_msg_Distances>(message)->lineage);
+  }
+  EXPECT_EQ(lineages, (std::vector<std::uint64_t>{7, 0}));
+}
+
 TEST(Recorder, CrashCostsNoMoreThanTheLastFifthOfASecond) {
   const ScratchFolder folder;
   const Cell cell{bench_cell()};
