@@ -18,7 +18,9 @@
 #include <vector>
 
 #include "monitor/client/client.hpp"
+#include "monitor/replay/recordings_difference.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/meeting_boxes.hpp"
 
 namespace clearance {
@@ -213,6 +215,41 @@ TEST_F(Partners, OneStreamGoesOnWhileOneOfThemIsKilledAndComesBack) {
   EXPECT_EQ(states[PartnerState::kDifferent], 0);
   EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"right"})) << logs();
   EXPECT_TRUE(daemons["right"]->told("partner-agrees", {"left"})) << logs();
+  EXPECT_TRUE(daemons["left"]->told("partner-met", {"right"})) << logs();
+}
+
+// Both record from their starts. What each ticked before it joined, and while it was apart, rests
+// on inputs of its own: it is left out, and all other cycles have the same bits.
+TEST_F(Partners, RecordingsOfBothAgreeInAllCyclesThatTheyTickedTogether) {
+  test::ScratchFolder folder;
+  const std::string files[] = {(folder / "left.mcap").string(), (folder / "right.mcap").string()};
+  start("left", {"--gradients", "--record", files[0]});
+  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  start("right", {"--gradients", "--record", files[1]});
+  ASSERT_TRUE(agree()) << logs();
+  const std::uint64_t joined = cycle;
+  for (const char* name : {"left", "right"}) {
+    daemons[name]->signal(SIGSTOP);
+    states.clear();
+    EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 20; })) << logs();
+    daemons[name]->signal(SIGCONT);
+    EXPECT_TRUE(agree()) << logs();
+  }
+  const std::uint64_t ended = cycle;
+  for (const auto& [name, daemon] : daemons) daemon->signal(SIGTERM);
+  for (const auto& [name, daemon] : daemons) EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  const RecordingsDifference found = compare_recordings(files[0], files[1]);
+  EXPECT_TRUE(found.is_same()) << found.error << found.what << " in cycle " << found.cycle;
+  EXPECT_GT(found.first_cycle, 20u) << "the first one was alone in its first cycles";
+  EXPECT_LE(found.first_cycle, joined);
+  EXPECT_GE(found.last_cycle + 20, ended) << "one of them may have ended somewhat earlier";
+  EXPECT_GT(found.compared, 60u);
+  EXPECT_GE(found.left_out[0], 20u);
+  EXPECT_GE(found.left_out[1], 1u) << "it ticks before it joins";
+  ChildProcess tool(test::kReplay, {"compare", files[0], files[1]});
+  EXPECT_EQ(tool.wait(), 0) << tool.output();
+  EXPECT_TRUE(tool.wrote("no difference")) << tool.output();
+  EXPECT_TRUE(tool.wrote("left out before the last of these: ")) << tool.output();
 }
 
 TEST_F(Partners, AStoppedLeaderIsMissedAndAgreesAgain) {

@@ -1,0 +1,114 @@
+// What a daemon says of a partner that is wrong: the rows of FAULTS.md about partners that two
+// daemons on one machine do not come to by themselves.
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "monitor/client/client.hpp"
+#include "tests/tools/made_partner.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance::test {
+namespace {
+
+using std::chrono::milliseconds;
+
+class PartnerFaults : public testing::Test {
+ protected:
+  DdsOptions dds = own_dds();
+  CellFile file{small_cell("pair")};
+  Cell cell = file.cell();
+  MadePartner partner{dds, cell};
+  ChildProcess daemon{kDaemon,
+                      with(with({file.path()}, dds_arguments(dds)), {"--partner", "left"})};
+
+  // Until the daemon tells of it, the partner does this again and again.
+  template <class Do>
+  bool tells(const std::string& code, const std::vector<std::string>& names, const Do& act) {
+    return eventually([&] {
+      for (int i = 0; i < 10; ++i) {
+        act();
+        std::this_thread::sleep_for(milliseconds(2));
+      }
+      return daemon.told(code, names);
+    });
+  }
+};
+
+TEST_F(PartnerFaults, AClockThatIsBehindIsNamedWithItsDifference) {
+  EXPECT_TRUE(tells("partner-clock", {"right"}, [&] { partner.lead(60'000'000); }))
+      << daemon.output();
+}
+
+TEST_F(PartnerFaults, ClocksInStepAreNotNamed) {
+  for (int i = 0; i < 800; ++i) {
+    partner.lead();
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  EXPECT_FALSE(daemon.told("partner-clock")) << daemon.output();
+}
+
+TEST_F(PartnerFaults, AnotherBuildIsNamed) {
+  EXPECT_TRUE(tells("partner-other-build", {"right", "0.0 of another day"}, [&] {
+    partner.send({.build = "0.0 of another day"});
+  })) << daemon.output();
+}
+
+TEST_F(PartnerFaults, AStateOfAnotherSceneIsRefused) {
+  EXPECT_TRUE(tells("partner-state-refused", {"another scene"}, [&] {
+    partner.lead();
+    partner.send({.revisions_later = 1});
+  })) << daemon.output();
+}
+
+TEST_F(PartnerFaults, AStateWhoseBytesDoNotFitIsRefused) {
+  EXPECT_TRUE(tells("partner-state-refused", {"do not fit"}, [&] {
+    partner.lead();
+    partner.send({});
+  })) << daemon.output();
+}
+
+// The partner says again what the daemon reports, then changes a number, then its lineage, and
+// then it falls silent. Log and health name each of these.
+TEST_F(PartnerFaults, ReportsOfOtherBitsOfOtherInputsAndMissingOnesAreNamedAndCounted) {
+  Participant client(dds);
+  Distances reports(client, cell);
+  client::Connection connection(dds, cell.topics);
+  client::Health health(connection);
+  const auto repeats = [&](const auto& change) {
+    const auto report = reports.next();
+    if (report != nullptr && (*report)->partner == std::string("left"))
+      partner.report(**report, change);
+  };
+  const auto counted = [&](const auto& count) {
+    return eventually([&] {
+      health.update();
+      return health.message() != nullptr && count(health.message()->partner) > 0;
+    });
+  };
+  EXPECT_TRUE(tells("partner-agrees", {"right"}, [&] { repeats([](auto&) {}); }))
+      << daemon.output();
+  EXPECT_FALSE(daemon.told("partner-differs")) << daemon.output();
+  EXPECT_TRUE(tells("partner-differs", {"right"}, [&] {
+    repeats([](auto& report) { report.lower_all += 0.25; });
+  })) << daemon.output();
+  EXPECT_TRUE(counted([](const auto& partners) { return partners.different; }));
+  EXPECT_TRUE(tells("partner-other-inputs", {"right"}, [&] {
+    for (int i = 0; i < 20; ++i) repeats([](auto&) {});
+    repeats([](auto& report) { ++report.lineage; });
+  })) << daemon.output();
+  EXPECT_TRUE(counted([](const auto& partners) { return partners.other_inputs; }));
+  const auto falls_silent = [&] {
+    for (int i = 0; i < 20; ++i) repeats([](auto&) {});
+    std::this_thread::sleep_for(milliseconds(100));
+  };
+  EXPECT_TRUE(tells("partner-missing", {"right"}, falls_silent)) << daemon.output();
+  EXPECT_TRUE(counted([](const auto& partners) { return partners.missing; }));
+  EXPECT_TRUE(daemon.running()) << daemon.output();
+}
+
+}  // namespace
+}  // namespace clearance::test
