@@ -30,6 +30,9 @@ constexpr std::array kOnDemand = {TopicKind::kDistances, TopicKind::kSeparation,
 // Messages of a client; only the last one is shown.
 constexpr std::int32_t kQuestionsKept = 8;
 
+// Reports of two partners that are compared: those of 30 ms at 1 kHz.
+constexpr std::int32_t kReportsCompared = 64;
+
 // A reader of reports needs no more than the newest of each 1/60 s. A reader of poses needs as many
 // as a source sends meanwhile, since the report names the batch that it used.
 std::int32_t depth_of(TopicKind kind) {
@@ -94,14 +97,14 @@ void LiveSource::advance(Server& server) {
   for (const TopicKind kind : kOnDemand) {
     if (kind == TopicKind::kDistances || server.is_wanted(channel(kind))) join(kind);
   }
-  for (const Topic& topic : kRecordedTopics) take(topic.kind);
+  for (const Topic& topic : kRecordedTopics) take(topic.kind, steady_ns);
   const std::int64_t now_ns = SystemClock().realtime_ns();
   take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
   take_questions(server);
   note_the_catalogue();
   follow_the_catalogue(server);
   note_what_is_attached(server);
-  tell_of_the_daemon(server, now_ns);
+  tell_of_the_daemon(server, now_ns, steady_ns);
   server.set_time(now_ns);
   frame_->publish(server);
   is_seen_wanted_ = server.is_wanted(kSeen);
@@ -126,18 +129,54 @@ void LiveSource::leave(Server& server) {
   server.forget(kClosest);
   server.forget(kSeen);
   heard_ = false;
+  is_merging_ = has_looked_ = false;
+  merged_ = {};
 }
 
 // The bytes as they came: nothing is decoded that is only passed on.
-void LiveSource::take(TopicKind kind) {
-  if (readers_[index(kind)] == 0) return;
-  while (take_cdr(readers_[index(kind)], taken_) == kMostAtOnce) {
+void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
+  const dds_entity_t reader = readers_[index(kind)];
+  if (reader == 0) return;
+  while (take_cdr(reader, taken_) == kMostAtOnce) {
   }
+  const bool are_reports = kind == TopicKind::kDistances;
+  const bool begins_merging = are_reports && !is_merging_ && have_partners(reader);
+  is_merging_ = is_merging_ || begins_merging;
+  if (are_reports && taken_.size() >= kReportsCompared) merged_.note_loss(steady_ns);
   for (const CdrSample& sample : taken_) {
-    frame_->take(kind, sample.source_ns(), sample.bytes());
+    if (is_shown(kind, sample, steady_ns)) frame_->take(kind, sample.source_ns(), sample.bytes());
   }
-  heard_ = heard_ || (kind == TopicKind::kDistances && !taken_.empty());
+  heard_ = heard_ || (are_reports && !taken_.empty());
   taken_.clear();
+  if (begins_merging) merge(steady_ns);
+}
+
+// Reports of a daemon on its own are not decoded for this, apart from the first one.
+bool LiveSource::have_partners(dds_entity_t reader) {
+  if (taken_.empty() || (std::exchange(has_looked_, true) && writers_alive(reader) < 2))
+    return false;
+  return decoder_.decode(taken_.back().bytes(), report_, CdrBytes::kOfReader) &&
+         *report_->partner != '\0';
+}
+
+// Both reports of a cycle are needed from now on, and not only the newest.
+void LiveSource::merge(std::int64_t steady_ns) {
+  dds_entity_t& reader = readers_[index(TopicKind::kDistances)];
+  check_dds(dds_delete(reader), "deleting a reader");
+  reader = participant_.reader(TopicKind::kDistances, topics_.distances, kReportsCompared);
+  merged_.note_loss(steady_ns);
+}
+
+// What cannot be decoded is not shown: it is corrupt.
+bool LiveSource::is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns) {
+  if (!is_merging_) return true;
+  if (kind == TopicKind::kDistances)
+    return decoder_.decode(sample.bytes(), report_, CdrBytes::kOfReader) &&
+           merged_.take(*report_, steady_ns);
+  if (kind == TopicKind::kHealth)
+    return decoder_.decode(sample.bytes(), health_, CdrBytes::kOfReader) &&
+           merged_.take(*health_, steady_ns);
+  return true;
 }
 
 // Takes messages of ROS 2 as the daemon does (dds/pose_reader.cpp). News is dropped here, because
@@ -233,7 +272,7 @@ void LiveSource::note_what_is_attached(Server& server) {
 }
 
 // The same states as those of clearance-watch.
-void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
+void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns, std::int64_t steady_ns) {
   const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
   const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_->report_time_ns());
   std::string text;
@@ -243,13 +282,16 @@ void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns) {
     text = "clearanced has ended";
   } else if (silent_s * 1e9 > kSilentNs || (writers_alive(reader) == 0 && silent_s > 0.2)) {
     text = "clearanced is silent: it died or stands still";
-  } else if (writers_alive(reader) > 1) {
+  } else if (writers_alive(reader) > (merged_.are_partners(steady_ns) ? 2u : 1u)) {
     text = fmt::format("{} daemons publish here: figures are mixed", writers_alive(reader));
   } else if (frame_->revision() != 0 && frame_->revision() != cell_->scene.revision) {
     text = reading_.valid() ? "the daemon has changed its cell, which is being read"
                             : "clearanced runs another cell than the one shown here";
   }
   server.set_status("daemon", heard_ ? 2 : 1, text);
+  const MergedReports::Trouble trouble =
+      text.empty() ? merged_.trouble(steady_ns) : MergedReports::Trouble();
+  server.set_status("partners", trouble.level, trouble.text);
 }
 
 }  // namespace clearance::view

@@ -15,6 +15,7 @@
 #include "tools/view/asked_path.hpp"
 #include "tools/view/cell_changes.hpp"
 #include "tools/view/frame.hpp"
+#include "tools/view/merged_reports.hpp"
 #include "tools/view/source.hpp"
 
 namespace clearance::view {
@@ -44,13 +45,16 @@ class LiveSource final : public Source {
   void show_what_is_seen(Server& server, std::int64_t steady_ns);
   void join(TopicKind kind);
   void leave(Server& server);
-  void take(TopicKind kind);
+  void take(TopicKind kind, std::int64_t steady_ns);
+  [[nodiscard]] bool have_partners(dds_entity_t reader);
+  void merge(std::int64_t steady_ns);
+  [[nodiscard]] bool is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns);
   void take_from_ros(const Now& now);
   void take_questions(Server& server);
   void follow_the_catalogue(Server& server);
   void note_the_catalogue();
   void note_what_is_attached(Server& server);
-  void tell_of_the_daemon(Server& server, std::int64_t now_ns);
+  void tell_of_the_daemon(Server& server, std::int64_t now_ns, std::int64_t steady_ns);
 
   std::shared_ptr<const Cell> cell_;
   const Topics topics_;
@@ -74,6 +78,11 @@ class LiveSource final : public Source {
   std::uint64_t attached_of_ = 0;  // the revision that these are of; 0: none yet
   std::uint64_t daemon_ = 0;       // of that catalogue
   RosReaders ros_;
+  bool is_merging_ = false;  // there are partners
+  bool has_looked_ = false;  // for partners, in the first report
+  MergedReports merged_;
+  Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_Health> health_;
   bool heard_ = false;           // a report has come since there is a viewer
   std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC
 };

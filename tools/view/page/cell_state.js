@@ -5,6 +5,7 @@ import { LiveHistory, RecordedHistory } from "./history.js";
 const ALLOWED = 1; // ContactStatus of monitor/report.hpp
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
+const LIVE = "partners"; // the server's status while what is shown is the present state all the same
 const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
 
 export class CellState {
@@ -125,11 +126,11 @@ export class CellState {
   alarms() {
     const found = [];
     if (!this.connected) found.push({ level: "alarm", frozen: true, text: "Connection to clearance-view lost" });
-    for (const { level, text } of this.statuses.values()) {
-      found.push({ level: level > 1 ? "alarm" : "near", frozen: true, text });
+    for (const [id, { level, text }] of this.statuses) {
+      found.push({ level: level > 1 ? "alarm" : "near", frozen: id !== LIVE, text });
     }
     const silent = this.secondsSilent();
-    if (this.connected && !found.length && silent > SILENT_S) {
+    if (this.connected && !found.some(({ frozen }) => frozen) && silent > SILENT_S) {
       found.push({ level: "alarm", frozen: true, text: `No report for ${silent.toFixed(1)} s` });
     }
     return found.concat(this.doubts());

@@ -1,0 +1,106 @@
+// clearance-view beside two daemons: partners are one stream, and their states are told; others are
+// mixed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <csignal>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "tests/tools/made_partner.hpp"
+#include "tests/tools/running_cell.hpp"
+#include "tests/tools/running_view.hpp"
+
+namespace clearance::test {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class ViewOfPartners : public testing::Test {
+ protected:
+  CellFile file{small_cell("small")};
+  Cell cell = file.cell();
+  DdsOptions dds = own_dds();
+  std::vector<std::string> arguments = with({file.path()}, dds_arguments(dds));
+
+  // What Foxglove's client has met once it has these reports.
+  static nlohmann::json shown(const View& view, int reports) {
+    ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(),
+                                         "reports", std::to_string(reports)});
+    EXPECT_EQ(client.wait(), 0) << client.output();
+    const auto lines = lines_of(client);
+    EXPECT_EQ(lines.size(), 1u) << client.output();
+    return lines.empty() ? nlohmann::json() : lines.front();
+  }
+};
+
+TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
+  ChildProcess robot(kRobot, with(arguments, {"--rate", "200"}));
+  ChildProcess left(kDaemon, with(arguments, {"--partner", "left"}));
+  ASSERT_TRUE(eventually([&] { return left.told("partner-stands", {"leading"}); }))
+      << left.output();
+  std::optional<ChildProcess> right(std::in_place, kDaemon,
+                                    with(arguments, {"--partner", "right"}));
+  ASSERT_TRUE(eventually([&] { return right->told("partner-agrees", {"left"}); }))
+      << right->output();
+  View view(arguments);
+  const nlohmann::json both = shown(view, 60);
+  const std::vector<std::uint64_t> cycles = both["cycles"];
+  EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end())
+      << "the page shows a cycle once: " << both["cycles"];
+  EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("mixed")));
+  EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("different")));
+  right.reset();  // it is killed
+  const nlohmann::json one = shown(view, 60);
+  EXPECT_THAT(one["statuses"].dump(), HasSubstr("partner 'right': missing"));
+  EXPECT_THAT(one["statuses"].dump(), Not(HasSubstr("mixed")));
+  EXPECT_EQ(view.end(), 0);
+}
+
+TEST_F(ViewOfPartners, SaysThatOneIsAloneAndThatBitsAreDifferent) {
+  ChildProcess robot(kRobot, with(arguments, {"--rate", "200"}));
+  ChildProcess left(kDaemon, with(arguments, {"--partner", "left"}));
+  View view(arguments);
+  EXPECT_THAT(shown(view, 60)["statuses"].dump(), HasSubstr("no partner yet"));
+  MadePartner partner(dds, cell);
+  Participant client(dds);
+  Distances reports(client, cell);
+  std::atomic<bool> ends{false};
+  std::thread repeats([&] {
+    while (!ends) {
+      if (const auto report = reports.next(); report && (*report)->partner == std::string("left"))
+        partner.report(**report, [](auto& message) { message.lower_all += 0.25; });
+    }
+  });
+  EXPECT_THAT(shown(view, 120)["statuses"].dump(), HasSubstr("': different"));
+  ends = true;
+  repeats.join();
+}
+
+TEST_F(ViewOfPartners, StillSaysThatFiguresOfDaemonsThatAreNoneAreMixed) {
+  ChildProcess robot(kRobot, with(arguments, {"--rate", "200"}));
+  ChildProcess left(kDaemon, with(arguments, {"--partner", "left"}));
+  View view(arguments);
+  Participant other(dds);
+  const dds_entity_t writer = other.writer(TopicKind::kDistances, cell.topics.distances);
+  std::atomic<bool> ends{false};
+  std::thread writes([&] {
+    for (clearance_msg_Distances message{}; !ends; ++message.cycle) {
+      message.now_ns = dds_time();
+      message.scene_revision = cell.scene.revision;
+      dds_write(writer, &message);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    }
+  });
+  EXPECT_THAT(shown(view, 120)["statuses"].dump(), HasSubstr("2 daemons publish here"));
+  ends = true;
+  writes.join();
+}
+
+}  // namespace
+}  // namespace clearance::test
