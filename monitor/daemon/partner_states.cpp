@@ -43,10 +43,9 @@ void PartnerStates::put(std::function<void()> task) {
 // The monitor of a large cell takes long to make: it is made before the state is asked for.
 void PartnerStates::prepare() {
   if (!ticks_.wants_state()) return;
-  const Scene& scene = changer_.cell().scene;
-  if (prepared_ == nullptr || prepared_->revision() != scene.revision)
-    prepared_ = std::make_unique<JoinedState>(scene);
-  port_.request_state(scene.revision);
+  const std::shared_ptr<const Cell> cell = changer_.shared_cell();
+  if (prepared_ == nullptr || prepared_->cell != cell) prepared_ = std::make_unique<Prepared>(cell);
+  port_.request_state(cell->scene.revision);
 }
 
 void PartnerStates::send() {
@@ -62,18 +61,25 @@ void PartnerStates::send() {
   if (!outcome.refusal.empty()) log_line(lines::kPartnerStateRefused, outcome.refusal);
 }
 
+// The cell may have changed since prepare(). The loop must not tick the scene of another cell, also
+// if that one has the same revision: nobody else keeps the former cell.
 void PartnerStates::join(const PartnerStateView& state) {
-  const std::unique_ptr<JoinedState> joined = std::move(prepared_);
-  if (joined == nullptr || !ticks_.wants_state()) return;
-  if (state.revision != joined->revision()) {
+  const std::unique_ptr<Prepared> prepared = std::move(prepared_);
+  if (prepared == nullptr || !ticks_.wants_state()) return;
+  if (prepared->cell != changer_.shared_cell()) {
+    log_line(lines::kPartnerStateRefused, "the cell has changed since it was asked for");
+    return;
+  }
+  JoinedState& joined = prepared->state;
+  if (state.revision != joined.revision()) {
     log_line(lines::kPartnerStateRefused, "it is of another scene");
     return;
   }
-  if (!joined->restore(state.bytes, state.lineage)) {
+  if (!joined.restore(state.bytes, state.lineage)) {
     log_line(lines::kPartnerStateRefused, "its bytes do not fit the scene");
     return;
   }
-  if (!loop_.offer(*joined)) return;
+  if (!loop_.offer(joined)) return;
   while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
 }
 

@@ -5,7 +5,9 @@
 #include <atomic>
 #include <functional>
 #include <memory>
+#include <utility>
 
+#include "config/cell/cell.hpp"
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
@@ -39,7 +41,13 @@ class PartnerStates {
   SceneChanger& changer_;
   SceneThread& thread_;
   const std::atomic<bool>& loop_ended_;
-  std::unique_ptr<JoinedState> prepared_;  // of the scene thread
+  // Of the scene thread. The monitor of a prepared state refers to the scene of its cell.
+  struct Prepared {
+    std::shared_ptr<const Cell> cell;
+    JoinedState state;
+    explicit Prepared(std::shared_ptr<const Cell> of) : cell(std::move(of)), state(cell->scene) {}
+  };
+  std::unique_ptr<Prepared> prepared_;
 };
 
 }  // namespace clearance

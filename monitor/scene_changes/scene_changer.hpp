@@ -64,6 +64,8 @@ class SceneChanger {
   [[nodiscard]] Outcome renew(const std::atomic<bool>& loop_ended, const Began& began);
 
   [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
+  // Likewise, for a use that may last until after the next change.
+  [[nodiscard]] std::shared_ptr<const Cell> shared_cell() const noexcept { return cell_; }
 
  private:
   [[nodiscard]] Outcome replace(std::shared_ptr<const Cell> cell,
