@@ -9,8 +9,8 @@
 
 namespace clearance {
 
-// What places an object. A link of a robot that is driven by joints has joint states, not poses,
-// and what a sensor sees has frames.
+// The inputs that place an object. A link of a robot that is driven by joints has joint states, not
+// poses, and what a sensor sees has frames.
 enum class PlacedBy { kPoses, kJointStates, kEither, kFrames };
 
 // "poses of hand".

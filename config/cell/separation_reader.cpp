@@ -129,7 +129,7 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
                           objects.objects[person].name));
     return separation;
   }
-  // What a sensor sees has no measured speed.
+  // A sensor measures no speed of what it sees.
   const auto is_seen = [&](std::uint32_t object) { return objects.objects[object].is_seen(); };
   if (const auto robot = std::ranges::find_if(robots, is_seen); robot != robots.end()) {
     quantities.diagnostics().add(

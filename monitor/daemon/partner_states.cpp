@@ -62,7 +62,7 @@ void PartnerStates::send() {
 }
 
 // The cell may have changed since prepare(). The loop must not tick the scene of another cell, also
-// if that one has the same revision: nobody else keeps the former cell.
+// if that one has the same revision: no other part keeps the former cell.
 void PartnerStates::join(const PartnerStateView& state) {
   const std::unique_ptr<Prepared> prepared = std::move(prepared_);
   if (prepared == nullptr || !ticks_.wants_state()) return;

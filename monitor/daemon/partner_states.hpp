@@ -41,7 +41,7 @@ class PartnerStates {
   SceneChanger& changer_;
   SceneThread& thread_;
   const std::atomic<bool>& loop_ended_;
-  // Of the scene thread. The monitor of a prepared state refers to the scene of its cell.
+  // For the scene thread. The monitor of a prepared state refers to the scene of its cell.
   struct Prepared {
     std::shared_ptr<const Cell> cell;
     JoinedState state;

@@ -55,7 +55,7 @@ class TickPace {
   [[nodiscard]] virtual TickTime time() noexcept = 0;
   // After the tick, before its report is handed over.
   virtual void ticked(const Monitor& monitor) noexcept = 0;
-  // Of that tick: ticks of the same lineage and cycle rest on the same inputs.
+  // The lineage of that tick: those of one lineage and cycle rest on the same inputs.
   [[nodiscard]] virtual std::uint64_t lineage() const noexcept = 0;
   // The tick that follows is due already: no deadline is to be skipped.
   [[nodiscard]] virtual bool is_behind() noexcept = 0;

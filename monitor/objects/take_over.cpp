@@ -25,7 +25,7 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
   for (std::size_t i = 0; i < now.objects.size(); ++i) {
     const std::uint32_t old = map.objects[i];
     // A sensor's object is unknown until the next frame. Nothing newer comes of one that is not
-    // read: its last pose would stay the oldest one for ever.
+    // read: its last pose would stay the oldest one.
     if (old != SceneMap::kNone && !scene.objects[i].is_seen() && scene.objects[i].is_read)
       take_over(before.objects[old], now.objects[i]);
   }

@@ -47,7 +47,7 @@ struct TickNotice {
   TickTime time;
   // When it ticks. CLOCK_MONOTONIC of this machine, in a notice that was heard too.
   std::int64_t due_ns = 0;
-  // How much later than the time at `due_ns` the told time is: a leader that was held up tells a
+  // The told time is this much later than the time at `due_ns`: a leader that was held up tells a
   // later one.
   std::int64_t told_late_ns = 0;
   std::array<TickInput, kMostTickInputs> inputs;

@@ -39,7 +39,7 @@ double time_between(std::int64_t a_ns, std::int64_t b_ns) noexcept {
   return std::max(seconds_between(a_ns, b_ns), seconds_between(b_ns, a_ns));
 }
 
-// How far a value with this largest speed may be from where it is within this time.
+// Returns the largest way of a value with this largest speed within this time.
 double way_within(double speed, std::int64_t within_ns) noexcept {
   return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
 }

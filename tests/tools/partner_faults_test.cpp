@@ -1,4 +1,4 @@
-// What a daemon says of a partner that is wrong: the rows of FAULTS.md about partners that two
+// A daemon tells what is wrong with its partner: the rows of FAULTS.md about partners that two
 // daemons on one machine do not come to by themselves.
 #include <gtest/gtest.h>
 

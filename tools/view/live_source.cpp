@@ -151,7 +151,7 @@ void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
   if (begins_merging) merge(steady_ns);
 }
 
-// Reports of a daemon on its own are not decoded for this, apart from the first one.
+// Only the first report of a daemon that is alone is decoded for this.
 bool LiveSource::have_partners(dds_entity_t reader) {
   if (taken_.empty() || (std::exchange(has_looked_, true) && writers_alive(reader) < 2))
     return false;

@@ -138,7 +138,7 @@ std::string absent_shares(const Feed& feed) {
   return text;
 }
 
-// Of a cell whose shares report, and which nobody joins.
+// The shares of a cell report, and no program joins them.
 std::string what_it_waits_for(const Feed& feed) {
   std::string names;
   for (const std::string& share : feed.shares())

@@ -1,4 +1,4 @@
-// What a daemon counts and logs of its partner's reports.
+// A daemon counts and logs what its partner's reports say.
 #include "monitor/dds/partner_reports.hpp"
 
 #include <gtest/gtest.h>
