@@ -80,9 +80,13 @@ void SharedCell::look_for_names() {
 void SharedCell::take() {
   const std::int64_t now_ns = dds_time();
   for (const auto& share : shares_) share->take(now_ns);
-  if (!waits_for_first(now_ns)) return;
+  if (joined_ns_ != 0) return;
+  // What came before the first joined report is passed over: the program may have done other work.
   for (const auto& share : shares_) {
-    if (share->has_ahead) share->use();
+    while (share->has_ahead) {
+      share->use();
+      share->take(now_ns);
+    }
   }
 }
 
@@ -148,7 +152,8 @@ std::uint64_t SharedCell::scene_of_most() const {
   std::uint64_t best = map_.revision();
   for (const auto& share : shares_) {
     const std::uint64_t revision = share->current.latest->scene_revision;
-    if (counts[revision] > counts[best]) best = revision;
+    const bool is_first = best == 0 && catalogue_of(revision) != nullptr;
+    if (is_first || counts[revision] > counts[best]) best = revision;
   }
   return best;
 }

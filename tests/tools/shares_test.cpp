@@ -215,7 +215,8 @@ TEST_F(SharedCells, BeginWithoutAFalseWordOfARevision) {
     return std::ranges::all_of(daemons,
                                [](const auto& each) { return each.second->told("started"); });
   })) << logs();
-  client::SharedCellOptions options;  // as clearance-merge has them
+  // The first reports are met later than this.
+  client::SharedCellOptions options{.late_after = milliseconds(1)};
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
   client::SharedCell whole(connection, options);
   for (int report = 0; report < 20; ++report) {
