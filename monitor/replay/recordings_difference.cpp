@@ -160,6 +160,7 @@ class TwoRecordings {
     auto b = second_.batches().lower_bound({source, from});
     const auto end_a = first_.batches().upper_bound({source, number});
     const auto end_b = second_.batches().upper_bound({source, number});
+    if (partners_) return other_contents(source, {a, end_a}, {b, end_b});
     for (; from <= number && (a != end_a || b != end_b); ++a, ++b) {
       const bool only_first = b == end_b || (a != end_a && a->first < b->first);
       if (a == end_a || b == end_b || a->first != b->first)
@@ -170,6 +171,27 @@ class TwoRecordings {
       if (a->second.cdr != b->second.cdr)
         return Finding{Kind::kInputs, fmt::format("batch {} of source '{}' has another content",
                                                   a->first.second, source)};
+    }
+    return std::nullopt;
+  }
+
+  // Partners tick the same batches within a lineage. Before they joined, one of them may have used
+  // a batch already, so that it stands elsewhere in its recording.
+  using Batches = std::map<RecordedTicks::BatchKey, RecordedTicks::Batch>::const_iterator;
+  Found other_contents(const std::string& source, std::pair<Batches, Batches> first,
+                       std::pair<Batches, Batches> second) const {
+    auto& [a, end_a] = first;
+    auto& [b, end_b] = second;
+    while (a != end_a && b != end_b) {
+      if (a->first != b->first) {
+        ++(a->first < b->first ? a : b);
+        continue;
+      }
+      if (a->second.cdr != b->second.cdr)
+        return Finding{Kind::kInputs, fmt::format("batch {} of source '{}' has another content",
+                                                  a->first.second, source)};
+      ++a;
+      ++b;
     }
     return std::nullopt;
   }

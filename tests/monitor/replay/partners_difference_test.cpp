@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 
@@ -169,6 +170,53 @@ TEST_F(RecordingsOfPartners, MayNumberASourceApart) {
   const RecordingsDifference other = compare();
   EXPECT_EQ(other.kind, Kind::kResult) << other.error << other.what;
   EXPECT_THAT(other.what, HasSubstr("apart, so their content was not compared"));
+}
+
+// One that was apart has used the batch already, in a tick of its own.
+TEST_F(RecordingsOfPartners, MayHoldABatchOfTheFirstCommonTickEarlier) {
+  join(right, 50, 30, 1);
+  const auto report = [&](std::uint64_t cycle) {
+    return std::ranges::find_if(right, [cycle](const Kept& message) {
+      return message.kind == TopicKind::kDistances &&
+             cycle_at(decoded<clearance_msg_Distances>(message)->now_ns) == cycle;
+    });
+  };
+  std::string sources;
+  for (const char* const source : {"arm", "cell"}) {
+    std::uint64_t number = 0;  // the last batch that the first common tick used
+    const auto joined = decoded<clearance_msg_Distances>(*report(50));
+    for (std::uint32_t i = 0; i < joined->sources._length; ++i) {
+      if (joined->sources._buffer[i].source == std::string(source))
+        number = joined->sources._buffer[i].sequence_number;
+    }
+    if (number == 0) continue;
+    sources += source;
+    *report(49) =
+        altered<clearance_msg_Distances>(*report(49), [&](clearance_msg_Distances& before) {
+          for (std::uint32_t i = 0; i < before.sources._length; ++i) {
+            if (before.sources._buffer[i].source == std::string(source))
+              before.sources._buffer[i].sequence_number = number;
+          }
+        });
+  }
+  ASSERT_NE(sources, "");
+  const RecordingsDifference found = compare();
+  EXPECT_TRUE(found.is_same()) << found.error << found.what;
+  EXPECT_EQ(found.compared, 151u);
+}
+
+TEST_F(RecordingsOfPartners, BatchesOfAnotherContentAreADifferenceOfInputs) {
+  for (Kept& message : right) {
+    if (message.kind != TopicKind::kPoses ||
+        decoded<clearance_msg_PoseBatch>(message)->sequence_number != 20)
+      continue;
+    message = altered<clearance_msg_PoseBatch>(message, [](clearance_msg_PoseBatch& batch) {
+      batch.poses._buffer[0].position.x += 1e-12;
+    });
+  }
+  const RecordingsDifference found = compare();
+  EXPECT_EQ(found.kind, Kind::kInputs) << found.error << found.what;
+  EXPECT_TRUE(found.what.starts_with("batch 20 of source '")) << found.what;
 }
 
 TEST_F(RecordingsOfPartners, ThatNeverJoinedHaveNothingInCommon) {
