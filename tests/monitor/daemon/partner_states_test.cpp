@@ -49,9 +49,13 @@ class PartnerStatesTest : public testing::Test, private CellParts {
     test::write_text(file, test::kCommandedCell);
     return std::make_shared<const Cell>(std::get<Cell>(read_cell(file)));
   }
-  // The leader ticks a scene of this revision.
+  // The leader has ticked the first cycle of a scene of this revision.
   void hear_leader(std::uint64_t revision) {
-    TickNotice notice{.daemon = kLeader, .revision = revision, .cycle = 1};
+    TickNotice notice;
+    notice.daemon = kLeader;
+    notice.revision = revision;
+    notice.lineage = kLineage;
+    notice.cycle = 1;
     notice.due_ns = clock.monotonic_ns();
     ASSERT_TRUE(ticks.hear(notice));
   }
@@ -61,10 +65,12 @@ class PartnerStatesTest : public testing::Test, private CellParts {
     states.actions().wants_state();
     finish();
   }
+  // The state before that cycle.
   void take_state(const Scene& scene) {
+    while (ticks.tags().front() != nullptr) ticks.tags().pop();
     std::vector<std::byte> bytes;
     save_state(SourceNumbers(scene), SceneIds(scene), Monitor(scene), bytes);
-    states.actions().take_state({scene.revision, kLineage, 1, bytes});
+    states.actions().take_state({scene.revision, kLineage, 0, bytes});
     finish();
   }
   // Waits until the scene thread has done what it was given.
@@ -81,10 +87,9 @@ class PartnerStatesTest : public testing::Test, private CellParts {
     EXPECT_TRUE(result.done()) << result.reason;
     return result.scene_revision;
   }
-  // Among the next ticks there is one of the lineage of the state.
+  // Since take_state() a tick has followed the leader's.
   bool joins() {
-    while (ticks.tags().front() != nullptr) ticks.tags().pop();
-    for (int seen = 0; seen < 20;) {
+    for (int seen = 0; seen < 100;) {
       const TickTag* const tag = ticks.tags().front();
       if (tag == nullptr) {
         std::this_thread::yield();
