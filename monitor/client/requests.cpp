@@ -19,13 +19,22 @@ constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent aga
 constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
 constexpr std::int64_t kLeaseNs = 2'000'000'000;  // a killed program's name is free after this time
 constexpr std::int64_t kAskNs = 50'000'000;       // until the caller is asked again
+constexpr std::int64_t kMeetNs = 20'000'000;      // between two looks for another daemon
 
-bool has_matched(dds_entity_t writer, dds_entity_t reader) {
+// The daemons' readers of requests, and their writers of results, that this client has met.
+struct Met {
+  std::uint32_t readers = 0, writers = 0;
+  [[nodiscard]] bool more(const Met& before) const noexcept {
+    return readers > before.readers || writers > before.writers;
+  }
+};
+Met met(dds_entity_t writer, dds_entity_t reader) {
   dds_publication_matched_status_t readers{};
   dds_subscription_matched_status_t writers{};
-  return dds_get_publication_matched_status(writer, &readers) == DDS_RETCODE_OK &&
-         dds_get_subscription_matched_status(reader, &writers) == DDS_RETCODE_OK &&
-         readers.current_count > 0 && writers.current_count > 0;
+  if (dds_get_publication_matched_status(writer, &readers) != DDS_RETCODE_OK ||
+      dds_get_subscription_matched_status(reader, &writers) != DDS_RETCODE_OK)
+    return {};
+  return {readers.current_count, writers.current_count};
 }
 
 }  // namespace
@@ -76,7 +85,8 @@ Requests<Request, Result, Message>::~Requests() {
 
 template <class Request, class Result, class Message>
 bool Requests<Request, Result, Message>::is_heard() const {
-  return has_matched(writer_, reader_);
+  const Met now = met(writer_, reader_);
+  return now.readers > 0 && now.writers > 0;
 }
 
 template <class Request, class Result, class Message>
@@ -96,7 +106,8 @@ std::uint64_t Requests<Request, Result, Message>::post(const Make& make) {
   return write(next(make)) ? request_ : 0;
 }
 
-// A volatile topic: what is written before a daemon is met does not arrive.
+// A volatile topic: what is written before a daemon is met does not arrive. Of two partners one
+// answers, and it may be the one that is met later.
 template <class Request, class Result, class Message>
 std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
                                                                std::function<bool()> ask,
@@ -108,8 +119,14 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
   const Request request = next(make);
   const std::int64_t alone_ns = dds_time() + kLeaseNs + kAgainNs / 2;
   do {
+    const Met before = met(writer_, reader_);
     (void)write(request);
-    if (auto result = wait_for(request_, std::min(end_ns, dds_time() + kAgainNs), stop)) {
+    const std::int64_t again_ns = std::min(end_ns, dds_time() + kAgainNs);
+    std::optional<Result> result;
+    do {
+      result = wait_for(request_, std::min(again_ns, dds_time() + kMeetNs), stop);
+    } while (!result && dds_time() < again_ns && !stop() && !met(writer_, reader_).more(before));
+    if (result) {
       // In these cases the daemon has not taken the request.
       using Status = decltype(Result::status);
       const bool is_to_repeat = result->status == Status::kBusy ||
@@ -117,8 +134,8 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
       if (!is_to_repeat) return result;
       if (dds_time() + kAgainNs >= end_ns) return result;
       results_.erase(request_);
-      const std::int64_t again_ns = dds_time() + kAgainNs;
-      while (dds_time() < again_ns && !stop()) dds_sleepfor(stop.slice(again_ns - dds_time()));
+      const std::int64_t pause_ns = dds_time() + kAgainNs;
+      while (dds_time() < pause_ns && !stop()) dds_sleepfor(stop.slice(pause_ns - dds_time()));
     }
   } while (dds_time() < end_ns && !stop());
   return std::nullopt;

@@ -110,15 +110,20 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
-  if (partner_) {
-    partner_states_ = std::make_unique<PartnerStates>(partner_->port, partner_->ticks, *loop_,
-                                                      *changer_, *scene_thread_, loop_ended_);
-  }
   const auto revision = [this] { return revision_.load(); };
+  if (partner_) {
+    partner_states_ = std::make_unique<PartnerStates>(
+        partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
+        [this](QueuedCommand command) { return put(std::move(command)); }, revision);
+  }
   if (!cell.commands.from.empty()) {
     commands_ = std::make_unique<CommandPort>(
         cell, cell.commands.from, participant_, reports_.daemon(),
-        [this](QueuedCommand command) { return put(std::move(command)); }, revision);
+        [this](QueuedCommand command) {
+          return put(partner_ ? partner_states_->for_both(std::move(command)) : std::move(command));
+        },
+        revision,
+        partner_ ? [this] { return partner_states_->takes_commands(); } : std::function<bool()>());
   }
   const RosTrajectories& trajectories = cell.ros.trajectories;
   const auto put_question = [this](QueuedQuestion question) {

@@ -1,8 +1,11 @@
 #include "monitor/daemon/partner_states.hpp"
 
+#include <fmt/format.h>
+
 #include <chrono>
 #include <cstddef>
 #include <span>
+#include <string>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -13,6 +16,10 @@ namespace clearance {
 namespace {
 
 constexpr std::chrono::microseconds kLook{100};
+// A leader that was held up for a moment knows after this time whether it still leads.
+constexpr std::chrono::milliseconds kLeadsAgain{100};
+// The partner takes some ms for a changed cell, and longer while it is busy.
+constexpr std::chrono::seconds kPatience{2};
 
 }  // namespace
 
@@ -29,7 +36,10 @@ PartnerPort::Actions PartnerStates::actions() {
               own.bytes = bytes;
               join(own);
             });
-          }};
+          },
+      .revision = revision_,
+      .take_cell = [this](std::string text,
+                          std::uint64_t revision) { take_cell(std::move(text), revision); }};
 }
 
 // A full queue drops it; the port asks again.
@@ -81,6 +91,69 @@ void PartnerStates::join(const PartnerStateView& state) {
   }
   if (!loop_.offer(joined)) return;
   while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
+}
+
+// By its turn this daemon may lead, or have the cell.
+void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
+  QueuedCommand queued;
+  queued.is_own = true;
+  queued.bytes_to_make = text.size();
+  queued.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
+    const bool has_it = cell.scene.revision == revision;
+    if (has_it || ticks_.standing() == PartnerStanding::kLeading) return Command{};
+    return Command{.changes = {ReplaceCell{text}}};
+  };
+  queued.answer = [this, revision](const CommandResult& result) {
+    const bool is_taken = result.done() && result.scene_revision == revision;
+    if (is_taken || std::exchange(refused_, revision) == revision) return;
+    log_line(lines::kPartnerStateRefused,
+             fmt::format("its cell of revision {:016x} is refused here: {}", revision,
+                         result.done() ? "files or options differ" : result.reason));
+  };
+  static_cast<void>(put_command_(std::move(queued)));
+}
+
+// Two daemons that both lead the ticks for a moment do not both take a command.
+bool PartnerStates::takes_commands() const {
+  const auto end = std::chrono::steady_clock::now() + kLeadsAgain;
+  while (ticks_.standing() == PartnerStanding::kLeading && !loop_ended_) {
+    if (port_.leads()) return true;
+    if (std::chrono::steady_clock::now() > end) break;
+    std::this_thread::sleep_for(kLook);
+  }
+  return false;
+}
+
+QueuedCommand PartnerStates::for_both(QueuedCommand command) {
+  command.answer = [this, is_dry = command.command.dry_run,
+                    answer = std::move(command.answer)](const CommandResult& result) {
+    answer(is_dry || !result.done() ? result : of_both(result));
+  };
+  return command;
+}
+
+// If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost.
+// Busy: the client sends the command again.
+CommandResult PartnerStates::of_both(CommandResult result) {
+  const auto end = std::chrono::steady_clock::now() + kPatience;
+  while (!loop_ended_ && port_.hears_partner() &&
+         port_.partner_revision() != result.scene_revision) {
+    if (ticks_.standing() != PartnerStanding::kLeading) {
+      result.status = CommandStatus::kBusy;
+      result.reason = fmt::format(
+          "found that '{}' has taken the lead meanwhile, with its cell; expected that the same "
+          "command is sent again",
+          port_.partner());
+      break;
+    }
+    if (std::chrono::steady_clock::now() > end) {
+      result.reason = fmt::format("the partner '{}' has another cell in force: its log says why",
+                                  port_.partner());
+      break;
+    }
+    std::this_thread::sleep_for(kLook);
+  }
+  return result;
 }
 
 }  // namespace clearance

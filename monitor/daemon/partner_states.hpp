@@ -1,10 +1,15 @@
-// Takes over the state of a daemon's partner, and gives it its own. Both are work of the
-// scene thread, so that neither meets a change of the cell.
+// Takes over the state and the cell of a daemon's partner, and gives it its own. All of this is
+// work of the scene thread, so that none of it meets a change of the cell.
+//
+// The leader alone takes the commands of clients. Its partner gets the changed cell from it, so
+// that both make the same changes in the same order.
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <functional>
 #include <memory>
+#include <string>
 #include <utility>
 
 #include "config/cell/cell.hpp"
@@ -18,22 +23,34 @@ namespace clearance {
 // Everything given must outlive this. The actions are called in the threads of the port.
 class PartnerStates {
  public:
+  // `put`: the way in for changes of the cell. `revision` returns that of the scene in force.
+  using Put = std::function<bool(QueuedCommand)>;
   PartnerStates(PartnerPort& port, TickPartner& ticks, TickLoop& loop, SceneChanger& changer,
-                SceneThread& thread, const std::atomic<bool>& loop_ended)
+                SceneThread& thread, const std::atomic<bool>& loop_ended, Put put_command,
+                std::function<std::uint64_t()> revision)
       : port_(port),
         ticks_(ticks),
         loop_(loop),
         changer_(changer),
         thread_(thread),
-        loop_ended_(loop_ended) {}
+        loop_ended_(loop_ended),
+        put_command_(std::move(put_command)),
+        revision_(std::move(revision)) {}
 
   [[nodiscard]] PartnerPort::Actions actions();
+
+  // Any thread but that of the tick. False: the partner takes them, or neither does for a moment.
+  [[nodiscard]] bool takes_commands() const;
+  // The command of a client. Its answer waits until the partner has the changed cell, too.
+  [[nodiscard]] QueuedCommand for_both(QueuedCommand command);
 
  private:
   void put(std::function<void()> task);
   void prepare();
   void send();
   void join(const PartnerStateView& state);
+  void take_cell(std::string text, std::uint64_t revision);
+  [[nodiscard]] CommandResult of_both(CommandResult result);
 
   PartnerPort& port_;
   TickPartner& ticks_;
@@ -41,6 +58,9 @@ class PartnerStates {
   SceneChanger& changer_;
   SceneThread& thread_;
   const std::atomic<bool>& loop_ended_;
+  const Put put_command_;
+  const std::function<std::uint64_t()> revision_;
+  std::uint64_t refused_ = 0;  // the last cell that was not taken over; for the scene thread
   // For the scene thread. The monitor of a prepared state refers to the scene of its cell.
   struct Prepared {
     std::shared_ptr<const Cell> cell;

@@ -15,6 +15,8 @@ namespace {
 // Events without a message are noticed this often.
 constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
+// A daemon whose notices were heard for the last time longer ago does not lead any more.
+constexpr std::int64_t kLeaderHeardNs = 100'000'000;
 // A leader stops writing somewhat before its lease ends.
 constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
@@ -75,7 +77,8 @@ PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
       ticks_reader_(participant.partner_reader(TopicKind::kPartnerTicks, topics.partner_ticks)),
       states_reader_(participant.partner_reader(TopicKind::kPartnerStates, topics.partner_states)),
       reports_reader_(participant.partner_reader(TopicKind::kDistances, topics.distances)),
-      wait_(participant, {ticks_reader_, states_reader_, reports_reader_}) {
+      catalogues_reader_(participant.partner_reader(TopicKind::kCatalogue, topics.catalogue)),
+      wait_(participant, {ticks_reader_, states_reader_, reports_reader_, catalogues_reader_}) {
   reserve_sequence(written_->inputs, kMostTickInputs);
   copy_text(identity.partner, written_->partner);
 }
@@ -140,7 +143,9 @@ void PartnerPort::hear() {
     ticks_.end_pass();
     hear_states();
     hear_reports();
+    hear_catalogues();
     look();
+    look_for_cell();
   }
 }
 
@@ -169,6 +174,9 @@ void PartnerPort::hear_notices() {
       notice_.inputs[i] = {SourceName(input.source), input.sequence_number, input.content};
     }
     static_cast<void>(ticks_.hear(notice_));
+    leader_ = in.daemon;
+    leader_revision_ = in.scene_revision;
+    leader_heard_ns_ = SystemClock().monotonic_ns();
   }
 }
 
@@ -197,9 +205,31 @@ void PartnerPort::hear_states() {
 void PartnerPort::hear_reports() {
   dds_sample_info_t info;
   while (take(reports_reader_, report_, info)) {
-    if (*report_->partner != '\0' && identity_.partner != report_->partner)
-      reports_.note_other(*report_);
+    if (*report_->partner == '\0' || identity_.partner == report_->partner) continue;
+    partner_revision_ = report_->scene_revision;
+    reports_.note_other(*report_);
   }
+}
+
+// A latched topic: the last one may come before the first notice.
+void PartnerPort::hear_catalogues() {
+  dds_sample_info_t info;
+  while (take(catalogues_reader_, heard_catalogue_, info)) std::swap(catalogue_, heard_catalogue_);
+}
+
+// Whatever changed the leader's cell, and whenever this daemon came: it has that cell, too.
+void PartnerPort::look_for_cell() {
+  const std::int64_t now = SystemClock().monotonic_ns();
+  const bool hears_leader = leader_ != 0 && now - leader_heard_ns_ < kLeaderHeardNs;
+  if (!hears_leader || ticks_.standing() == PartnerStanding::kLeading || !actions_.take_cell)
+    return;
+  const clearance_msg_Catalogue& its = *catalogue_;
+  if (its.daemon != leader_ || its.scene_revision != leader_revision_) return;
+  if (its.scene_revision == actions_.revision()) return;
+  if (its.scene_revision == offered_ && now - offered_ns_ < kAskAgainNs) return;
+  offered_ = its.scene_revision;
+  offered_ns_ = now;
+  actions_.take_cell(its.cell_yaml, offered_);
 }
 
 void PartnerPort::look() {

@@ -1,5 +1,5 @@
-// Joins a daemon's TickPartner with its partner on DDS: notices of ticks, states, and the reports
-// of the partner, which are compared with the daemon's own.
+// Joins a daemon's TickPartner with its partner on DDS: notices of ticks, states, the leader's
+// cell, and the reports of the partner, which are compared with the daemon's own.
 #pragma once
 
 #include <array>
@@ -50,6 +50,10 @@ class PartnerPort {
     std::function<void()> wants_state;  // once a second, while this daemon does not follow
     std::function<void()> send_state;   // the partner asks for the state
     std::function<void(const PartnerStateView&)> take_state;
+    std::function<std::uint64_t()> revision = {};  // of the scene in force here
+    // The leader has the cell of this text and revision in force, and this daemon has not. Once for
+    // a change, and again every second.
+    std::function<void(std::string text, std::uint64_t revision)> take_cell = {};
   };
   // `identity` names the partner that this daemon is. Everything given must outlive this.
   PartnerPort(Participant& participant, const Topics& topics, const DaemonIdentity& identity,
@@ -75,6 +79,11 @@ class PartnerPort {
   [[nodiscard]] bool leads() const;
   void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
   void fill(clearance_msg_PartnerHealth& out);
+  // The partner has published in the last tenth of a second; its name, and the revision of its last
+  // report.
+  [[nodiscard]] bool hears_partner() { return reports_.hears_any(); }
+  [[nodiscard]] std::string partner() { return reports_.name(); }
+  [[nodiscard]] std::uint64_t partner_revision() const noexcept { return partner_revision_; }
 
  private:
   void write_notices();
@@ -82,6 +91,8 @@ class PartnerPort {
   void hear_notices();
   void hear_states();
   void hear_reports();
+  void hear_catalogues();
+  void look_for_cell();
   void look();
   void write(const Sample<clearance_msg_PartnerState>& sample, const char* what);
   [[nodiscard]] Sample<clearance_msg_PartnerState> state_message() const;
@@ -89,17 +100,24 @@ class PartnerPort {
   const DaemonIdentity& identity_;
   TickPartner& ticks_;
   Actions actions_;
-  dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_;
+  dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_,
+      catalogues_reader_;
   DataWait wait_;
   PartnerReports reports_;
   LeastDelay delay_;
   std::atomic<std::int64_t> written_ns_{0};  // the last notice, CLOCK_MONOTONIC
+  std::atomic<std::uint64_t> partner_revision_{0};
+  std::uint64_t leader_ = 0, leader_revision_ = 0;  // of the last notice that was heard
+  std::int64_t leader_heard_ns_ = 0;
+  std::uint64_t offered_ = 0;  // the revision that take_cell() got last
+  std::int64_t offered_ns_ = 0;
   std::int64_t asked_ns_ = 0, told_ns_ = 0;
   bool clock_told_ = false, refusal_told_ = false;
   PartnerStanding told_ = PartnerStanding::kStarting;
   Sample<clearance_msg_PartnerTick> heard_, written_;
   Sample<clearance_msg_PartnerState> state_;
   Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_Catalogue> catalogue_, heard_catalogue_;
   TickNotice notice_;
   std::atomic<bool> stop_{false};
   std::thread hearing_, writing_;

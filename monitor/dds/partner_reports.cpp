@@ -83,6 +83,11 @@ bool PartnerReports::hears_any() {
   return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
 }
 
+std::string PartnerReports::name() {
+  const std::lock_guard lock(mutex_);
+  return name_;
+}
+
 bool PartnerReports::hears_another(const std::string& partner) {
   const std::lock_guard lock(mutex_);
   return heard_ns_ != 0 && name_ != partner &&

@@ -19,6 +19,7 @@ class PartnerReports {
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();
+  [[nodiscard]] std::string name();  // of the partner that was heard last; empty: none
   // A partner of another name than this has published in the last tenth of a second: a third one is
   // not let in.
   [[nodiscard]] bool hears_another(const std::string& partner);

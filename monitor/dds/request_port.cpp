@@ -77,10 +77,12 @@ constexpr const auto& left_out_line(const QuestionTraffic&) { return lines::kQue
 template <class Traffic>
 RequestPort<Traffic>::RequestPort(const Cell& cell, const std::vector<std::string>& clients,
                                   Participant& participant, std::uint64_t daemon, Put put,
-                                  std::function<std::uint64_t()> revision)
+                                  std::function<std::uint64_t()> revision,
+                                  std::function<bool()> takes)
     : daemon_(daemon),
       put_(std::move(put)),
       revision_(std::move(revision)),
+      takes_(std::move(takes)),
       ledger_(clients, Traffic::kKey),
       reader_(make_reader<Traffic>(cell, participant, names_, lapsed_)),
       results_(participant.writer(Traffic::kResults, cell.topics.*topic(Traffic::kResults).name)),
@@ -136,6 +138,7 @@ void RequestPort<Traffic>::take(const CdrSample& sample) {
   const std::span<const std::byte> bytes = sample.bytes();
   Sample<typename Traffic::Message> message;
   if (!decoder_.decode(bytes, message, CdrBytes::kOfReader)) return;
+  if (takes_ && !takes_()) return;
   const typename Ledger::Request request{message->client, message->request, hash_of(bytes)};
   if (auto refused = ledger_.refuse_sender(request, sample.writer()))
     return answer_at_once(*std::move(refused));
@@ -159,8 +162,12 @@ void RequestPort<Traffic>::take(const CdrSample& sample) {
 
 template <class Traffic>
 void RequestPort<Traffic>::pass_on(Request request, const typename Ledger::Request& known_as) {
-  const auto answer = [this](const Result& result) {
-    ledger_.answer(result);
+  const auto answer = [this, known_as](const Result& result) {
+    if (result.status == decltype(Result::status)::kBusy) {
+      ledger_.withdraw(known_as);
+    } else {
+      ledger_.answer(result);
+    }
     if (!result.done()) log_refusal(result);
     write(result);
   };

@@ -54,10 +54,12 @@ class RequestPort {
   using Put = std::function<bool(typename Traffic::Queued)>;
 
   // Takes the requests of `clients`, on the topics of the cell. `daemon` is the id in the messages,
-  // and `revision` returns that of the scene in force. The participant must outlive this. Throws
-  // DdsError.
+  // and `revision` returns that of the scene in force. `takes`: false while another daemon answers,
+  // and requests that come meanwhile are not even refused; empty: never. The participant must
+  // outlive this. Throws DdsError.
   RequestPort(const Cell& cell, const std::vector<std::string>& clients, Participant& participant,
-              std::uint64_t daemon, Put put, std::function<std::uint64_t()> revision);
+              std::uint64_t daemon, Put put, std::function<std::uint64_t()> revision,
+              std::function<bool()> takes = {});
   ~RequestPort();
   RequestPort(const RequestPort&) = delete;
   RequestPort& operator=(const RequestPort&) = delete;
@@ -78,6 +80,7 @@ class RequestPort {
   const std::uint64_t daemon_;
   const Put put_;
   const std::function<std::uint64_t()> revision_;
+  const std::function<bool()> takes_;
   Ledger ledger_;
   NameLimit names_;
   std::set<std::string> strangers_;  // clients that are not named and were answered

@@ -96,6 +96,7 @@ int print_result(const CommandResult& result, bool dry_run) {
     print(stdout, "done: revision {:016x} is in force from cycle {}\n", result.scene_revision,
           result.in_force_from);
   }
+  if (!result.reason.empty()) print(stderr, "but {}\n", result.reason);
   return kOk;
 }
 

@@ -123,7 +123,14 @@ class PartnerStatesTest : public testing::Test, private CellParts {
   std::atomic<bool> stop{false}, loop_ended{false};
   SceneChanger changer{loop, std::exchange(first, nullptr), static_cast<CellParts&>(*this)};
   SceneThread thread{changer, loop, loop_ended, {}};
-  PartnerStates states{port, ticks, loop, changer, thread, loop_ended};
+  PartnerStates states{port,
+                       ticks,
+                       loop,
+                       changer,
+                       thread,
+                       loop_ended,
+                       [this](QueuedCommand command) { return thread.put(std::move(command)); },
+                       [this] { return changer.cell().scene.revision; }};
   std::thread ticking;
 
  private:
