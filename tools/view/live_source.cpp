@@ -104,9 +104,9 @@ void LiveSource::advance(Server& server) {
   note_the_catalogue();
   follow_the_catalogue(server);
   note_what_is_attached(server);
-  tell_of_the_daemon(server, now_ns, steady_ns);
   server.set_time(now_ns);
   frame_->publish(server);
+  tell_of_the_daemon(server, now_ns, steady_ns);
   is_seen_wanted_ = server.is_wanted(kSeen);
   if (seen_) show_what_is_seen(server, steady_ns);
 }
@@ -131,6 +131,7 @@ void LiveSource::leave(Server& server) {
   heard_ = false;
   is_merging_ = has_looked_ = false;
   merged_ = {};
+  server.set_status("partners", 0, "");
 }
 
 // The bytes as they came: nothing is decoded that is only passed on.
