@@ -227,6 +227,25 @@ TEST_F(SharedCells, BeginWithoutAFalseWordOfARevision) {
   }
 }
 
+// A report may come before the catalogue of its scene.
+TEST_F(SharedCells, SayNothingBeforeTheNamesOfASceneAreKnown) {
+  client::SharedCellOptions options;
+  for (const Share& share : cell.shares.all) options.names.push_back(share.name);
+  client::SharedCell whole(connection, options);
+  Participant boxes(dds);
+  const dds_entity_t writer =
+      boxes.writer(TopicKind::kDistances, share_topic(cell.topics.distances, "boxes"));
+  ASSERT_TRUE(test::eventually([&] { return test::matched_readers(writer) == 1; }));
+  Sample<clearance_msg_Distances> report;
+  report->daemon = 1;
+  report->scene_revision = cell.scene.revision;
+  for (report->cycle = 1; report->cycle < 30; ++report->cycle) {
+    report->now_ns = report->publish_ns = dds_time();
+    ASSERT_EQ(dds_write(writer, &*report), DDS_RETCODE_OK);
+    EXPECT_FALSE(whole.next(milliseconds(5)));
+  }
+}
+
 class ChangedSharedCells : public SharedCells {
  protected:
   ChangedSharedCells() : SharedCells("commands: {from: [planner]}\n") {}
