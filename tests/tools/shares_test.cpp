@@ -208,25 +208,6 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   EXPECT_EQ(merge.wait(), 0) << merge.output();
 }
 
-// A share whose catalogue has not come yet has no other revision than the others.
-TEST_F(SharedCells, BeginWithoutAFalseWordOfARevision) {
-  start_all();
-  ASSERT_TRUE(test::eventually([&] {
-    return std::ranges::all_of(daemons,
-                               [](const auto& each) { return each.second->told("started"); });
-  })) << logs();
-  // The first reports are met later than this.
-  client::SharedCellOptions options{.late_after = milliseconds(1)};
-  for (const Share& share : cell.shares.all) options.names.push_back(share.name);
-  client::SharedCell whole(connection, options);
-  for (int report = 0; report < 20; ++report) {
-    ASSERT_TRUE(whole.next(std::chrono::seconds(10)));
-    EXPECT_EQ(whole->scene_revision, cell.scene.revision);
-    for (const client::ShareCheck& share : whole.shares())
-      EXPECT_NE(share.state, ShareState::kOtherRevision) << share.name;
-  }
-}
-
 // A report may come before the catalogue of its scene.
 TEST_F(SharedCells, SayNothingBeforeTheNamesOfASceneAreKnown) {
   client::SharedCellOptions options;
