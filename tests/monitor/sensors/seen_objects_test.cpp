@@ -210,7 +210,7 @@ TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot
         .zones[0];
   };
   zone();
-  show_point(0.29);
+  show_point(0.49);
   for (int t = 0; t < 9; ++t) {
     const ZoneReport report = zone();
     EXPECT_EQ(report.cause, report.active ? ZoneCause::kNear : ZoneCause::kInactive) << t;
