@@ -58,7 +58,7 @@ Example:
   clearance-robot cell.yaml --joints joints.csv.gz
 
 A person walks up to the robot, seen by the cameras of a cell, and the distances are judged:
-  clearance-robot config/cells/camera.yaml --partition lab --swing 0.3 --person 3.2,-0.6:0.75,-0.1 --truth
+  clearance-robot config/cells/camera.yaml --partition lab --swing 0.3 --person 3.2,-0.6:1.45,-0.15 --truth
 
 Latency at every phase between the robot's cycle and the daemon's (997 Hz drifts against 1000 Hz):
   clearance-robot config/cells/two_arms.yaml --partition lab --seconds 60 --rate 997 --latency)";

@@ -146,16 +146,21 @@ json pairs_json(const Scene& scene) {
   return list;
 }
 
-// The bounded objects on the side of the zone that has fewer objects. A margin is part of the
-// clearance to be kept.
+// The bounded objects on the side of the zone that has fewer objects, and never on that of a
+// sensor, whose body is all that it may see. A margin is part of the clearance to be kept.
 json shells_json(const Scene& scene, const Zone& zone, Meshes& meshes) {
   std::set<std::uint32_t> first, second;
   for (const std::uint32_t pair : zone.pairs) {
     first.insert(scene.pairs[pair].first);
     second.insert(scene.pairs[pair].second);
   }
+  const auto has_sensor = [&](const std::set<std::uint32_t>& side) {
+    return std::ranges::any_of(side, [&](auto i) { return scene.objects[i].is_seen(); });
+  };
+  const bool is_first =
+      has_sensor(first) != has_sensor(second) ? has_sensor(second) : first.size() <= second.size();
   json list = json::array();
-  for (const std::uint32_t i : first.size() <= second.size() ? first : second) {
+  for (const std::uint32_t i : is_first ? first : second) {
     const Object& object = scene.objects[i];
     for (const Part& part : object.parts) {
       if (!part.shape.bounded()) continue;

@@ -102,9 +102,12 @@ PlacedBy placed_by(const Feed& feed, std::uint32_t object) {
   }
   const auto* const catalogue = feed.catalogue();
   if (catalogue == nullptr) return PlacedBy::kPoses;
-  // Only what a sensor sees has no parts.
-  if (object < catalogue->objects._length && catalogue->objects._buffer[object].parts._length == 0)
-    return PlacedBy::kFrames;
+  // The view of a sensor is one part with this name (config/cell/sensor_reader.cpp).
+  if (object < catalogue->objects._length) {
+    const auto& parts = catalogue->objects._buffer[object].parts;
+    if (parts._length == 1 && parts._buffer[0] == std::string_view("view"))
+      return PlacedBy::kFrames;
+  }
   return catalogue->joints._length > 0 ? PlacedBy::kEither : PlacedBy::kPoses;
 }
 
