@@ -1,10 +1,12 @@
 // What a frame cannot show near a link: the blind shell, and places that it has not seen.
 //
-// Oracles: closed forms for boxes and planes that the test puts in.
+// Oracles: closed forms for boxes, balls and planes that the test puts in.
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string>
 
 #include "tests/monitor/sensors/small_camera.hpp"
 
@@ -14,6 +16,22 @@ namespace {
 // All pixels look at the upper arm if it lies along x: its upper face is 1.95 m below.
 constexpr const char* kOverTheArm =
     ", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}";
+
+// The payload is a ball beside the upper arm, and its top is at z = 0.3. The second one is on a
+// tray, which is itself attached to the arm.
+const std::array<std::string, 2> kPayloads = {
+    ", {name: ball, attached: {to: upper, pose: {xyz: [0.5, 0.4, 0.2]}}, sphere: {radius: 0.1}}",
+    ", {name: ball, attached: {to: tray, pose: {xyz: [0.4, 0, 0]}}, sphere: {radius: 0.1}}"
+    ", {name: tray, attached: {to: upper, pose: {xyz: [0.5, 0, 0.2], rpy: [0, 0, "
+    "1.5707963267948966]}}, sphere: {radius: 0.05}}"};
+constexpr double kTurned = 0.7;  // of the shoulder, rad
+const Vec3 kBall(0.5 * std::cos(kTurned) - 0.4 * std::sin(kTurned),
+                 0.5 * std::sin(kTurned) + 0.4 * std::cos(kTurned), 0.2);
+// Where the shoulder is so turned, all pixels look at the top of the ball, 1.7 m below.
+const std::string kOverTheBall = ", own_shell: 0.02, mount: {pose: {xyz: [" +
+                                 std::to_string(kBall.x()) + ", " + std::to_string(kBall.y()) +
+                                 ", 2], rpy: [3.141592653589793, 0, 0]}}";
+
 class HiddenPlacesTest : public SensorsTest {
  protected:
   // Shows the frames that are built by then to a monitor, whose joints are those at kStart.
@@ -131,6 +149,89 @@ TEST_F(HiddenPlacesTest, WhatTheRobotItselfHidesIsNotCountedAsUnseen) {
   std::copy(step.data.begin() + 94, step.data.end(), gap.data.begin() + 94);
   add(gap);
   EXPECT_LT(near(tick(0.0), "upper").unseen, 0.0) << "the cone of the missing pixel meets the arm";
+}
+
+TEST_F(HiddenPlacesTest, APayloadIsLeftOutWhereItsLinkCarriedItAtTheStamp) {
+  for (const std::string& payload : kPayloads) {
+    for (const double shoulder : {kTurned, kTurned + 0.3}) {
+      make(kImage + kOverTheBall, "", payload);
+      add(Type::kCameraInfo, narrow().cdr(), kStart);
+      add_joints(shoulder, kStart);
+      add_joints(2.0, kStart + 1'000'000'000);  // it has turned away since
+      add(Type::kImage, flat(0, 1700).cdr(), kStart + 1'000'000'000);
+      const auto frames = settle(kStart + 1'000'000'000);
+      if (shoulder == kTurned) {
+        EXPECT_TRUE(frames.empty());
+        EXPECT_EQ(count(FrameFault::kNothingSeen), 1u) << payload;
+      } else {
+        ASSERT_EQ(frames.size(), 1u);
+        EXPECT_EQ(frames[0].cloud->size(), 48u) << payload;
+      }
+    }
+  }
+}
+
+TEST_F(HiddenPlacesTest, ABodyThatIsNotAttachedIsAnObstacleAtTheSamePlace) {
+  make(kImage + kOverTheBall, "", ", {name: ball, groups: [arm], sphere: {radius: 0.1}}");
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  ASSERT_EQ(cell.scene.objects[1].name, "ball");
+  sensors->add(std::vector{test::sample(1, {kBall, Eigen::Quaterniond::Identity()}, kStart)},
+               test::joints(kTurned, 0.0, 0.0, kStart));
+  add(flat(0, 1700));
+  const auto frames = settle(kStart + 2000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 48u);
+}
+
+// The first row sees something 0.69 m above the ball. One pixel in the middle sees something that
+// is 15 mm or 60 mm above the ball.
+TEST_F(HiddenPlacesTest, ReportsSayHowThickTheBlindShellOfAPayloadIs) {
+  for (const std::string& payload : kPayloads) {
+    for (const bool is_within : {true, false}) {
+      make(kImage + kOverTheBall, "", payload);
+      monitor = nullptr;
+      EXPECT_EQ(near(tick(kTurned), "ball").thickness, kInfinity) << "no frame yet";
+      add(Type::kCameraInfo, narrow().cdr(), kStart);
+      add_joints(kTurned, kStart);
+      ImageText image = flat(0, 1700);
+      for (std::size_t pixel = 0; pixel < 8; ++pixel) put(image, pixel, 1000);
+      put(image, 19, is_within ? 1685 : 1640);
+      add(image);
+      monitor = nullptr;
+      const Report& report = tick(kTurned);
+      const HiddenReport& shell = near(report, "ball");
+      EXPECT_EQ(shell.elements, is_within ? 40u : 39u) << payload;
+      // The slab of a pixel is 20 mm long and 4 mm wide, and comes within 20 mm of the ball.
+      EXPECT_GT(shell.thickness, 0.04);
+      EXPECT_LT(shell.thickness, 0.05);
+      const PairReport& pair = *std::ranges::find(report.pairs, shell.pair, &PairReport::pair);
+      EXPECT_NEAR(pair.lower, is_within ? 0.69 : 0.05, 0.001);
+      EXPECT_EQ(near(report, "upper").elements, 0u);
+      EXPECT_EQ(near(report, "upper").thickness, 0.0);
+    }
+  }
+}
+
+TEST_F(HiddenPlacesTest, WhatAPayloadItselfHidesIsNotCountedAsUnseenAndWhatHidesItIs) {
+  for (const std::string& payload : kPayloads) {
+    for (const bool is_behind : {false, true}) {
+      make(kImage + ", unseen: true" + kOverTheBall, "", payload);
+      monitor = nullptr;
+      add(Type::kCameraInfo, narrow().cdr(), kStart);
+      add_joints(kTurned, kStart);
+      ImageText image = flat(0, 1700);
+      for (std::size_t pixel = 0; pixel < 8; ++pixel) put(image, pixel, is_behind ? 500 : 3900);
+      add(image);
+      const HiddenReport& ball = near(tick(kTurned), "ball");
+      EXPECT_EQ(ball.elements, 40u);
+      if (is_behind) {
+        EXPECT_LT(ball.unseen, 0.0) << "a part of the ball is behind the first row";
+      } else {
+        // The first row has not seen what is beyond 3.91 m. The ball ends at 1.9 m.
+        EXPECT_NEAR(ball.unseen, 2.01, 0.001);
+      }
+    }
+  }
 }
 
 }  // namespace

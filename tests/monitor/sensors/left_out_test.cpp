@@ -19,12 +19,6 @@ namespace {
 
 const std::string kPersist = ", max_speed: 0.5, persist: {frames: 2, of: 3}";
 
-// A pixel of another depth, mm.
-void put(ImageText& image, std::size_t pixel, std::uint16_t depth) {
-  image.data[2 * pixel] = static_cast<std::uint8_t>(depth & 0xFF);
-  image.data[2 * pixel + 1] = static_cast<std::uint8_t>(depth >> 8);
-}
-
 class LeftOutTest : public SensorsTest {
  protected:
   // The elements of the frame that is made of an image; 0: no frame.

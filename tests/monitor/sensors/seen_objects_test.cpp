@@ -198,8 +198,8 @@ TEST_F(SeenObjects, CountInZonesAsOtherObjectsDoAndNeverClearThemWhenTheyAreUnkn
   EXPECT_TRUE(zone_is_active()) << "the frame is too old";
 }
 
-// At 20 m/s, what was 0.24 m away may be nearer than 0.1 m after 8 ms. It was farther than the zone is
-// left with, so that only its motion makes the zone active.
+// At 20 m/s, what was 0.24 m away may be nearer than 0.1 m after 8 ms. It was farther than the zone
+// is left with, so that only its motion makes the zone active.
 TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot) {
   scene.objects[kSeen].max_speed = 20.0;
   make();

@@ -277,6 +277,62 @@ TEST_F(SensorsTest, RefuseFrozenDamagedAndForeignFramesByCause) {
   EXPECT_EQ(count(FrameFault::kUndecodable), 1u);
 }
 
+// The side rays go through the outer edges of the picture. Their tangent is at most 1.2374, as the
+// lower bounds of slabs need it.
+TEST_F(SensorsTest, RefuseImagesOfACameraWhoseSideRaysAreTooWide) {
+  struct Case {
+    double fx, fy, cx, cy;
+    bool is_used;
+    const char* of;
+  };
+  for (const Case& each :
+       {Case{3.24, 10, 3.5, 2.5, true, "1.2346 to both sides"},
+        Case{3.23, 10, 3.5, 2.5, false, "1.2384 to both sides"},
+        Case{10, 2.43, 3.5, 2.5, true, "1.2346 up and down"},
+        Case{10, 2.42, 3.5, 2.5, false, "1.2397 up and down"},
+        Case{4.0, 10, 4.6, 2.5, false, "1.275 to the left"},
+        Case{4.0, 10, 2.4, 2.5, false, "1.275 to the right"},
+        Case{10, 3.0, 3.5, 3.3, false, "1.267 up"}, Case{10, 3.0, 3.5, 1.7, false, "1.267 down"},
+        Case{4.0, 3.0, 4.0, 3.0, true, "1.125 to the left, 1.167 up"}}) {
+    make(kImage + kAbove);
+    InfoText info;
+    info.k = {each.fx, 0, each.cx, 0, each.fy, each.cy, 0, 0, 1};
+    info.p = {each.fx, 0, each.cx, 0, 0, each.fy, each.cy, 0, 0, 0, 1, 0};
+    add(Type::kCameraInfo, info.cdr(), kStart);
+    add(flat(0, 1000));
+    EXPECT_EQ(settle(kStart + 2000).size(), each.is_used ? 1u : 0u) << each.of;
+    EXPECT_EQ(count(FrameFault::kCannotBuild), each.is_used ? 0u : 1u) << each.of;
+    EXPECT_EQ(count(FrameFault::kIntrinsics), 0u) << "it is a pinhole camera: " << each.of;
+  }
+}
+
+TEST_F(SensorsTest, RefusePointsOfWhichAMessageHasMoreThanTheCellStates) {
+  make(kPoints + ", most_points: 5" + kAbove);
+  const auto take = [&](int number, std::uint32_t height, std::uint32_t width) {
+    CloudText cloud;
+    cloud.stamp_ns += number * kFrame;
+    cloud.height = height;
+    cloud.width = width;
+    cloud.row_step = 20 * width;
+    const std::array<float, 3> point = {0.1F, 0.2F, 1.0F + 0.1F * static_cast<float>(number)};
+    cloud.data.assign(std::size_t{20} * width * height, 0);
+    for (std::size_t i = 0; i < cloud.data.size(); i += 20)
+      std::memcpy(&cloud.data[i], point.data(), sizeof point);
+    add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+    return settle(cloud.stamp_ns + 1000);
+  };
+  const auto first = take(0, 1, 5);
+  ASSERT_EQ(first.size(), 1u);
+  EXPECT_EQ(first[0].cloud->size(), 5u) << "as many as it states";
+  EXPECT_TRUE(take(1, 1, 6).empty());
+  EXPECT_EQ(count(FrameFault::kTooManyPixels), 1u);
+  EXPECT_TRUE(take(2, 2, 3).empty()) << "an organised cloud counts with all its rows";
+  EXPECT_EQ(count(FrameFault::kTooManyPixels), 2u);
+  EXPECT_EQ(sensors->status(0).stamp_ns, kStart) << "the frame before them stays in use";
+  EXPECT_EQ(take(3, 2, 2).size(), 1u);
+  EXPECT_EQ(count(FrameFault::kTooManyPixels), 2u);
+}
+
 TEST_F(SensorsTest, MakeBallsOfPointsThatContainErrorAndSpacing) {
   make(kPoints + ", spacing: 0.02" + kAbove);
   CloudText cloud;

@@ -24,14 +24,17 @@ using Type = RawSensorMessage::Type;
 
 inline constexpr std::int64_t kStart = test::camera::kStart, kFrame = test::camera::kFrame;
 
-inline Cell cell_with(const std::string& sensor, const std::string& ros = "") {
+// `objects` contains further ones: ", {name: ...}".
+inline Cell cell_with(const std::string& sensor, const std::string& ros = "",
+                      const std::string& objects = "") {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);
   return read_good(
       "name: test\nunits: {length: m, angle: rad}\n" + ros +
           "robots: [{name: arm, urdf: scara.urdf}]\nobjects: [{name: cart, sphere: {radius: "
-          "0.1}}]\nsensors:\n  - {name: eye, " +
-          sensor + "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
+          "0.1}}" +
+          objects + "]\nsensors:\n  - {name: eye, " + sensor +
+          "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
       folder / "cell.yaml");
 }
 inline const std::string kImage =
@@ -53,6 +56,12 @@ inline ImageText flat(int number, std::uint16_t depth) {
   return text;
 }
 
+// Gives a pixel another depth, mm.
+inline void put(ImageText& image, std::size_t pixel, std::uint16_t depth) {
+  image.data[2 * pixel] = static_cast<std::uint8_t>(depth & 0xFF);
+  image.data[2 * pixel + 1] = static_cast<std::uint8_t>(depth >> 8);
+}
+
 // Its pixels are a fortieth as wide: at 2 m, 5 mm.
 inline InfoText narrow() {
   InfoText info;
@@ -63,8 +72,9 @@ inline InfoText narrow() {
 
 class SensorsTest : public testing::Test {
  protected:
-  void make(const std::string& sensor, const std::string& ros = "") {
-    cell = cell_with(sensor, ros);
+  void make(const std::string& sensor, const std::string& ros = "",
+            const std::string& objects = "") {
+    cell = cell_with(sensor, ros, objects);
     sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
   }
   void add(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns,
