@@ -81,7 +81,7 @@ void SharedCell::take() {
   const std::int64_t now_ns = dds_time();
   for (const auto& share : shares_) share->take(now_ns);
   if (joined_ns_ != 0) return;
-  // What came before the first joined report is passed over: the program may have done other work.
+  // Reports before the first joined one are passed over: the program may have done other work.
   for (const auto& share : shares_) {
     while (share->has_ahead) {
       share->use();

@@ -355,7 +355,7 @@ TEST_F(ChangedSharedCells, AgreeAgainAfterARestartIfEachKeepsItsScene) {
       commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.1, .leave_above = 0.2}});
   ASSERT_TRUE(again) << merge.output() << logs();
   EXPECT_TRUE(again->done()) << again->reason;
-  // What another share has kept is the scene of the whole cell, too.
+  // Another share has kept the scene of the whole cell, too.
   daemons["boxes"]->signal(SIGKILL);
   daemons["boxes"]->wait();
   std::filesystem::copy_file(folder / "left floor.yaml", folder / "boxes.yaml",

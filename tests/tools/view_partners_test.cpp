@@ -28,7 +28,7 @@ class ViewOfPartners : public testing::Test {
   DdsOptions dds = own_dds();
   std::vector<std::string> arguments = with({file.path()}, dds_arguments(dds));
 
-  // What Foxglove's client has met once it has these reports.
+  // The topics that Foxglove's client has met once it has these reports.
   static nlohmann::json shown(const View& view, int reports) {
     ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(),
                                          "reports", std::to_string(reports)});

@@ -168,7 +168,7 @@ void LiveSource::merge(std::int64_t steady_ns) {
   merged_.note_loss(steady_ns);
 }
 
-// What cannot be decoded is not shown: it is corrupt.
+// A report that cannot be decoded is not shown: it is corrupt.
 bool LiveSource::is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns) {
   if (!is_merging_) return true;
   if (kind == TopicKind::kDistances)

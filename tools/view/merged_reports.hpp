@@ -1,5 +1,5 @@
-// Of the reports of several daemons, those that the page shows. Partners (monitor/partners) become
-// one stream; those of other daemons are all shown.
+// Chooses the reports that the page shows from those of several daemons. Partners
+// (monitor/partners) become one stream; those of other daemons are all shown.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@ class MergedReports {
  public:
   // Take a message of any daemon, in the order of arrival; CLOCK_MONOTONIC. True: it is shown.
   [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t steady_ns);
-  // Of partners, the health of the leading one is shown, so that figures do not alternate.
+  // The health of the leading partner is shown, so that figures do not alternate.
   [[nodiscard]] bool take(const clearance_msg_Health& health, std::int64_t steady_ns);
   // Reports may have been lost here: no partner is missing because of that.
   void note_loss(std::int64_t steady_ns) noexcept { lost_ns_ = steady_ns; }

@@ -27,7 +27,7 @@ const std::array<std::string, 2> kPayloads = {
 constexpr double kTurned = 0.7;  // of the shoulder, rad
 const Vec3 kBall(0.5 * std::cos(kTurned) - 0.4 * std::sin(kTurned),
                  0.5 * std::sin(kTurned) + 0.4 * std::cos(kTurned), 0.2);
-// Where the shoulder is so turned, all pixels look at the top of the ball, 1.7 m below.
+// With the shoulder turned so, all pixels look at the top of the ball, 1.7 m below.
 const std::string kOverTheBall = ", own_shell: 0.02, mount: {pose: {xyz: [" +
                                  std::to_string(kBall.x()) + ", " + std::to_string(kBall.y()) +
                                  ", 2], rpy: [3.141592653589793, 0, 0]}}";
