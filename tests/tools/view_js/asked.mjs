@@ -17,7 +17,11 @@ const facts = () => page.evaluate(() => {
 await page.goto(url);
 await page.waitForFunction(() => window.clearance?.state.report !== undefined);
 say({ ready: true, ...(await facts()) });
-await page.waitForFunction(() => window.clearance.view.askedPath.children.length > 0);
+// The path is drawn with the question, and the violation with the answer.
+await page.waitForFunction(() => {
+  const { askedPath } = window.clearance.view;
+  return askedPath.children.length > 0 && (askedPath.asked?.upper ?? null) !== null;
+});
 say(await facts());
 await page.click("#asked");
 say({ errors, ...(await facts()) });
