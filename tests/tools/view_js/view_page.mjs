@@ -259,7 +259,8 @@ async function minutes() {
   const speeds = () => page.waitForFunction(() => {
     const { data, scales } = window.clearance.plots.made.chosen?.plot ?? { data: [] };
     const known = (data[1] ?? []).filter((value) => value !== null);
-    return known.some((value) => value > 0.1) && known.some((value) => value < -0.1) && { width: scales.x.min, known: known.length };
+    const isDrawnAnew = scales?.x.min !== -30; // half a minute, which was chosen before
+    return isDrawnAnew && known.some((value) => value > 0.1) && known.some((value) => value < -0.1) && { width: scales.x.min, known: known.length };
   });
   return (await speeds()).jsonValue();
 }
