@@ -21,7 +21,7 @@ class MergedReports {
 
   // All daemons that were heard in the last second are partners.
   [[nodiscard]] bool are_partners(std::int64_t steady_ns) const noexcept;
-  // What is wrong among the partners, in the words of clearance-watch.
+  // Says what is wrong among the partners, in the words of clearance-watch.
   struct Trouble {
     int level = 0;  // of the protocol: 1 warning, 2 error
     std::string text;

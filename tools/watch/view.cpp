@@ -126,7 +126,8 @@ std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
   return text.empty() ? text : ": " + text;
 }
 
-// Of a joined cell: "share 'north' is missing, share 'south' is late"; empty: all are there.
+// Names the shares that a joined cell lacks: "share 'north' is missing, share 'south' is late";
+// empty: all are there.
 std::string absent_shares(const Feed& feed) {
   const clearance_msg_Health* const health = feed.health();
   if (health == nullptr) return {};
