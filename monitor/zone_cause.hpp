@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <string>
 
+#include "config/scene/rigid_root.hpp"
 #include "config/scene/scene.hpp"
 #include "monitor/report.hpp"
 
@@ -71,10 +72,9 @@ enum class PlacedBy { kPoses, kJointStates, kEither, kFrames };
     return each.is_attached && each.links.front().object == object;
   });
   if (robot == scene.robots.end()) return object;
-  const Robot* at = &*robot;
-  while (at->is_attached && at->base.kind == RobotBase::Kind::kLink)
-    at = &scene.robots[at->base.robot];
-  return at->is_attached && at->base.kind == RobotBase::Kind::kObject ? at->base.object : object;
+  const Robot& carrier = carrier_of(scene.robots, *robot);
+  return carrier.is_attached && carrier.base.kind == RobotBase::Kind::kObject ? carrier.base.object
+                                                                              : object;
 }
 
 // The same text for a zone of a report of this scene.

@@ -1,4 +1,4 @@
-// The body that a link or an object is rigidly connected to.
+// The body that a link or an object is rigidly connected to, and what an attached object hangs on.
 #pragma once
 
 #include <cstdint>
@@ -30,6 +30,19 @@ struct RigidRoot {
     link = of.base.link;
     robot = of.base.robot;
   }
+}
+
+// The last of the chain from a robot over the attached objects below it: a robot that is not
+// attached, or an attached object that is on no link.
+[[nodiscard]] inline const Robot& carrier_of(std::span<const Robot> robots, const Robot& robot) {
+  const Robot* at = &robot;
+  while (at->is_attached && at->base.kind == RobotBase::Kind::kLink) at = &robots[at->base.robot];
+  return *at;
+}
+
+// Tells whether it is a robot, or an attached object that a robot carries.
+[[nodiscard]] inline bool is_of_a_robot(std::span<const Robot> robots, const Robot& robot) {
+  return !carrier_of(robots, robot).is_attached;
 }
 
 }  // namespace clearance

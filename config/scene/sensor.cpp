@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "config/scene/rigid_root.hpp"
 #include "config/scene/scene.hpp"
 
 namespace clearance {
@@ -23,6 +24,7 @@ std::vector<std::string> notes_of(const Sensor& sensor) {
 std::vector<std::uint32_t> hidden_pairs(const Scene& scene) {
   std::vector<bool> is_left_out(scene.objects.size());
   for (const Robot& robot : scene.robots) {
+    if (!is_of_a_robot(scene.robots, robot)) continue;
     for (const RobotLink& link : robot.links) {
       if (link.object != RobotLink::kNoObject) is_left_out[link.object] = true;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "config/scene/rigid_root.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
@@ -17,6 +18,7 @@ double radius_of(const Part& part) noexcept {
 
 OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    if (!is_of_a_robot(scene.robots, scene.robots[robot])) continue;
     const std::vector<RobotLink>& links = scene.robots[robot].links;
     for (std::uint32_t link = 0; link < links.size(); ++link) {
       if (links[link].object != RobotLink::kNoObject)

@@ -183,6 +183,29 @@ TEST_F(HiddenPlacesTest, ABodyThatIsNotAttachedIsAnObstacleAtTheSamePlace) {
   EXPECT_EQ(frames[0].cloud->size(), 48u);
 }
 
+// The top of a tray on a cart is 1.7 m below the camera.
+TEST_F(HiddenPlacesTest, WhatNoRobotCarriesIsAnObstacleAlthoughItIsAttached) {
+  make(kImage + ", own_shell: 0.02, mount: {pose: {xyz: [5, 0, 2], rpy: [3.141592653589793, 0, "
+                "0]}}",
+       "",
+       ", {name: tray, groups: [arm], attached: {to: cart, pose: {xyz: [0, 0, 0.1]}}, sphere: "
+       "{radius: 0.1}}");
+  EXPECT_TRUE(std::ranges::none_of(hidden_pairs(cell.scene), [&](std::uint32_t pair) {
+    const ObjectPair& of = cell.scene.pairs[pair];
+    return cell.scene.objects[of.first].name == "tray" ||
+           cell.scene.objects[of.second].name == "tray";
+  }));
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  ASSERT_EQ(cell.scene.objects[0].name, "cart");
+  sensors->add(
+      std::vector{test::sample(0, {{5.0, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kStart)},
+      test::joints(kTurned, 0.0, 0.0, kStart));
+  add(flat(0, 1700));
+  const auto frames = settle(kStart + 2000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 48u);
+}
+
 // The first row sees something 0.69 m above the ball. One pixel in the middle sees something that
 // is 15 mm or 60 mm above the ball.
 TEST_F(HiddenPlacesTest, ReportsSayHowThickTheBlindShellOfAPayloadIs) {
