@@ -90,6 +90,7 @@ struct Monitor::State {
     SensorFrame frame;   // that the next tick takes; its cloud is null: none
     SensorFrame in_use;  // likewise
     SourceClock clock;
+    std::uint64_t awaited = 0;  // awaited_frame()
   };
   std::vector<Shown> shown;
   std::unique_ptr<CloudPairs> clouds;  // ingest and evaluate; null: the scene has no sensors
@@ -172,6 +173,8 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.contacts.take_over(before.state_->contacts, map);
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
+  if (s.scene.revision != before.state_->scene.revision) return true;
+  for (std::size_t i = 0; i < s.shown.size(); ++i) s.shown[i].frame = before.state_->shown[i].in_use;
   return true;
 }
 
@@ -180,6 +183,7 @@ void Monitor::save(StateWriter& out) const {
   clearance::save(s.inputs, out);
   s.contacts.save(out);
   s.zones.save(out);
+  for (const State::Shown& shown : s.shown) out.put(shown.frame.content);
 }
 
 bool Monitor::restore(StateReader& in) noexcept {
@@ -189,7 +193,12 @@ bool Monitor::restore(StateReader& in) noexcept {
   s.contacts.restore(in);
   s.zones.restore(in);
   s.zones.count_absent(s.inputs.objects);
+  for (State::Shown& shown : s.shown) in.take(shown.awaited);
   return in.complete();
+}
+
+std::uint64_t Monitor::awaited_frame(std::uint32_t sensor) const noexcept {
+  return state_->shown[sensor].awaited;
 }
 
 std::uint64_t Monitor::checksum() const noexcept {
@@ -248,6 +257,7 @@ bool Monitor::show(std::uint32_t sensor, const SensorFrame& frame) noexcept {
   State& s = *state_;
   if (sensor >= s.shown.size() || frame.cloud == nullptr || frame.cloud->size() == 0) return false;
   s.shown[sensor].frame = frame;
+  s.shown[sensor].awaited = 0;
   return true;
 }
 

@@ -55,6 +55,8 @@ struct SensorFrame {
   std::int64_t stamp_ns = 0;         // of its content, CLOCK_REALTIME of the sender
   Pose world_from_sensor;            // at that time
   double pose_error = 0.0;           // m: no element is farther from its exact place in the world
+  // Frames of the same content are the same to the bit. 0: not known.
+  std::uint64_t content = 0;
 };
 
 class Monitor {
@@ -72,7 +74,9 @@ class Monitor {
   // sources of the samples that `before` got, and numbers those of both from now on. Returns false,
   // and changes nothing, if both scenes name too many sources (add_named()). The same ticks
   // then bring both monitors to the same inputs. No bound of a pair is taken over: the first ticks
-  // find them afresh. Does not allocate, throw or lock. The time grows with the number of objects,
+  // find them afresh. If both have the same scene, the first tick takes the frames in use, whose
+  // clouds both monitors then use; if not, the objects of sensors are unknown until their next
+  // frames. Does not allocate, throw or lock. The time grows with the number of objects,
   // not with that of pairs.
   [[nodiscard]] bool take_over(const Monitor& before, const SceneMap& map,
                                SourceNumbers& numbers) noexcept;
@@ -81,9 +85,12 @@ class Monitor {
   // process of the same build.
   void save(StateWriter& out) const;
   // Before the first tick of a monitor of the same scene: goes on with that state, as take_over()
-  // does. The same ticks then give both the same bits. Returns false if the bytes are of another
-  // scene; this monitor must then not be used.
+  // does. The same ticks then give both the same bits, if the frames that it awaits are shown
+  // before. Returns false if the bytes are of another scene; this monitor must then not be used.
   [[nodiscard]] bool restore(StateReader& in) noexcept;
+  // The content of the frame of this sensor that restore() has found to be in use; 0: none, or it
+  // has been shown.
+  [[nodiscard]] std::uint64_t awaited_frame(std::uint32_t sensor) const noexcept;
 
   // A checksum of where all objects are, and of one of kStateSlices slices of the pairs' bounds:
   // another slice in each tick. The same ticks give the same one.

@@ -9,7 +9,6 @@
 
 namespace clearance {
 
-inline constexpr std::size_t kMaxSensors = 16;
 
 // The sensors, and where each of them says that it is mounted: null if it does not.
 struct SensorList {

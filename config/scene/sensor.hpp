@@ -2,6 +2,7 @@
 // an object of the scene: pairs, groups and zones name that object like any other.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -11,6 +12,8 @@
 #include "config/scene/robot.hpp"
 
 namespace clearance {
+
+inline constexpr std::size_t kMaxSensors = 16;  // of a cell
 
 enum class SensorKind : std::uint8_t {
   kDepthImage,  // sensor_msgs/Image with CameraInfo: each pixel is a slab of its cone

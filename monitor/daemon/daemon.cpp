@@ -149,15 +149,19 @@ Daemon::~Daemon() {
   end_requests();
 }
 
-Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseSource& source,
+Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseReader& poses,
                              Clock& clock, const DaemonIdentity& identity)
-    : ticks(source, clock,
+    : ticks(poses, clock,
             {.period_ns = std::llround(1e9 / cell.scene.rate_hz),
              .daemon = identity.id,
              .start_ns = identity.start_ns,
              .batch = {.samples = PoseReader::samples_a_batch(cell),
-                       .joints = PoseReader::joints_a_batch(cell)}}),
-      port(participant, cell.topics, identity, ticks) {}
+                       .joints = PoseReader::joints_a_batch(cell)},
+             .frames = poses.frames()}),
+      port(participant, cell.topics, identity, ticks),
+      poses_(poses) {
+  poses.share_frames(cell.topics, identity, ticks);
+}
 
 RosWrites::Leads Daemon::leads() {
   if (!partner_) return {};

@@ -91,8 +91,14 @@ class Daemon : private CellParts {
   struct OfPartner {
     TickPartner ticks;
     PartnerPort port;
-    OfPartner(const Cell& cell, Participant& participant, PoseSource& source, Clock& clock,
+    OfPartner(const Cell& cell, Participant& participant, PoseReader& poses, Clock& clock,
               const DaemonIdentity& identity);
+    ~OfPartner() { poses_.end_sharing(); }
+    OfPartner(const OfPartner&) = delete;
+    OfPartner& operator=(const OfPartner&) = delete;
+
+   private:
+    PoseReader& poses_;
   };
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
   [[nodiscard]] RosWrites::Leads leads();

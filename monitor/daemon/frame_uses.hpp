@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "config/scene/sensor.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/spsc_ring.hpp"
 
@@ -41,9 +42,7 @@ class FrameUses final : public ReportSink {
   [[nodiscard]] SpscRing<Use>& uses() noexcept { return uses_; }
 
  private:
-  static constexpr std::size_t kMostSensors = 16;  // of a cell
-
-  std::array<Use, kMostSensors> of_tick_;
+  std::array<Use, kMaxSensors> of_tick_;
   std::size_t shown_ = 0;
   SpscRing<Use> uses_{1024};
 };

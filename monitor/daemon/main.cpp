@@ -302,12 +302,6 @@ int run(int argc, char** argv, StopSignal& signal) {
     print_summary(cell->scene);
     return kOk;
   }
-  if (!arguments.daemon.partner.empty() && !cell->scene.sensors.empty()) {
-    print(stderr,
-          "clearanced: --partner: the cell has sensors, and partners do not share their frames. "
-          "Start one daemon for this cell, or take the sensors out of it\n");
-    return kUsage;
-  }
   for (const std::filesystem::path& file : arguments.cell.files()) {
     if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {file})) return kUsage;
   }

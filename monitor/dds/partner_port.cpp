@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
+#include "monitor/commands/wire_values.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -21,13 +22,6 @@ constexpr std::int64_t kLeaderHeardNs = 100'000'000;
 constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
 constexpr std::int64_t kClockErrorNs = 5'000'000;
-
-template <std::size_t N>
-void copy_text(std::string_view from, char (&to)[N]) {
-  const std::size_t length = std::min(from.size(), N - 1);
-  std::memcpy(to, from.data(), length);
-  std::memset(to + length, 0, N - length);
-}
 
 // The lead of CLOCK_REALTIME over CLOCK_MONOTONIC.
 std::int64_t realtime_less_monotonic() {
@@ -46,13 +40,7 @@ bool take(dds_entity_t reader, Sample<T>& sample, dds_sample_info_t& info) {
 
 std::uint64_t checksum_of(std::span<const std::byte> bytes) {
   Checksum sum;
-  std::size_t at = 0;
-  for (; at + 8 <= bytes.size(); at += 8) {
-    std::uint64_t word = 0;
-    std::memcpy(&word, bytes.data() + at, 8);
-    sum.add(word);
-  }
-  for (; at < bytes.size(); ++at) sum.add(static_cast<std::uint8_t>(bytes[at]));
+  sum.add_bytes(bytes);
   return sum.value();
 }
 
@@ -80,6 +68,7 @@ PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
       catalogues_reader_(participant.partner_reader(TopicKind::kCatalogue, topics.catalogue)),
       wait_(participant, {ticks_reader_, states_reader_, reports_reader_, catalogues_reader_}) {
   reserve_sequence(written_->inputs, kMostTickInputs);
+  reserve_sequence(written_->frames, kMaxSensors);
   copy_text(identity.partner, written_->partner);
 }
 
@@ -129,6 +118,9 @@ void PartnerPort::write_notices() {
         input.sequence_number = notice->inputs[i].sequence_number;
         input.content = notice->inputs[i].content;
       }
+      out.frames._length = static_cast<std::uint32_t>(notice->frame_count);
+      for (std::size_t i = 0; i < notice->frame_count; ++i)
+        out.frames._buffer[i] = {notice->frames[i].sensor, notice->frames[i].content};
       if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK)
         written_ns_ = SystemClock().monotonic_ns();
     }
@@ -173,6 +165,9 @@ void PartnerPort::hear_notices() {
       const clearance_msg_TickInput& input = in.inputs._buffer[i];
       notice_.inputs[i] = {SourceName(input.source), input.sequence_number, input.content};
     }
+    notice_.frame_count = std::min<std::size_t>(in.frames._length, kMaxSensors);
+    for (std::size_t i = 0; i < notice_.frame_count; ++i)
+      notice_.frames[i] = {in.frames._buffer[i].sensor, in.frames._buffer[i].content};
     static_cast<void>(ticks_.hear(notice_));
     leader_ = in.daemon;
     leader_revision_ = in.scene_revision;

@@ -61,6 +61,13 @@ class PoseReader final : public PoseSource {
   [[nodiscard]] SourceTally departed() const;
   // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
+  // Before start(): builds the same frames of sensors as the partner, until end_sharing().
+  void share_frames(const Topics& topics, const DaemonIdentity& identity, const TickPartner& ticks) {
+    if (sensors_) sensors_->share_frames(topics, identity, ticks);
+  }
+  void end_sharing() {
+    if (sensors_) sensors_->end_sharing();
+  }
   // Before start(): keeps the frames of sensors for a recording. Null: the cell has none.
   [[nodiscard]] BuiltFrames* keep_frames() {
     if (sensors_) sensors_->keep_frames();

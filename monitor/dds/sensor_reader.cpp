@@ -24,6 +24,7 @@ constexpr std::int64_t kSilentNs = 5'000'000'000;
 
 SensorReader::SensorReader(const Cell& cell, Participant& participant)
     : cell_(&cell),
+      participant_(participant),
       frames_(cell.scene.sensors.size()),
       batches_(kBatches),
       ids_(cell.scene),
@@ -37,7 +38,9 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       wait_(participant, {}),
       where_(participant.where()),
       silence_said_(cell.scene.sensors.size()),
-      last_(cell.scene.sensors.size()) {
+      last_(cell.scene.sensors.size()),
+      names_(cell.scene),
+      sent_(cell.scene.sensors.size()) {
   wait_.add(ros_.present().reader());
   build();
 }
@@ -48,20 +51,33 @@ SensorReader::~SensorReader() {
   if (thread_.joinable()) thread_.join();
 }
 
-void SensorReader::keep_frames() {
-  sensors_->keep([this](BuiltFrame frame) { built_.put(std::move(frame)); });
+void SensorReader::share_frames(const Topics& topics, const DaemonIdentity& identity,
+                                const TickPartner& ticks) {
+  partner_ = std::make_unique<PartnerFrames>(participant_, topics, identity, ticks);
+  wait_.add(partner_->reader());
+}
+
+void SensorReader::end_sharing() {
+  const std::lock_guard lock(mutex_);
+  partner_ = nullptr;
 }
 
 void SensorReader::start() {
+  if (records_ || partner_)
+    sensors_->keep([this](BuiltFrame frame) { keep(std::move(frame)); });
   thread_ = std::thread([this] { run(); });
 }
 
-// Frames of the cell before are not shown any more (FrameExchange).
+// Frames of the cell before are not shown any more (FrameExchange). A monitor that takes over for
+// the same cell goes on with the frames in use.
 void SensorReader::change(const Cell& cell) {
   const std::lock_guard lock(mutex_);
+  if (&cell == cell_) return;
   SceneMap map = scene_map(cell_->scene, cell.scene);
   ids_.change(cell.scene.revision, map);
   last_.assign(cell.scene.sensors.size(), {});
+  names_ = FrameNames(cell.scene);
+  sent_.assign(cell.scene.sensors.size(), {});
   sensors_ = std::make_unique<Sensors>(cell, *sensors_);
   intake_.change(cell);
   cell_ = &cell;
@@ -112,7 +128,8 @@ void SensorReader::run() {
     }
     build();
     log_news();
-    patience = sensors_->any_waiting() ? kFrameWaitsNs : kIdleNs;
+    const bool builds_own = !partner_ || partner_->builds_its_own(now_ns_);
+    patience = builds_own && sensors_->any_waiting() ? kFrameWaitsNs : kIdleNs;
   }
 }
 
@@ -136,20 +153,68 @@ void SensorReader::take_all() {
   sensors_->add(poses_, joints_);
   const Now now{.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = now_ns_};
   for (const RosReaders::Reader& reader : ros_.readers()) ros_.take(reader, now, taken_);
+  if (!partner_) return;
+  const std::size_t sensors = sent_.size();
+  partner_->take(
+      now_ns_,
+      [&](std::uint32_t sensor, std::uint64_t content) {
+        if (sensor < sensors) frames_.note_built(sensor, content);
+      },
+      [&](BuiltFrame frame, std::uint64_t content) {
+        if (frame.sensor < sensors) sent_[frame.sensor] = {content, std::move(frame)};
+      });
+}
+
+void SensorReader::keep(BuiltFrame frame) {
+  content_ = names_.name(frame);
+  if (partner_ && !is_shared_) partner_->send(frame, content_);
+  if (records_) built_.put(std::move(frame));
+}
+
+bool SensorReader::is_used(const SeenCloud* cloud) const noexcept {
+  return frames_.is_used(cloud) || std::ranges::any_of(last_, [cloud](const Last& last) {
+           return last.frame.cloud == cloud;
+         });
+}
+
+void SensorReader::use(std::uint32_t sensor, SensorFrame frame) {
+  frame.content = std::exchange(content_, 0);
+  frames_.put(sensor, frame, cell_->scene.revision);
+  last_[sensor] = {frame, cell_->scene.revision, nullptr};
+}
+
+void SensorReader::build_own() {
+  sensors_->settle(
+      now_ns_, [this](const SeenCloud* cloud) { return is_used(cloud); },
+      [this](std::uint32_t sensor, const SensorFrame& frame) { use(sensor, frame); });
+}
+
+// The partner shows a frame only when the answer has come. One of another content, since earlier
+// frames were missed that still count (persist), is of no use to it.
+void SensorReader::build_shared() {
+  is_shared_ = true;
+  for (std::uint32_t sensor = 0; sensor < sent_.size(); ++sensor) {
+    const auto in_use = [this](const SeenCloud* cloud) { return is_used(cloud); };
+    if (sent_[sensor].content == 0 || !sensors_->has_room(sensor, in_use)) continue;
+    const Sent sent = std::exchange(sent_[sensor], {});
+    std::uint64_t built = 0;
+    const bool is_built =
+        sensors_->rebuild(sent.frame, in_use, [&](std::uint32_t of, const SensorFrame& frame) {
+          built = content_;
+          use(of, frame);
+        });
+    if (is_built && built == sent.content) partner_->answer(sensor, built);
+  }
+  is_shared_ = false;
 }
 
 void SensorReader::build() {
-  sensors_->settle(
-      now_ns_,
-      [this](const SeenCloud* cloud) {
-        return frames_.is_used(cloud) || std::ranges::any_of(last_, [&](const Last& last) {
-                 return last.frame.cloud == cloud;
-               });
-      },
-      [this](std::uint32_t sensor, const SensorFrame& frame) {
-        frames_.put(sensor, frame, cell_->scene.revision);
-        last_[sensor] = {frame, cell_->scene.revision, nullptr};
-      });
+  if (!partner_ || partner_->builds_its_own(now_ns_)) {
+    for (Sent& sent : sent_) sent.content = 0;
+    build_own();
+  } else {
+    build_shared();
+  }
   const std::lock_guard lock(status_mutex_);
   statuses_.resize(cell_->scene.sensors.size());
   for (std::uint32_t i = 0; i < statuses_.size(); ++i) statuses_[i] = sensors_->status(i);

@@ -15,6 +15,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/ask/question.hpp"
+#include "monitor/dds/partner_frames.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/intake/intake.hpp"
@@ -36,7 +37,11 @@ class SensorReader {
   SensorReader& operator=(const SensorReader&) = delete;
 
   // Before start(): keeps the frames that are built for a recording.
-  void keep_frames();
+  void keep_frames() { records_ = true; }
+  // Before start(): builds the same frames as the partner. `ticks` and `identity` must outlive this,
+  // or end_sharing() be called before.
+  void share_frames(const Topics& topics, const DaemonIdentity& identity, const TickPartner& ticks);
+  void end_sharing();
   [[nodiscard]] BuiltFrames& built() noexcept { return built_; }
   // Starts the thread. Call this once.
   void start();
@@ -64,11 +69,17 @@ class SensorReader {
   void look();
   void take_all();
   void build();
+  void build_own();
+  void build_shared();
+  void keep(BuiltFrame frame);
+  [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
+  void use(std::uint32_t sensor, SensorFrame frame);
   void log_news();
   void tell_of_silence();
   [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
 
   const Cell* cell_;
+  Participant& participant_;
   FrameExchange frames_;
   BuiltFrames built_;
   SpscRing<PoseBatch> batches_;
@@ -92,6 +103,16 @@ class SensorReader {
     std::shared_ptr<const SeenCloud> copy;  // null: not copied yet
   };
   std::vector<Last> last_;  // by sensor
+  std::unique_ptr<PartnerFrames> partner_;  // null: the daemon has none
+  FrameNames names_;
+  std::uint64_t content_ = 0;  // of the frame that is built
+  bool records_ = false, is_shared_ = false;  // the latter: that frame is one of the partner
+  // Frames of the partner that are to be built.
+  struct Sent {
+    std::uint64_t content = 0;  // 0: none
+    BuiltFrame frame;
+  };
+  std::vector<Sent> sent_;  // by sensor
   mutable std::mutex status_mutex_;
   std::vector<SensorStatus> statuses_;
   std::atomic<bool> stop_{false};

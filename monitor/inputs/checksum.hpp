@@ -3,7 +3,10 @@
 #pragma once
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
+#include <span>
 #include <type_traits>
 
 namespace clearance {
@@ -30,6 +33,15 @@ class Checksum {
     add3(pose.position);
     add3(pose.orientation);
     add(pose.orientation.w());
+  }
+  void add_bytes(std::span<const std::byte> bytes) noexcept {
+    std::size_t at = 0;
+    for (; at + 8 <= bytes.size(); at += 8) {
+      std::uint64_t word = 0;
+      std::memcpy(&word, bytes.data() + at, 8);
+      add(word);
+    }
+    for (; at < bytes.size(); ++at) add(static_cast<std::uint8_t>(bytes[at]));
   }
   // Never 0, which stands for none.
   [[nodiscard]] std::uint64_t value() const noexcept { return value_ == 0 ? 1 : value_; }

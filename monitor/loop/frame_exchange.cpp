@@ -29,6 +29,37 @@ bool FrameExchange::is_used(const SeenCloud* cloud) const noexcept {
   return false;
 }
 
+// A newer frame takes the place of the one that waits.
+void FrameExchange::take_offer(OfSensor& of) noexcept {
+  if (of.offered.load(std::memory_order_relaxed) == nullptr) return;
+  Slot* const before =
+      std::exchange(of.next, of.offered.exchange(nullptr, std::memory_order_acq_rel));
+  if (before != nullptr) before->is_used.store(false, std::memory_order_release);
+  of.is_chosen = false;
+}
+
+const SensorFrame* FrameExchange::newest(std::uint32_t sensor,
+                                         std::uint64_t scene_revision) noexcept {
+  OfSensor& of = of_[sensor];
+  take_offer(of);
+  if (of.next != nullptr && of.next->scene_revision != scene_revision)
+    std::exchange(of.next, nullptr)->is_used.store(false, std::memory_order_release);
+  return of.next == nullptr ? nullptr : &of.next->frame;
+}
+
+bool FrameExchange::has(std::uint32_t sensor, std::uint64_t content) noexcept {
+  OfSensor& of = of_[sensor];
+  if (of.next == nullptr || of.next->frame.content != content) take_offer(of);
+  return of.next != nullptr && of.next->frame.content == content;
+}
+
+void FrameExchange::choose_all(std::uint64_t scene_revision) noexcept {
+  for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
+    static_cast<void>(newest(sensor, scene_revision));
+    choose(sensor);
+  }
+}
+
 // A frame that was shown is in use by now, or was refused.
 void FrameExchange::give_back(OfSensor& of, const Monitor& monitor) noexcept {
   for (Slot*& slot : of.held) {
@@ -39,6 +70,20 @@ void FrameExchange::give_back(OfSensor& of, const Monitor& monitor) noexcept {
   if (of.held[0] == nullptr) std::swap(of.held[0], of.held[1]);
 }
 
+bool FrameExchange::show(OfSensor& of, std::uint32_t sensor, Monitor& monitor,
+                         std::span<ReportSink* const> sinks) noexcept {
+  Slot* const slot = std::exchange(of.next, nullptr);
+  of.is_chosen = false;
+  give_back(of, monitor);
+  if (!monitor.show(sensor, slot->frame)) {
+    slot->is_used.store(false, std::memory_order_release);
+    return false;
+  }
+  (of.held[0] == nullptr ? of.held[0] : of.held[1]) = slot;
+  for (ReportSink* const sink : sinks) sink->frame(sensor, slot->frame.stamp_ns);
+  return true;
+}
+
 void FrameExchange::show(std::uint64_t scene_revision, Monitor& monitor,
                          std::span<ReportSink* const> sinks) noexcept {
   // Another monitor uses none of the clouds that the one before used.
@@ -46,16 +91,31 @@ void FrameExchange::show(std::uint64_t scene_revision, Monitor& monitor,
   for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
     OfSensor& of = of_[sensor];
     if (is_other || of.held[1] != nullptr) give_back(of, monitor);
-    if (of.offered.load(std::memory_order_relaxed) == nullptr) continue;
-    Slot* const slot = of.offered.exchange(nullptr, std::memory_order_acq_rel);
-    if (slot == nullptr) continue;
-    give_back(of, monitor);
-    if (slot->scene_revision != scene_revision || !monitor.show(sensor, slot->frame)) {
-      slot->is_used.store(false, std::memory_order_release);
-      continue;
+    if (of.is_chosen) static_cast<void>(show(of, sensor, monitor, sinks));
+  }
+}
+
+bool FrameExchange::has_awaited(const Monitor& monitor) noexcept {
+  for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
+    const std::uint64_t content = monitor.awaited_frame(sensor);
+    const bool is_held = std::ranges::any_of(of_[sensor].held, [content](const Slot* slot) {
+      return slot != nullptr && slot->frame.content == content;
+    });
+    if (content != 0 && !is_held && !has(sensor, content)) return false;
+  }
+  return true;
+}
+
+void FrameExchange::show_awaited(Monitor& monitor, std::span<ReportSink* const> sinks) noexcept {
+  for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
+    OfSensor& of = of_[sensor];
+    const std::uint64_t content = monitor.awaited_frame(sensor);
+    if (content == 0) continue;
+    for (const Slot* const slot : of.held) {
+      if (slot != nullptr && slot->frame.content == content)
+        static_cast<void>(monitor.show(sensor, slot->frame));
     }
-    (of.held[0] == nullptr ? of.held[0] : of.held[1]) = slot;
-    for (ReportSink* const sink : sinks) sink->frame(sensor, slot->frame.stamp_ns);
+    if (monitor.awaited_frame(sensor) != 0) static_cast<void>(show(of, sensor, monitor, sinks));
   }
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
+#include "monitor/loop/frame_exchange.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {
@@ -30,6 +31,10 @@ class JoinedState {
     return monitor_->restore(in);
   }
 
+  // Tick thread: the frames of sensors that this state has in use have come.
+  [[nodiscard]] bool has_frames(FrameExchange& frames) const noexcept {
+    return frames.has_awaited(*monitor_);
+  }
   // Tick thread: exchanges what the loop ticks. Leaves everything as it is if the scene of the loop
   // has another revision by now.
   void join(std::unique_ptr<Monitor>& monitor, SceneIds& ids) noexcept {

@@ -95,7 +95,10 @@ void TickLoop::tick_once() noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) between_ticks();
   take_in();
-  if (options_.frames != nullptr) options_.frames->show(scene_->revision, *monitor_, sinks_);
+  if (options_.frames != nullptr) {
+    if (pace == nullptr) options_.frames->choose_all(scene_->revision);
+    options_.frames->show(scene_->revision, *monitor_, sinks_);
+  }
   const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
   const Report& report = monitor_->tick(samples_, joints_, time);
   if (Successor* next = offered_.load(std::memory_order_acquire);
@@ -156,8 +159,12 @@ void TickLoop::between_ticks() noexcept {
 void TickLoop::join() noexcept {
   JoinedState* const joined = joined_.load(std::memory_order_acquire);
   if (joined == nullptr || busy()) return;
-  joined->join(monitor_, ids_);
-  if (joined->has_joined() && options_.pace != nullptr) options_.pace->joined(joined->lineage());
+  FrameExchange* const frames = options_.frames;
+  if (frames == nullptr || joined->has_frames(*frames)) joined->join(monitor_, ids_);
+  if (joined->has_joined()) {
+    if (frames != nullptr) frames->show_awaited(*monitor_, sinks_);
+    if (options_.pace != nullptr) options_.pace->joined(joined->lineage());
+  }
   joined_.store(nullptr, std::memory_order_release);
 }
 

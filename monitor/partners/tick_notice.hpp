@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "config/scene/sensor.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 
@@ -19,6 +20,12 @@ struct TickInput {
   SourceName source;
   std::uint64_t sequence_number = 0;
   std::uint64_t content = 0;  // checksum of its samples
+};
+
+// A frame of a sensor that a tick is shown.
+struct TickFrame {
+  std::uint32_t sensor = 0;
+  std::uint64_t content = 0;  // SensorFrame::content
 };
 
 // How a daemon stands to its partner. The values are those of PartnerHealth on the wire.
@@ -52,9 +59,14 @@ struct TickNotice {
   std::int64_t told_late_ns = 0;
   std::array<TickInput, kMostTickInputs> inputs;
   std::size_t count = 0;
+  std::array<TickFrame, kMaxSensors> frames;
+  std::size_t frame_count = 0;
 
   [[nodiscard]] std::span<const TickInput> used() const noexcept {
     return std::span(inputs).first(count);
+  }
+  [[nodiscard]] std::span<const TickFrame> shown() const noexcept {
+    return std::span(frames).first(frame_count);
   }
 };
 

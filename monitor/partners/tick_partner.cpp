@@ -190,6 +190,7 @@ void TickPartner::approach_own_clock() noexcept {
 
 std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
   store_.choose_all(false);
+  choose_frames(partner_present_);
   time_ = own_time(deadline);
   if (TickNotice* const notice = notices_.back()) {
     notice->daemon = options_.daemon;
@@ -206,11 +207,38 @@ std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
     notice->told_late_ns = told_late_ns_;
     notice->count = store_.chosen().size();
     std::ranges::copy(store_.chosen(), notice->inputs.begin());
+    notice->frame_count = frame_count_;
+    std::copy_n(frames_.begin(), frame_count_, notice->frames.begin());
     notices_.push();
     noticed_.post();
   }
   clock_.sleep_until(deadline);
   return deadline;
+}
+
+// A partner must have built a frame before both are shown it. While a successor catches up in
+// another thread it uses the frames in use, so that their clouds must stay.
+void TickPartner::choose_frames(bool with_partner) noexcept {
+  frame_count_ = 0;
+  const std::size_t sensors = options_.frames == nullptr ? 0 : options_.frames->sensors();
+  const std::int64_t now = clock_.monotonic_ns();
+  for (std::uint32_t sensor = 0; sensor < sensors; ++sensor) {
+    const SensorFrame* const frame = options_.frames->newest(sensor, revision_);
+    if (frame == nullptr || becoming_ != 0) continue;
+    if (waits_[sensor] == 0) waits_[sensor] = now;
+    const bool is_patient = now - waits_[sensor] < options_.frame_patience_ns;
+    if (with_partner && is_patient && !options_.frames->is_built(sensor, frame->content)) continue;
+    waits_[sensor] = 0;
+    frames_[frame_count_++] = {sensor, frame->content};
+    options_.frames->choose(sensor);
+  }
+}
+
+bool TickPartner::has_frames(const TickNotice& notice) noexcept {
+  return std::ranges::all_of(notice.shown(), [this](const TickFrame& frame) {
+    return options_.frames != nullptr && frame.sensor < options_.frames->sensors() &&
+           becoming_ == 0 && options_.frames->has(frame.sensor, frame.content);
+  });
 }
 
 // `goes_on`: all ticks so far were those of the leader before, which can follow this daemon if it
@@ -228,7 +256,7 @@ std::int64_t TickPartner::follow(std::int64_t deadline) noexcept {
     const TickNotice* const notice = known(cycle_);
     if (notice != nullptr) {
       if (!continues_here(*notice)) return part(deadline);
-      if (store_.choose(notice->used())) return follow(*notice);
+      if (has_frames(*notice) && store_.choose(notice->used())) return follow(*notice);
     }
     const std::int64_t now = clock_.monotonic_ns();
     const std::int64_t due = notice == nullptr ? deadline : notice->due_ns;
@@ -245,6 +273,7 @@ std::int64_t TickPartner::follow(const TickNotice& notice) noexcept {
   if (notice.lineage != lineage_ && notice.becoming != lineage_) lineage_ = notice.lineage;
   before_ = 0;
   term_ = notice.term;
+  for (const TickFrame& frame : notice.shown()) options_.frames->choose(frame.sensor);
   const TickTime own = steady_.read(clock_);
   const std::int64_t early = notice.due_ns - clock_.monotonic_ns();
   ahead_of_own_ns_ = notice.time.now_ns - notice.told_late_ns - (own.now_ns + early);
@@ -279,6 +308,7 @@ std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
     deadline -= apart > period / 2 ? apart - period : apart < -period / 2 ? apart + period : apart;
   }
   store_.choose_all(true);
+  choose_frames(false);
   time_ = own_time(deadline);
   clock_.sleep_until(deadline);
   return deadline;

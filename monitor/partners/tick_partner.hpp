@@ -10,6 +10,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "monitor/loop/frame_exchange.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/semaphore.hpp"
 #include "monitor/loop/spsc_ring.hpp"
@@ -29,6 +30,9 @@ struct TickPartnerOptions {
   // A leader that was heard no more for this time is gone, for a daemon that does not follow it. It
   // is five times as long for one that publishes nothing.
   std::int64_t lost_after_ns = 20'000'000;
+  FrameExchange* frames = nullptr;  // of sensors; null: there are none
+  // A leader shows a frame that the partner has not built after this time.
+  std::int64_t frame_patience_ns = 20'000'000;
 };
 
 // What belongs to a report beside its content.
@@ -98,6 +102,8 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t follow(const TickNotice& notice) noexcept;
   std::int64_t part(std::int64_t deadline) noexcept;
   std::int64_t tick_apart(std::int64_t deadline) noexcept;
+  void choose_frames(bool with_partner) noexcept;
+  [[nodiscard]] bool has_frames(const TickNotice& notice) noexcept;
   [[nodiscard]] TickTime own_time(std::int64_t due) noexcept;
   void approach_own_clock() noexcept;
   void stand(PartnerStanding standing) noexcept;
@@ -121,6 +127,10 @@ class TickPartner final : public PoseSource, public TickPace {
   // What the leader's time is ahead of this daemon's own, and the offsets of both at that tick.
   std::int64_t ahead_of_own_ns_ = 0, offset_ns_ = 0, own_offset_ns_ = 0;
   std::int64_t told_late_ns_ = 0;  // see TickNotice
+
+  std::array<TickFrame, kMaxSensors> frames_;      // that the next tick is shown
+  std::array<std::int64_t, kMaxSensors> waits_{};  // by sensor: since when a frame waits; 0: none
+  std::size_t frame_count_ = 0;
 
   std::vector<TickNotice> known_;  // by cycle
   std::uint64_t newest_cycle_ = 0, newest_daemon_ = 0, newest_revision_ = 0, newest_term_ = 0;

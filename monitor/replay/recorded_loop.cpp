@@ -75,8 +75,13 @@ void RecordedLoop::show_frames(const TickInput& input) {
   sensors_->add(poses_, joints_);
   for (const auto& message : input.sensors) sensors_->add(*message, now_ns);
   sensors_->settle(
-      now_ns, [this](const SeenCloud* cloud) { return monitor_->uses(cloud); },
+      now_ns, [this](const SeenCloud* cloud) { return is_used(cloud); },
       [this](std::uint32_t sensor, const SensorFrame& frame) { monitor_->show(sensor, frame); });
+}
+
+// A monitor that takes over for the same cell goes on with the frames in use.
+bool RecordedLoop::is_used(const SeenCloud* cloud) const noexcept {
+  return monitor_->uses(cloud) || (next_ && next_->monitor->uses(cloud));
 }
 
 // Builds what the daemon built, in the same order: what a frame hides may depend on those before.
@@ -84,7 +89,7 @@ void RecordedLoop::show_recorded(const TickInput& input) {
   for (const auto& [cycle, frame] : input.frames) {
     const bool is_shown = cycle == input.recorded->cycle;
     const bool is_built = sensors_->rebuild(
-        frame, [this](const SeenCloud* cloud) { return monitor_->uses(cloud); },
+        frame, [this](const SeenCloud* cloud) { return is_used(cloud); },
         [&](std::uint32_t sensor, const SensorFrame& built) {
           if (is_shown) monitor_->show(sensor, built);
         });
@@ -179,15 +184,15 @@ bool RecordedLoop::begin(const Cell& cell, std::uint64_t from) {
 }
 
 void RecordedLoop::succeed() {
-  cell_ = next_->cell;
+  const bool is_same = std::exchange(cell_, next_->cell) == next_->cell;
   since_ = {.began_after = next_->began_after, .from = monitor_->cycle() + 1};
   monitor_ = std::move(next_->monitor);
   if (cell_->scene.sensors.empty()) {
     sensors_ = nullptr;
-  } else if (sensors_) {
-    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_);
-  } else {
+  } else if (!sensors_) {
     sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true});
+  } else if (!is_same) {
+    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_);
   }
   ids_->change(cell_->scene.revision, next_->map);
   from_ = next_->from;

@@ -62,6 +62,7 @@ class RecordedLoop {
   void take(const PoseBatch& batch);
   void show_frames(const TickInput& input);
   void show_recorded(const TickInput& input);
+  [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
   [[nodiscard]] bool begin(const Cell& cell, std::uint64_t from);

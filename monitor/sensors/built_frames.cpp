@@ -5,6 +5,8 @@
 #include <span>
 #include <utility>
 
+#include "monitor/inputs/checksum.hpp"
+
 namespace clearance {
 namespace {
 
@@ -30,7 +32,50 @@ PastPose from_wire(const clearance_msg_PastBody& past) {
   return pose;
 }
 
+void add(const PastPose& past, Checksum& sum) {
+  sum.add(past.known);
+  sum.add_pose(past.world_from_body);
+  sum.add(past.shift_error);
+  sum.add(past.turn_error);
+}
+
+// What it is built of, but for the frames before.
+std::uint64_t of_itself(const BuiltFrame& frame) {
+  Checksum sum;
+  sum.add(frame.scene_revision);
+  sum.add(frame.sensor);
+  sum.add(frame.stamp_ns);
+  add(frame.place, sum);
+  for (const PlacedPostures::Joint& joint : frame.postures.joints) {
+    sum.add(joint.known);
+    sum.add(joint.position);
+    sum.add(joint.may_have_moved);
+  }
+  for (const PastPose& object : frame.postures.objects) add(object, sum);
+  const PinholeCamera& camera = frame.camera;
+  sum.add(camera.width);
+  sum.add(camera.height);
+  for (const double value : {camera.fx, camera.fy, camera.cx, camera.cy}) sum.add(value);
+  sum.add(frame.message.type);
+  sum.add_bytes(frame.message.cdr);
+  return sum.value();
+}
+
 }  // namespace
+
+FrameNames::FrameNames(const Scene& scene) {
+  for (const Sensor& sensor : scene.sensors)
+    former_.emplace_back(std::max<std::uint32_t>(sensor.persist_of, 1) - 1);
+}
+
+std::uint64_t FrameNames::name(const BuiltFrame& frame) {
+  std::deque<std::uint64_t>& former = former_[frame.sensor];
+  former.push_front(of_itself(frame));
+  Checksum sum;
+  for (const std::uint64_t each : former) sum.add(each);
+  former.pop_back();
+  return sum.value();
+}
 
 void BuiltFrames::put(BuiltFrame frame) {
   const std::lock_guard lock(mutex_);

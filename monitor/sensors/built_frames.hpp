@@ -36,6 +36,19 @@ class BuiltFrames {
   std::size_t bytes_ = 0;
 };
 
+// Names frames by all that they are built of: those of one name are the same to the bit. To be told
+// of every frame that a Sensors builds, since its persistence depends on former ones.
+class FrameNames {
+ public:
+  explicit FrameNames(const Scene& scene);
+  // Never 0.
+  [[nodiscard]] std::uint64_t name(const BuiltFrame& frame);
+
+ private:
+  // The frames before that still count, the newest first; by sensor.
+  std::vector<std::deque<std::uint64_t>> former_;
+};
+
 // `cycle`: of the tick that was shown it; 0: of none. `with_message`: false leaves its content out.
 [[nodiscard]] Sample<clearance_msg_SensorFrame> to_wire(const BuiltFrame& frame,
                                                         std::uint64_t cycle, bool with_message);

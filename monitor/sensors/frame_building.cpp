@@ -112,6 +112,11 @@ bool Sensors::decode_again(const BuiltFrame& built, Waiting& frame) {
   return false;
 }
 
+bool Sensors::has_room(std::uint32_t sensor, const IsUsed& is_used) const {
+  return !std::ranges::all_of(states_[sensor]->clouds,
+                              [&](const auto& cloud) { return is_used(cloud.get()); });
+}
+
 bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use& use) {
   if (built.scene_revision != cell_.scene.revision || built.sensor >= states_.size()) return false;
   State& state = *states_[built.sensor];

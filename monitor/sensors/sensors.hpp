@@ -93,6 +93,8 @@ class Sensors {
   // Builds a frame again, whatever was judged of its message and wherever the joints are. False: it
   // is of another cell, or cannot be built.
   [[nodiscard]] bool rebuild(const BuiltFrame& frame, const IsUsed& is_used, const Use& use);
+  // True if rebuild() finds a cloud that is not in use.
+  [[nodiscard]] bool has_room(std::uint32_t sensor, const IsUsed& is_used) const;
   // As SensorsOptions::keep; before the first message.
   void keep(std::function<void(BuiltFrame frame)> keep) { options_.keep = std::move(keep); }
 

@@ -65,6 +65,7 @@ class FrameExchanges : public testing::Test {
   // Returns the lower bound of the pair.
   double tick() {
     now += test::kTick;
+    exchange.choose_all(kRevision);
     exchange.show(kRevision, *monitor, sinks);
     return monitor->tick(std::vector{test::sample(0, {}, now)}, now).pairs[0].lower;
   }
@@ -129,6 +130,7 @@ TEST_F(FrameExchanges, AllocateNothing) {
   for (int i = 0; i < 10; ++i) {
     put(2.0F, now);
     const std::uint64_t before = allocations();
+    exchange.choose_all(kRevision);
     exchange.show(kRevision, *monitor, sinks);
     EXPECT_EQ(allocations(), before);
     tick();
