@@ -79,6 +79,10 @@ void TickPartner::listen() noexcept {
     newest_daemon_ = notice->daemon;
     newest_revision_ = notice->revision;
     newest_term_ = notice->term;
+    newest_becoming_ = notice->becoming;
+    for (const TickFrame& frame : notice->shown()) {
+      if (frame.sensor < named_.size()) named_[frame.sensor] = frame.content;
+    }
     newest_start_ns_ = notice->start_ns;
     newest_due_ns_ = notice->due_ns;
     heard_ns_ = clock_.monotonic_ns();
@@ -128,12 +132,12 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
     default:
       deadline = tick_apart(deadline);
   }
-  const bool hears_leader = heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < lost_after();
-  wants_state_ = hears_leader && newest_revision_ == revision_ &&
+  const bool hears = hears_leader();
+  wants_state_ = hears && newest_revision_ == revision_ &&
                  (standing_ == kStarting || standing_ == kApart);
   // A daemon that was stopped for long counts lower than its leader: clients would see cycles
   // again.
-  const bool counts_lower = hears_leader && newest_cycle_ > cycle_ + 1;
+  const bool counts_lower = hears && newest_cycle_ > cycle_ + 1;
   is_silent_ = standing_ == kStarting || (standing_ == kApart && counts_lower);
   return deadline;
 }
@@ -190,7 +194,7 @@ void TickPartner::approach_own_clock() noexcept {
 
 std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
   store_.choose_all(false);
-  choose_frames(partner_present_);
+  choose_frames(partner_present_ ? FramesWait::kForAnswer : FramesWait::kNot);
   time_ = own_time(deadline);
   if (TickNotice* const notice = notices_.back()) {
     notice->daemon = options_.daemon;
@@ -216,22 +220,33 @@ std::int64_t TickPartner::lead(std::int64_t deadline) noexcept {
   return deadline;
 }
 
-// A partner must have built a frame before both are shown it. While a successor catches up in
-// another thread it uses the frames in use, so that their clouds must stay.
-void TickPartner::choose_frames(bool with_partner) noexcept {
+// While a successor catches up in another thread it uses the frames in use, so that their clouds
+// must stay. A daemon that is to join keeps them, too, since the state that it gets rests on them:
+// the leader names no other ones meanwhile.
+void TickPartner::choose_frames(FramesWait wait) noexcept {
   frame_count_ = 0;
   const std::size_t sensors = options_.frames == nullptr ? 0 : options_.frames->sensors();
   const std::int64_t now = clock_.monotonic_ns();
+  const std::int64_t patience =
+      wait == FramesWait::kForNotice ? 2 * options_.frame_patience_ns : options_.frame_patience_ns;
   for (std::uint32_t sensor = 0; sensor < sensors; ++sensor) {
     const SensorFrame* const frame = options_.frames->newest(sensor, revision_);
     if (frame == nullptr || becoming_ != 0) continue;
     if (waits_[sensor] == 0) waits_[sensor] = now;
-    const bool is_patient = now - waits_[sensor] < options_.frame_patience_ns;
-    if (with_partner && is_patient && !options_.frames->is_built(sensor, frame->content)) continue;
+    const bool is_ready = wait == FramesWait::kForAnswer
+                              ? options_.frames->is_built(sensor, frame->content)
+                              : wait == FramesWait::kNot || named_[sensor] == frame->content;
+    const bool is_patient = (wait == FramesWait::kForNotice && newest_becoming_ != 0) ||
+                            now - waits_[sensor] < patience;
+    if (!is_ready && is_patient) continue;
     waits_[sensor] = 0;
     frames_[frame_count_++] = {sensor, frame->content};
     options_.frames->choose(sensor);
   }
+}
+
+bool TickPartner::hears_leader() noexcept {
+  return heard_ns_ != 0 && clock_.monotonic_ns() - heard_ns_ < lost_after();
 }
 
 bool TickPartner::has_frames(const TickNotice& notice) noexcept {
@@ -308,7 +323,8 @@ std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
     deadline -= apart > period / 2 ? apart - period : apart < -period / 2 ? apart + period : apart;
   }
   store_.choose_all(true);
-  choose_frames(false);
+  choose_frames(hears_leader() && newest_revision_ == revision_ ? FramesWait::kForNotice
+                                                                : FramesWait::kNot);
   time_ = own_time(deadline);
   clock_.sleep_until(deadline);
   return deadline;

@@ -31,7 +31,7 @@ struct TickPartnerOptions {
   // is five times as long for one that publishes nothing.
   std::int64_t lost_after_ns = 20'000'000;
   FrameExchange* frames = nullptr;  // of sensors; null: there are none
-  // A leader shows a frame that the partner has not built after this time.
+  // A leader is shown a frame that the partner has not built after this time.
   std::int64_t frame_patience_ns = 20'000'000;
 };
 
@@ -102,7 +102,11 @@ class TickPartner final : public PoseSource, public TickPace {
   std::int64_t follow(const TickNotice& notice) noexcept;
   std::int64_t part(std::int64_t deadline) noexcept;
   std::int64_t tick_apart(std::int64_t deadline) noexcept;
-  void choose_frames(bool with_partner) noexcept;
+  // The frames of sensors that a tick chooses wait until the partner has answered that it has built
+  // them, or has named them in a notice.
+  enum class FramesWait : std::uint8_t { kNot, kForAnswer, kForNotice };
+  void choose_frames(FramesWait wait) noexcept;
+  [[nodiscard]] bool hears_leader() noexcept;
   [[nodiscard]] bool has_frames(const TickNotice& notice) noexcept;
   [[nodiscard]] TickTime own_time(std::int64_t due) noexcept;
   void approach_own_clock() noexcept;
@@ -131,9 +135,11 @@ class TickPartner final : public PoseSource, public TickPace {
   std::array<TickFrame, kMaxSensors> frames_;      // that the next tick is shown
   std::array<std::int64_t, kMaxSensors> waits_{};  // by sensor: since when a frame waits; 0: none
   std::size_t frame_count_ = 0;
+  std::array<std::uint64_t, kMaxSensors> named_{};  // by sensor: the last frame in a notice
 
   std::vector<TickNotice> known_;  // by cycle
   std::uint64_t newest_cycle_ = 0, newest_daemon_ = 0, newest_revision_ = 0, newest_term_ = 0;
+  std::uint64_t newest_becoming_ = 0;
   std::int64_t newest_start_ns_ = 0, newest_due_ns_ = 0, heard_ns_ = 0;  // the latter 0: never
 
   SpscRing<TickNotice> heard_, notices_;

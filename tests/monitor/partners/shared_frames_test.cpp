@@ -212,6 +212,27 @@ TEST_F(SharedFrames, ThatAStateRestsOnAreAwaitedBeforeItIsJoined) {
   expect_agreement();
 }
 
+// The leader's successor takes its time, and the camera goes on.
+TEST_F(SharedFrames, InUseStayInUseAtTheOneThatIsToJoin) {
+  run_until_left_leads();
+  for (Side* side : {&left, &right}) build(*side, 1, 2.0F);
+  left.frames.note_built(0, 1);
+  for (int i = 0; i < 3; ++i) tick_both();
+  ASSERT_EQ(used(left), 1u);
+  ASSERT_EQ(used(right), 1u) << "although it is apart";
+  left.ticks.successor_began(true);
+  for (std::uint64_t number = 2; number < 5; ++number) {
+    for (Side* side : {&left, &right}) build(*side, number, 3.0F);
+    left.frames.note_built(0, number);
+    for (int i = 0; i < 33; ++i) tick_both();
+    EXPECT_EQ(used(left), 1u);
+    EXPECT_EQ(used(right), 1u);
+  }
+  left.ticks.successor_gave_up();
+  tick_both();
+  EXPECT_EQ(used(left), 4u);
+}
+
 // The successor ticks in another thread with the frames in use.
 TEST_F(SharedFrames, InUseStayWhileASuccessorCatchesUp) {
   join();
