@@ -174,7 +174,8 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
   if (s.scene.revision != before.state_->scene.revision) return true;
-  for (std::size_t i = 0; i < s.shown.size(); ++i) s.shown[i].frame = before.state_->shown[i].in_use;
+  for (std::size_t i = 0; i < s.shown.size(); ++i)
+    s.shown[i].frame = before.state_->shown[i].in_use;
   return true;
 }
 

@@ -9,7 +9,6 @@
 
 namespace clearance {
 
-
 // The sensors, and where each of them says that it is mounted: null if it does not.
 struct SensorList {
   std::vector<Sensor> sensors;

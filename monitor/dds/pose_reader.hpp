@@ -62,7 +62,8 @@ class PoseReader final : public PoseSource {
   // The number of samples refused because their writers use more names than NameLimit allows.
   [[nodiscard]] std::uint64_t refused_names() const { return names_.refused(); }
   // Before start(): builds the same frames of sensors as the partner, until end_sharing().
-  void share_frames(const Topics& topics, const DaemonIdentity& identity, const TickPartner& ticks) {
+  void share_frames(const Topics& topics, const DaemonIdentity& identity,
+                    const TickPartner& ticks) {
     if (sensors_) sensors_->share_frames(topics, identity, ticks);
   }
   void end_sharing() {

@@ -63,8 +63,7 @@ void SensorReader::end_sharing() {
 }
 
 void SensorReader::start() {
-  if (records_ || partner_)
-    sensors_->keep([this](BuiltFrame frame) { keep(std::move(frame)); });
+  if (records_ || partner_) sensors_->keep([this](BuiltFrame frame) { keep(std::move(frame)); });
   thread_ = std::thread([this] { run(); });
 }
 

@@ -38,8 +38,8 @@ class SensorReader {
 
   // Before start(): keeps the frames that are built for a recording.
   void keep_frames() { records_ = true; }
-  // Before start(): builds the same frames as the partner. `ticks` and `identity` must outlive this,
-  // or end_sharing() be called before.
+  // Before start(): builds the same frames as the partner. `ticks` and `identity` must outlive
+  // this, or end_sharing() be called before.
   void share_frames(const Topics& topics, const DaemonIdentity& identity, const TickPartner& ticks);
   void end_sharing();
   [[nodiscard]] BuiltFrames& built() noexcept { return built_; }
@@ -102,10 +102,10 @@ class SensorReader {
     std::uint64_t scene_revision = 0;
     std::shared_ptr<const SeenCloud> copy;  // null: not copied yet
   };
-  std::vector<Last> last_;  // by sensor
+  std::vector<Last> last_;                  // by sensor
   std::unique_ptr<PartnerFrames> partner_;  // null: the daemon has none
   FrameNames names_;
-  std::uint64_t content_ = 0;  // of the frame that is built
+  std::uint64_t content_ = 0;                 // of the frame that is built
   bool records_ = false, is_shared_ = false;  // the latter: that frame is one of the partner
   // Frames of the partner that are to be built.
   struct Sent {

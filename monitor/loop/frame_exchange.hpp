@@ -1,7 +1,8 @@
 // Hands frames of sensors to the tick thread without a lock.
 //
 //   building thread   is_used(), put(); note_built()
-//   tick thread       before each tick: choose_all(), or choose() for those that a partner has, too;
+//   tick thread       before each tick: choose_all(), or choose() for those that a partner has,
+//   too;
 //                     then show()
 //
 // The cloud of a frame belongs to the building thread until put(). It belongs to it again when a
@@ -40,8 +41,8 @@ class FrameExchange {
     of_[sensor].built.store(content, std::memory_order_relaxed);
   }
 
-  // The other members are for the tick thread, between two ticks of the scene of this revision. None
-  // allocates, throws or locks.
+  // The other members are for the tick thread, between two ticks of the scene of this revision.
+  // None allocates, throws or locks.
   [[nodiscard]] std::size_t sensors() const noexcept { return sensors_; }
   // The newest frame that has come and was not shown; null: none.
   const SensorFrame* newest(std::uint32_t sensor, std::uint64_t scene_revision) noexcept;
@@ -52,7 +53,9 @@ class FrameExchange {
   // A frame of this content has come and was not shown. If not, the older one that waits may go.
   [[nodiscard]] bool has(std::uint32_t sensor, std::uint64_t content) noexcept;
   // The next tick is shown the frame that newest() or has() found.
-  void choose(std::uint32_t sensor) noexcept { of_[sensor].is_chosen = of_[sensor].next != nullptr; }
+  void choose(std::uint32_t sensor) noexcept {
+    of_[sensor].is_chosen = of_[sensor].next != nullptr;
+  }
   void choose_all(std::uint64_t scene_revision) noexcept;
   // Shows the monitor what was chosen, and tells the sinks. `monitor` is that of the scene.
   void show(std::uint64_t scene_revision, Monitor& monitor,

@@ -124,6 +124,7 @@ bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use&
   Waiting frame;
   frame.camera = built.camera;
   frame.stamp_ns = built.stamp_ns;
+  if (options_.keep) frame.message = built.message;
   const auto cloud =
       std::ranges::find_if(state.clouds, [&](const auto& each) { return !is_used(each.get()); });
   if (cloud == state.clouds.end() || !decode_again(built, frame) ||

@@ -139,7 +139,8 @@ TEST_F(CameraPartners, AgreeOnEachFrameAndKeepTheCameraThroughKillsAndJoins) {
   for (const std::string victim : {"left", "right", "left"}) {
     daemons[victim]->signal(SIGKILL);
     distances.clear();
-    EXPECT_TRUE(read_until([this] { return distances.size() > 5; })) << "it reads on alone" << logs();
+    EXPECT_TRUE(read_until([this] { return distances.size() > 5; }))
+        << "it reads on alone" << logs();
     start(victim);
     ASSERT_TRUE(agree()) << logs();
     expect_no_fault();

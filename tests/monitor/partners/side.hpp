@@ -45,7 +45,7 @@ class Side {
     const double t = 0.001 * static_cast<double>(number);
     for (std::uint32_t i = 0; i < 4; ++i) {
       list.push_back(sample(i, at(0.6 * i + 0.3 * std::sin(7 * t + i), 0.2 * t, 0),
-                                  kStart + static_cast<std::int64_t>(number) * kTick));
+                            kStart + static_cast<std::int64_t>(number) * kTick));
     }
     return list;
   }
