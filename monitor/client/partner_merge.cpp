@@ -1,10 +1,16 @@
 #include "monitor/client/partner_merge.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance::client {
+namespace {
+
+constexpr std::int64_t kSilentNs = 500'000'000;
+
+}  // namespace
 
 const char* name(PartnerState state) noexcept {
   constexpr std::array kNames = {"alone",        "agrees",    "missing",
@@ -15,14 +21,18 @@ const char* name(PartnerState state) noexcept {
 
 // Cycles decide between partners that agree. Time decides where they do not count alike: the one
 // that counts lower takes the other's place when that has been silent for more than a period.
-bool PartnerMerge::is_next(const clearance_msg_Distances& report) const noexcept {
+// After a clock was set back there is nothing to compare: then only the silence counts.
+bool PartnerMerge::is_next(const clearance_msg_Distances& report,
+                           std::int64_t heard_ns) const noexcept {
   if (cycle_ == 0) return true;
+  const std::int64_t silent_ns = heard_ns - handed_out_ns_;
+  if (report.lineage != lineage_ && silent_ns > std::max(kSilentNs, 4 * step_ns_)) return true;
   const std::int64_t newer_ns = report.now_ns - now_ns_;
   if (report.cycle > cycle_) return newer_ns > 0;
   return report.lineage != lineage_ && newer_ns > step_ns_ + step_ns_ / 2;
 }
 
-bool PartnerMerge::take(const clearance_msg_Distances& report) {
+bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t heard_ns) {
   const bool is_delivered_whole =
       report.delivery_checksum == 0 || delivery_checksum_of(report) == report.delivery_checksum;
   if (checksum_of(report) != report.checksum || !is_delivered_whole) {
@@ -30,7 +40,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report) {
     return false;
   }
   note_names(report);
-  if (!is_next(report)) {
+  if (!is_next(report, heard_ns)) {
     compare(report);
     return false;
   }
@@ -44,6 +54,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report) {
   cycle_ = report.cycle;
   lineage_ = report.lineage;
   now_ns_ = report.now_ns;
+  handed_out_ns_ = heard_ns;
   seen_[cycle_ % kSeen] = {cycle_,          report.daemon,         lineage_,
                            report.checksum, report.state_checksum, false};
   return true;

@@ -35,9 +35,9 @@ struct PartnerCheck {
 // silent.
 class PartnerMerge {
  public:
-  // Takes a report of any partner, in the order of arrival. Returns true if it is to be handed out;
-  // check() is then about the reports before it.
-  [[nodiscard]] bool take(const clearance_msg_Distances& report);
+  // Takes a report of any partner, in the order of arrival. `heard_ns` is when, by a clock that is
+  // never set. Returns true if it is to be handed out; check() is then about the reports before it.
+  [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t heard_ns);
   [[nodiscard]] const PartnerCheck& check() const noexcept { return check_; }
 
  private:
@@ -46,7 +46,8 @@ class PartnerMerge {
     std::uint64_t cycle = 0, daemon = 0, lineage = 0, checksum = 0, state_checksum = 0;
     bool is_compared = false;
   };
-  [[nodiscard]] bool is_next(const clearance_msg_Distances& report) const noexcept;
+  [[nodiscard]] bool is_next(const clearance_msg_Distances& report,
+                             std::int64_t heard_ns) const noexcept;
   void compare(const clearance_msg_Distances& report);
   void note(PartnerState state, const clearance_msg_Distances& report);
   void note_names(const clearance_msg_Distances& report);
@@ -54,6 +55,7 @@ class PartnerMerge {
   std::array<Seen, kSeen> seen_{};  // those that were handed out, by cycle
   std::uint64_t cycle_ = 0, lineage_ = 0;
   std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the last one, and since the one before it
+  std::int64_t handed_out_ns_ = 0;         // when the last one was heard
   std::array<std::string, 2> names_;       // of both partners, the one heard last first
   PartnerCheck check_, found_;             // the latter: since the last one was handed out
 };

@@ -15,6 +15,11 @@
 namespace clearance::client {
 namespace {
 
+// A clock that is never set.
+std::int64_t steady_ns() noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
 template <class T>
 bool take_one(dds_entity_t reader, T& sample) {
   void* pointer = &sample;
@@ -108,7 +113,7 @@ bool Stream<Message>::take() {
     is_next = true;
     if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
       const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
-      is_next = is_of_one || merge_.take(*scratch_);
+      is_next = is_of_one || merge_.take(*scratch_, steady_ns());
       if (is_next) static_cast<void>(whole_.complete(*scratch_));
     }
   }

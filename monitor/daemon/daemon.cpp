@@ -20,8 +20,6 @@ namespace {
 
 // 64 ms of reports at 1 kHz; DDS writes seldom take longer.
 constexpr std::size_t kQueuedReports = 64;
-// The number of full-size batches that one tick takes in; more wait for the next tick.
-constexpr std::size_t kBatchesATick = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
 // The number of such intervals between two looks at the files of the cell.
@@ -97,11 +95,12 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
   watch_files(cell.files);
-  const TickLoopOptions loop{.max_ticks = options.max_ticks,
-                             .max_samples = kBatchesATick * (PoseReader::samples_a_batch(cell) +
-                                                             PoseReader::joints_a_batch(cell)),
-                             .pace = partner_ ? &partner_->ticks : nullptr,
-                             .frames = poses_.frames()};
+  const TickLoopOptions loop{
+      .max_ticks = options.max_ticks,
+      .max_samples = kLargestBatchesATick *
+                     (PoseReader::samples_a_batch(cell) + PoseReader::joints_a_batch(cell)),
+      .pace = partner_ ? &partner_->ticks : nullptr,
+      .frames = poses_.frames()};
   std::vector<ReportSink*> sinks{now_.queue.get()};
   if (recording_) sinks.insert(sinks.end(), {&recording_->frames(), &recording_->sink()});
   if (now_.ros) sinks.push_back(now_.ros.get());

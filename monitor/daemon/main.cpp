@@ -302,6 +302,14 @@ int run(int argc, char** argv, StopSignal& signal) {
     print_summary(cell->scene);
     return kOk;
   }
+  if (!arguments.daemon.partner.empty() && cell->scene.rate_hz < kLeastPartnersHz) {
+    print(
+        stderr,
+        "clearanced: --partner: found a cell of {:g} Hz; expected at least {:g} Hz, since partners "
+        "hear from each other once a tick, and a silence of 20 ms counts as an end\n",
+        cell->scene.rate_hz, kLeastPartnersHz);
+    return kUsage;
+  }
   for (const std::filesystem::path& file : arguments.cell.files()) {
     if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {file})) return kUsage;
   }

@@ -18,6 +18,8 @@ constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
 // A daemon whose notices were heard for the last time longer ago does not lead any more.
 constexpr std::int64_t kLeaderHeardNs = 100'000'000;
+// The least delay of notices holds for as long without any.
+constexpr std::int64_t kDelayLastsNs = 1'000'000'000;
 // A leader stops writing somewhat before its lease ends.
 constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
@@ -145,6 +147,8 @@ void PartnerPort::hear_notices() {
   dds_sample_info_t info;
   while (take(ticks_reader_, heard_, info)) {
     const clearance_msg_PartnerTick& in = *heard_;
+    // Clocks may have drifted apart meanwhile.
+    if (SystemClock().monotonic_ns() - leader_heard_ns_ > kDelayLastsNs) delay_ = {};
     const std::int64_t delay = delay_.add(dds_time() - info.source_timestamp);
     if (delay_.is_settled() && std::abs(delay) > kClockErrorNs && !std::exchange(clock_told_, true))
       log_line(lines::kPartnerClock, in.partner, delay / 1'000'000);

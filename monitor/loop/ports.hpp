@@ -64,8 +64,10 @@ class TickPace {
   virtual void successor_began(bool same_scene) noexcept = 0;
   virtual void successor_gave_up() noexcept = 0;
   virtual void successor_followed() noexcept = 0;
-  // The loop ticks the partner's state from now on.
-  virtual void joined(std::uint64_t lineage) noexcept = 0;
+  // The loop may tick the partner's state from now on: it does not tick what both agree on.
+  [[nodiscard]] virtual bool may_join() const noexcept = 0;
+  // It does so, with the state behind this cycle.
+  virtual void joined(std::uint64_t lineage, std::uint64_t cycle) noexcept = 0;
 };
 
 // Three clocks: realtime for stamps that other machines compare, monotonic for deadlines, and

@@ -160,10 +160,11 @@ void TickLoop::join() noexcept {
   JoinedState* const joined = joined_.load(std::memory_order_acquire);
   if (joined == nullptr || busy()) return;
   FrameExchange* const frames = options_.frames;
-  if (frames == nullptr || joined->has_frames(*frames)) joined->join(monitor_, ids_);
+  const bool may_join = options_.pace == nullptr || options_.pace->may_join();
+  if (may_join && (frames == nullptr || joined->has_frames(*frames))) joined->join(monitor_, ids_);
   if (joined->has_joined()) {
     if (frames != nullptr) frames->show_awaited(*monitor_, sinks_);
-    if (options_.pace != nullptr) options_.pace->joined(joined->lineage());
+    if (options_.pace != nullptr) options_.pace->joined(joined->lineage(), monitor_->cycle());
   }
   joined_.store(nullptr, std::memory_order_release);
 }

@@ -43,7 +43,9 @@ std::uint64_t content_of(const PoseBatch& batch) noexcept {
 }
 
 BatchStore::BatchStore(PoseSource& source, const Size& size)
-    : source_(source), slots_(batches_of(size)) {
+    : source_(source),
+      most_samples_(kLargestBatchesATick * (size.samples + size.joints)),
+      slots_(batches_of(size)) {
   for (Stored& stored : slots_) {
     stored.batch.samples.reserve(size.samples);
     stored.batch.joints.reserve(size.joints);
@@ -63,11 +65,14 @@ void BatchStore::take_in() noexcept {
 
 void BatchStore::choose_all(bool keep) noexcept {
   count_ = given_ = 0;
+  std::size_t samples = 0;
   for (std::uint64_t place = head_; place < tail_ && count_ < kMostTickInputs; ++place) {
     Stored& stored = at(place);
     const bool is_new = stored.waits && !stored.given;
+    if (is_new && samples + stored.batch.size() > most_samples_) break;
     if (!keep) stored.waits = false;
     if (!is_new) continue;
+    samples += stored.batch.size();
     stored.given = true;
     places_[count_] = place;
     inputs_[count_++] = {stored.batch.source, stored.batch.sequence_number, stored.content};
@@ -107,6 +112,19 @@ bool BatchStore::choose(std::span<const TickInput> inputs) noexcept {
   }
   while (head_ < tail_ && !at(head_).waits) ++head_;
   return true;
+}
+
+void BatchStore::begin_again() noexcept {
+  for (std::uint64_t place = head_; place < tail_; ++place) at(place).given = false;
+}
+
+void BatchStore::forget(std::span<const TickInput> inputs) noexcept {
+  for (const TickInput& input : inputs) {
+    const std::uint64_t place = find(input);
+    for (std::uint64_t each = head_; place != tail_ && each <= place; ++each) {
+      if (at(each).batch.source == input.source) at(each).waits = false;
+    }
+  }
 }
 
 // Slots are filled again in take_in() only, which is not called before the tick has had them all.

@@ -27,11 +27,15 @@ class BatchStore {
 
   // Takes in what the source has. If too many batches wait, the oldest ones go.
   void take_in() noexcept;
-  // Chooses the batches that no tick has had, in the order in which they came. `keep`: an agreed
-  // tick may use them later.
+  // Chooses the batches that no tick has had, in the order in which they came, as many as fit into
+  // a tick. `keep`: an agreed tick may use them later.
   void choose_all(bool keep) noexcept;
   // Chooses these. Returns false, and chooses none, if one has not come.
   [[nodiscard]] bool choose(std::span<const TickInput> inputs) noexcept;
+  // The state that this daemon joins rests on no batch that waits here, but for those that a notice
+  // of an earlier tick names: forget() takes them out, with those before them of the same source.
+  void begin_again() noexcept;
+  void forget(std::span<const TickInput> inputs) noexcept;
   // The last choice.
   [[nodiscard]] std::span<const TickInput> chosen() const noexcept {
     return std::span(inputs_).first(count_);
@@ -50,6 +54,7 @@ class BatchStore {
   [[nodiscard]] std::uint64_t find(const TickInput& input) noexcept;
 
   PoseSource& source_;
+  std::size_t most_samples_;  // of a tick
   std::vector<Stored> slots_;
   std::uint64_t head_ = 0, tail_ = 0;  // places; the former is the oldest one
   std::array<std::uint64_t, kMostTickInputs> places_{};

@@ -13,7 +13,12 @@
 namespace clearance {
 
 // The largest number of batches that a tick of partners uses; more wait for the next tick.
-inline constexpr std::size_t kMostTickInputs = 64;
+inline constexpr std::size_t kMostTickInputs = 256;
+// The number of batches of the largest size that any tick takes in; more wait for the next tick.
+inline constexpr std::size_t kLargestBatchesATick = 64;
+
+// A lease of 20 ms must hold from one notice to the next.
+inline constexpr double kLeastPartnersHz = 100.0;
 
 // A batch that a tick uses.
 struct TickInput {

@@ -270,7 +270,8 @@ std::int64_t TickPartner::follow(std::int64_t deadline) noexcept {
   for (;;) {
     const TickNotice* const notice = known(cycle_);
     if (notice != nullptr) {
-      if (!continues_here(*notice)) return part(deadline);
+      const std::int64_t latest = std::max(deadline, clock_.monotonic_ns()) + options_.period_ns;
+      if (!continues_here(*notice) || notice->due_ns > latest) return part(deadline);
       if (has_frames(*notice) && store_.choose(notice->used())) return follow(*notice);
     }
     const std::int64_t now = clock_.monotonic_ns();
@@ -353,7 +354,13 @@ void TickPartner::successor_followed() noexcept {
   become(0);
 }
 
-void TickPartner::joined(std::uint64_t lineage) noexcept {
+// What this daemon has used apart from the leader is not in the state. If the leader ends before it
+// names it, this one uses it again.
+void TickPartner::joined(std::uint64_t lineage, std::uint64_t cycle) noexcept {
+  store_.begin_again();
+  for (const TickNotice& notice : known_) {
+    if (notice.daemon == newest_daemon_ && notice.cycle <= cycle) store_.forget(notice.used());
+  }
   lineage_ = lineage;
   before_ = 0;
   become(0);

@@ -84,7 +84,10 @@ class TickPartner final : public PoseSource, public TickPace {
   void successor_began(bool same_scene) noexcept override;
   void successor_gave_up() noexcept override { become(0); }
   void successor_followed() noexcept override;
-  void joined(std::uint64_t lineage) noexcept override;
+  [[nodiscard]] bool may_join() const noexcept override {
+    return standing_ == PartnerStanding::kStarting || standing_ == PartnerStanding::kApart;
+  }
+  void joined(std::uint64_t lineage, std::uint64_t cycle) noexcept override;
 
  private:
   static constexpr std::size_t kKnown = 256;  // notices: those of a quarter of a second

@@ -23,7 +23,7 @@ bool MergedReports::take(const clearance_msg_Distances& report, std::int64_t ste
     return true;
   }
   partner_ns_ = steady_ns;
-  if (!merge_.take(report)) return false;
+  if (!merge_.take(report, steady_ns)) return false;
   const client::PartnerCheck& check = merge_.check();
   have_met_ |= check.state != kAlone;
   const bool is_lost_here = check.state == kMissing && is_recent(lost_ns_, steady_ns, kToldForNs);

@@ -34,13 +34,15 @@ clearance_msg_Distances report(const char* partner, std::uint64_t cycle, std::ui
 class Merge : public testing::Test {
  protected:
   bool take(const clearance_msg_Distances& message) {
-    const bool is_next = merge.take(message);
+    heard_ns += kPeriod / 2;
+    const bool is_next = merge.take(message, heard_ns);
     if (is_next) cycles.push_back(message.cycle);
     return is_next;
   }
   [[nodiscard]] PartnerState state() const { return merge.check().state; }
 
   PartnerMerge merge;
+  std::int64_t heard_ns = 0;
   std::vector<std::uint64_t> cycles;
 };
 
@@ -68,6 +70,21 @@ TEST_F(Merge, TellsWithTheNextReportThatAPartnerIsMissing) {
   EXPECT_EQ(merge.check().partner, "right");
   EXPECT_EQ(merge.check().cycle, 2u);
   EXPECT_FALSE(take(report("right", 2))) << "late";
+}
+
+// The clock of the machine was two hours ahead, and was set back while both were started again.
+TEST_F(Merge, HandsOutWhatComesAfterTheTimeOfBothWasSetBack) {
+  take(report("left", 100));
+  clearance_msg_Distances later = report("left", 1, 2);
+  later.now_ns -= 7'200'000'000'000;
+  later.checksum = checksum_of(later);
+  EXPECT_FALSE(take(later)) << "for a moment, it may be of a former run";
+  heard_ns += 1'000'000'000;
+  EXPECT_TRUE(take(later));
+  later.cycle = 2;
+  later.now_ns += kPeriod;
+  later.checksum = checksum_of(later);
+  EXPECT_TRUE(take(later));
 }
 
 TEST_F(Merge, TellsOtherBitsOfTheSameInputsFromOtherInputs) {
@@ -197,8 +214,8 @@ TEST_F(Merge, FindsEveryFlippedBitOfAMessageAtOnce) {
     PartnerMerge fresh;
     const bool is_of_one = *came->partner == '\0' && came->checksum == 0;
     EXPECT_FALSE(is_of_one) << "bit " << bit;
-    EXPECT_FALSE(fresh.take(*came)) << "bit " << bit;
-    EXPECT_TRUE(fresh.take(*sent));
+    EXPECT_FALSE(fresh.take(*came, kStart)) << "bit " << bit;
+    EXPECT_TRUE(fresh.take(*sent, kStart));
     EXPECT_EQ(fresh.check().state, PartnerState::kCorrupt) << "bit " << bit;
     ++corrupt;
   }

@@ -101,7 +101,7 @@ class Side {
     joined.join(other.monitor, other.ids);
     ASSERT_TRUE(joined.has_joined());
     other.frames.show_awaited(*other.monitor, {});
-    other.ticks.joined(joined.lineage());
+    other.ticks.joined(joined.lineage(), other.monitor->cycle());
     ticks.successor_followed();
   }
 

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -254,6 +255,43 @@ TEST_F(TickPartners, ADaemonThatCountsLowerIsSilentUntilItHasTheOthersState) {
   tick_both();
   EXPECT_TRUE(left.spoke);
   expect_agreement();
+}
+
+// A pose that is sent once reached this daemon alone, and the leader ends before it has it.
+TEST_F(TickPartners, WhatADaemonHasUsedApartCountsAgainAfterItJoins) {
+  run_until_left_leads();
+  for (int i = 0; i < 3; ++i) tick_both();
+  ASSERT_TRUE(right.ticks.wants_state());
+  ++sent;
+  right.get(sent, "once");
+  right.tick();
+  EXPECT_EQ(right.used, std::vector{sent});
+  left.tick();
+  left.tell(right);
+  left.give_state(right);
+  right.tick();
+  for (int i = 0; i < 10 && right.ticks.standing() != kLeading; ++i) {
+    right.used.clear();
+    right.tick();
+  }
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  EXPECT_EQ(std::ranges::count(right.used, sent), 1);
+}
+
+// A bit of its notice has flipped.
+TEST_F(TickPartners, AFollowerDoesNotWaitForATickThatIsDueHoursLater) {
+  join();
+  send();
+  left.tick();
+  for (; const TickNotice* told = left.ticks.notices().front(); left.ticks.notices().pop()) {
+    TickNotice late = *told;
+    late.due_ns += std::int64_t{1} << 43;
+    ASSERT_TRUE(right.ticks.hear(late));
+  }
+  const std::int64_t before = right.clock.monotonic_ns();
+  right.tick();
+  EXPECT_LT(right.clock.monotonic_ns() - before, 3 * kTick);
+  EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
 TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
