@@ -4,6 +4,7 @@
 
 #include <chrono>
 #include <cstddef>
+#include <exception>
 #include <span>
 #include <string>
 #include <thread>
@@ -46,7 +47,13 @@ PartnerPort::Actions PartnerStates::actions() {
 void PartnerStates::put(std::function<void()> task) {
   QueuedCommand queued;
   queued.is_own = true;
-  queued.task = std::move(task);
+  queued.task = [task = std::move(task)] {
+    try {
+      task();
+    } catch (const std::exception& error) {
+      log_line(lines::kPartnerStateRefused, error.what());
+    }
+  };
   static_cast<void>(thread_.put(std::move(queued)));
 }
 
@@ -60,13 +67,18 @@ void PartnerStates::prepare() {
 
 void PartnerStates::send() {
   if (ticks_.standing() != PartnerStanding::kLeading) return;
-  const auto outcome = changer_.renew(loop_ended_, [this](const Successor& successor) {
-    std::vector<std::byte> bytes;
-    save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
-    port_.send_state({.revision = successor.scene().revision,
-                      .lineage = ticks_.becoming(),
-                      .cycle = successor.began_after(),
-                      .bytes = bytes});
+  // The loop holds the successor meanwhile, so that nothing may leave this early.
+  const auto outcome = changer_.renew(loop_ended_, [this](const Successor& successor) noexcept {
+    try {
+      std::vector<std::byte> bytes;
+      save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
+      port_.send_state({.revision = successor.scene().revision,
+                        .lineage = ticks_.becoming(),
+                        .cycle = successor.began_after(),
+                        .bytes = bytes});
+    } catch (const std::exception& error) {
+      log_line(lines::kPartnerStateRefused, error.what());
+    }
   });
   if (!outcome.refusal.empty()) log_line(lines::kPartnerStateRefused, outcome.refusal);
 }
@@ -132,13 +144,17 @@ QueuedCommand PartnerStates::for_both(QueuedCommand command) {
   return command;
 }
 
-// If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost.
-// Busy: the client sends the command again.
+// If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost. A
+// daemon that was held up may not have heard of that: it must hold the lease of the leader before a
+// change counts that it alone has. Busy: the client sends the command again.
 CommandResult PartnerStates::of_both(CommandResult result) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!loop_ended_ && port_.hears_partner() &&
-         port_.partner_revision() != result.scene_revision) {
-    if (ticks_.standing() != PartnerStanding::kLeading) {
+  while (!loop_ended_) {
+    const bool hears = port_.hears_partner();
+    if (hears && port_.partner_revision() == result.scene_revision) break;
+    if (!hears && port_.leads()) break;
+    const bool is_late = std::chrono::steady_clock::now() > end;
+    if (ticks_.standing() != PartnerStanding::kLeading || (is_late && !hears)) {
       result.status = CommandStatus::kBusy;
       result.reason = fmt::format(
           "found that '{}' has taken the lead meanwhile, with its cell; expected that the same "
@@ -146,7 +162,7 @@ CommandResult PartnerStates::of_both(CommandResult result) {
           port_.partner());
       break;
     }
-    if (std::chrono::steady_clock::now() > end) {
+    if (is_late) {
       result.reason = fmt::format("the partner '{}' has another cell in force: its log says why",
                                   port_.partner());
       break;
