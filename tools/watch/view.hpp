@@ -10,9 +10,6 @@
 
 namespace clearance::watch {
 
-// The daemon counts as silent when no report has arrived for this long, or for its own lease.
-inline constexpr std::int64_t kSilentNs = 1'000'000'000;
-
 struct ViewContext {
   std::string where;        // DDS domain and partition
   std::int64_t now_ns = 0;  // CLOCK_REALTIME

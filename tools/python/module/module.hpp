@@ -13,5 +13,6 @@ void add_replay(pybind11::module_& module);
 void add_reports(pybind11::module_& module);
 void add_writers(pybind11::module_& module);
 void add_commands(pybind11::module_& module);
+void add_answers(pybind11::module_& module);
 
 }  // namespace clearance::python
