@@ -82,6 +82,10 @@ class Stream {
   // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
   [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
+  // See PartnerMerge::senders(). The times are those of steady_clock.
+  [[nodiscard]] const std::array<PartnerMerge::Sender, 2>& senders() const noexcept {
+    return merge_.senders();
+  }
 
   // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake,
   // unless they are partners.
@@ -233,6 +237,7 @@ class Zones {
  private:
   dds_entity_t reader_;
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
+  std::map<std::uint32_t, dds_instance_handle_t> writers_;  // by zone: who wrote that state
 };
 
 // CLOCK_REALTIME, the clock of stamps.

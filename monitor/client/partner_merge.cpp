@@ -39,16 +39,16 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
     note(PartnerState::kCorrupt, report);
     return false;
   }
-  note_names(report);
+  note_sender(report, heard_ns);
   if (!is_next(report, heard_ns)) {
     compare(report);
     return false;
   }
   const Seen& before = seen_[cycle_ % kSeen];
   check_ = std::exchange(found_, {});
-  const bool has_partner = !names_[1].empty();
+  const bool has_partner = senders_[1].daemon != 0;
   if (check_.state == PartnerState::kAlone && has_partner && cycle_ != 0 && !before.is_compared) {
-    check_ = {PartnerState::kMissing, cycle_, names_[0] == report.partner ? names_[1] : names_[0]};
+    check_ = {PartnerState::kMissing, cycle_, senders_[1].partner};
   }
   if (report.cycle == cycle_ + 1) step_ns_ = report.now_ns - now_ns_;
   cycle_ = report.cycle;
@@ -75,9 +75,9 @@ void PartnerMerge::note(PartnerState state, const clearance_msg_Distances& repor
   if (state >= found_.state) found_ = {state, report.cycle, report.partner};
 }
 
-void PartnerMerge::note_names(const clearance_msg_Distances& report) {
-  if (names_[0] == report.partner) return;
-  names_[1] = std::exchange(names_[0], report.partner);
+void PartnerMerge::note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns) {
+  if (senders_[0].partner != report.partner) std::swap(senders_[0], senders_[1]);
+  senders_[0] = {report.partner, report.daemon, heard_ns};
 }
 
 }  // namespace clearance::client

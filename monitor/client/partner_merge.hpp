@@ -39,6 +39,14 @@ class PartnerMerge {
   // never set. Returns true if it is to be handed out; check() is then about the reports before it.
   [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t heard_ns);
   [[nodiscard]] const PartnerCheck& check() const noexcept { return check_; }
+  // The daemons of both partners, and when their last good report was heard, whether it was handed
+  // out or not. `daemon` 0: none.
+  struct Sender {
+    std::string partner;
+    std::uint64_t daemon = 0;
+    std::int64_t heard_ns = 0;
+  };
+  [[nodiscard]] const std::array<Sender, 2>& senders() const noexcept { return senders_; }
 
  private:
   static constexpr std::size_t kSeen = 64;
@@ -50,13 +58,13 @@ class PartnerMerge {
                              std::int64_t heard_ns) const noexcept;
   void compare(const clearance_msg_Distances& report);
   void note(PartnerState state, const clearance_msg_Distances& report);
-  void note_names(const clearance_msg_Distances& report);
+  void note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns);
 
   std::array<Seen, kSeen> seen_{};  // those that were handed out, by cycle
   std::uint64_t cycle_ = 0, lineage_ = 0;
   std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the last one, and since the one before it
   std::int64_t handed_out_ns_ = 0;         // when the last one was heard
-  std::array<std::string, 2> names_;       // of both partners, the one heard last first
+  std::array<Sender, 2> senders_;          // the one heard last first
   PartnerCheck check_, found_;             // the latter: since the last one was handed out
 };
 

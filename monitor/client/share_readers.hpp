@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -72,6 +73,13 @@ struct SharedCell::OfShare {
       if (!is_new) current.before_next(reports->scene_revision);
       reports.exchange(is_new ? ahead : current.latest);
       (is_new ? has_ahead : is_new) = true;
+    }
+    // The zones of a partner count whose reports come, although those of the other one come first.
+    for (std::size_t i = 0; i < reports.senders().size(); ++i) {
+      const PartnerMerge::Sender& sender = reports.senders()[i];
+      if (sender.heard_ns == sender_heard_ns[i]) continue;
+      sender_heard_ns[i] = sender.heard_ns;
+      heard[sender.daemon] = now_ns;
     }
     std::erase_if(heard, [now_ns](const auto& one) { return one.second + kHeardFor < now_ns; });
     separation.take_all(separations);
@@ -173,6 +181,7 @@ struct SharedCell::OfShare {
   bool is_new = false, has_ahead = false;
   std::uint64_t missed = 0;
   std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
+  std::array<std::int64_t, 2> sender_heard_ns{};
   // By zone and daemon, in the order in which they came.
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::deque<clearance_msg_ZoneState>> states;
 };

@@ -108,8 +108,8 @@ bool SharedCell::next(std::chrono::nanoseconds timeout) {
     take();
     const std::int64_t now = dds_time();
     if (is_due(now)) {
-      join(now);
-      return true;
+      if (join(now)) return true;
+      continue;
     }
     if (now >= end_ns) return false;
     wait_->wait(std::min(end_ns - now, options_.late_after.count() / 4));
@@ -170,10 +170,11 @@ bool SharedCell::can_stay(std::uint64_t next) const {
   return has_this && !has_next;
 }
 
-void SharedCell::follow_revision() {
+// Returns false if the shares have other names in that scene: they are met anew.
+bool SharedCell::follow_revision() {
   const std::uint64_t best = scene_of_most();
-  if (best == map_.revision() && catalogue() != nullptr) return;
-  if (can_stay(best)) return;
+  if (best == map_.revision() && catalogue() != nullptr) return true;
+  if (can_stay(best)) return true;
   for (const auto& share : shares_) {
     const clearance_msg_Catalogue* const found =
         best == 0 ? share->catalogue.message() : share->catalogue.message(best);
@@ -182,13 +183,15 @@ void SharedCell::follow_revision() {
     std::vector<std::string> names;
     for (const auto& each : shares_) names.push_back(each->name);
     if (map.names() != names) {
-      if (!map.names().empty()) open(map.names());
-      return;
+      if (map.names().empty()) return true;
+      open(map.names());
+      return false;
     }
     map_ = std::move(map);
     separated_.clear();
-    return;
+    return true;
   }
+  return true;
 }
 
 const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
@@ -225,9 +228,9 @@ void SharedCell::judge(std::int64_t now_ns) {
   }
 }
 
-void SharedCell::join(std::int64_t now_ns) {
+bool SharedCell::join(std::int64_t now_ns) {
   joined_ns_ = now_ns;
-  follow_revision();
+  if (!follow_revision()) return false;
   judge(now_ns);
   std::vector<ShareView> views;
   for (std::size_t i = 0; i < map_.names().size() && i < shares_.size(); ++i) {
@@ -255,13 +258,7 @@ void SharedCell::join(std::int64_t now_ns) {
   ++message_->cycle;
   check_ = checker_.check(*message_, now_ns);
   join_zones();
-  for (const ShareView& view : views) {
-    if (view.separation == nullptr) continue;
-    for (const clearance_msg_ZoneSeparation& zone : list(view.separation->zones)) {
-      const auto at = std::ranges::lower_bound(separated_, zone.zone);
-      if (at == separated_.end() || *at != zone.zone) separated_.insert(at, zone.zone);
-    }
-  }
+  note_separated(views);
   if (!separated_.empty()) {
     join_separations(map_, views, separated_, *separation_);
     sign(*separation_);
@@ -274,6 +271,24 @@ void SharedCell::join(std::int64_t now_ns) {
     sign(*gradients_);
   }
   for (const auto& share : shares_) share->use();
+  return true;
+}
+
+void SharedCell::note_separated(const std::vector<ShareView>& views) {
+  const auto add = [this](std::uint32_t zone) {
+    const auto at = std::ranges::lower_bound(separated_, zone);
+    if (at == separated_.end() || *at != zone) separated_.insert(at, zone);
+  };
+  if (const clearance_msg_Catalogue* const names = catalogue()) {
+    for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
+      if (std::ranges::find(options_.separated, zone.name) != options_.separated.end())
+        add(zone.id);
+    }
+  }
+  for (const ShareView& view : views) {
+    if (view.separation == nullptr) continue;
+    for (const clearance_msg_ZoneSeparation& zone : list(view.separation->zones)) add(zone.zone);
+  }
 }
 
 template <class Message>

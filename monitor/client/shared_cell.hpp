@@ -25,6 +25,9 @@ struct SharedCellOptions {
   bool gradients = false;  // they are read and joined, too
   // The names of the shares. If empty, they are those of the first share that is met.
   std::vector<std::string> names = {};
+  // The names of the zones with `separation`. One of a share that says nothing has scaling 0.
+  // Others are in separation() once a share has had them.
+  std::vector<std::string> separated = {};
 };
 
 // The state of a share in the present report.
@@ -66,7 +69,8 @@ class SharedCell {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
-  // Separations of the report at hand; null if the cell has none.
+  // Separations of the report at hand; null if none is known. A zone that is not in it has scaling
+  // 0.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
     return separated_.empty() ? nullptr : &*separation_;
   }
@@ -100,9 +104,10 @@ class SharedCell {
   [[nodiscard]] bool is_here(const OfShare& share) const;
   [[nodiscard]] std::uint64_t scene_of_most() const;
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
-  void follow_revision();
+  [[nodiscard]] bool follow_revision();
   void judge(std::int64_t now_ns);
-  void join(std::int64_t now_ns);
+  [[nodiscard]] bool join(std::int64_t now_ns);
+  void note_separated(const std::vector<ShareView>& views);
   void join_zones();
   // Writes who made a message beside the report.
   template <class Message>

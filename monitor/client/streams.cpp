@@ -171,7 +171,8 @@ const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
 }
 
 Catalogue::Catalogue(Connection& connection)
-    : reader_(make_reader(connection, TopicKind::kCatalogue)) {}
+    : reader_(connection.participant().reader_of_several(TopicKind::kCatalogue,
+                                                         connection.topics().catalogue)) {}
 
 // A catalogue that comes again, from a daemon that was started again, replaces the one before.
 void Catalogue::update() {
@@ -264,11 +265,28 @@ void Health::update() {
   while (take_newer(reader_, message_, scratch_)) known_ = true;
 }
 
-Zones::Zones(Connection& connection) : reader_(make_reader(connection, TopicKind::kZones)) {}
+Zones::Zones(Connection& connection)
+    : reader_(connection.participant().reader_of_several(TopicKind::kZones,
+                                                         connection.topics().zones)) {}
 
+// A partner that ticks apart does not write zones. What it wrote before is still sent to readers
+// that come later: it does not count beside a later state of a daemon that is there.
 void Zones::update() {
   clearance_msg_ZoneState zone{};
-  while (take_one(reader_, zone)) states_[zone.zone] = zone;
+  void* pointer = &zone;
+  dds_sample_info_t info;
+  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
+    if (!info.valid_data) continue;
+    const auto known = states_.find(zone.zone);
+    const bool is_earlier = known != states_.end() && known->second.daemon != zone.daemon &&
+                            zone.now_ns < known->second.now_ns;
+    if (is_earlier) {
+      const std::vector<std::uint64_t> there = writers_of(reader_);
+      if (std::ranges::find(there, writers_[zone.zone]) != there.end()) continue;
+    }
+    states_[zone.zone] = zone;
+    writers_[zone.zone] = info.publication_handle;
+  }
 }
 
 void Zones::keep_only(std::uint64_t daemon) {

@@ -231,7 +231,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  if (writes_zones_) write_zones(queued.report);
+  write_zones(queued.report);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
@@ -276,13 +276,14 @@ void ReportWriter::write_separation(const Report& report) {
 }
 
 // Writes a zone at the start, after each change, and again after another daemon may have written
-// it.
+// it. Apart from its partner a daemon does not clear zones: what it wrote last may be all that a
+// reader has.
 void ReportWriter::write_zones(const Report& report) {
-  const bool again = std::exchange(write_zones_again_, false);
+  const bool again = writes_zones_ && std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
     const bool is_written = now_->written_zones.is(zone, active);
-    if (is_written && !again) continue;
+    if ((is_written && !again) || (!writes_zones_ && !active)) continue;
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);

@@ -6,6 +6,7 @@
 
 #include <stdexcept>
 #include <string_view>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -186,6 +187,39 @@ bool take(dds_entity_t reader, Sample<T>& sample) {
   void* pointer = &*sample;
   dds_sample_info_t info;
   return dds_take(reader, &pointer, &info, 1, 1) > 0 && info.valid_data;
+}
+
+// One of two partners ticks apart since it wrote that the zone is clear. A reader that comes now
+// gets what both have written last, in any order.
+TEST(Client, BelievesTheLaterOfTwoDaemonsAboutAZoneAsLongAsItIsThere) {
+  const DdsOptions dds = test::own_dds();
+  Participant one(dds), other(dds);
+  const auto write = [](dds_entity_t writer, std::uint64_t daemon, bool active, std::int64_t now) {
+    clearance_msg_ZoneState zone{};
+    zone.daemon = daemon;
+    zone.active = active;
+    zone.now_ns = now;
+    ASSERT_EQ(dds_write(writer, &zone), DDS_RETCODE_OK);
+  };
+  const dds_entity_t leader = one.writer(TopicKind::kZones, Topics{}.zones);
+  const dds_entity_t apart = other.writer(TopicKind::kZones, Topics{}.zones);
+  write(leader, 1, true, 2000);
+  client::Connection connection(dds, Topics{});
+  client::Zones zones(connection);
+  ASSERT_TRUE(eventually([&] { return zones.update(), zones.states().contains(0); }));
+  ASSERT_TRUE(eventually([&] { return test::matched_readers(apart) > 0; }));
+  write(apart, 2, false, 1000);
+  for (int i = 0; i < 20; ++i) {
+    std::this_thread::sleep_for(milliseconds(10));
+    zones.update();
+    EXPECT_TRUE(zones.states().at(0).active);
+  }
+  // A daemon that was started again, on a clock that was set back, counts once the former has gone.
+  dds_delete(leader);
+  EXPECT_TRUE(eventually([&] {
+    write(apart, 2, false, 1001);
+    return zones.update(), !zones.states().at(0).active;
+  }));
 }
 
 TEST(Client, JointsAndPosesArriveAsTheDaemonWantsThem) {

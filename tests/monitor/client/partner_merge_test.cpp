@@ -59,6 +59,18 @@ TEST_F(Merge, HandsOutEachCycleOnceAndTellsThatBothAgree) {
   EXPECT_EQ(cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
 }
 
+// The zones of a daemon count whose reports always come as the second ones.
+TEST_F(Merge, KnowsBothSendersAlthoughOnlyOneIsHandedOut) {
+  for (std::uint64_t cycle = 1; cycle <= 3; ++cycle) {
+    EXPECT_TRUE(take(report("right", cycle)));
+    EXPECT_FALSE(take(report("left", cycle)));
+  }
+  EXPECT_EQ(merge.senders()[0].daemon, static_cast<std::uint64_t>('l'));
+  EXPECT_EQ(merge.senders()[0].heard_ns, heard_ns);
+  EXPECT_EQ(merge.senders()[1].daemon, static_cast<std::uint64_t>('r'));
+  EXPECT_EQ(merge.senders()[1].heard_ns, heard_ns - kPeriod / 2);
+}
+
 TEST_F(Merge, TellsWithTheNextReportThatAPartnerIsMissing) {
   take(report("left", 1));
   EXPECT_EQ(state(), PartnerState::kAlone);

@@ -113,6 +113,23 @@ TEST(WholeReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
   EXPECT_GT(unknown, 100);
 }
 
+TEST(WholeReports, KnowAPairForGoodThatHasComeBehindAGap) {
+  Ticks ticks(37);
+  ChangedPairs changes(50);
+  WholeReports whole;
+  for (std::uint64_t cycle = 1; cycle <= 20; ++cycle) {
+    Sample<clearance_msg_Distances> message;
+    ticks.fill(*message, cycle == 4 ? 1.0 : 0.0);
+    changes.reduce(*message);
+    if (cycle == 2) continue;
+    EXPECT_EQ(whole.complete(*message), cycle == 1);
+    ASSERT_EQ(message->pairs._length, kPairs);
+    const bool is_known =
+        message->pairs._buffer[5].status != static_cast<std::uint8_t>(PairStatus::kUnknown);
+    EXPECT_EQ(is_known, cycle != 3) << "cycle " << cycle;
+  }
+}
+
 TEST(WholeReports, AnotherDaemonOrSceneBeginsWithAFullOne) {
   for (const bool other_scene : {false, true}) {
     Ticks ticks(37);
