@@ -56,7 +56,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
   now_ns_ = report.now_ns;
   handed_out_ns_ = heard_ns;
   seen_[cycle_ % kSeen] = {cycle_,          report.daemon,         lineage_,
-                           report.checksum, report.state_checksum, false};
+                           compared_checksum(report), report.state_checksum, false};
   return true;
 }
 
@@ -66,7 +66,7 @@ void PartnerMerge::compare(const clearance_msg_Distances& report) {
   other.is_compared = true;
   if (other.lineage != report.lineage) return note(PartnerState::kOtherInputs, report);
   const bool same =
-      other.checksum == report.checksum && other.state_checksum == report.state_checksum;
+      other.checksum == compared_checksum(report) && other.state_checksum == report.state_checksum;
   note(same ? PartnerState::kAgrees : PartnerState::kDifferent, report);
 }
 

@@ -4,6 +4,7 @@
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
 namespace {
@@ -30,7 +31,7 @@ bool PartnerReports::may_tell(Kind kind) {
 
 void PartnerReports::note(const clearance_msg_Distances& report, bool is_other) {
   const std::lock_guard lock(mutex_);
-  const Kept kept{report.cycle, report.lineage, report.checksum, report.state_checksum,
+  const Kept kept{report.cycle, report.lineage, compared_checksum(report), report.state_checksum,
                   report.publish_ns};
   (is_other ? other_ : own_)[report.cycle % kKept] = kept;
   const Kept& counterpart = (is_other ? own_ : other_)[report.cycle % kKept];

@@ -250,6 +250,12 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
   }
   to_wire(queued.report, queued.sources(), dds_time(), message);
   now_->pairs.in(message);
+  if (partner_ != nullptr && now_->changed.reduces()) {
+    Checksum sum;
+    sum.add(message.state_checksum);
+    sum.add(checksum_of(message));
+    message.state_checksum = sum.value();
+  }
   now_->changed.reduce(message);
   if (partner_ != nullptr) {
     message.checksum = checksum_of(message);

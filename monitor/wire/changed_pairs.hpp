@@ -18,6 +18,8 @@ class ChangedPairs {
  public:
   // Every report whose cycle is a multiple of `full_every` has all pairs; 0: every report.
   explicit ChangedPairs(std::uint64_t full_every) : full_every_(full_every) {}
+  // False: it leaves all messages as they are.
+  [[nodiscard]] bool reduces() const noexcept { return full_every_ != 0; }
 
   // Leaves out the pairs of `message` that are as in the message before, and states so: a full one
   // has its own cycle as changes_since. All messages are of one scene. The first one of a lineage

@@ -59,6 +59,13 @@ template <class Report>
   return sum.value();
 }
 
+// The checksum that partners compare beside state_checksum. A message that carries only what changed
+// depends on those before it: then state_checksum stands for the whole report, too.
+[[nodiscard]] inline std::uint64_t compared_checksum(
+    const clearance_msg_Distances& message) noexcept {
+  return message.changes_since == 0 ? message.checksum : 0;
+}
+
 // Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs.
 [[nodiscard]] inline std::uint64_t delivery_checksum_of(
     const clearance_msg_Distances& message) noexcept {

@@ -59,6 +59,24 @@ TEST_F(Merge, HandsOutEachCycleOnceAndTellsThatBothAgree) {
   EXPECT_EQ(cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
 }
 
+// Each leaves out what it has said before (`publish: changes`), and one has joined since.
+TEST_F(Merge, ComparesMessagesOfChangesByTheWholeReports) {
+  const auto changes = [](const char* partner, std::uint64_t cycle, double lower,
+                          std::uint64_t whole) {
+    clearance_msg_Distances message = report(partner, cycle, 1, lower);
+    message.changes_since = cycle - 1;
+    message.state_checksum = whole;
+    return message;
+  };
+  take(changes("left", 2, 0.5, 77));
+  take(changes("right", 2, 0.4, 77));
+  take(changes("left", 3, 0.5, 78));
+  EXPECT_EQ(state(), PartnerState::kAgrees);
+  take(changes("right", 3, 0.5, 79));
+  take(changes("left", 4, 0.5, 80));
+  EXPECT_EQ(state(), PartnerState::kDifferent);
+}
+
 // The zones of a daemon count whose reports always come as the second ones.
 TEST_F(Merge, KnowsBothSendersAlthoughOnlyOneIsHandedOut) {
   for (std::uint64_t cycle = 1; cycle <= 3; ++cycle) {
