@@ -27,6 +27,20 @@ enum class SensorKind : std::uint8_t {
 inline constexpr double kWidestTangent = 1.2374368670764582;
 inline constexpr double kLongestRay = 2.0156;
 
+// The ball of a point with neighbours reaches at most this times its range, and this times the
+// largest error (monitor/sensors/organised_points.hpp).
+inline constexpr double kWidestReach = 0.2, kWidestErrors = 3.0;
+
+// The largest speed of a frame of tf in what carries it: of its origin, m/s, and rad/s.
+struct MountSpeed {
+  double shift = std::numeric_limits<double>::infinity();
+  double turn = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool is_stated() const noexcept {
+    return shift < std::numeric_limits<double>::infinity();
+  }
+};
+
 struct Sensor {
   std::string name;  // also of its object
   SensorKind kind = SensorKind::kDepthImage;
@@ -40,6 +54,9 @@ struct Sensor {
   // (base_from_root).
   bool frames_by_message = true;
   RobotBase mount;
+  // Both or none are stated. Without them, the place of a frame of tf is not known after its last
+  // transform.
+  MountSpeed mount_speed;
 
   // The stated bound of its error: |measured - true depth| <= constant + quadratic z^2, m. Depth is
   // z, or for points with `along_ray` the distance from the sensor.
@@ -51,6 +68,9 @@ struct Sensor {
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
   double spacing = 0.0;
+  // Of organised points: the ball of each reaches to the middle between it and its neighbours on
+  // the same surface instead (monitor/sensors/organised_points.hpp).
+  bool by_neighbours = false;
 
   // The memory that is fixed: the largest image, or the most points that are kept.
   std::uint32_t columns = 0, rows = 0;
@@ -83,6 +103,7 @@ struct Sensor {
   // depth images only.
   bool unseen = false;
 
+  [[nodiscard]] bool is_on_tf() const noexcept { return frames_by_message || !mount.frame.empty(); }
   [[nodiscard]] double error_at(double depth) const noexcept {
     return error_constant + error_quadratic * depth * depth;
   }
@@ -91,9 +112,10 @@ struct Sensor {
     if (kind == SensorKind::kOctomap) return 2.0 * greatest_depth;
     const double error = error_at(greatest_depth);
     const double farthest = kLongestRay * (greatest_depth + error);
-    return kind == SensorKind::kDepthImage
-               ? 1.001 * farthest
-               : 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
+    if (kind == SensorKind::kDepthImage) return 1.001 * farthest;
+    if (by_neighbours)
+      return 1.001 * ((1.0 + kWidestReach) * farthest + kWidestErrors * kLongestRay * error);
+    return 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
   }
 };
 

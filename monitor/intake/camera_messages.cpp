@@ -97,12 +97,16 @@ const char* text(FrameFault fault) noexcept {
       return "frames come more often than the cell states";
     case FrameFault::kNoPlace:
       return "the place of the sensor at its stamp is not known";
+    case FrameFault::kLateTransforms:
+      return "transforms up to its stamp have not come in time";
     case FrameFault::kCannotBuild:
       return "its picture is too wide, or has more points within the range than the cell states";
     case FrameFault::kNothingSeen:
       return "nothing is seen within the range but the robot itself: that is not clear";
     case FrameFault::kBeforeJoints:
       return "joints were first heard after its stamp: the robot's own image is not left out";
+    case FrameFault::kNotOrganised:
+      return "it has no rows, so its points have no neighbours";
     case FrameFault::kOctree:
       return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
   }
@@ -153,12 +157,16 @@ const char* name(FrameFault fault) noexcept {
       return "more often than the cell states";
     case FrameFault::kNoPlace:
       return "its place is not known";
+    case FrameFault::kLateTransforms:
+      return "late transforms";
     case FrameFault::kCannotBuild:
       return "too wide, or too many points";
     case FrameFault::kNothingSeen:
       return "nothing seen but the robot";
     case FrameFault::kBeforeJoints:
       return "before the first joints";
+    case FrameFault::kNotOrganised:
+      return "not organised";
     case FrameFault::kOctree:
       return "a map that cannot be read";
   }

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/sensors/measured_points.hpp"
@@ -42,7 +43,9 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
   FrameFault fault = FrameFault::kNoFault;
   if (!place.known) {
-    fault = FrameFault::kNoPlace;
+    fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_)
+                ? FrameFault::kLateTransforms
+                : FrameFault::kNoPlace;
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
@@ -153,7 +156,10 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
       return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
     }
   } else {
+    const auto [width, height] = std::pair(frame.points.width, frame.points.height);
+    if (sensor.by_neighbours && (width < 2 || height < 2)) return FrameFault::kNotOrganised;
     measured_points(frame.points, sensor, points_);
+    if (sensor.by_neighbours) organised_.widen(width, height, points_);
   }
   PointCloud& points = *cloud.points();
   const auto built = [&](const CloudCrop& crop) {
