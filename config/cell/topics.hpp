@@ -22,6 +22,7 @@ struct Topics {
   std::string answers = "clearance/answers";
   std::string partner_ticks = "clearance/partner_ticks";
   std::string partner_states = "clearance/partner_states";
+  std::string partner_scenes = "clearance/partner_scenes";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -29,7 +30,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 14> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 15> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -44,6 +45,7 @@ inline constexpr std::array<TopicKey, 14> kTopicKeys = {{
     {"answers", &Topics::answers},
     {"partner_ticks", &Topics::partner_ticks},
     {"partner_states", &Topics::partner_states},
+    {"partner_scenes", &Topics::partner_scenes},
 }};
 
 }  // namespace clearance

@@ -32,6 +32,7 @@ enum class TopicKind : std::uint8_t {
   kAnswers,
   kPartnerTicks,
   kPartnerStates,
+  kPartnerScenes,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
@@ -80,6 +81,7 @@ inline constexpr auto kTopics = [] {
       row(kAnswers, clearance_msg_Answer_desc, kStream, 64, 64),
       row(kPartnerTicks, clearance_msg_PartnerTick_desc, kStream, 64, 256),
       row(kPartnerStates, clearance_msg_PartnerState_desc, kStream, 1, 4),
+      row(kPartnerScenes, clearance_msg_PartnerScene_desc, kLatched, 1, 1),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());

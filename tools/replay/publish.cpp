@@ -95,6 +95,7 @@ class Sender {
       case TopicKind::kAnswers:
       case TopicKind::kPartnerTicks:
       case TopicKind::kPartnerStates:
+      case TopicKind::kPartnerScenes:
         break;  // recordings do not have them
     }
     return false;
