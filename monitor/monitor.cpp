@@ -20,99 +20,16 @@
 #include "monitor/monitor.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <limits>
 #include <utility>
-#include <vector>
 
-#include "config/scene/refresh_share.hpp"
-#include "monitor/conclude.hpp"
-#include "monitor/contacts/contacts.hpp"
-#include "monitor/geometry/bounding_sphere.hpp"
-#include "monitor/geometry/posed_part.hpp"
-#include "monitor/gradients/differentiate.hpp"
-#include "monitor/inputs/checksum.hpp"
 #include "monitor/invariant.hpp"
-#include "monitor/objects/displacements.hpp"
-#include "monitor/objects/ingest.hpp"
+#include "monitor/monitor_state.hpp"
 #include "monitor/objects/presence.hpp"
 #include "monitor/objects/take_over.hpp"
-#include "monitor/pairs/hidden_places.hpp"
-#include "monitor/pairs/pair_table.hpp"
-#include "monitor/schedule/scheduler.hpp"
-#include "monitor/separation/separations.hpp"
 #include "monitor/stage_borders.hpp"
-#include "monitor/swept/zone_crossings.hpp"
-#include "monitor/zones/zone_levels.hpp"
-#include "monitor/zones/zones.hpp"
 
 namespace clearance {
-namespace {
-
-Published published_pairs(const Scene& scene) {
-  Published published;
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    if (scene.pairs[p].publish) published.pairs.push_back(p);
-    published.is_published.push_back(scene.pairs[p].publish);
-  }
-  return published;
-}
-
-}  // namespace
-
-// The state that one tick leaves to the next. Comments name the stages that change it.
-struct Monitor::State {
-  const Scene& scene;
-  const ZoneLevels zone_levels;
-  const RefreshShare share;
-  const std::vector<std::uint32_t> first_part;  // by object
-  const Published published;
-  const std::vector<SourceName> named_sources;
-
-  Inputs inputs;                                // ingest and displace
-  std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
-  Displacer displacer;                          // displace
-  std::vector<PosedPart> parts;                 // pose
-  PairTable table;                              // cull, evaluate and refresh
-  Scheduler scheduler;                          // schedule, evaluate and refresh
-  Culling culling;                              // cull, evaluate, refresh and cull again
-  Evaluated evaluated;                          // refresh
-  ZoneCrossings crossings;                      // cross and sweep
-  Contacts contacts;                            // allow and judge
-  Zones zones;                                  // conclude
-  Conclusion conclusion;                        // conclude
-  const Separations separations;
-  Differentiation differentiation;  // differentiate
-  Report report;                    // conclude, separate, differentiate and report
-
-  // The objects of sensors, by their numbers.
-  struct Shown {
-    SensorFrame frame;   // that the next tick takes; its cloud is null: none
-    SensorFrame in_use;  // likewise
-    SourceClock clock;
-    std::uint64_t awaited = 0;  // awaited_frame()
-  };
-  std::vector<Shown> shown;
-  std::unique_ptr<CloudPairs> clouds;  // ingest and evaluate; null: the scene has no sensors
-  HiddenPlaces hidden;                 // ingest
-
-  State(const Scene& the_scene, const KnownHulls& known_hulls);
-
-  [[nodiscard]] TickView view() const noexcept {
-    return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns, clouds.get()};
-  }
-  void make_absent(std::uint32_t object) noexcept;
-  void note_presence(std::uint32_t object) noexcept;
-  void take_frames() noexcept;
-  void begin_first_tick() noexcept;
-  void add_presence_changes() noexcept;
-  void count_pairs() noexcept;
-  void finish_report(std::uint32_t queries) noexcept;
-  void write_minimum() noexcept;
-  [[nodiscard]] PairBounds bounds(std::uint32_t pair) const noexcept;
-  [[nodiscard]] PairReport pair_report(std::uint32_t pair) const noexcept;
-};
-
 Monitor::Monitor(const Scene& scene, const Monitor* similar)
     : state_(std::make_unique<State>(scene, similar == nullptr
                                                 ? KnownHulls{}
@@ -200,38 +117,6 @@ bool Monitor::restore(StateReader& in) noexcept {
 
 std::uint64_t Monitor::awaited_frame(std::uint32_t sensor) const noexcept {
   return state_->shown[sensor].awaited;
-}
-
-std::uint64_t Monitor::checksum() const noexcept {
-  const State& s = *state_;
-  Checksum sum;
-  for (const TrackedObject& object : s.inputs.objects) {
-    sum.add_pose(object.pose);
-    sum.add3(object.twist.linear);
-    sum.add3(object.twist.angular);
-    sum.add(object.accumulated);
-    sum.add(object.input.stamp_ns);
-  }
-  for (const PosedPart& part : s.parts) sum.add_pose(part.world_from_part);
-  const std::uint64_t slice = s.inputs.cycle % kStateSlices, pairs = s.table.pairs();
-  const auto first = static_cast<std::uint32_t>(pairs * slice / kStateSlices);
-  const auto end = static_cast<std::uint32_t>(pairs * (slice + 1) / kStateSlices);
-  for (std::uint32_t pair = first; pair < end; ++pair) add_pair(pair, s.table, sum);
-  return sum.value();
-}
-
-void Monitor::flip_bit(bool of_pair, std::uint64_t which) noexcept {
-  State& s = *state_;
-  const auto flip = [&](double& value, std::uint64_t bit) {
-    value = std::bit_cast<double>(std::bit_cast<std::uint64_t>(value) ^ (std::uint64_t{1} << bit));
-  };
-  const std::uint64_t bit = which % 64, place = which / 64;
-  if (of_pair) {
-    const auto part_pair = static_cast<std::uint32_t>(place % s.table.part_pairs());
-    flip(s.table.evaluations.of_query(part_pair, s.inputs.cycle).closest.witness_a[0], bit);
-  } else {
-    flip(s.inputs.objects[place % s.inputs.objects.size()].pose.position[0], bit);
-  }
 }
 
 std::uint64_t Monitor::cycle() const noexcept { return state_->inputs.cycle; }
@@ -364,42 +249,6 @@ std::span<const ContactReport> Monitor::contacts() const noexcept {
 
 std::int64_t Monitor::stamp_ns(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.stamp_ns;
-}
-
-Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
-    : scene(the_scene),
-      zone_levels(the_scene),
-      share(refresh_share(the_scene)),
-      first_part(first_parts(the_scene)),
-      published(published_pairs(the_scene)),
-      named_sources(clearance::named_sources(the_scene)),
-      inputs(initial_inputs(the_scene)),
-      displacer(the_scene),
-      parts(parts_of(the_scene)),
-      table(the_scene, parts),
-      scheduler(the_scene, share, parts, table, zone_levels),
-      culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),
-              scheduler.left_out(), share, known_hulls),
-      crossings(zone_levels, std::min<std::size_t>(scene.pairs.size(), scene.budget)),
-      contacts(the_scene),
-      zones(the_scene, zone_levels, contacts),
-      separations(the_scene, zone_levels),
-      differentiation(the_scene),
-      hidden(the_scene) {
-  const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    inputs.objects[i].bounding_radius = spheres[i].bounding_radius;
-  presence_changed.reserve(scene.objects.size());
-  shown.resize(scene.sensors.size());
-  if (!scene.sensors.empty()) clouds = std::make_unique<CloudPairs>(scene, parts, table);
-  report.scene_revision = scene.revision;
-  report.pairs_total = static_cast<std::uint32_t>(scene.pairs.size());
-  for (const std::uint32_t pair : published.pairs) report.pairs.push_back(pair_report(pair));
-  report.zones.assign(zones.reports().begin(), zones.reports().end());
-  report.contacts.assign(contacts.reports().begin(), contacts.reports().end());
-  report.hidden.assign(hidden.reports().begin(), hidden.reports().end());
-  separations.prepare(report);
-  report.gradients = unknown_gradients(differentiation.rows());
 }
 
 void Monitor::State::finish_report(std::uint32_t queries) noexcept {

@@ -92,12 +92,10 @@ class Monitor {
   // has been shown.
   [[nodiscard]] std::uint64_t awaited_frame(std::uint32_t sensor) const noexcept;
 
-  // A checksum of where all objects are, and of one of kStateSlices slices of the pairs' bounds:
-  // another slice in each tick. The same ticks give the same one.
+  // A checksum of where all objects are, and of one of kStateSlices slices of what else is known of
+  // objects, parts and pairs: another slice in each tick. The same ticks give the same one.
   static constexpr std::uint32_t kStateSlices = 8;
   [[nodiscard]] std::uint64_t checksum() const noexcept;
-  // For tests of that: flips a bit of a pose in use or, `of_pair`, of a witness point.
-  void flip_bit(bool of_pair, std::uint64_t which) noexcept;
 
   // The number of ticks so far, those of the monitors that it took over from included.
   [[nodiscard]] std::uint64_t cycle() const noexcept;
@@ -174,6 +172,7 @@ class Monitor {
   [[nodiscard]] std::int64_t stamp_ns(std::uint32_t object) const noexcept;
 
  private:
+  friend class MonitorMemory;  // of tests
   struct State;
   std::unique_ptr<State> state_;
 };

@@ -31,6 +31,7 @@ struct Cell {
   CommandSettings commands = {};
   QuestionSettings questions = {};
   AddedCapacity capacity = {};
+  std::string partner = {};    // the daemon's name among partners; empty: it has none
   Simulation simulation = {};  // may be empty
   Shares shares = {};          // likewise
 

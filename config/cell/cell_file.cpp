@@ -16,6 +16,7 @@
 #include "config/cell/link_margins.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
+#include "config/cell/partner_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
 #include "config/cell/robot_reader.hpp"
 #include "config/cell/ros_reader.hpp"
@@ -299,6 +300,8 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
     cell.questions = read_questions(*questions, diagnostics_);
   if (const YamlNode* capacity = map.optional("capacity"))
     cell.capacity = read_capacity(*capacity, diagnostics_);
+  if (const YamlNode* partner = map.optional("partner"))
+    cell.partner = read_partner(*partner, diagnostics_);
   read_objects_and_pairs(map, quantities, cell);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
@@ -373,7 +376,7 @@ struct CellReadings::State {
   Cell read(const YamlNode& document, const std::string& yaml, Diagnostics& diagnostics) {
     Cell cell;
     revision = Revision(options.root);
-    revision.add(yaml);
+    revision.add(without_partner(document, yaml));
     CellReader(file, options, meshes, shapes, diagnostics, revision).read(document, cell);
     return cell;
   }
@@ -391,9 +394,9 @@ CellReadings::~CellReadings() = default;
 CellReadings::CellReadings(CellReadings&&) noexcept = default;
 CellReadings& CellReadings::operator=(CellReadings&&) noexcept = default;
 
-// The revision covers the text and, through the readers, the bytes of every file that it names. If
-// a mesh has to be split, which takes seconds, the cell is read twice, so that its mistakes are
-// reported first.
+// The revision covers the text, but not the name of a partner, and, through the readers, the bytes
+// of every file that it names. If a mesh has to be split, which takes seconds, the cell is read
+// twice, so that its mistakes are reported first.
 CellResult CellReadings::read(const YamlNode& document, const std::string& yaml) {
   State& s = *state_;
   Diagnostics diagnostics(s.file.string(),

@@ -23,6 +23,7 @@ struct Topics {
   std::string partner_ticks = "clearance/partner_ticks";
   std::string partner_states = "clearance/partner_states";
   std::string partner_frames = "clearance/partner_frames";
+  std::string partner_scenes = "clearance/partner_scenes";
 };
 
 // A topic by its key in a cell and in command lines.
@@ -30,7 +31,7 @@ struct TopicKey {
   std::string_view key;
   std::string Topics::*name;
 };
-inline constexpr std::array<TopicKey, 15> kTopicKeys = {{
+inline constexpr std::array<TopicKey, 16> kTopicKeys = {{
     {"catalogue", &Topics::catalogue},
     {"poses", &Topics::poses},
     {"joint_states", &Topics::joint_states},
@@ -46,6 +47,7 @@ inline constexpr std::array<TopicKey, 15> kTopicKeys = {{
     {"partner_ticks", &Topics::partner_ticks},
     {"partner_states", &Topics::partner_states},
     {"partner_frames", &Topics::partner_frames},
+    {"partner_scenes", &Topics::partner_scenes},
 }};
 
 }  // namespace clearance

@@ -46,6 +46,20 @@ bool CollisionMatrix::allows(const std::string& a, const std::string& b) const {
   return (of_a == defaults_.end() || of_a->second) && (of_b == defaults_.end() || of_b->second);
 }
 
+AllowedCollisionMatrix CollisionMatrix::message() const {
+  AllowedCollisionMatrix matrix;
+  for (const auto& [name, row] : places_) {
+    matrix.entry_names.push_back(name);
+    std::vector<bool>& values = matrix.entry_values.emplace_back();
+    for (const auto& [other, column] : places_) values.push_back(rows_[row][column]);
+  }
+  for (const auto& [name, allowed] : defaults_) {
+    matrix.default_entry_names.push_back(name);
+    matrix.default_entry_values.push_back(allowed);
+  }
+  return matrix;
+}
+
 std::set<std::string> CollisionMatrix::names() const {
   std::set<std::string> names;
   for (const auto& [name, place] : places_) names.insert(name);

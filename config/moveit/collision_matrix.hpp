@@ -26,6 +26,8 @@ class CollisionMatrix {
 
   // False before the first set().
   [[nodiscard]] bool is_set() const noexcept { return is_set_; }
+  // All entries, as set() takes them.
+  [[nodiscard]] AllowedCollisionMatrix message() const;
   // The names that have entries of any kind.
   [[nodiscard]] std::set<std::string> names() const;
 

@@ -260,6 +260,9 @@ inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
     "state"};
 inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWarn,
                                                     "the partner's state is not taken over: {}"};
+inline constexpr LogLine<Text> kPartnerFileNotKept{
+    "partner-file-not-kept", kWarn,
+    "a file that was sent along with a command to the partner is not kept here: {}"};
 
 // ---- Shares, as clearance-merge joins them
 
@@ -378,6 +381,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kPartnerClock,
                                  kPartnerOtherBuild,
                                  kPartnerStateRefused,
+                                 kPartnerFileNotKept,
                                  kMergeStarted,
                                  kShareHeard,
                                  kShareMissing,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance::client {
@@ -20,16 +21,24 @@ const char* name(PartnerState state) noexcept {
 }
 
 // Cycles decide between partners that agree. Time decides where they do not count alike: the one
-// that counts lower takes the other's place when that has been silent for more than a period.
-// After a clock was set back there is nothing to compare: then only the silence counts.
+// that counts lower takes the other's place when that has been silent for more than a period. A
+// report that was handed out with a wrong cycle or time does not keep out those after it. After a
+// clock was set back there is nothing to compare: then only the silence counts.
 bool PartnerMerge::is_next(const clearance_msg_Distances& report,
                            std::int64_t heard_ns) const noexcept {
   if (cycle_ == 0) return true;
   const std::int64_t silent_ns = heard_ns - handed_out_ns_;
   if (report.lineage != lineage_ && silent_ns > std::max(kSilentNs, 4 * step_ns_)) return true;
-  const std::int64_t newer_ns = report.now_ns - now_ns_;
-  if (report.cycle > cycle_) return newer_ns > 0;
-  return report.lineage != lineage_ && newer_ns > step_ns_ + step_ns_ / 2;
+  const bool is_older = report.now_ns < now_ns_;
+  const std::int64_t newer_ns = elapsed(now_ns_, report.now_ns);
+  if (report.cycle > cycle_) return newer_ns > 0 || (is_older && contradicts(report));
+  return newer_ns - newer_ns / 3 > step_ns_;
+}
+
+// Within a lineage a later cycle has a later time.
+bool PartnerMerge::contradicts(const clearance_msg_Distances& report) const noexcept {
+  return cycle_ != 0 && report.lineage == lineage_ &&
+         (report.cycle > cycle_) != (report.now_ns > now_ns_);
 }
 
 bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t heard_ns) {
@@ -40,6 +49,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
     return false;
   }
   note_sender(report, heard_ns);
+  if (contradicts(report)) note(PartnerState::kDifferent, report);
   if (!is_next(report, heard_ns)) {
     compare(report);
     return false;
@@ -50,13 +60,17 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
   if (check_.state == PartnerState::kAlone && has_partner && cycle_ != 0 && !before.is_compared) {
     check_ = {PartnerState::kMissing, cycle_, senders_[1].partner};
   }
-  if (report.cycle == cycle_ + 1) step_ns_ = report.now_ns - now_ns_;
+  if (report.cycle == cycle_ + 1) step_ns_ = elapsed(now_ns_, report.now_ns);
   cycle_ = report.cycle;
   lineage_ = report.lineage;
   now_ns_ = report.now_ns;
   handed_out_ns_ = heard_ns;
-  seen_[cycle_ % kSeen] = {cycle_,          report.daemon,         lineage_,
-                           compared_checksum(report), report.state_checksum, false};
+  seen_[cycle_ % kSeen] = {.cycle = cycle_,
+                           .daemon = report.daemon,
+                           .lineage = lineage_,
+                           .checksum = compared_checksum(report),
+                           .state_checksum = report.state_checksum,
+                           .inputs_checksum = inputs_checksum_of(report)};
   return true;
 }
 
@@ -65,8 +79,9 @@ void PartnerMerge::compare(const clearance_msg_Distances& report) {
   if (other.cycle != report.cycle || other.daemon == report.daemon) return;
   other.is_compared = true;
   if (other.lineage != report.lineage) return note(PartnerState::kOtherInputs, report);
-  const bool same =
-      other.checksum == compared_checksum(report) && other.state_checksum == report.state_checksum;
+  const bool same = other.checksum == compared_checksum(report) &&
+                    other.state_checksum == report.state_checksum &&
+                    other.inputs_checksum == inputs_checksum_of(report);
   note(same ? PartnerState::kAgrees : PartnerState::kDifferent, report);
 }
 

@@ -51,11 +51,13 @@ class PartnerMerge {
  private:
   static constexpr std::size_t kSeen = 64;
   struct Seen {
-    std::uint64_t cycle = 0, daemon = 0, lineage = 0, checksum = 0, state_checksum = 0;
+    std::uint64_t cycle = 0, daemon = 0, lineage = 0;
+    std::uint64_t checksum = 0, state_checksum = 0, inputs_checksum = 0;
     bool is_compared = false;
   };
   [[nodiscard]] bool is_next(const clearance_msg_Distances& report,
                              std::int64_t heard_ns) const noexcept;
+  [[nodiscard]] bool contradicts(const clearance_msg_Distances& report) const noexcept;
   void compare(const clearance_msg_Distances& report);
   void note(PartnerState state, const clearance_msg_Distances& report);
   void note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns);

@@ -114,6 +114,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
     partner_states_ = std::make_unique<PartnerStates>(
         partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
         [this](QueuedCommand command) { return put(std::move(command)); }, revision);
+    if (cell.ros.moveit.any()) share_moveit();
   }
   if (!cell.commands.from.empty()) {
     commands_ = std::make_unique<CommandPort>(
@@ -121,8 +122,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
         [this](QueuedCommand command) {
           return put(partner_ ? partner_states_->for_both(std::move(command)) : std::move(command));
         },
-        revision,
-        partner_ ? [this] { return partner_states_->takes_commands(); } : std::function<bool()>());
+        revision, partner_ ? share_commands() : CommandPort::Sharing());
   }
   const RosTrajectories& trajectories = cell.ros.trajectories;
   const auto put_question = [this](QueuedQuestion question) {
@@ -160,6 +160,26 @@ Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseRea
       port(participant, cell.topics, identity, ticks),
       poses_(poses) {
   poses.share_frames(cell.topics, identity, ticks);
+}
+
+CommandPort::Sharing Daemon::share_commands() {
+  return {.takes = [this] { return partner_states_->takes_commands(); },
+          .overhear = [this](Command command) { partner_states_->keep_files(std::move(command)); }};
+}
+
+void Daemon::share_moveit() {
+  PartnerPort* const port = &partner_->port;
+  moveit_.share({.leads = leads(),
+                 .revision = [this] { return revision_.load(); },
+                 .tell = [port](auto changes, auto bytes) { port->send_scene(changes, bytes); }});
+}
+
+PartnerPort::Actions Daemon::partner_actions() {
+  PartnerPort::Actions actions = partner_states_->actions();
+  if (!now_.cell->ros.moveit.any()) return actions;
+  actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
+  actions.look = [this] { moveit_.look(); };
+  return actions;
 }
 
 RosWrites::Leads Daemon::leads() {
@@ -200,7 +220,7 @@ void Daemon::run(StopSignal& signal) {
   std::atomic<bool> done{false};
   const std::int64_t started = clock_.monotonic_ns();
   poses_.start();
-  if (partner_) partner_->port.start(partner_states_->actions());
+  if (partner_) partner_->port.start(partner_actions());
   raise_priorities();
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
@@ -295,9 +315,17 @@ bool Daemon::files_changed() {
   return options_.reload && files_.changed();
 }
 
+// Of two partners the leading one reads it, and the other one gets it from there.
 void Daemon::read_again() {
+  const auto standing = partner_ ? partner_->ticks.standing() : PartnerStanding::kLeading;
+  wants_to_read_ = standing == PartnerStanding::kStarting;
+  if (wants_to_read_) return;
   log_line(lines::kReading, cell_file_);
   service_.reloading();
+  if (standing != PartnerStanding::kLeading) {
+    log_line(lines::kSceneRefused, "the cell of the leading partner counts: have that one read it");
+    return service_.reloaded("the cell of the leading partner counts");
+  }
   const auto answer = [this](const CommandResult& result) {
     if (result.done()) {
       {
@@ -322,6 +350,7 @@ void Daemon::read_again() {
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
+  moveit_.coming(cell->scene.revision);
   next_ = parts_of(cell);
   std::vector<ReportSink*> sinks{next_.queue.get()};
   if (ReportSink* const sink = recording_ ? recording_->prepare(cell) : nullptr)

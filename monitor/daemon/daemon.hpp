@@ -101,6 +101,9 @@ class Daemon : private CellParts {
     PoseReader& poses_;
   };
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
+  [[nodiscard]] CommandPort::Sharing share_commands();
+  [[nodiscard]] PartnerPort::Actions partner_actions();
+  void share_moveit();
   [[nodiscard]] RosWrites::Leads leads();
   void tick_thread(std::atomic<bool>& done);
   void raise_priorities();

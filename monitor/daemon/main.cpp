@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "config/cell/partner_reader.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
@@ -74,11 +75,8 @@ std::string is_ros_topic(const std::string& text) {
   return fits ? "" : fmt::format("found '{}'; expected a topic like /arm/joint_trajectory", text);
 }
 
-// The name stands in the announcement of the daemon, between blanks.
 std::string is_partner(const std::string& text) {
-  const bool fits = !text.empty() && text.size() <= kMaxSourceLength &&
-                    std::ranges::all_of(text, [](char c) { return c > ' ' && c < 127; });
-  if (fits) return {};
+  if (is_partner_name(text)) return {};
   return fmt::format("found '{}'; expected a name of 1 to {} printable characters without blanks",
                      text, kMaxSourceLength);
 }
@@ -126,7 +124,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Keep the changed scene in this file, and begin with it after a crash");
   app.add_option("--partner", arguments.daemon.partner,
                  "Publish side by side with a second daemon of this cell, under this name "
-                 "(monitor/partners/README.md)")
+                 "(monitor/partners/README.md); in place of the cell's 'partner'")
       ->check(is_partner);
   app.add_flag(
       "--reload", arguments.daemon.reload,
@@ -302,6 +300,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     print_summary(cell->scene);
     return kOk;
   }
+  if (arguments.daemon.partner.empty()) arguments.daemon.partner = cell->partner;
   if (!arguments.daemon.partner.empty() && cell->scene.rate_hz < kLeastPartnersHz) {
     print(
         stderr,

@@ -1,6 +1,11 @@
 // A message is translated in the scene thread when its turn comes: it then finds the cell in force.
 #include "monitor/daemon/moveit_port.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
@@ -8,34 +13,170 @@
 namespace clearance {
 
 void MoveItPort::take(moveit::RawScene message) {
-  const std::string topic = message.topic;
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.bytes_to_make = message.cdr.size();
-  queued.make = [this, message = std::move(message)](const Cell& cell, const AskPose& pose) {
-    moveit::SceneKeeper::Work work = keeper_.take(message, cell, pose);
-    for (const std::string& sentence : work.news) log_line(lines::kMoveItLeftOut, sentence);
-    Command command;
-    command.changes = std::move(work.changes);
-    for (moveit::MeshFile& file : work.files)
-      command.files.push_back({std::move(file.name), std::move(file.bytes)});
-    return command;
-  };
-  queued.complete = [this](const Scene& changed) { return keeper_.complete(changed); };
-  queued.answer = [this, topic](const CommandResult& result) {
-    if (result.done()) return;
-    keeper_.take_back();
-    log_line(lines::kMoveItRefused, topic, result.path.empty() ? "" : result.path + ": ",
-             result.reason);
-  };
   const std::lock_guard lock(mutex_);
-  if (put_ && !put_(std::move(queued)))
-    log_line(lines::kMoveItRefused, topic, "", "too many commands wait, so that it is lost");
+  if (!put_) return;
+  const auto shared = std::make_shared<const moveit::RawScene>(std::move(message));
+  if (!partner_) {
+    if (!put_(command(shared, 0)))
+      log_line(lines::kMoveItRefused, shared->topic, "",
+               "too many commands wait, so that it is lost");
+    return;
+  }
+  if (const std::size_t lost = turns_.add(shared, shared->identity()); lost > 0)
+    log_line(lines::kMoveItRefused, shared->topic, "",
+             fmt::format("too many messages wait, so that the first {} of them are lost", lost));
+  if (partner_->leads()) {
+    put_waiting();
+  } else {
+    keep_files();
+  }
 }
 
 void MoveItPort::close() {
   const std::lock_guard lock(mutex_);
   put_ = nullptr;
+}
+
+// `identity`: 0 without a partner.
+QueuedCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
+  QueuedCommand queued;
+  queued.is_own = true;
+  queued.bytes_to_make = message->cdr.size();
+  queued.make = [this, message, identity](const Cell& cell, const AskPose& pose) {
+    if (identity != 0 && !begins(identity, cell.scene.revision)) return Command{};
+    Command made = translated(*message, cell, pose);
+    if (identity != 0 && made.changes.empty()) ended(identity, cell.scene.revision);
+    return made;
+  };
+  queued.complete = [this](const Scene& changed) { return keeper_.complete(changed); };
+  queued.answer = [this, message, identity](const CommandResult& result) {
+    if (!result.done()) {
+      keeper_.take_back();
+      log_line(lines::kMoveItRefused, message->topic, result.path.empty() ? "" : result.path + ": ",
+               result.reason);
+    }
+    if (identity != 0) ended(identity, partner_->revision());
+  };
+  return queued;
+}
+
+Command MoveItPort::translated(const moveit::RawScene& message, const Cell& cell,
+                               const AskPose& pose) {
+  moveit::SceneKeeper::Work work = keeper_.take(message, cell, pose);
+  for (const std::string& sentence : work.news) log_line(lines::kMoveItLeftOut, sentence);
+  Command command;
+  command.changes = std::move(work.changes);
+  for (moveit::MeshFile& file : work.files)
+    command.files.push_back({std::move(file.name), std::move(file.bytes)});
+  return command;
+}
+
+void MoveItPort::coming(std::uint64_t revision) {
+  if (partner_) note(current_, revision);
+}
+
+void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
+  const std::span changes(scene.changes._buffer, scene.changes._length);
+  const auto bytes = std::as_bytes(std::span(scene.bytes._buffer, scene.bytes._length));
+  const std::lock_guard lock(mutex_);
+  heard_ = {{changes.begin(), changes.end()}, {bytes.begin(), bytes.end()}, true};
+}
+
+void MoveItPort::look() {
+  const std::lock_guard lock(mutex_);
+  if (!partner_ || !put_) return;
+  const bool led = std::exchange(leads_, partner_->leads());
+  if (!leads_) {
+    turns_.drop_done(heard_.changes, partner_->revision());
+    return keep_files();
+  }
+  if (!led) {
+    QueuedCommand queued;
+    queued.task = [this] {
+      go_on_from_heard(partner_->revision());
+      note(0, partner_->revision());
+    };
+    leads_ = put_(std::move(queued));
+  }
+  put_waiting();
+}
+
+void MoveItPort::put_waiting() {
+  std::uint64_t identity = 0;
+  while (const SceneTurns::Message message = turns_.to_queue(identity)) {
+    if (put_(command(message, identity))) continue;
+    return turns_.put_back(identity);
+  }
+}
+
+// The leader names them in the changed cell.
+void MoveItPort::keep_files() {
+  if (keeps_ || !turns_.has_to_keep()) return;
+  QueuedCommand queued;
+  queued.is_own = queued.only_keeps_files = true;
+  queued.make = [this](const Cell& cell, const AskPose&) {
+    Command command;
+    std::vector<SceneTurns::Message> messages;
+    {
+      const std::lock_guard lock(mutex_);
+      messages = turns_.to_keep();
+      keeps_ = false;
+    }
+    for (const SceneTurns::Message& message : messages) {
+      for (moveit::MeshFile& file : keeper_.files_of(*message, cell))
+        command.files.push_back({std::move(file.name), std::move(file.bytes)});
+    }
+    return command;
+  };
+  queued.answer = [](const CommandResult& result) {
+    if (!result.done()) log_line(lines::kPartnerFileNotKept, result.reason);
+  };
+  keeps_ = put_(std::move(queued));
+}
+
+// By its turn the partner may lead, or have done the message before it fell silent.
+bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
+  {
+    const std::lock_guard lock(mutex_);
+    turns_.drop_done(heard_.changes, revision);
+    const bool leads = partner_->leads();
+    if (!leads) turns_.put_back(identity);
+    if (!leads || !turns_.begins(identity)) return false;
+  }
+  go_on_from_heard(revision);
+  current_ = identity;
+  return true;
+}
+
+// The leader before told of its last change before that was in force. It counts only if it is in
+// force here.
+void MoveItPort::go_on_from_heard(std::uint64_t revision) {
+  const std::lock_guard lock(mutex_);
+  if (!std::exchange(heard_.is_new, false)) return;
+  static_cast<void>(keeper_.restore(heard_.bytes));
+  const auto last = std::ranges::find(heard_.changes.rbegin(), heard_.changes.rend(), revision,
+                                      &DoneSceneChange::scene_revision);
+  changes_.assign(heard_.changes.begin(), last.base());
+}
+
+void MoveItPort::ended(std::uint64_t identity, std::uint64_t revision) {
+  current_ = 0;
+  {
+    const std::lock_guard lock(mutex_);
+    turns_.end(identity);
+  }
+  note(identity, revision);
+}
+
+void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
+  const bool is_known = !changes_.empty() && changes_.back().message == identity &&
+                        changes_.back().scene_revision == revision;
+  if (!is_known) changes_.push_back({identity, revision});
+  if (changes_.size() > kMostChanges) changes_.erase(changes_.begin());
+  if (!partner_->leads()) return;
+  std::vector<std::byte> bytes;
+  keeper_.save(bytes);
+  partner_->tell(changes_, bytes);
 }
 
 }  // namespace clearance

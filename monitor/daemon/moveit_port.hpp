@@ -1,9 +1,16 @@
-// Takes MoveIt's messages to the queue of commands, one after another.
+// Takes MoveIt's messages to the queue of commands, one after another. Of two partners the leading
+// one does so; the other one gets the changed cell from it, as after commands of clients.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
 
+#include "monitor/daemon/scene_turns.hpp"
 #include "monitor/moveit/scene_keeper.hpp"
 #include "monitor/scene_changes/command_queue.hpp"
 
@@ -13,16 +20,61 @@ class MoveItPort {
  public:
   // Puts a command into the queue; returns false if too much waits.
   using Put = std::function<bool(QueuedCommand)>;
+  // What a daemon needs that shares the messages with a partner.
+  struct Partner {
+    std::function<bool()> leads;              // this daemon, at the moment
+    std::function<std::uint64_t()> revision;  // of the scene in force
+    // Tells the partner of the last changes, and of what is kept between messages.
+    std::function<void(std::span<const DoneSceneChange>, std::span<const std::byte>)> tell;
+  };
   explicit MoveItPort(Put put) : put_(std::move(put)) {}
+
+  // Before the first message.
+  void share(Partner partner) { partner_ = std::move(partner); }
 
   // Any thread but that of the tick. Nothing is put after close().
   void take(moveit::RawScene message);
   void close();
 
+  // All of these do nothing without a partner. The scene thread: a scene of this revision comes
+  // into force.
+  void coming(std::uint64_t revision);
+  // The leading partner tells of this. Any thread but that of the tick.
+  void hear(const clearance_msg_PartnerScene& scene);
+  // Has to be called every few milliseconds, by any thread but that of the tick: this daemon may
+  // begin to lead, or have the leader's scene.
+  void look();
+
  private:
-  std::mutex mutex_;
-  Put put_;                     // empty: closed
-  moveit::SceneKeeper keeper_;  // used by the scene thread only
+  static constexpr std::size_t kMostChanges = 64;  // kMaxSceneChanges in idl/partners.idl
+  struct Heard {
+    std::vector<DoneSceneChange> changes = {};
+    std::vector<std::byte> bytes = {};
+    bool is_new = false;  // it was heard since this daemon led
+  };
+
+  [[nodiscard]] QueuedCommand command(const SceneTurns::Message& message, std::uint64_t identity);
+  [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
+                                   const AskPose& pose);
+  // With the mutex held.
+  void put_waiting();
+  void keep_files();
+  // In the scene thread.
+  [[nodiscard]] bool begins(std::uint64_t identity, std::uint64_t revision);
+  void go_on_from_heard(std::uint64_t revision);
+  void ended(std::uint64_t identity, std::uint64_t revision);
+  void note(std::uint64_t identity, std::uint64_t revision);
+
+  std::optional<Partner> partner_;  // none: this daemon does all messages at once
+  std::mutex mutex_;                // guards what follows
+  Put put_;                         // empty: closed
+  SceneTurns turns_;
+  Heard heard_;                         // from another leader, the last one
+  bool leads_ = false, keeps_ = false;  // when last looked at; a command to keep files waits
+  // For the scene thread.
+  moveit::SceneKeeper keeper_;
+  std::vector<DoneSceneChange> changes_;  // the last ones, by whichever daemon led
+  std::uint64_t current_ = 0;             // the message whose changes are being made; 0: none
 };
 
 }  // namespace clearance

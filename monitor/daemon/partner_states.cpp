@@ -136,6 +136,18 @@ bool PartnerStates::takes_commands() const {
   return false;
 }
 
+// The client sends a command again until it has the result.
+void PartnerStates::keep_files(Command command) {
+  if (command.dry_run || command.files.empty()) return;
+  QueuedCommand queued{.command = std::move(command), .is_own = true};
+  queued.command.changes.clear();
+  queued.only_keeps_files = true;
+  queued.answer = [](const CommandResult& result) {
+    if (!result.done()) log_line(lines::kPartnerFileNotKept, result.reason);
+  };
+  static_cast<void>(thread_.put(std::move(queued)));
+}
+
 QueuedCommand PartnerStates::for_both(QueuedCommand command) {
   command.answer = [this, is_dry = command.command.dry_run,
                     answer = std::move(command.answer)](const CommandResult& result) {

@@ -41,6 +41,8 @@ class PartnerStates {
 
   // Any thread but that of the tick. False: the partner takes them, or neither does for a moment.
   [[nodiscard]] bool takes_commands() const;
+  // Keeps the files of a command that the partner takes.
+  void keep_files(Command command);
   // The command of a client. Its answer waits until the partner has the changed cell, too.
   [[nodiscard]] QueuedCommand for_both(QueuedCommand command);
 

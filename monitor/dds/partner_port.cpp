@@ -68,7 +68,10 @@ PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
       states_reader_(participant.partner_reader(TopicKind::kPartnerStates, topics.partner_states)),
       reports_reader_(participant.partner_reader(TopicKind::kDistances, topics.distances)),
       catalogues_reader_(participant.partner_reader(TopicKind::kCatalogue, topics.catalogue)),
-      wait_(participant, {ticks_reader_, states_reader_, reports_reader_, catalogues_reader_}) {
+      scenes_writer_(participant.writer(TopicKind::kPartnerScenes, topics.partner_scenes)),
+      scenes_reader_(participant.partner_reader(TopicKind::kPartnerScenes, topics.partner_scenes)),
+      wait_(participant,
+            {ticks_reader_, states_reader_, reports_reader_, catalogues_reader_, scenes_reader_}) {
   reserve_sequence(written_->inputs, kMostTickInputs);
   reserve_sequence(written_->frames, kMaxSensors);
   copy_text(identity.partner, written_->partner);
@@ -137,6 +140,7 @@ void PartnerPort::hear() {
     ticks_.end_pass();
     hear_states();
     hear_reports();
+    hear_scenes();
     hear_catalogues();
     look();
     look_for_cell();
@@ -216,12 +220,34 @@ void PartnerPort::hear_catalogues() {
   while (take(catalogues_reader_, heard_catalogue_, info)) std::swap(catalogue_, heard_catalogue_);
 }
 
+// Likewise. It comes before the catalogue of the scene that it tells of.
+void PartnerPort::hear_scenes() {
+  dds_sample_info_t info;
+  while (take(scenes_reader_, heard_scene_, info)) {
+    std::swap(scene_, heard_scene_);
+    is_scene_new_ = true;
+  }
+  const clearance_msg_PartnerScene& its = *scene_;
+  const bool is_leaders = its.daemon == leader_ && hears_leader();
+  if (is_scene_new_ && is_leaders && actions_.hear_scene) {
+    is_scene_new_ = false;
+    const auto bytes = std::as_bytes(std::span(its.bytes._buffer, its.bytes._length));
+    const bool is_good = its.build != nullptr && std::strcmp(its.build, kBuild) == 0 &&
+                         checksum_of(bytes) == its.checksum;
+    if (is_good) actions_.hear_scene(its);
+  }
+  if (actions_.look) actions_.look();
+}
+
+bool PartnerPort::hears_leader() const {
+  return leader_ != 0 && SystemClock().monotonic_ns() - leader_heard_ns_ < kLeaderHeardNs &&
+         ticks_.standing() != PartnerStanding::kLeading;
+}
+
 // Whatever changed the leader's cell, and whenever this daemon came: it has that cell, too.
 void PartnerPort::look_for_cell() {
   const std::int64_t now = SystemClock().monotonic_ns();
-  const bool hears_leader = leader_ != 0 && now - leader_heard_ns_ < kLeaderHeardNs;
-  if (!hears_leader || ticks_.standing() == PartnerStanding::kLeading || !actions_.take_cell)
-    return;
+  if (!hears_leader() || !actions_.take_cell) return;
   const clearance_msg_Catalogue& its = *catalogue_;
   if (its.daemon != leader_ || its.scene_revision != leader_revision_) return;
   if (its.scene_revision == actions_.revision()) return;
@@ -257,7 +283,7 @@ void PartnerPort::request_state(std::uint64_t revision) {
   auto sample = state_message();
   sample->scene_revision = revision;
   sample->is_request = true;
-  write(sample, "a request to the partner");
+  write(states_writer_, &*sample, "a request to the partner");
 }
 
 void PartnerPort::send_state(const PartnerStateView& state) {
@@ -269,11 +295,11 @@ void PartnerPort::send_state(const PartnerStateView& state) {
   reserve_sequence(sample->bytes, state.bytes.size());
   std::memcpy(sample->bytes._buffer, state.bytes.data(), state.bytes.size());
   sample->bytes._length = static_cast<std::uint32_t>(state.bytes.size());
-  write(sample, "the state for the partner");
+  write(states_writer_, &*sample, "the state for the partner");
 }
 
-void PartnerPort::write(const Sample<clearance_msg_PartnerState>& sample, const char* what) {
-  const dds_return_t result = dds_write(states_writer_, &*sample);
+void PartnerPort::write(dds_entity_t writer, const void* sample, const char* what) {
+  const dds_return_t result = dds_write(writer, sample);
   if (result != DDS_RETCODE_OK)
     log_line(lines::kWriteFailed, what, dds_strretcode(result), lines::Count{1});
 }
@@ -285,6 +311,22 @@ TickTag PartnerPort::tag(std::uint64_t cycle) noexcept {
     if (tag.cycle == cycle) return tag;
   }
   return {.cycle = cycle, .standing = ticks_.standing()};
+}
+
+void PartnerPort::send_scene(std::span<const clearance_msg_SceneChange> changes,
+                             std::span<const std::byte> bytes) {
+  Sample<clearance_msg_PartnerScene> sample;
+  copy_text(identity_.partner, sample->partner);
+  sample->daemon = identity_.id;
+  sample->build = dds_string_dup(kBuild);
+  reserve_sequence(sample->changes, changes.size());
+  std::ranges::copy(changes, sample->changes._buffer);
+  sample->changes._length = static_cast<std::uint32_t>(changes.size());
+  sample->checksum = checksum_of(bytes);
+  reserve_sequence(sample->bytes, bytes.size());
+  if (!bytes.empty()) std::memcpy(sample->bytes._buffer, bytes.data(), bytes.size());
+  sample->bytes._length = static_cast<std::uint32_t>(bytes.size());
+  write(scenes_writer_, &*sample, "a change of the scene for the partner");
 }
 
 bool PartnerPort::leads() const {

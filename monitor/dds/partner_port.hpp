@@ -54,6 +54,9 @@ class PartnerPort {
     // The leader has the cell of this text and revision in force, and this daemon has not. Once for
     // a change, and again every second.
     std::function<void(std::string text, std::uint64_t revision)> take_cell = {};
+    // The leader tells what it has done with MoveIt's messages. Once for each message of it.
+    std::function<void(const clearance_msg_PartnerScene&)> hear_scene = {};
+    std::function<void()> look = {};  // every 10 ms, and after each message
   };
   // `identity` names the partner that this daemon is. Everything given must outlive this.
   PartnerPort(Participant& participant, const Topics& topics, const DaemonIdentity& identity,
@@ -71,6 +74,8 @@ class PartnerPort {
   // Any thread.
   void request_state(std::uint64_t revision);
   void send_state(const PartnerStateView& state);
+  void send_scene(std::span<const clearance_msg_SceneChange> changes,
+                  std::span<const std::byte> bytes);
 
   // The thread that publishes. The tag of the report of this cycle, in the order of reports.
   [[nodiscard]] TickTag tag(std::uint64_t cycle) noexcept;
@@ -92,16 +97,18 @@ class PartnerPort {
   void hear_states();
   void hear_reports();
   void hear_catalogues();
+  void hear_scenes();
   void look_for_cell();
   void look();
-  void write(const Sample<clearance_msg_PartnerState>& sample, const char* what);
+  [[nodiscard]] bool hears_leader() const;
+  static void write(dds_entity_t writer, const void* sample, const char* what);
   [[nodiscard]] Sample<clearance_msg_PartnerState> state_message() const;
 
   const DaemonIdentity& identity_;
   TickPartner& ticks_;
   Actions actions_;
   dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_,
-      catalogues_reader_;
+      catalogues_reader_, scenes_writer_, scenes_reader_;
   DataWait wait_;
   PartnerReports reports_;
   LeastDelay delay_;
@@ -118,6 +125,8 @@ class PartnerPort {
   Sample<clearance_msg_PartnerState> state_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_Catalogue> catalogue_, heard_catalogue_;
+  Sample<clearance_msg_PartnerScene> scene_, heard_scene_;
+  bool is_scene_new_ = false;
   TickNotice notice_;
   std::atomic<bool> stop_{false};
   std::thread hearing_, writing_;

@@ -256,10 +256,7 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
     message.state_checksum = sum.value();
   }
   now_->changed.reduce(message);
-  if (partner_ != nullptr) {
-    message.checksum = checksum_of(message);
-    message.delivery_checksum = delivery_checksum_of(message);
-  }
+  if (partner_ != nullptr) seal(message);
   const bool published = write(TopicKind::kDistances, distances_, &message, "distances");
   if (partner_ != nullptr) partner_->published(message);
   return published;

@@ -77,12 +77,11 @@ constexpr const auto& left_out_line(const QuestionTraffic&) { return lines::kQue
 template <class Traffic>
 RequestPort<Traffic>::RequestPort(const Cell& cell, const std::vector<std::string>& clients,
                                   Participant& participant, std::uint64_t daemon, Put put,
-                                  std::function<std::uint64_t()> revision,
-                                  std::function<bool()> takes)
+                                  std::function<std::uint64_t()> revision, Sharing sharing)
     : daemon_(daemon),
       put_(std::move(put)),
       revision_(std::move(revision)),
-      takes_(std::move(takes)),
+      sharing_(std::move(sharing)),
       ledger_(clients, Traffic::kKey),
       reader_(make_reader<Traffic>(cell, participant, names_, lapsed_)),
       results_(participant.writer(Traffic::kResults, cell.topics.*topic(Traffic::kResults).name)),
@@ -138,11 +137,17 @@ void RequestPort<Traffic>::take(const CdrSample& sample) {
   const std::span<const std::byte> bytes = sample.bytes();
   Sample<typename Traffic::Message> message;
   if (!decoder_.decode(bytes, message, CdrBytes::kOfReader)) return;
-  if (takes_ && !takes_()) return;
+  const bool is_taken = !sharing_.takes || sharing_.takes();
+  if (!is_taken && !sharing_.overhear) return;
   const typename Ledger::Request request{message->client, message->request, hash_of(bytes)};
-  if (auto refused = ledger_.refuse_sender(request, sample.writer()))
-    return answer_at_once(*std::move(refused));
+  auto refused = ledger_.refuse_sender(request, sample.writer());
+  if (refused && is_taken) return answer_at_once(*std::move(refused));
+  if (refused) return;
   auto read = from_wire(*message);
+  if (!is_taken) {
+    if (auto* overheard = std::get_if<Request>(&read)) sharing_.overhear(std::move(*overheard));
+    return;
+  }
   if (auto* fault = std::get_if<MalformedField>(&read)) {
     return answer_at_once(malformed(
         std::move(*fault),

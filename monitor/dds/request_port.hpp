@@ -52,14 +52,21 @@ class RequestPort {
   using Result = typename Traffic::Result;
   // Passes a request on, or returns false if too many wait. The answer may come from any thread.
   using Put = std::function<bool(typename Traffic::Queued)>;
+  // How requests are shared with another daemon that gets them, too.
+  struct Sharing {
+    // False while the other one answers; requests that come meanwhile are not even refused. Empty:
+    // there is no other one.
+    std::function<bool()> takes;
+    // Gets these requests of clients that are named. The other one may refuse them.
+    std::function<void(Request)> overhear;
+  };
 
   // Takes the requests of `clients`, on the topics of the cell. `daemon` is the id in the messages,
-  // and `revision` returns that of the scene in force. `takes`: false while another daemon answers,
-  // and requests that come meanwhile are not even refused; empty: never. The participant must
-  // outlive this. Throws DdsError.
+  // and `revision` returns that of the scene in force. The participant must outlive this. Throws
+  // DdsError.
   RequestPort(const Cell& cell, const std::vector<std::string>& clients, Participant& participant,
               std::uint64_t daemon, Put put, std::function<std::uint64_t()> revision,
-              std::function<bool()> takes = {});
+              Sharing sharing = {});
   ~RequestPort();
   RequestPort(const RequestPort&) = delete;
   RequestPort& operator=(const RequestPort&) = delete;
@@ -80,7 +87,7 @@ class RequestPort {
   const std::uint64_t daemon_;
   const Put put_;
   const std::function<std::uint64_t()> revision_;
-  const std::function<bool()> takes_;
+  const Sharing sharing_;
   Ledger ledger_;
   NameLimit names_;
   std::set<std::string> strangers_;  // clients that are not named and were answered

@@ -49,7 +49,11 @@ std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
 bool MoveItMessages::decode(std::uint32_t port, const RawMessage& message, const Now&,
                             TopicCounts&) {
   const Input& input = kInputs[port];
-  use_({input.of, inputs_->*input.topic, {message.cdr.begin(), message.cdr.end()}, message.bytes});
+  use_({input.of,
+        inputs_->*input.topic,
+        {message.cdr.begin(), message.cdr.end()},
+        message.bytes,
+        message.sent_ns});
   return true;
 }
 

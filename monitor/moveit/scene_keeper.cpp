@@ -5,7 +5,9 @@
 #include <bit>
 #include <optional>
 #include <utility>
+#include <variant>
 
+#include "monitor/inputs/checksum.hpp"
 #include "monitor/moveit/from_wire.hpp"
 
 namespace clearance::moveit {
@@ -21,6 +23,15 @@ std::optional<Translation> translated(const RawScene& message, CdrDecoder& decod
 }
 
 }  // namespace
+
+std::uint64_t RawScene::identity() const noexcept {
+  Checksum sum;
+  sum.add(type);
+  sum.add(sent_ns);
+  for (const char letter : topic) sum.add(letter);
+  for (const std::byte byte : cdr) sum.add(byte);
+  return sum.value();
+}
 
 void SceneKeeper::say(std::string sentence, Work& work) {
   if (said_.size() < kMostSaid && said_.emplace(sentence, 1).second)
@@ -77,6 +88,47 @@ SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
     incomplete_ = std::move(done->exceptions);
   }
   return work;
+}
+
+// Every object that a message may have bodies of.
+std::vector<CollisionObject> SceneKeeper::objects_of(const RawScene& message) {
+  const auto decoded = [&]<class Wire>(Sample<Wire> sample) {
+    return decoder_.decode(message.cdr, sample, message.bytes) ? std::optional(from_wire(*sample))
+                                                               : std::nullopt;
+  };
+  std::vector<CollisionObject> objects;
+  switch (message.type) {
+    case RawScene::Type::kCollisionObject:
+      if (auto object = decoded(Sample<moveit_msgs_msg_dds__CollisionObject_>()))
+        objects.push_back(*std::move(object));
+      break;
+    case RawScene::Type::kAttachedCollisionObject:
+      if (auto attached = decoded(Sample<moveit_msgs_msg_dds__AttachedCollisionObject_>()))
+        objects.push_back(std::move(attached->object));
+      break;
+    case RawScene::Type::kPlanningScene:
+      if (auto scene = decoded(Sample<moveit_msgs_msg_dds__PlanningScene_>())) {
+        objects = std::move(scene->collision_objects);
+        for (AttachedCollisionObject& each : scene->attached)
+          objects.push_back(std::move(each.object));
+      }
+      break;
+  }
+  return objects;
+}
+
+std::vector<MeshFile> SceneKeeper::files_of(const RawScene& message, const Cell& cell) {
+  std::vector<CollisionObject> objects = objects_of(message);
+  std::erase_if(objects, [](const CollisionObject& object) { return object.meshes.empty(); });
+  std::vector<MeshFile> files;
+  if (objects.empty()) return files;
+  const LengthUnit unit = known_scene(cell).unit;
+  for (const CollisionObject& object : objects) {
+    auto body = body_of(object, unit, MeshForm::kFile);
+    if (auto* made = std::get_if<Body>(&body))
+      files.insert(files.end(), made->files.begin(), made->files.end());
+  }
+  return files;
 }
 
 std::vector<CellChange> SceneKeeper::complete(const Scene& changed) const {

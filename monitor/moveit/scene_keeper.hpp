@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct RawScene {
   std::string topic = {};
   std::vector<std::byte> cdr = {};
   CdrBytes bytes = CdrBytes::kUnchecked;
+  std::int64_t sent_ns = 0;  // by the sender's clock
+
+  // A number by which two daemons that hear the same message know it; never 0.
+  [[nodiscard]] std::uint64_t identity() const noexcept;
 };
 
 // One thread may use it. A message is one list of changes: those of take(), then complete(). Call
@@ -46,8 +51,18 @@ class SceneKeeper {
   // The changes of the last take() were refused: what it kept is forgotten.
   void take_back() { translator_ = before_; }
 
+  // The files that the changes of a message would name, for a daemon that does not make them.
+  [[nodiscard]] std::vector<MeshFile> files_of(const RawScene& message, const Cell& cell);
+  // What is kept between messages, for a daemon of the same build. restore() returns false, and
+  // changes nothing, if bytes are not of save().
+  void save(std::vector<std::byte>& bytes) const { translator_.save(bytes); }
+  [[nodiscard]] bool restore(std::span<const std::byte> bytes) {
+    return translator_.restore(bytes);
+  }
+
  private:
   static constexpr std::size_t kMostSaid = 1000;
+  [[nodiscard]] std::vector<CollisionObject> objects_of(const RawScene& message);
   void say(std::string sentence, Work& work);
   void say_refused(std::string sentence, Work& work);
 

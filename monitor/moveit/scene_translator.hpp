@@ -3,9 +3,11 @@
 // No DDS, no files and no clock. README.md says what each message means here.
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -49,6 +51,11 @@ class SceneTranslator {
   // Translation::exceptions. Empty: nothing is left to do.
   [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
                                                    const std::set<NamePair>& present) const;
+
+  // What is kept, as bytes for a program of the same build. restore() returns false, and changes
+  // nothing, if bytes are not of save().
+  void save(std::vector<std::byte>& bytes) const;
+  [[nodiscard]] bool restore(std::span<const std::byte> bytes);
 
  private:
   friend class MessageTranslator;

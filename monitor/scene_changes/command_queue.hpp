@@ -29,6 +29,9 @@ struct QueuedCommand {
   // One without changes is not done, and has no result.
   std::function<Command(const Cell& cell, const AskPose& pose)> make = {};
   std::size_t bytes_to_make = 0;  // the bytes that `make` holds
+  // Another daemon does the command, and this one keeps the files that it sends along. The result
+  // says whether it could.
+  bool only_keeps_files = false;
   // Other work of the daemon that must not meet a change of the scene. The rest is then not read.
   std::function<void()> task = {};
   // Adds changes that depend on the scene to which the others lead. All are done, or none.

@@ -10,6 +10,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -50,6 +51,13 @@ class SceneCommander {
   [[nodiscard]] CommandResult execute(const Command& command, bool is_own,
                                       const std::function<bool()>& may_change,
                                       const CompleteChanges& complete = {});
+
+  // Keeps the files of a command for a cell that another daemon makes, and this one takes over.
+  [[nodiscard]] CommandResult keep_files(const Command& command) {
+    std::string reason = sent_.keep_awaited(command.files);
+    const auto status = reason.empty() ? CommandStatus::kDone : CommandStatus::kFileRefused;
+    return {.status = status, .reason = std::move(reason)};
+  }
 
   // Reads the text in force if clients may send commands: the first of them is then as fast as
   // others.

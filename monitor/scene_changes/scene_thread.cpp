@@ -29,7 +29,9 @@ void SceneThread::run() {
     std::optional<CommandResult> result;
     if (next->make) result = make(*next);
     const bool is_empty = next->make && !result && next->command.changes.empty();
-    if (!result && !is_empty) {
+    if (!result && next->only_keeps_files) {
+      result = commander_.keep_files(next->command);
+    } else if (!result && !is_empty) {
       result = commander_.execute(
           next->command, next->is_own, [this] { return enter(Phase::kChanging); }, next->complete);
     }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <string_view>
 #include <system_error>
+#include <utility>
 
 #include "config/text/file_bytes.hpp"
 #include "config/text/fnv1a.hpp"
@@ -67,9 +68,51 @@ void SentFiles::take_back() {
   written_.clear();
 }
 
+// A file that was there before is not this object's to remove, unless it waits for a cell itself.
+std::string SentFiles::keep_awaited(const std::vector<SentFile>& files) {
+  auto kept = keep(files);
+  if (auto* reason = std::get_if<std::string>(&kept)) return std::move(*reason);
+  Awaited now;
+  for (const SentFile& file : files) now.bytes += file.bytes.size();
+  for (const auto& [name, relative] : std::get<std::map<std::string, std::string>>(kept)) {
+    const std::filesystem::path path = folder_.parent_path() / relative;
+    const bool is_new = std::ranges::find(written_, path) != written_.end();
+    if (is_new || is_awaited(path)) now.paths.insert(path);
+  }
+  written_.clear();
+  if (now.paths.empty()) return {};
+  awaited_.push_back(std::move(now));
+  std::size_t bytes = 0;
+  for (const Awaited& each : awaited_) bytes += each.bytes;
+  while (awaited_.size() > 1 && (awaited_.size() > kAwaited || bytes > kAwaitedBytes)) {
+    bytes -= awaited_.front().bytes;
+    drop_oldest_awaited();
+  }
+  return {};
+}
+
+bool SentFiles::is_awaited(const std::filesystem::path& file) const {
+  return std::ranges::any_of(awaited_,
+                             [&](const Awaited& each) { return each.paths.contains(file); });
+}
+
+void SentFiles::drop_oldest_awaited() {
+  const Paths oldest = std::move(awaited_.front().paths);
+  awaited_.pop_front();
+  for (const std::filesystem::path& file : oldest) {
+    std::error_code error;
+    if (!is_awaited(file)) std::filesystem::remove(file, error);
+  }
+}
+
 void SentFiles::settle(const std::vector<std::filesystem::path>& named) {
   settled_.insert(written_.begin(), written_.end());
   written_.clear();
+  for (const std::filesystem::path& file : named) {
+    for (Awaited& each : awaited_) {
+      if (each.paths.erase(file) > 0) settled_.insert(file);
+    }
+  }
   Paths& now = named_.emplace_back();
   for (const std::filesystem::path& file : named) {
     if (settled_.contains(file)) now.insert(file);

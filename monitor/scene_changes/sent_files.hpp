@@ -30,6 +30,11 @@ class SentFiles {
       const std::vector<SentFile>& files);
   // Removes what the last keep() wrote, since no cell names it.
   void take_back();
+  // Keeps files while a cell may come that names them: another daemon does the command, and this
+  // one takes the cell over from it. The oldest ones that no cell has named go once there are those
+  // of more than kAwaited commands, or more than kAwaitedBytes. Returns why one cannot be kept.
+  [[nodiscard]] std::string keep_awaited(const std::vector<SentFile>& files);
+  static constexpr std::size_t kAwaited = 64, kAwaitedBytes = 128 << 20;
   // A cell that names these files is in force, so those of the last keep() stay. Files that this
   // object wrote and none of the last kScenes cells names are removed. Until then a recording can
   // still read them.
@@ -38,9 +43,16 @@ class SentFiles {
 
  private:
   using Paths = std::set<std::filesystem::path>;
+  struct Awaited {
+    Paths paths;
+    std::size_t bytes = 0;
+  };
+  [[nodiscard]] bool is_awaited(const std::filesystem::path& file) const;
+  void drop_oldest_awaited();
 
   std::filesystem::path folder_;
   std::vector<std::filesystem::path> written_;  // by the last keep()
+  std::deque<Awaited> awaited_;                 // of the last commands of another daemon
   Paths settled_;                               // written, and named by a cell since
   std::deque<Paths> named_;                     // by the last cells, of settled_
 };

@@ -84,6 +84,11 @@ template <>
 topic_descriptor<clearance_msg_PartnerFrame>() noexcept {
   return clearance_msg_PartnerFrame_desc;
 }
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<clearance_msg_PartnerScene>() noexcept {
+  return clearance_msg_PartnerScene_desc;
+}
 
 template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&

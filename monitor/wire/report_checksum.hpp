@@ -59,34 +59,49 @@ template <class Report>
   return sum.value();
 }
 
-// The checksum that partners compare beside state_checksum. A message that carries only what changed
-// depends on those before it: then state_checksum stands for the whole report, too.
+// The checksum that partners compare beside state_checksum. A message that carries only what
+// changed depends on those before it: then state_checksum stands for the whole report, too.
 [[nodiscard]] inline std::uint64_t compared_checksum(
     const clearance_msg_Distances& message) noexcept {
   return message.changes_since == 0 ? message.checksum : 0;
+}
+
+inline void add_text(const char* text, Checksum& sum) noexcept {
+  for (; *text != '\0'; ++text) sum.add(static_cast<std::uint64_t>(*text));
+  sum.add(std::uint64_t{0});
+}
+
+// Of the inputs on which a message rests: its sources with their numbers.
+[[nodiscard]] inline std::uint64_t inputs_checksum_of(
+    const clearance_msg_Distances& message) noexcept {
+  Checksum sum;
+  sum.add(message.sources._length);
+  for (std::uint32_t i = 0; i < message.sources._length; ++i) {
+    add_text(message.sources._buffer[i].source, sum);
+    sum.add(message.sources._buffer[i].sequence_number);
+  }
+  return sum.value();
 }
 
 // Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs.
 [[nodiscard]] inline std::uint64_t delivery_checksum_of(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;
-  const auto add_text = [&sum](const char* text) {
-    for (; *text != '\0'; ++text) sum.add(static_cast<std::uint64_t>(*text));
-    sum.add(std::uint64_t{0});
-  };
   sum.add(message.daemon);
   sum.add(message.publish_ns);
-  add_text(message.partner);
+  add_text(message.partner, sum);
   sum.add(message.lineage);
   sum.add(message.checksum);
   sum.add(message.state_checksum);
   sum.add(message.changes_since);
-  sum.add(message.sources._length);
-  for (std::uint32_t i = 0; i < message.sources._length; ++i) {
-    add_text(message.sources._buffer[i].source);
-    sum.add(message.sources._buffer[i].sequence_number);
-  }
+  sum.add(inputs_checksum_of(message));
   return sum.value();
+}
+
+// States both checksums in a message that is complete otherwise.
+inline void seal(clearance_msg_Distances& message) noexcept {
+  message.checksum = checksum_of(message);
+  message.delivery_checksum = delivery_checksum_of(message);
 }
 
 // Of the rest of a report, and of the state of its tick. The counts of refused samples are left

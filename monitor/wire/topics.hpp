@@ -33,6 +33,7 @@ enum class TopicKind : std::uint8_t {
   kPartnerTicks,
   kPartnerStates,
   kPartnerFrames,
+  kPartnerScenes,
 };
 
 // The delivery of a topic. Both are reliable with keep-last history.
@@ -82,6 +83,7 @@ inline constexpr auto kTopics = [] {
       row(kPartnerTicks, clearance_msg_PartnerTick_desc, kStream, 64, 256),
       row(kPartnerStates, clearance_msg_PartnerState_desc, kStream, 1, 4),
       row(kPartnerFrames, clearance_msg_PartnerFrame_desc, kLatched, 1, 1),
+      row(kPartnerScenes, clearance_msg_PartnerScene_desc, kLatched, 1, 1),
   };
 }();
 static_assert(kTopics.size() == kTopicKeys.size());

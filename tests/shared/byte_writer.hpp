@@ -66,6 +66,11 @@ class ByteWriter {
   }
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
   void send() { ASSERT_EQ(dds_write(writer_, bytes_.data()), DDS_RETCODE_OK); }
+  // Sends other bytes from now on, as many as before.
+  void set(const std::vector<std::byte>& cdr) {
+    ASSERT_EQ(cdr.size(), bytes_.size() + 4);
+    bytes_.assign(cdr.begin() + 4, cdr.end());
+  }
 
  private:
   std::vector<std::byte> bytes_;

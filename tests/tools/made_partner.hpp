@@ -31,8 +31,7 @@ class MadePartner {
     copy(name_, message.partner);
     message.daemon += 1;
     change(message);
-    message.checksum = checksum_of(message);
-    message.delivery_checksum = delivery_checksum_of(message);
+    seal(message);
     dds_write(reports_, &message);
   }
   // Leads a tick, by a clock that is behind by this time.

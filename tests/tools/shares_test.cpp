@@ -130,6 +130,20 @@ TEST_F(SharedCells, PartnersOfAShareLoseNoCycleWhenOneIsKilled) {
   EXPECT_EQ(whole.missed(), missed);
 }
 
+// The cell names one partner of each share, and the option the other one.
+class SharedCellsOfPartners : public SharedCells {
+ protected:
+  SharedCellsOfPartners() : SharedCells("partner: one\n") {}
+};
+
+TEST_F(SharedCellsOfPartners, MayBeNamedByTheCell) {
+  start_all();
+  client::SharedCell whole(connection, {.late_after = milliseconds(500)});
+  ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
+  ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
+  EXPECT_TRUE(test::eventually([&] { return second.told("partner-agrees", {"one"}); })) << logs();
+}
+
 TEST_F(SharedCells, OfAnotherRevisionAreUnknownUntilTheyAgree) {
   start_all();
   client::SharedCell whole(connection, {.late_after = milliseconds(500)});

@@ -96,6 +96,7 @@ class Sender {
       case TopicKind::kPartnerTicks:
       case TopicKind::kPartnerStates:
       case TopicKind::kPartnerFrames:
+      case TopicKind::kPartnerScenes:
         break;  // recordings do not have them
     }
     return false;

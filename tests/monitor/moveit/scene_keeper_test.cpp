@@ -131,5 +131,66 @@ TEST_F(KeptScene, IntakeHandsOnTheTopicsThatTheCellNames) {
   EXPECT_TRUE(log.news[0].is_warning);
 }
 
+// The other keeper has not heard the scene. Frames, subframes, margins and the matrix are in no
+// cell.
+TEST_F(KeptScene, ASecondKeeperGoesOnWithWhatTheFirstOneKept) {
+  static_cast<void>(take(RawScene::Type::kPlanningScene, cdr_of(some_scene())));
+  std::vector<std::byte> bytes;
+  keeper_.save(bytes);
+  SceneKeeper second;
+  ASSERT_TRUE(second.restore(bytes));
+  std::vector<std::byte> again;
+  second.save(again);
+  EXPECT_EQ(again, bytes);
+  PlanningScene next;
+  next.is_diff = next.robot_state_is_diff = true;
+  next.collision_objects = {sphere_object("ball", "bench", {1, 0, 0})};
+  const auto poses = [this](const std::string& body) { return std::optional(poses_.at(body)); };
+  const RawScene raw{RawScene::Type::kPlanningScene, "/topic", cdr_of(next)};
+  const auto expected = keeper_.take(raw, cell_, poses), found = second.take(raw, cell_, poses);
+  ASSERT_EQ(expected.changes.size(), 1u);
+  ASSERT_EQ(found.changes.size(), 1u);
+  EXPECT_EQ(yaml_of(found.changes[0]), yaml_of(expected.changes[0]));
+  EXPECT_EQ(second.complete(cell_.scene).size(), 1u) << "the matrix allows hand against table";
+  EXPECT_FALSE(SceneKeeper().take(raw, cell_, poses).news.empty()) << "it does not know the frame";
+}
+
+TEST_F(KeptScene, BytesOfSomethingElseChangeNothing) {
+  static_cast<void>(take(RawScene::Type::kPlanningScene, cdr_of(some_scene())));
+  std::vector<std::byte> bytes, after;
+  keeper_.save(bytes);
+  for (const std::size_t length : {std::size_t{0}, std::size_t{7}, bytes.size() / 2}) {
+    EXPECT_FALSE(keeper_.restore(std::span(bytes).first(length))) << length;
+  }
+  keeper_.save(after);
+  EXPECT_EQ(after, bytes);
+}
+
+TEST_F(KeptScene, TheFilesOfAMessageAreThoseThatItsChangesName) {
+  const RawScene raw{RawScene::Type::kPlanningScene, "/topic", cdr_of(some_scene())};
+  const auto files = keeper_.files_of(raw, cell_);
+  const auto work = take(raw.type, raw.cdr);
+  ASSERT_EQ(work.files.size(), 1u) << "both objects have the same mesh";
+  ASSERT_FALSE(files.empty());
+  for (const MeshFile& file : files) {
+    EXPECT_EQ(file.name, work.files[0].name);
+    EXPECT_EQ(file.bytes, work.files[0].bytes);
+  }
+}
+
+TEST_F(KeptScene, AMessageIsKnownByItsContentItsTopicAndItsTime) {
+  const RawScene message{RawScene::Type::kPlanningScene, "/topic", cdr_of(some_scene())};
+  RawScene other = message;
+  EXPECT_EQ(other.identity(), message.identity());
+  other.sent_ns = 1;
+  EXPECT_NE(other.identity(), message.identity());
+  other = message;
+  other.topic = "/other";
+  EXPECT_NE(other.identity(), message.identity());
+  other = message;
+  other.cdr.back() ^= std::byte{1};
+  EXPECT_NE(other.identity(), message.identity());
+}
+
 }  // namespace
 }  // namespace clearance::moveit

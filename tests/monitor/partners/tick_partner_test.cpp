@@ -8,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <vector>
 
 #include "tests/monitor/partners/side.hpp"
@@ -313,42 +311,6 @@ TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {
   }
   EXPECT_EQ(left.ticks.standing(), kLeading);
   EXPECT_EQ(right.ticks.standing(), kApart);
-}
-
-// A bit that flips in a table of one daemon is seen within ten ticks: all pairs are compared in
-// that time. A place that is overwritten before anything has read it is no trial: the test sees
-// that nothing remains of it in the next hundred ticks.
-//
-// The campaign: CLEARANCE_FLIPS=1000
-TEST_F(TickPartners, AFlippedBitThatIsReadIsFoundWithinTenTicks) {
-  scene.budget = 2;
-  Random random(34);
-  const char* const asked = std::getenv("CLEARANCE_FLIPS");
-  const int flips = asked == nullptr ? 200 : std::atoi(asked);
-  int found = 0, overwritten = 0;
-  for (int trial = 0; found < flips && !HasFailure(); ++trial) {
-    Side one(scene, 1), other(scene, 2);
-    std::uint64_t number = 0;
-    const auto tick = [&] {
-      ++number;
-      const std::int64_t now = test::kStart + static_cast<std::int64_t>(number) * kTick;
-      for (Side* side : {&one, &other}) {
-        const Report& report = side->monitor->tick(Side::samples(number), now);
-        side->checksum = checksum_of(report);
-        side->rest = checksum_of_rest(report, side->monitor->checksum());
-      }
-      return one.checksum == other.checksum && one.rest == other.rest;
-    };
-    for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick());
-    one.monitor->flip_bit(trial % 2 == 0, random.next());
-    bool same = true;
-    for (int i = 0; i < 10 && same; ++i) same = tick();
-    ++(same ? overwritten : found);
-    for (int i = 0; i < 100 && same; ++i) EXPECT_TRUE(tick()) << "nothing remained of it";
-  }
-  EXPECT_GT(found, overwritten);
-  std::printf("%d flips found within ten ticks, %d overwritten before they were read\n", found,
-              overwritten);
 }
 
 }  // namespace
