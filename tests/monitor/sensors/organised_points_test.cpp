@@ -226,6 +226,7 @@ TEST_F(SensorsTest, MakeBallsOfOrganisedPointsThatReachToTheirNeighbours) {
   cloud.height = 1;
   cloud.width = 4;
   cloud.row_step = 80;
+  cloud.data[0] ^= 1;
   add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
   EXPECT_TRUE(settle(cloud.stamp_ns + 1000).empty()) << "nothing says which points are neighbours";
   EXPECT_EQ(count(FrameFault::kNotOrganised), 1u);
