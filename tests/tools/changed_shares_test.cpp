@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cell/share_topics.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/report.hpp"

@@ -173,13 +173,13 @@ class PartnersInFolders : public CommandedPartners {
   CommandResult add(const std::string& name) {
     client::Connection own(dds, cell.topics);
     client::Commands commands(own, "planner");
-    const std::string file = name + ".obj";
+    const std::string mesh = name + ".obj";
     const auto result = commands.send(
         {AddObject{"{name: " + name +
                    ", groups: [still], fixed: true, pose: {xyz: [0, 0, 0.2]}, "
                    "mesh: {file: 'sent:" +
-                   file + "'}}"}},
-        {.files = {{file,
+                   mesh + "'}}"}},
+        {.files = {{mesh,
                     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 "
                     "4\nf 3 1 4\n# " +
                         name + "\n"}}},
@@ -190,8 +190,8 @@ class PartnersInFolders : public CommandedPartners {
   static std::vector<std::string> names_in(const std::filesystem::path& folder) {
     std::vector<std::string> names;
     std::error_code none;
-    for (const auto& file : std::filesystem::directory_iterator(folder, none))
-      names.push_back(file.path().filename().string());
+    for (const auto& entry : std::filesystem::directory_iterator(folder, none))
+      names.push_back(entry.path().filename().string());
     std::ranges::sort(names);
     return names;
   }

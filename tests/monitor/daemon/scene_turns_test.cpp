@@ -18,7 +18,9 @@ class SceneTurnsTest : public testing::Test {
  protected:
   // The number of a message is its identity.
   void add(std::uint64_t number, std::size_t bytes = 1) {
-    turns.add(std::make_shared<const moveit::RawScene>(moveit::RawScene{.cdr{bytes}}), number);
+    turns.add(std::make_shared<const moveit::RawScene>(
+                  moveit::RawScene{.cdr = std::vector<std::byte>(bytes)}),
+              number);
   }
   std::vector<std::uint64_t> to_queue() {
     std::vector<std::uint64_t> numbers;

@@ -92,9 +92,9 @@ class SharedMoveItPort : public MoveItPortTest {
     port_.share({.leads = [this] { return leads.load(); },
                  .revision = [this] { return in_force.load(); },
                  .tell =
-                     [this](auto changes, auto) {
+                     [this](auto done, auto) {
                        const std::lock_guard lock(mutex_);
-                       told_.assign(changes.begin(), changes.end());
+                       told_.assign(done.begin(), done.end());
                      }});
     in_force = revision();
   }

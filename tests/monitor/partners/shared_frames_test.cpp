@@ -21,7 +21,7 @@ constexpr std::uint32_t kSeen = 4;  // the object of the sensor
 constexpr std::int64_t kPatience = 20'000'000;
 
 // Four moving balls, and a sensor that sees one point.
-Scene cell() {
+Scene seen_cell() {
   std::vector<Object> objects;
   for (const char* name : {"a", "b", "c", "d"}) {
     objects.push_back(test::moving(name, {test::ball(0.1)}));
@@ -101,7 +101,7 @@ class SharedFrames : public testing::Test {
     EXPECT_EQ(used(left), used(right));
   }
 
-  Scene scene = cell();
+  Scene scene = seen_cell();
   std::vector<std::unique_ptr<SeenCloud>> clouds;
   Side left{scene, 1}, right{scene, 2};
   std::uint64_t sent = 0;

@@ -31,7 +31,9 @@ TEST_F(SentFilesOfAnotherDaemon, WaitForACellThatNamesThemAndTheOldestGo) {
   files.settle({named});
   for (int i = 0; i < static_cast<int>(SentFiles::kAwaited) - 1; ++i) {
     keep(content(i));
-    if (i == 3) EXPECT_EQ(keep("again"), again);
+    if (i == 3) {
+      EXPECT_EQ(keep("again"), again);
+    }
   }
   EXPECT_TRUE(exists(named));
   EXPECT_FALSE(exists(unnamed)) << "no cell has named it";
