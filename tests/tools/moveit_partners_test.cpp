@@ -18,7 +18,6 @@ namespace {
 
 using moveit::CollisionObject;
 using moveit::Operation;
-using moveit::PlanningScene;
 
 std::string cell_with_moveit() {
   std::string text = cell_at_rate();
@@ -42,7 +41,7 @@ class MoveItPartners : public Partners {
   std::unique_ptr<ByteWriter> writer_of(const RosType& type, const std::string& topic,
                                         const Message& message) {
     auto made = std::make_unique<ByteWriter>(sender, dds.partition, *type.descriptor, "rt/" + topic,
-                                             cdr_of(message));
+                                             moveit::cdr_of(message));
     EXPECT_TRUE(read_until([&] { return matched_readers(made->writer()) == daemons.size(); }))
         << logs();
     return made;
@@ -56,7 +55,7 @@ class MoveItPartners : public Partners {
     return object;
   }
   void send(const CollisionObject& message) {
-    writer->set(cdr_of(message));
+    writer->set(moveit::cdr_of(message));
     writer->send();
   }
   // The spheres of the object in the cell that a daemon has in force.
@@ -111,7 +110,7 @@ TEST_F(MoveItPartners, LoseNoMessageAndDoNoneTwiceWhenTheLeaderIsKilled) {
 // The frame came in a message to the first leader, and is in no cell.
 TEST_F(MoveItPartners, TheNextLeaderKnowsTheFramesOfEarlierMessages) {
   start_both();
-  PlanningScene scene;
+  moveit::PlanningScene scene;
   scene.is_diff = scene.robot_state_is_diff = true;
   scene.fixed_frame_transforms = {{"bench", "world", {{3, 0, 0}, Eigen::Quaterniond::Identity()}}};
   writer_of(kRosPlanningScene, "planning_scene", scene)->send();
