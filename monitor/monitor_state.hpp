@@ -1,4 +1,4 @@
-// What a monitor holds. Only its own sources include this, and tests that look inside.
+// The inside of a monitor. Only its own sources include this, and tests that look inside.
 #pragma once
 
 #include <cstdint>

@@ -68,7 +68,7 @@ struct Sensor {
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
   double spacing = 0.0;
-  // Of organised points: the ball of each reaches to the middle between it and its neighbours on
+  // The ball of each organised point reaches to the middle between it and its neighbours on
   // the same surface instead (monitor/sensors/organised_points.hpp).
   bool by_neighbours = false;
 

@@ -315,7 +315,7 @@ bool Daemon::files_changed() {
   return options_.reload && files_.changed();
 }
 
-// Of two partners the leading one reads it, and the other one gets it from there.
+// The leading one of two partners reads it, and the other one gets it from there.
 void Daemon::read_again() {
   const auto standing = partner_ ? partner_->ticks.standing() : PartnerStanding::kLeading;
   wants_to_read_ = standing == PartnerStanding::kStarting;

@@ -20,7 +20,7 @@ class MoveItPort {
  public:
   // Puts a command into the queue; returns false if too much waits.
   using Put = std::function<bool(QueuedCommand)>;
-  // What a daemon needs that shares the messages with a partner.
+  // A daemon needs this if it shares the messages with a partner.
   struct Partner {
     std::function<bool()> leads;              // this daemon, at the moment
     std::function<std::uint64_t()> revision;  // of the scene in force

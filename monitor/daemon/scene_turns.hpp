@@ -21,7 +21,7 @@ using DoneSceneChange = clearance_msg_SceneChange;
 class SceneTurns {
  public:
   using Message = std::shared_ptr<const moveit::RawScene>;
-  // As many messages may wait, and as many bytes; then the oldest one goes.
+  // So many messages may wait, and so many bytes; then the oldest one goes.
   static constexpr std::size_t kMost = 256, kMostBytes = 128 << 20;
 
   // A message came. Returns how many others had to go.

@@ -278,7 +278,7 @@ void ReportWriter::write_separation(const Report& report) {
 }
 
 // Writes a zone at the start, after each change of its state or cause, and again after another
-// daemon may have written it. The log has the changes of its state. Apart from its partner a daemon
+// daemon may have written it. The log has the changes of its state. A daemon that ticks apart
 // does not clear zones: what it wrote last may be all that a reader has.
 void ReportWriter::write_zones(const Report& report) {
   const bool again = writes_zones_ && std::exchange(write_zones_again_, false);

@@ -52,7 +52,7 @@ class RequestPort {
   using Result = typename Traffic::Result;
   // Passes a request on, or returns false if too many wait. The answer may come from any thread.
   using Put = std::function<bool(typename Traffic::Queued)>;
-  // How requests are shared with another daemon that gets them, too.
+  // The rules for requests that another daemon gets, too.
   struct Sharing {
     // False while the other one answers; requests that come meanwhile are not even refused. Empty:
     // there is no other one.

@@ -53,7 +53,7 @@ class SceneKeeper {
 
   // The files that the changes of a message would name, for a daemon that does not make them.
   [[nodiscard]] std::vector<MeshFile> files_of(const RawScene& message, const Cell& cell);
-  // What is kept between messages, for a daemon of the same build. restore() returns false, and
+  // The state between messages, for a daemon of the same build. restore() returns false, and
   // changes nothing, if bytes are not of save().
   void save(std::vector<std::byte>& bytes) const { translator_.save(bytes); }
   [[nodiscard]] bool restore(std::span<const std::byte> bytes) {

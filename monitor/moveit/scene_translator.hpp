@@ -52,7 +52,7 @@ class SceneTranslator {
   [[nodiscard]] std::vector<CellChange> exceptions(const std::set<NamePair>& watched,
                                                    const std::set<NamePair>& present) const;
 
-  // What is kept, as bytes for a program of the same build. restore() returns false, and changes
+  // The state as bytes, for a program of the same build. restore() returns false, and changes
   // nothing, if bytes are not of save().
   void save(std::vector<std::byte>& bytes) const;
   [[nodiscard]] bool restore(std::span<const std::byte> bytes);

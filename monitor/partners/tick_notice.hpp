@@ -17,8 +17,8 @@ inline constexpr std::size_t kMostTickInputs = 256;
 // The number of batches of the largest size that any tick takes in; more wait for the next tick.
 inline constexpr std::size_t kLargestBatchesATick = 64;
 
-// A leader that has not written for 15 ms does not write what has one leader; a notice stands a quarter
-// of a period before its tick.
+// A leader that has not written a notice for 15 ms does not write what has one leader. The notice
+// of a tick stands a quarter of a period before it.
 inline constexpr double kLeastPartnersHz = 50.0;
 
 // A batch that a tick uses.

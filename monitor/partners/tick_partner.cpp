@@ -354,8 +354,8 @@ void TickPartner::successor_followed() noexcept {
   become(0);
 }
 
-// What this daemon has used apart from the leader is not in the state. If the leader ends before it
-// names it, this one uses it again.
+// The state lacks the batches that this daemon has used while it was apart. If the leader ends before
+// it names them, this one uses them again.
 void TickPartner::joined(std::uint64_t lineage, std::uint64_t cycle) noexcept {
   store_.begin_again();
   for (const TickNotice& notice : known_) {

@@ -39,7 +39,7 @@ void add(const PastPose& past, Checksum& sum) {
   sum.add(past.turn_error);
 }
 
-// What it is built of, but for the frames before.
+// A checksum of all that it is built of, but for the frames before.
 std::uint64_t of_itself(const BuiltFrame& frame) {
   Checksum sum;
   sum.add(frame.scene_revision);

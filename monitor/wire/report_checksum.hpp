@@ -71,7 +71,7 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
   sum.add(std::uint64_t{0});
 }
 
-// Of the inputs on which a message rests: its sources with their numbers.
+// A checksum of the inputs on which a message rests: its sources with their numbers.
 [[nodiscard]] inline std::uint64_t inputs_checksum_of(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;

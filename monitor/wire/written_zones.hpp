@@ -8,14 +8,14 @@
 
 namespace clearance {
 
-// What is written anew when it changes: a client sees why a zone is active now, and not only why it
+// The part of a state that is written anew when it changes: a client sees why a zone is active now, and not only why it
 // was entered. The pair and the clearances of a state are those of the tick that it names.
 struct WrittenZone {
   bool active = false;
   std::uint8_t cause = 0;
   std::uint32_t cause_object = 0;
 
-  // Of a ZoneReport or a state on the wire.
+  // Takes a ZoneReport or a state on the wire.
   template <class Zone>
   [[nodiscard]] static WrittenZone of(const Zone& zone) noexcept {
     return {zone.active, static_cast<std::uint8_t>(zone.cause), zone.cause_object};

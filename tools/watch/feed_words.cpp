@@ -30,7 +30,7 @@ std::string time_of_day(std::int64_t realtime_ns) {
   return fmt::format("{:02}:{:02}:{:02}", local.tm_hour, local.tm_min, local.tm_sec);
 }
 
-// As far as the daemon has told: it knows of joints once it has heard some.
+// This is what the daemon has told so far: it knows of joints once it has heard some.
 PlacedBy placed_by(const Feed& feed, std::uint32_t object) {
   if (const clearance_msg_Health* const health = feed.health()) {
     const std::span inputs(health->inputs._buffer, health->inputs._length);

@@ -1,4 +1,4 @@
-// What clearance-watch says of the reports that come, and of those that do not, in words.
+// The words of clearance-watch about reports that come, and about those that do not.
 #pragma once
 
 #include <cstdint>

@@ -34,7 +34,7 @@ class Side {
                .alone_after_ns = kAloneAfter,
                .frames = scene.sensors.empty() ? nullptr : &frames}) {}
 
-  // What a source sends, in every tick another pose.
+  // A source sends this, in every tick another pose.
   void get(std::uint64_t number, const char* source = "arm") {
     poses.add(source, number, std::vector<JointSample>{});
     poses.last().samples = samples(number);
@@ -79,7 +79,7 @@ class Side {
     clock.pass(ns);
     deadline_ = clock.monotonic_ns();
   }
-  // What this one said reaches the other.
+  // The notices of this one reach the other.
   void tell(Side& other) {
     for (; const TickNotice* notice = ticks.notices().front(); ticks.notices().pop()) {
       ++notices;
