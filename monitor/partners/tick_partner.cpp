@@ -354,8 +354,8 @@ void TickPartner::successor_followed() noexcept {
   become(0);
 }
 
-// The state lacks the batches that this daemon has used while it was apart. If the leader ends before
-// it names them, this one uses them again.
+// The state lacks the batches that this daemon has used while it was apart. If the leader ends
+// before it names them, this one uses them again.
 void TickPartner::joined(std::uint64_t lineage, std::uint64_t cycle) noexcept {
   store_.begin_again();
   for (const TickNotice& notice : known_) {
