@@ -8,8 +8,9 @@
 
 namespace clearance {
 
-// The part of a state that is written anew when it changes: a client sees why a zone is active now, and not only why it
-// was entered. The pair and the clearances of a state are those of the tick that it names.
+// The part of a state that is written anew when it changes: a client sees why a zone is active now,
+// and not only why it was entered. The pair and the clearances of a state are those of the tick
+// that it names.
 struct WrittenZone {
   bool active = false;
   std::uint8_t cause = 0;

@@ -185,8 +185,9 @@ TEST_F(HiddenPlacesTest, ABodyThatIsNotAttachedIsAnObstacleAtTheSamePlace) {
 
 // The top of a tray on a cart is 1.7 m below the camera.
 TEST_F(HiddenPlacesTest, WhatNoRobotCarriesIsAnObstacleAlthoughItIsAttached) {
-  make(kImage + ", own_shell: 0.02, mount: {pose: {xyz: [5, 0, 2], rpy: [3.141592653589793, 0, "
-                "0]}}",
+  make(kImage +
+           ", own_shell: 0.02, mount: {pose: {xyz: [5, 0, 2], rpy: [3.141592653589793, 0, "
+           "0]}}",
        "",
        ", {name: tray, groups: [arm], attached: {to: cart, pose: {xyz: [0, 0, 0.1]}}, sphere: "
        "{radius: 0.1}}");
