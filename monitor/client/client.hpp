@@ -82,6 +82,11 @@ class Stream {
   // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
   [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
+  // When the last good report of each daemon of about the last second came, by monotonic_ns(). It
+  // need not have been handed out: the partner's may have come first.
+  [[nodiscard]] const std::map<std::uint64_t, std::int64_t>& heard() const noexcept {
+    return heard_;
+  }
 
   // The number of daemons that tick. 0: the daemon has died or hangs; more than one is a mistake,
   // unless they are partners.
@@ -94,6 +99,7 @@ class Stream {
 
  private:
   bool take();
+  void note_heard(std::uint64_t daemon);
 
   dds_entity_t reader_;
   std::unique_ptr<DataWait> wait_;
@@ -104,10 +110,11 @@ class Stream {
   ReportCheck check_;
   PartnerMerge merge_;  // of reports, here and below
   WholeReports whole_;
+  std::map<std::uint64_t, std::int64_t> heard_;
 };
 
 // Reports have all pairs here, even if the daemon publishes only those that changed. A pair that
-// cannot be known, since a report before was missed, is unknown until the next full report.
+// cannot be known, since a report before was missed, is unknown until it is listed again.
 using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell
 using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`
@@ -219,7 +226,8 @@ class Health {
   bool known_ = false;
 };
 
-// The state of every zone by its id, at the last update().
+// The state of every zone by its id, at the last update(). Where several daemons have written one,
+// the state of the latest tick counts, as long as its daemon is there.
 class Zones {
  public:
   explicit Zones(Connection& connection);
@@ -233,10 +241,13 @@ class Zones {
  private:
   dds_entity_t reader_;
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
+  std::map<std::uint32_t, dds_instance_handle_t> writers_;  // of these states
 };
 
 // CLOCK_REALTIME, the clock of stamps.
 [[nodiscard]] std::int64_t now_ns() noexcept;
+// A clock that nobody sets, for waits.
+[[nodiscard]] std::int64_t monotonic_ns() noexcept;
 
 // Sends joint states of robots that the cell names. `source` has 1 to 32 bytes and must not belong
 // to another writer.

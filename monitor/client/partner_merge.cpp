@@ -25,7 +25,8 @@ bool PartnerMerge::is_next(const clearance_msg_Distances& report) const noexcept
 bool PartnerMerge::take(const clearance_msg_Distances& report) {
   const bool is_delivered_whole =
       report.delivery_checksum == 0 || delivery_checksum_of(report) == report.delivery_checksum;
-  if (checksum_of(report) != report.checksum || !is_delivered_whole) {
+  was_good_ = checksum_of(report) == report.checksum && is_delivered_whole;
+  if (!was_good_) {
     note(PartnerState::kCorrupt, report);
     return false;
   }
@@ -44,8 +45,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report) {
   cycle_ = report.cycle;
   lineage_ = report.lineage;
   now_ns_ = report.now_ns;
-  seen_[cycle_ % kSeen] = {cycle_,          report.daemon,         lineage_,
-                           report.checksum, report.state_checksum, false};
+  seen_[cycle_ % kSeen] = {cycle_, report.daemon, lineage_, report.state_checksum, false};
   return true;
 }
 
@@ -54,8 +54,7 @@ void PartnerMerge::compare(const clearance_msg_Distances& report) {
   if (other.cycle != report.cycle || other.daemon == report.daemon) return;
   other.is_compared = true;
   if (other.lineage != report.lineage) return note(PartnerState::kOtherInputs, report);
-  const bool same =
-      other.checksum == report.checksum && other.state_checksum == report.state_checksum;
+  const bool same = other.state_checksum == report.state_checksum;
   note(same ? PartnerState::kAgrees : PartnerState::kDifferent, report);
 }
 

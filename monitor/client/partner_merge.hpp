@@ -39,11 +39,13 @@ class PartnerMerge {
   // check() is then about the reports before it.
   [[nodiscard]] bool take(const clearance_msg_Distances& report);
   [[nodiscard]] const PartnerCheck& check() const noexcept { return check_; }
+  // The last report that was taken had the checksums that it states.
+  [[nodiscard]] bool was_good() const noexcept { return was_good_; }
 
  private:
   static constexpr std::size_t kSeen = 64;
   struct Seen {
-    std::uint64_t cycle = 0, daemon = 0, lineage = 0, checksum = 0, state_checksum = 0;
+    std::uint64_t cycle = 0, daemon = 0, lineage = 0, state_checksum = 0;
     bool is_compared = false;
   };
   [[nodiscard]] bool is_next(const clearance_msg_Distances& report) const noexcept;
@@ -56,6 +58,7 @@ class PartnerMerge {
   std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the last one, and since the one before it
   std::array<std::string, 2> names_;       // of both partners, the one heard last first
   PartnerCheck check_, found_;             // the latter: since the last one was handed out
+  bool was_good_ = false;
 };
 
 }  // namespace clearance::client

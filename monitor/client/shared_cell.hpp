@@ -66,9 +66,9 @@ class SharedCell {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
-  // Separations of the report at hand; null if the cell has none.
+  // Separations of the report at hand; null if the cell has none, or is not known yet.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
-    return separated_.empty() ? nullptr : &*separation_;
+    return map_.separated().empty() ? nullptr : &*separation_;
   }
   // Gradients of the report at hand, if they are asked for; null: no share has any. A pair of a
   // share that is not whole is not in them.
@@ -94,15 +94,16 @@ class SharedCell {
   void take();
   // No joined report has been made, and either no scene is known, or a share that may still be
   // met has not been heard.
-  [[nodiscard]] bool waits_for_first(std::int64_t now_ns) const;
+  [[nodiscard]] bool waits_for_first() const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
   // Its last report is not late.
   [[nodiscard]] bool is_here(const OfShare& share) const;
   [[nodiscard]] std::uint64_t scene_of_most() const;
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
-  void follow_revision();
+  bool follow_revision();
   void judge(std::int64_t now_ns);
-  void join(std::int64_t now_ns);
+  // False: the shares are others than those that were read, and nothing is joined.
+  bool join(std::int64_t now_ns);
   void join_zones();
   // Writes who made a message beside the report.
   template <class Message>
@@ -120,12 +121,11 @@ class SharedCell {
   Sample<clearance_msg_Separation> separation_;
   Sample<clearance_msg_Gradients> gradients_;
   bool has_gradients_ = false;
-  std::vector<std::uint32_t> separated_;  // zones of which any share has reported separations
   std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
   ReportChecker checker_;
   ReportCheck check_;
-  std::int64_t opened_ns_ = 0;
-  std::int64_t joined_ns_ = 0;  // when the last report was made, by dds_time()
+  std::int64_t joined_ns_ = 0;                  // when the last report was made, by now_ns()
+  std::int64_t opened_at_ = 0, joined_at_ = 0;  // by monotonic_ns()
 };
 
 }  // namespace clearance::client

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -43,6 +44,10 @@ TopicKind kind_of() {
 
 dds_entity_t make_reader(Connection& connection, TopicKind kind, std::int32_t depth = 0) {
   return connection.participant().reader(kind, connection.topics().*topic(kind).name, depth);
+}
+
+dds_entity_t make_reader_of_all(Connection& connection, TopicKind kind) {
+  return connection.participant().reader_of_several(kind, connection.topics().*topic(kind).name);
 }
 
 template <class Sequence>
@@ -109,6 +114,7 @@ bool Stream<Message>::take() {
     if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
       const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
       is_next = is_of_one || merge_.take(*scratch_);
+      if (is_next || merge_.was_good()) note_heard(scratch_->daemon);
       if (is_next) static_cast<void>(whole_.complete(*scratch_));
     }
   }
@@ -117,12 +123,20 @@ bool Stream<Message>::take() {
   return true;
 }
 
+template <class Message>
+void Stream<Message>::note_heard(std::uint64_t daemon) {
+  constexpr std::int64_t kKept = 1'000'000'000;
+  const std::int64_t now = monotonic_ns();
+  if (!heard_.insert_or_assign(daemon, now).second) return;
+  std::erase_if(heard_, [now](const auto& one) { return one.second + kKept < now; });
+}
+
 // A writer that comes or leaves also ends the wait, with nothing to take.
 template <class Message>
 bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
-  const std::int64_t end_ns = dds_time() + timeout.count();
+  const std::int64_t end_ns = monotonic_ns() + timeout.count();
   while (!take()) {
-    const std::int64_t left_ns = end_ns - dds_time();
+    const std::int64_t left_ns = end_ns - monotonic_ns();
     if (left_ns <= 0) return false;
     wait_->wait(left_ns);
   }
@@ -166,7 +180,7 @@ const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
 }
 
 Catalogue::Catalogue(Connection& connection)
-    : reader_(make_reader(connection, TopicKind::kCatalogue)) {}
+    : reader_(make_reader_of_all(connection, TopicKind::kCatalogue)) {}
 
 // A catalogue that comes again, from a daemon that was started again, replaces the one before.
 void Catalogue::update() {
@@ -259,11 +273,25 @@ void Health::update() {
   while (take_newer(reader_, message_, scratch_)) known_ = true;
 }
 
-Zones::Zones(Connection& connection) : reader_(make_reader(connection, TopicKind::kZones)) {}
+Zones::Zones(Connection& connection) : reader_(make_reader_of_all(connection, TopicKind::kZones)) {}
 
+// Latched states of two partners come in any order.
 void Zones::update() {
   clearance_msg_ZoneState zone{};
-  while (take_one(reader_, zone)) states_[zone.zone] = zone;
+  void* pointer = &zone;
+  dds_sample_info_t info;
+  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
+    if (!info.valid_data) continue;
+    const auto held = states_.find(zone.zone);
+    if (held != states_.end() && held->second.daemon != zone.daemon) {
+      const clearance_msg_ZoneState& other = held->second;
+      const bool is_newer = zone.now_ns > other.now_ns ||
+                            (zone.now_ns == other.now_ns && (zone.active || !other.active));
+      if (!is_newer && std::ranges::count(writers_of(reader_), writers_[zone.zone]) > 0) continue;
+    }
+    states_[zone.zone] = zone;
+    writers_[zone.zone] = info.publication_handle;
+  }
 }
 
 void Zones::keep_only(std::uint64_t daemon) {
@@ -271,5 +299,9 @@ void Zones::keep_only(std::uint64_t daemon) {
 }
 
 std::int64_t now_ns() noexcept { return dds_time(); }
+
+std::int64_t monotonic_ns() noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace clearance::client

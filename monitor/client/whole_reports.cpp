@@ -53,7 +53,8 @@ bool WholeReports::complete(clearance_msg_Distances& message) {
   const std::uint64_t sender = sender_of(message);
   const bool is_full = message.changes_since == message.cycle;
   const bool is_same = sender == sender_ && message.scene_revision == revision_;
-  is_known_ = is_full || (is_known_ && is_same && message.changes_since == cycle_);
+  const bool follows = is_same && message.changes_since == cycle_;
+  is_known_ = is_full || (is_known_ && follows);
   cycle_ = message.cycle;
   sender_ = sender;
   const bool is_same_scene = std::exchange(revision_, message.scene_revision) == revision_;
@@ -64,7 +65,7 @@ bool WholeReports::complete(clearance_msg_Distances& message) {
     return true;
   }
   if (!is_same_scene) pairs_.clear();
-  if (!is_known_) {
+  if (!follows) {
     for (clearance_msg_PairDistance& pair : pairs_) pair = unknown_pair(pair.pair);
   }
   for (std::uint32_t i = 0; i < message.pairs._length; ++i) {

@@ -10,9 +10,9 @@ namespace clearance::client {
 
 class WholeReports {
  public:
-  // Completes a message: the pairs that it leaves out are as in the messages before. If one of
-  // those is missing, they are unknown until the next full report. Returns false then. Afterwards
-  // changes_since is 0. Messages come in the order of their cycles.
+  // Completes a message: the pairs that it leaves out are as in the messages before. Where one of
+  // those is missing, each pair is unknown until it is listed again. Returns false until the next
+  // full report then. Afterwards changes_since is 0. Messages come in the order of their cycles.
   bool complete(clearance_msg_Distances& message);
 
  private:

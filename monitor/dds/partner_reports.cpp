@@ -30,8 +30,7 @@ bool PartnerReports::may_tell(Kind kind) {
 
 void PartnerReports::note(const clearance_msg_Distances& report, bool is_other) {
   const std::lock_guard lock(mutex_);
-  const Kept kept{report.cycle, report.lineage, report.checksum, report.state_checksum,
-                  report.publish_ns};
+  const Kept kept{report.cycle, report.lineage, report.state_checksum, report.publish_ns};
   (is_other ? other_ : own_)[report.cycle % kKept] = kept;
   const Kept& counterpart = (is_other ? own_ : other_)[report.cycle % kKept];
   if (is_other) {
@@ -56,7 +55,7 @@ void PartnerReports::compare(const Kept& own, const Kept& other) {
     return;
   }
   ++compared_;
-  if (own.checksum != other.checksum || own.state_checksum != other.state_checksum) {
+  if (own.state_checksum != other.state_checksum) {
     ++different_;
     agrees_from_ = 0;
     if (may_tell(kDifferent)) log_line(lines::kPartnerDiffers, name_, own.cycle, different_);

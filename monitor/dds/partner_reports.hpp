@@ -29,7 +29,7 @@ class PartnerReports {
  private:
   static constexpr std::size_t kKept = 256;
   struct Kept {
-    std::uint64_t cycle = 0, lineage = 0, checksum = 0, state_checksum = 0;
+    std::uint64_t cycle = 0, lineage = 0, state_checksum = 0;
     std::int64_t publish_ns = 0;
   };
   using Cycles = std::array<Kept, kKept>;

@@ -150,8 +150,11 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
-  write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  write_zones_again_ = catalogue_is_due_ = true;
+}
+
+void ReportWriter::write_catalogue() {
+  catalogue_is_due_ = !write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
 }
 
 // Writes reports in order, then statistics. Ends when the queue is closed and empty, and no other
@@ -168,6 +171,8 @@ void ReportWriter::run() {
 
 void ReportWriter::write_all() {
   look_for_others();
+  const bool may_write = zones_to_write_ != Zones::kNone && !others_.give_way();
+  if (catalogue_is_due_ && may_write) write_catalogue();
   while (const QueuedReport* queued = now_->queue.reports().front()) {
     write_report(*queued);
     now_->queue.reports().pop();
@@ -207,7 +212,8 @@ bool ReportWriter::change() {
   health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
   write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  zones_to_write_ = Zones::kAll;
+  write_catalogue();
   const std::lock_guard lock(mutex_);
   written_ = &now_->queue;
   return true;
@@ -218,6 +224,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   TickTag tag;
   if (partner_ != nullptr) {
     tag = partner_->tag(queued.report.cycle);
+    note_standing(tag.standing);
     if (!tag.publishes) {
       published_ = queued.report.cycle;
       return;
@@ -231,7 +238,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  if (writes_zones_) write_zones(queued.report);
+  if (zones_to_write_ != Zones::kNone) write_zones(queued.report);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
@@ -242,22 +249,47 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
   if (partner_ != nullptr) {
     identity_.partner.copy(message.partner, sizeof message.partner - 1);
     message.lineage = tag.lineage;
-    message.state_checksum = checksum_of_rest(queued.report, tag.state_checksum);
-    const bool may_write_zones = tag.standing != PartnerStanding::kApart;
-    write_zones_again_ = write_zones_again_ || (may_write_zones && !writes_zones_);
-    writes_zones_ = may_write_zones;
     note_lead(partner_->leads());
   }
   to_wire(queued.report, queued.sources(), dds_time(), message);
   now_->pairs.in(message);
-  now_->changed.reduce(message);
   if (partner_ != nullptr) {
-    message.checksum = checksum_of(message);
-    message.delivery_checksum = delivery_checksum_of(message);
+    reduce_and_sign(checksum_of_rest(queued.report, tag.state_checksum), now_->changed, message);
+  } else {
+    now_->changed.reduce(message);
   }
   const bool published = write(TopicKind::kDistances, distances_, &message, "distances");
   if (partner_ != nullptr) partner_->published(message);
   return published;
+}
+
+// A daemon that ticks apart still has clients, and its zones are true. But a reader keeps one state
+// of a zone: an inactive one must not take the place of the partner's active one, whereas one that
+// is active in vain is written again when this daemon follows. Ids and names of a scene that the
+// partner does not have could mean others.
+void ReportWriter::note_standing(PartnerStanding standing) {
+  const std::uint64_t other = partner_->partner_revision();
+  const bool is_other_scene = other != 0 && other != now_->cell.scene.revision;
+  const Zones now = standing != PartnerStanding::kApart ? Zones::kAll
+                    : is_other_scene                    ? Zones::kNone
+                                                        : Zones::kActive;
+  const Zones before = std::exchange(zones_to_write_, now);
+  if (now < before) withdraw(now == Zones::kNone);
+  if (now > before) write_zones_again_ = true;
+  if (now > before && before == Zones::kNone) write_catalogue();
+}
+
+// Takes back inactive zones, or all and the catalogue, so that a reader that comes later does not
+// get them. Readers that have them keep them.
+void ReportWriter::withdraw(bool all) {
+  for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
+    if (!all && !now_->written_zones.is(zone, false)) continue;
+    clearance_msg_ZoneState state{};
+    state.zone = zone;
+    dds_unregister_instance(zones_, &state);
+    now_->written_zones.forget(zone);
+  }
+  if (all) dds_unregister_instance(catalogue_, &*own_catalogue());
 }
 
 // Simple readers have the latched values of the leader before.
@@ -266,7 +298,7 @@ void ReportWriter::note_lead(bool leads) {
   leads_ = leads;
   if (!begins) return;
   write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  write_catalogue();
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -276,18 +308,26 @@ void ReportWriter::write_separation(const Report& report) {
 }
 
 // Writes a zone at the start, after each change, and again after another daemon may have written
-// it.
+// it, or after DDS has refused it.
 void ReportWriter::write_zones(const Report& report) {
   const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const bool active = report.zones[zone].active;
     const bool is_written = now_->written_zones.is(zone, active);
     if (is_written && !again) continue;
+    if (!active && zones_to_write_ == Zones::kActive) {
+      if (now_->written_zones.any(zone)) zone_log_.note(zone, report.zones[zone], report.cycle);
+      now_->written_zones.forget(zone);
+      continue;
+    }
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);
     now_->pairs.in(state);
-    write(TopicKind::kZones, zones_, &state, "zone state");
+    if (!write(TopicKind::kZones, zones_, &state, "zone state")) {
+      now_->written_zones.forget(zone);
+      continue;
+    }
     if (!is_written && (now_->written_zones.any(zone) || active)) {
       zone_log_.note(zone, report.zones[zone], report.cycle);
     }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "monitor/inputs/checksum.hpp"
+#include "monitor/wire/changed_pairs.hpp"
 #include "monitor/wire/message_fields.hpp"
 
 namespace clearance {
@@ -94,6 +95,22 @@ template <class Report>
   add(Field{}, report.gradients);
   sum.add(state);
   return sum.value();
+}
+
+// Leaves out of a partner's message what has not changed, and writes its checksums; `rest` is that
+// of checksum_of_rest(). Partners may leave out different pairs, since that depends on what each
+// has sent before. Their state checksums, which include the whole report, are the same.
+inline void reduce_and_sign(std::uint64_t rest, ChangedPairs& changed,
+                            clearance_msg_Distances& message) {
+  const std::uint64_t whole = checksum_of(message);
+  const std::uint32_t pairs = message.pairs._length;
+  changed.reduce(message);
+  Checksum state;
+  state.add(rest);
+  state.add(whole);
+  message.state_checksum = state.value();
+  message.checksum = message.pairs._length == pairs ? whole : checksum_of(message);
+  message.delivery_checksum = delivery_checksum_of(message);
 }
 
 }  // namespace clearance

@@ -18,6 +18,8 @@ class WrittenZones {
   // Returns true when the last state written of this zone is `active`.
   [[nodiscard]] bool is(std::uint32_t zone, bool active) const { return active_[zone] == active; }
   void set(std::uint32_t zone, bool active) { active_[zone] = active; }
+  // Nothing is known to be written of it any longer.
+  void forget(std::uint32_t zone) { active_[zone].reset(); }
 
  private:
   std::vector<std::optional<bool>> active_;  // none: never written

@@ -27,7 +27,7 @@ clearance_msg_Distances report(const char* partner, std::uint64_t cycle, std::ui
   message.lineage = lineage;
   message.now_ns = kStart + static_cast<std::int64_t>(cycle) * kPeriod;
   message.lower_all = lower;
-  message.checksum = checksum_of(message);
+  message.checksum = message.state_checksum = checksum_of(message);
   return message;
 }
 
@@ -83,6 +83,42 @@ TEST_F(Merge, TellsOtherBitsOfTheSameInputsFromOtherInputs) {
   take(message);
   take(report("left", 4));
   EXPECT_EQ(state(), PartnerState::kDifferent) << "of what the message does not hold";
+}
+
+// The one that came later begins with a full report, where the other one sends what has changed.
+TEST_F(Merge, PartnersAgreeWhoseMessagesLeaveOutDifferentPairs) {
+  constexpr std::uint64_t kRest = 77, kFullEvery = 10;
+  ChangedPairs left(kFullEvery), right(kFullEvery);
+  std::uint32_t lacking = 0;
+  const auto send = [&](const char* partner, std::uint64_t cycle, double lower) {
+    Sample<clearance_msg_Distances> message;
+    const clearance_msg_Distances of = report(partner, cycle, 1, lower);
+    std::strcpy(message->partner, of.partner);
+    message->daemon = of.daemon;
+    message->cycle = of.cycle;
+    message->lineage = of.lineage;
+    message->now_ns = of.now_ns;
+    reserve_sequence(message->pairs, 2);
+    message->pairs._length = 2;
+    message->pairs._buffer[1].pair = 1;
+    message->pairs._buffer[1].lower = lower;
+    reduce_and_sign(kRest, *partner == 'l' ? left : right, *message);
+    lacking += 2 - message->pairs._length;
+    take(*message);
+  };
+  for (std::uint64_t cycle = 1; cycle <= 25; ++cycle) {
+    const double lower = 0.01 * static_cast<double>(cycle);
+    send("left", cycle, lower);
+    if (cycle > 3) send("right", cycle, lower);
+    if (cycle > 4) {
+      EXPECT_EQ(state(), PartnerState::kAgrees) << cycle;
+    }
+  }
+  EXPECT_GT(lacking, 30u);
+  send("left", 26, 0.3);
+  send("right", 26, 0.31);
+  send("left", 27, 0.3);
+  EXPECT_EQ(state(), PartnerState::kDifferent);
 }
 
 TEST_F(Merge, AReportWithAFlippedBitIsNotHandedOut) {

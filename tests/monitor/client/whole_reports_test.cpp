@@ -2,6 +2,7 @@
 // report of every tick.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -111,6 +112,33 @@ TEST(WholeReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
   }
   EXPECT_GT(lost, 20);
   EXPECT_GT(unknown, 100);
+}
+
+TEST(WholeReports, KnowAPairThatIsListedAfterOneThatIsLacking) {
+  Ticks ticks(39);
+  ChangedPairs changes(1000);
+  WholeReports whole;
+  std::vector<bool> is_listed(kPairs);
+  for (std::uint64_t cycle = 1; cycle <= 60; ++cycle) {
+    Sample<clearance_msg_Distances> message;
+    ticks.fill(*message, 0.05);
+    changes.reduce(*message);
+    if (cycle == 5) continue;
+    for (std::uint32_t i = 0; cycle > 5 && i < message->pairs._length; ++i)
+      is_listed[message->pairs._buffer[i].pair / 3] = true;
+    EXPECT_EQ(whole.complete(*message), cycle < 5);
+    ASSERT_EQ(message->pairs._length, kPairs);
+    for (std::uint32_t i = 0; i < kPairs; ++i) {
+      const clearance_msg_PairDistance& pair = message->pairs._buffer[i];
+      const bool is_known = pair.status != static_cast<std::uint8_t>(PairStatus::kUnknown);
+      EXPECT_EQ(is_known, cycle < 5 || is_listed[i]) << "pair " << i << ", cycle " << cycle;
+      if (is_known) {
+        EXPECT_EQ(pair.lower, ticks.pairs()[i].lower);
+      }
+    }
+  }
+  EXPECT_GT(std::ranges::count(is_listed, true), 10);
+  EXPECT_LT(std::ranges::count(is_listed, true), kPairs);
 }
 
 TEST(WholeReports, AnotherDaemonOrSceneBeginsWithAFullOne) {

@@ -23,7 +23,6 @@ clearance_msg_Distances report(const char* partner, std::uint64_t cycle,
   std::strcpy(message.partner, partner);
   message.cycle = cycle;
   message.lineage = lineage;
-  message.checksum = 1000 + cycle;
   message.state_checksum = 2000 + cycle;
   message.publish_ns = static_cast<std::int64_t>(cycle) * kPeriod;
   return message;
@@ -87,7 +86,7 @@ TEST_F(PartnerReportsTest, WithOtherBitsForTheSameInputsAreCountedAndLoggedAsAFa
   agree(1, 5);
   own(6);
   auto flipped = report("right", 6);
-  flipped.checksum ^= 4;
+  flipped.state_checksum ^= 4;
   reports_.note_other(flipped);
   EXPECT_EQ(health().different, 1u);
   EXPECT_EQ(health().agrees_from, 0u);
@@ -112,7 +111,7 @@ TEST_F(PartnerReportsTest, ThatDifferAllTheTimeAreLoggedOnceASecondAndAllCounted
   for (std::uint64_t cycle = 1; cycle <= 500; ++cycle) {
     own(cycle);
     auto flipped = report("right", cycle);
-    flipped.checksum ^= 1;
+    flipped.state_checksum ^= 1;
     reports_.note_other(flipped);
   }
   const std::chrono::duration<double> took = std::chrono::steady_clock::now() - began;
