@@ -58,6 +58,8 @@ void PairTable::number_part_pairs(const Scene& scene, const std::vector<PosedPar
 
 void add_pair(std::uint32_t pair, const PairTable& table, Checksum& sum) noexcept {
   const PairEntry& entry = table.entries[pair];
+  sum.add(entry.object_a);
+  sum.add(entry.object_b);
   sum.add(entry.carried_at.a);
   sum.add(entry.carried_at.b);
   sum.add(entry.carried_cycle);

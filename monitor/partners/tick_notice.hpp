@@ -17,8 +17,9 @@ inline constexpr std::size_t kMostTickInputs = 256;
 // The number of batches of the largest size that any tick takes in; more wait for the next tick.
 inline constexpr std::size_t kLargestBatchesATick = 64;
 
-// A lease of 20 ms must hold from one notice to the next.
-inline constexpr double kLeastPartnersHz = 100.0;
+// A leader that has not written for 15 ms does not write what has one leader; a notice stands a quarter
+// of a period before its tick.
+inline constexpr double kLeastPartnersHz = 50.0;
 
 // A batch that a tick uses.
 struct TickInput {

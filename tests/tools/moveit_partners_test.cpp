@@ -62,7 +62,7 @@ class MoveItPartners : public Partners {
   std::size_t spheres() {
     catalogue.update();
     const std::string text = catalogue.message() == nullptr ? "" : catalogue.message()->cell_yaml;
-    const std::size_t begin = text.find("name: heap"), end = text.find('\n', begin);
+    const std::size_t begin = text.find("name: heap"), end = text.find("name:", begin + 1);
     std::size_t count = 0;
     for (auto at = text.find("sphere", begin); at < end; at = text.find("sphere", at + 1)) ++count;
     return begin == std::string::npos ? 0 : count;

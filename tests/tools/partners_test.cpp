@@ -148,7 +148,7 @@ TEST_F(Partners, MayBeNamedByTheirCells) {
   EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 20; })) << logs();
   begin("other", left, {"--partner", "other"});
   EXPECT_TRUE(agree()) << logs() << "the option overrides the cell";
-  EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"other"})) << logs();
+  EXPECT_TRUE(daemons["left"]->told("partner-met", {"other"})) << logs();
 }
 
 // Both record from their starts. What each ticked before it joined, and while it was apart, rests

@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 #include "tests/config/cells.hpp"
 #include "tests/shared/mistake_at.hpp"
 
@@ -115,7 +117,7 @@ TEST(SensorsOfACell, StandWhereTheirMountSays) {
   EXPECT_FALSE(in_frame.mount_speed.is_stated());
   const Sensor moving = mount("frame: head, max_speed: 0.5, max_turn_speed: 0.2");
   EXPECT_EQ(moving.mount_speed.shift, 0.5);
-  EXPECT_EQ(moving.mount_speed.turn, 0.2);
+  EXPECT_NEAR(moving.mount_speed.turn, 0.2 * std::numbers::pi / 180.0, 1e-15);
   EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {frame: head, max_speed: 0.5}")),
               in_line(5, "'max_speed'", "'max_turn_speed'"));
   EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: right, max_speed: 0.5}")),

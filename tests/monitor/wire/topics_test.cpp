@@ -31,7 +31,10 @@ std::vector<std::vector<std::string>> documented() {
 }
 
 std::string key_of(const dds_topic_descriptor_t& type) {
-  return type.m_nkeys == 0 ? "none" : type.m_keys[0].m_name;
+  std::string keys;
+  for (std::uint32_t i = 0; i < type.m_nkeys; ++i)
+    keys += (keys.empty() ? "" : "`, `") + std::string(type.m_keys[i].m_name);
+  return keys.empty() ? "none" : keys;
 }
 
 std::vector<std::string> row_of(const Topic& topic) {
