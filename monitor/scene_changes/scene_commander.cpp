@@ -173,9 +173,11 @@ SceneCommander::Refusal SceneCommander::take_files(Work& work) {
     return CommandRefusal{CommandStatus::kFileRefused, 0, "files", std::move(*reason)};
   const auto& paths = std::get<std::map<std::string, std::string>>(kept);
   for (CellChange& change : work.changes) {
-    if (auto* added = std::get_if<AddObject>(&change)) added->yaml = with_paths(added->yaml, paths);
-    if (auto* whole = std::get_if<ReplaceCell>(&change))
-      whole->yaml = with_paths(whole->yaml, paths);
+    std::visit(
+        [&](auto& each) {
+          if constexpr (requires { each.yaml; }) each.yaml = with_paths(each.yaml, paths);
+        },
+        change);
   }
   return std::nullopt;
 }

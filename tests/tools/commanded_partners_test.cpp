@@ -31,7 +31,9 @@ using test::Partners;
 
 class CommandedPartners : public Partners {
  protected:
-  CommandedPartners() { count_apart = true; }
+  explicit CommandedPartners(const std::string& text = test::cell_at_rate()) : Partners(text) {
+    count_apart = true;
+  }
   void start_both() {
     for (const char* name : {"left", "right"}) {
       start(name, kNamed);
@@ -156,10 +158,17 @@ TEST_F(CommandedPartners, AChangeThatAClientWasToldIsDoneOutlivesTheLeader) {
   EXPECT_TRUE(read_until([&] { return reports->scene_revision == done.back(); })) << logs();
 }
 
+std::string cell_with_post() {
+  std::string text = test::cell_at_rate();
+  return text.insert(text.find("  - {name: floor"),
+                     "  - {name: post, groups: [still], fixed: true, pose: {xyz: [0, 0, 0.2]}, "
+                     "sphere: {radius: 0.1}}\n");
+}
+
 // Each daemon has a folder of its own, as on a machine of its own.
 class PartnersInFolders : public CommandedPartners {
  protected:
-  PartnersInFolders() {
+  PartnersInFolders() : CommandedPartners(cell_with_post()) {
     for (const auto& [name, folder] : folders) test::write_text(folder / "cell.yaml", cell.yaml);
   }
   void begin(const std::string& name) {
@@ -169,16 +178,16 @@ class PartnersInFolders : public CommandedPartners {
                    {"--partner", name, "--commands", "planner"}));
   }
   std::filesystem::path sent(const std::string& name) { return folders[name] / "clearance.sent"; }
-  // Adds an object whose mesh is sent along.
-  CommandResult add(const std::string& name) {
+  // Gives the post another mesh, which is sent along. A command that is done again, since the lead
+  // changed, changes nothing more.
+  CommandResult give_mesh(const std::string& name) {
     client::Connection own(dds, cell.topics);
     client::Commands commands(own, "planner");
     const std::string mesh = name + ".obj";
     const auto result = commands.send(
-        {AddObject{"{name: " + name +
-                   ", groups: [still], fixed: true, pose: {xyz: [0, 0, 0.2]}, "
-                   "mesh: {file: 'sent:" +
-                   mesh + "'}}"}},
+        {ReplaceObject{"{name: post, groups: [still], fixed: true, pose: {xyz: [0, 0, 0.2]}, "
+                       "mesh: {file: 'sent:" +
+                       mesh + "'}}"}},
         {.files = {{mesh,
                     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 2 3 "
                     "4\nf 3 1 4\n# " +
@@ -212,7 +221,7 @@ TEST_F(PartnersInFolders, BothKeepTheFilesThatCommandsSendAlong) {
   std::uint64_t revision = 0;
   std::thread sending([&] {
     for (const char* name : {"one", "two", "three"}) {
-      const CommandResult result = add(name);
+      const CommandResult result = give_mesh(name);
       EXPECT_TRUE(result.done()) << result.reason;
       EXPECT_EQ(result.reason, "") << "the partner has it, too";
       revision = result.scene_revision;
@@ -233,7 +242,7 @@ TEST_F(PartnersInFolders, BothKeepTheFilesThatCommandsSendAlong) {
 TEST_F(PartnersInFolders, AFileThatIsMissingIsNamedAndTheyDoNotAgreeUntilItIsThere) {
   begin("left");
   ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
-  ASSERT_TRUE(add("part").done()) << logs();
+  ASSERT_TRUE(give_mesh("part").done()) << logs();
   const auto files = names_in(sent("left"));
   ASSERT_EQ(files.size(), 1u);
   begin("right");

@@ -238,6 +238,16 @@ TEST_F(SceneCommands, KeepSentFilesAsLongAsACellOfTheLastEightNamesThem) {
   EXPECT_TRUE(std::holds_alternative<Cell>(read_cell(folder / "later.yaml")));
 }
 
+// An object of MoveIt that comes again is replaced.
+TEST_F(SceneCommands, ReplaceAnObjectByOneWhoseMeshIsSentAlong) {
+  start();
+  const CommandResult result = execute(
+      Command{.changes = {ReplaceObject{"{name: part, groups: [things], fixed: true, mesh: {file: "
+                                        "\"sent:part.obj\"}}"}},
+              .files = {{"part.obj", kTetrahedron}}});
+  EXPECT_TRUE(result.done()) << result.reason;
+}
+
 TEST_F(SceneCommands, ReadTheCellAgainFromItsFileOrFromAStatedFolder) {
   start();
   std::filesystem::create_directories(folder / "allowed");
