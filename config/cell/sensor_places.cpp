@@ -13,6 +13,22 @@
 namespace clearance {
 namespace {
 
+void read_speed(const YamlNode& node, const Quantities& quantities, MapReader& map,
+                MountSpeed& speed) {
+  const YamlNode* shift = map.optional("max_speed");
+  const YamlNode* turn = map.optional("max_turn_speed");
+  if (shift == nullptr && turn == nullptr) return;
+  if (shift == nullptr || turn == nullptr) {
+    quantities.diagnostics().add(
+        node,
+        fmt::format("found {} of a mount alone; expected both 'max_speed' and 'max_turn_speed'",
+                    shift == nullptr ? "'max_turn_speed'" : "'max_speed'"));
+    return;
+  }
+  speed.shift = quantities.speed(*shift, "the largest speed of the mount").value_or(0.0);
+  speed.turn = quantities.turn_speed(*turn, "the largest turning speed of the mount").value_or(0.0);
+}
+
 void mount(const YamlNode& node, const RobotList& robots, const ObjectList& objects,
            const Quantities& quantities, Sensor& sensor) {
   Diagnostics& diagnostics = quantities.diagnostics();
@@ -22,6 +38,7 @@ void mount(const YamlNode& node, const RobotList& robots, const ObjectList& obje
   const Pose pose = given == nullptr ? Pose{} : quantities.pose(*given).value_or(Pose{});
   const YamlNode* on = map.optional("on");
   const YamlNode* frame = map.optional("frame");
+  if (frame != nullptr) read_speed(node, quantities, map, sensor.mount_speed);
   map.refuse_unknown_keys();
   sensor.frames_by_message = false;
   if (frame != nullptr) {

@@ -24,6 +24,16 @@ enum class SensorKind : std::uint8_t {
 inline constexpr double kWidestTangent = 1.2374368670764582;
 inline constexpr double kLongestRay = 2.0156;
 
+// The largest speed of a frame of tf in what carries it: of its origin, m/s, and rad/s.
+struct MountSpeed {
+  double shift = std::numeric_limits<double>::infinity();
+  double turn = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool is_stated() const noexcept {
+    return shift < std::numeric_limits<double>::infinity();
+  }
+};
+
 struct Sensor {
   std::string name;  // also of its object
   SensorKind kind = SensorKind::kDepthImage;
@@ -37,6 +47,9 @@ struct Sensor {
   // (base_from_root).
   bool frames_by_message = true;
   RobotBase mount;
+  // Both or none are stated. Without them, the place of a frame of tf is not known after its last
+  // transform.
+  MountSpeed mount_speed;
 
   // The stated bound of its error: |measured - true depth| <= constant + quadratic z^2, m. Depth is
   // z, or for points with `along_ray` the distance from the sensor.
@@ -80,6 +93,7 @@ struct Sensor {
   // depth images only.
   bool unseen = false;
 
+  [[nodiscard]] bool is_on_tf() const noexcept { return frames_by_message || !mount.frame.empty(); }
   [[nodiscard]] double error_at(double depth) const noexcept {
     return error_constant + error_quadratic * depth * depth;
   }

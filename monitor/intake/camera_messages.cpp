@@ -97,6 +97,8 @@ const char* text(FrameFault fault) noexcept {
       return "frames come more often than the cell states";
     case FrameFault::kNoPlace:
       return "the place of the sensor at its stamp is not known";
+    case FrameFault::kLateTransforms:
+      return "transforms up to its stamp have not come in time";
     case FrameFault::kCannotBuild:
       return "its picture is too wide, or has more points within the range than the cell states";
     case FrameFault::kNothingSeen:
@@ -153,6 +155,8 @@ const char* name(FrameFault fault) noexcept {
       return "more often than the cell states";
     case FrameFault::kNoPlace:
       return "its place is not known";
+    case FrameFault::kLateTransforms:
+      return "late transforms";
     case FrameFault::kCannotBuild:
       return "too wide, or too many points";
     case FrameFault::kNothingSeen:

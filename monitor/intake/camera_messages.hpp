@@ -42,13 +42,14 @@ enum class FrameFault : std::uint8_t {
   kTooOften,           // more frames than the cell states
   // Faults that show when a frame is built.
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
-  kCannotBuild,   // a picture too wide, or more points within the range than the cell states
-  kNothingSeen,   // no pixel or point within the range but the robot's own
-  kBeforeJoints,  // joints were first heard after the stamp: the robot's image is taken for an
-                  // obstacle
-  kOctree,        // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
+  kLateTransforms,  // no transform at or after its stamp has come in time, and no speed is stated
+  kCannotBuild,     // a picture too wide, or more points within the range than the cell states
+  kNothingSeen,     // no pixel or point within the range but the robot's own
+  kBeforeJoints,    // joints were first heard after the stamp: the robot's image is taken for an
+                    // obstacle
+  kOctree,  // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
 };
-inline constexpr std::size_t kFrameFaults = 25;
+inline constexpr std::size_t kFrameFaults = 26;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

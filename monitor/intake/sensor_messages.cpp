@@ -37,9 +37,7 @@ constexpr std::array<Input, 5> kInputs = {{
 }  // namespace
 
 bool needs_transforms(const Scene& scene) noexcept {
-  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) {
-    return sensor.frames_by_message || !sensor.mount.frame.empty();
-  });
+  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) { return sensor.is_on_tf(); });
 }
 
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {

@@ -48,9 +48,7 @@ bool same_sensors(const Scene& before, const Scene& now) {
 
 // A sensor's place may be in a frame of tf, which is then read.
 bool places_sensors_by_tf(const Scene& scene) {
-  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) {
-    return sensor.frames_by_message || !sensor.mount.frame.empty();
-  });
+  return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) { return sensor.is_on_tf(); });
 }
 
 }  // namespace

@@ -42,7 +42,9 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
   FrameFault fault = FrameFault::kNoFault;
   if (!place.known) {
-    fault = FrameFault::kNoPlace;
+    fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_)
+                ? FrameFault::kLateTransforms
+                : FrameFault::kNoPlace;
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {

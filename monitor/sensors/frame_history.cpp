@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/pose_batch.hpp"
-#include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
@@ -13,17 +13,35 @@ namespace {
 // Two publishers whose places differ by no more agree, m and rad.
 constexpr double kSame = 1e-6;
 
-double angle_between(const Pose& a, const Pose& b) noexcept {
-  return rounded_up(a.orientation.angularDistance(b.orientation));
-}
-double way_between(const Pose& a, const Pose& b) noexcept {
-  return rounded_up((a.position - b.position).norm());
-}
-
 }  // namespace
 
-bool FrameHistory::is_disputed(const Frame& frame, std::int64_t stamp_ns) noexcept {
-  return frame.rival && (frame.rival_is_static || elapsed(frame.rival_ns, stamp_ns) <= kLostNs);
+const FrameHistory::Frame* FrameHistory::undisputed(const std::string& child,
+                                                    std::int64_t stamp_ns) const {
+  const auto found = frames_.find(child);
+  if (found == frames_.end() || found->second.poses.empty()) return nullptr;
+  const Frame& frame = found->second;
+  const bool is_disputed =
+      frame.rival && (frame.rival_is_static || elapsed(frame.rival_ns, stamp_ns) <= kLostNs);
+  return is_disputed ? nullptr : &frame;
+}
+
+// Whether the frame may have this pose at that time: after its last transform, within the speed of
+// the last two.
+bool FrameHistory::agrees(const Frame& frame, const Pose& pose, std::int64_t stamp_ns) {
+  auto place = place_of(frame, stamp_ns, 0);
+  const auto& last = frame.poses.last();
+  if (!place && stamp_ns > last.stamp_ns) {
+    place = {.parent = frame.parent, .parent_from_child = last.value};
+    if (frame.poses.size() > 1) {
+      const auto& earlier = frame.poses.at(frame.poses.size() - 2);
+      const double ratio = static_cast<double>(elapsed(last.stamp_ns, stamp_ns)) /
+                           static_cast<double>(elapsed(earlier.stamp_ns, last.stamp_ns));
+      place->shift_error = ratio * way_between(earlier.value, last.value);
+      place->turn_error = ratio * angle_between(earlier.value, last.value);
+    }
+  }
+  return place && way_between(place->parent_from_child, pose) <= place->shift_error + kSame &&
+         angle_between(place->parent_from_child, pose) <= place->turn_error + kSame;
 }
 
 void FrameHistory::add(const std::string& child, const std::string& parent,
@@ -41,11 +59,7 @@ void FrameHistory::add(const std::string& child, const std::string& parent,
       frame.writer && !frame.poses.empty() &&
       (frame.is_static || elapsed(frame.poses.last().stamp_ns, stamp_ns) <= kLostNs);
   if (has_owner && *frame.writer != writer) {
-    const auto place = place_of(frame, stamp_ns);
-    const bool agrees = place && frame.parent == parent &&
-                        way_between(place->parent_from_child, pose) <= place->shift_error + kSame &&
-                        angle_between(place->parent_from_child, pose) <= place->turn_error + kSame;
-    if (!agrees) {
+    if (frame.parent != parent || !agrees(frame, pose, stamp_ns)) {
       frame.rival = writer;
       frame.rival_ns = stamp_ns;
       frame.rival_is_static = is_static;
@@ -58,7 +72,7 @@ void FrameHistory::add(const std::string& child, const std::string& parent,
   if (known == frames_.end() || frame.parent != parent || frame.is_static != is_static) {
     frame.parent = parent;
     frame.is_static = is_static;
-    frame.poses = StampedSeries<Pose>(is_static ? 1 : kKept);
+    frame.poses = PoseSeries(is_static ? 1 : kKept);
   }
   if (is_static) frame.poses.clear();
   frame.poses.add(is_static ? 1 : stamp_ns, pose);
@@ -74,54 +88,33 @@ void FrameHistory::keep(std::span<const std::uint64_t> writers) {
   }
 }
 
+std::optional<FrameHistory::Parent> FrameHistory::parent(const std::string& child,
+                                                         std::int64_t stamp_ns) const {
+  const Frame* const frame = undisputed(child, stamp_ns);
+  if (frame == nullptr) return std::nullopt;
+  return Parent{&frame->parent, frame->is_static ? std::numeric_limits<std::int64_t>::max()
+                                                 : frame->poses.last().stamp_ns};
+}
+
 std::optional<FrameHistory::Step> FrameHistory::step(const std::string& child,
                                                      std::int64_t stamp_ns,
                                                      std::int64_t within_ns) const {
-  const auto found = frames_.find(child);
-  if (found == frames_.end() || found->second.poses.empty()) return std::nullopt;
-  if (is_disputed(found->second, stamp_ns)) return std::nullopt;
-  auto step = place_of(found->second, stamp_ns);
-  if (!step || within_ns == 0 || found->second.is_static) return step;
-  for (const std::int64_t end : {stamp_ns - within_ns, stamp_ns + within_ns}) {
-    const auto other = place_of(found->second, end);
-    if (!other) return std::nullopt;
-    const Pose &a = step->parent_from_child, &b = other->parent_from_child;
-    step->shift_error =
-        std::max(step->shift_error, rounded_up(way_between(a, b) + other->shift_error));
-    step->turn_error =
-        std::max(step->turn_error, rounded_up(angle_between(a, b) + other->turn_error));
-  }
-  return step;
+  const Frame* const frame = undisputed(child, stamp_ns);
+  return frame == nullptr ? std::nullopt : place_of(*frame, stamp_ns, within_ns);
 }
 
-std::optional<FrameHistory::Step> FrameHistory::place_of(const Frame& frame,
-                                                         std::int64_t stamp_ns) {
+std::optional<FrameHistory::Step> FrameHistory::place_of(const Frame& frame, std::int64_t stamp_ns,
+                                                         std::int64_t within_ns) {
   Step step{.parent = frame.parent, .parent_from_child = frame.poses.last().value};
   if (frame.is_static) return step;
-  const auto [before, after] = frame.poses.around(stamp_ns);
-  if (before == nullptr) return std::nullopt;
-  step.parent_from_child = before->value;
-  if (before == after) return step;
-  const double since = static_cast<double>(elapsed(before->stamp_ns, stamp_ns));
-  if (after != nullptr) {
-    const double until = static_cast<double>(elapsed(stamp_ns, after->stamp_ns));
-    const double share = since / (since + until);
-    step.shift_error = 0.5 * way_between(before->value, after->value);
-    step.turn_error = 0.5 * angle_between(before->value, after->value);
-    if (!same_pose(before->value, after->value)) {
-      step.parent_from_child = {
-          (1.0 - share) * before->value.position + share * after->value.position,
-          before->value.orientation.slerp(share, after->value.orientation).normalized()};
-    }
-    return step;
-  }
-  if (elapsed(before->stamp_ns, stamp_ns) > kLostNs) return std::nullopt;
-  if (frame.poses.size() < 2) return step;
-  const auto& earlier = frame.poses.at(frame.poses.size() - 2);
-  const double ratio =
-      since / std::max(1.0, static_cast<double>(elapsed(earlier.stamp_ns, before->stamp_ns)));
-  step.shift_error = rounded_up(ratio * way_between(earlier.value, before->value));
-  step.turn_error = rounded_up(ratio * angle_between(earlier.value, before->value));
+  const std::int64_t first_ns = stamp_ns - within_ns, last_ns = stamp_ns + within_ns;
+  if (first_ns < frame.poses.at(0).stamp_ns || last_ns > frame.poses.last().stamp_ns)
+    return std::nullopt;
+  step.parent_from_child = pose_at(frame.poses, stamp_ns);
+  const PoseSpread error = spread(frame.poses, step.parent_from_child, first_ns, last_ns);
+  if (error.longest_ns > kLostNs) return std::nullopt;
+  step.shift_error = error.shift;
+  step.turn_error = error.turn;
   return step;
 }
 

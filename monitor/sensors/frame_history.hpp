@@ -1,9 +1,8 @@
 // The transforms of tf over time: where a frame was at the stamp of an image.
 //
-// Between two transforms of a frame, its place is taken from the straight motion; how far it may be
-// off is taken to be at most half of that motion. After the last one, a frame is taken to stay, to
-// within the speed of its last two transforms. That is an assumption: tf states no speed limit. A
-// frame that stands still has no such error.
+// Between two transforms of a frame, its place is on the straight way between them. The frame is
+// taken to be within the ball whose diameter is that way, since tf states no speed: it may begin to
+// move, or stop, at any time in between. After the last transform, its place is not known.
 //
 // A frame belongs to its first publisher, as long as that one exists and is not silent. While
 // another one contradicts it, either may be right: the frame has no transform.
@@ -16,7 +15,7 @@
 #include <string>
 
 #include "core/pose.hpp"
-#include "monitor/sensors/stamped_series.hpp"
+#include "monitor/sensors/pose_series.hpp"
 
 namespace clearance {
 
@@ -24,7 +23,7 @@ class FrameHistory {
  public:
   static constexpr std::size_t kMostFrames = 1024;
   static constexpr std::size_t kKept = 256;
-  // A frame that was not heard for this long is lost, ns.
+  // A frame that was not heard for this long is lost, and what it did meanwhile is not known, ns.
   static constexpr std::int64_t kLostNs = 1'000'000'000;
 
   // Transforms that are no poses, and those of too many frames, are left out. `writer` is the
@@ -39,23 +38,32 @@ class FrameHistory {
     Pose parent_from_child;
     double shift_error = 0.0, turn_error = 0.0;  // m, rad
   };
-  // Returns nothing if the frame has no transform at that time, which is known to `within_ns`: the
-  // errors reach to the transforms at both ends.
+  // Returns nothing if the frame has no place at that time, which is known to `within_ns`: the
+  // errors enclose its motion within.
   [[nodiscard]] std::optional<Step> step(const std::string& child, std::int64_t stamp_ns,
                                          std::int64_t within_ns = 0) const;
+
+  struct Parent {
+    const std::string* name = nullptr;
+    std::int64_t known_until_ns = 0;  // the stamp of its last transform; if static, the last time
+  };
+  // Returns nothing if the frame has no transform, or two publishers contradict each other.
+  [[nodiscard]] std::optional<Parent> parent(const std::string& child, std::int64_t stamp_ns) const;
 
  private:
   struct Frame {
     std::string parent;
     bool is_static = false;
-    StampedSeries<Pose> poses{1};
+    PoseSeries poses{1};
     std::optional<std::uint64_t> writer;  // nothing: it has left
     std::optional<std::uint64_t> rival;   // that contradicts it
     std::int64_t rival_ns = 0;            // of its last contradiction
     bool rival_is_static = false;
   };
-  [[nodiscard]] static bool is_disputed(const Frame& frame, std::int64_t stamp_ns) noexcept;
-  [[nodiscard]] static std::optional<Step> place_of(const Frame& frame, std::int64_t stamp_ns);
+  [[nodiscard]] const Frame* undisputed(const std::string& child, std::int64_t stamp_ns) const;
+  [[nodiscard]] static bool agrees(const Frame& frame, const Pose& pose, std::int64_t stamp_ns);
+  [[nodiscard]] static std::optional<Step> place_of(const Frame& frame, std::int64_t stamp_ns,
+                                                    std::int64_t within_ns);
   std::map<std::string, Frame> frames_;  // by child
 };
 

@@ -1,7 +1,9 @@
 #include "monitor/sensors/mounts.hpp"
 
 #include <algorithm>
-#include <vector>
+
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 
@@ -30,36 +32,65 @@ std::optional<PastPose> Mounts::known_place(const std::string& frame,
 }
 
 // A path that is longer than the number of frames contains a cycle.
-PastPose Mounts::of_frame(const std::string& frame, const FrameTime& time,
-                          const FrameHistory& frames, const PostureHistory& postures) const {
-  std::vector<FrameHistory::Step> path;
-  std::string at = frame;
-  std::optional<PastPose> place = known_place(at, postures);
-  while (!place) {
-    auto step = frames.step(at, time.stamp_ns, time.within_ns);
-    if (!step) {
-      if (any_root_ && cell_.ros.world_frame.empty() && !path.empty())
-        place = PastPose{.known = true, .world_from_body = {}};
+Mounts::Path Mounts::path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                             const FrameHistory& frames, const PostureHistory& postures) const {
+  Path path;
+  std::string at = sensor.frames_by_message ? frame : sensor.mount.frame;
+  path.base = known_place(at, postures);
+  while (!path.base && path.frames.size() <= FrameHistory::kMostFrames) {
+    const auto parent = frames.parent(at, stamp_ns);
+    if (!parent) {
+      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty())
+        path.base = PastPose{.known = true, .world_from_body = {}};
       break;
     }
-    if (path.size() > FrameHistory::kMostFrames) return {};
-    at = step->parent;
-    path.push_back(*std::move(step));
-    place = known_place(at, postures);
+    path.known_until_ns = std::min(path.known_until_ns, parent->known_until_ns);
+    path.frames.push_back(std::exchange(at, *parent->name));
+    path.base = known_place(at, postures);
   }
-  if (!place || !place->known) return {};
-  for (auto step = path.rbegin(); step != path.rend(); ++step)
-    place = carried(*place, step->parent_from_child, step->shift_error, step->turn_error);
-  return *place;
+  return path;
+}
+
+bool Mounts::awaits_transforms(const Sensor& sensor, const std::string& frame,
+                               std::int64_t stamp_ns, const FrameHistory& frames,
+                               const PostureHistory& postures) const {
+  if (!sensor.is_on_tf()) return false;
+  const Path path = path_of(sensor, frame, stamp_ns, frames, postures);
+  return path.base && path.known_until_ns < stamp_ns + sensor.stamp_error_ns &&
+         elapsed(path.known_until_ns, stamp_ns) <= FrameHistory::kLostNs;
+}
+
+// If the transforms end before the stamp, the frame moves on from the last place that is known at
+// no more than the stated speeds. They are those of the whole path, and not of each of its frames.
+PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                          const FrameHistory& frames, const PostureHistory& postures) const {
+  const Path path = path_of(sensor, frame, stamp_ns, frames, postures);
+  if (!path.base || !path.base->known) return {};
+  PastPose place = *path.base;
+  const std::int64_t until_ns = path.known_until_ns, within_ns = sensor.stamp_error_ns;
+  const bool is_late = until_ns < stamp_ns + within_ns;
+  const std::int64_t late_ns = elapsed(until_ns, stamp_ns);
+  if (is_late && (!sensor.mount_speed.is_stated() || late_ns > FrameHistory::kLostNs)) return {};
+  for (auto child = path.frames.rbegin(); child != path.frames.rend(); ++child) {
+    const auto step =
+        is_late ? frames.step(*child, until_ns) : frames.step(*child, stamp_ns, within_ns);
+    if (!step) return {};
+    place = carried(place, step->parent_from_child, step->shift_error, step->turn_error);
+  }
+  if (is_late) {
+    const double late_s = seconds(late_ns + elapsed(stamp_ns, until_ns) + within_ns);
+    place.shift_error =
+        rounded_up(place.shift_error + rounded_up(sensor.mount_speed.shift * late_s));
+    place.turn_error = rounded_up(place.turn_error + rounded_up(sensor.mount_speed.turn * late_s));
+  }
+  return place;
 }
 
 PastPose Mounts::find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                       const FrameHistory& frames, const PostureHistory& postures) const {
-  const FrameTime time{stamp_ns, sensor.stamp_error_ns};
-  if (sensor.frames_by_message) return of_frame(frame, time, frames, postures);
   const RobotBase& mount = sensor.mount;
-  if (!mount.frame.empty()) {
-    const PastPose place = of_frame(mount.frame, time, frames, postures);
+  if (sensor.is_on_tf()) {
+    const PastPose place = of_frame(sensor, frame, stamp_ns, frames, postures);
     return place.known ? carried(place, mount.frame_from_root, 0.0, 0.0) : place;
   }
   PastPose base{.known = true, .world_from_body = {}};

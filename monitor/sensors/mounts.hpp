@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/sensors/frame_history.hpp"
@@ -22,18 +24,29 @@ class Mounts {
   // The pose of the sensor. `frame` is the one that the message names; `postures` are placed at the
   // stamp. A path of frames ends at the first one that is a link, an object or the world of the
   // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
-  // nowhere, or to what has no pose at that time.
+  // nowhere, or to what has no pose at that time, or its transforms end before the stamp. In the
+  // last case, a stated speed of the mount gives a pose all the same.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
+  // True if the path leads to a place, and its last transforms are from before the stamp, but no
+  // older than FrameHistory::kLostNs: later ones may still come.
+  [[nodiscard]] bool awaits_transforms(const Sensor& sensor, const std::string& frame,
+                                       std::int64_t stamp_ns, const FrameHistory& frames,
+                                       const PostureHistory& postures) const;
 
  private:
-  // A time, and how well it is known.
-  struct FrameTime {
-    std::int64_t stamp_ns = 0, within_ns = 0;
+  struct Path {
+    std::optional<PastPose> base;     // what carries the frames; none: the path leads nowhere
+    std::vector<std::string> frames;  // from the sensor to the base
+    // The first of the last transforms.
+    std::int64_t known_until_ns = std::numeric_limits<std::int64_t>::max();
   };
 
-  [[nodiscard]] PastPose of_frame(const std::string& frame, const FrameTime& time,
-                                  const FrameHistory& frames, const PostureHistory& postures) const;
+  [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                             const FrameHistory& frames, const PostureHistory& postures) const;
+  [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
+                                  std::int64_t stamp_ns, const FrameHistory& frames,
+                                  const PostureHistory& postures) const;
   [[nodiscard]] std::optional<PastPose> known_place(const std::string& frame,
                                                     const PostureHistory& postures) const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -42,11 +43,6 @@ double time_between(std::int64_t a_ns, std::int64_t b_ns) noexcept {
 // Returns the largest way of a value with this largest speed within this time.
 double way_within(double speed, std::int64_t within_ns) noexcept {
   return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
-}
-
-Pose between(const Pose& a, const Pose& b, double share) noexcept {
-  return {(1.0 - share) * a.position + share * b.position,
-          a.orientation.slerp(share, b.orientation).normalized()};
 }
 
 }  // namespace
@@ -160,7 +156,9 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
                                     rounding + state.may_have_moved);
 }
 
-// An object is nowhere faster than its largest speed, and neither is any point of it.
+// An object is nowhere faster than its largest speed, and neither is any point of it. What stands
+// on it may be far away, so how it turns counts as well: between two poses, as they show it, and
+// after the last one, at the largest speed of a base.
 PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
                                  std::int64_t within_ns) const {
   PastPose past;
@@ -168,22 +166,25 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
   const auto body = bodies_.find(object);
   if (body == bodies_.end() || body->second.disputed.at(stamp_ns)) return past;
-  const auto [before, after] = body->second.poses.around(stamp_ns);
+  const PoseSeries& poses = body->second.poses;
+  const auto [before, after] = poses.around(stamp_ns);
   if (before == nullptr) return past;
+  const double speed = of.plausible_speed();
+  const std::int64_t until_ns = poses.last().stamp_ns, end_ns = stamp_ns + within_ns;
   past.known = true;
-  past.world_from_body = before->value;
-  past.shift_error = way_within(of.plausible_speed(), within_ns);
+  past.world_from_body = clearance::pose_at(poses, std::min(stamp_ns, until_ns));
+  const PoseSpread turned = spread(poses, past.world_from_body,
+                                   std::max(stamp_ns - within_ns, poses.at(0).stamp_ns), end_ns);
+  past.turn_error =
+      rounded_up(turned.turn + way_within(kFastestBaseTurn, elapsed(until_ns, end_ns)));
+  past.shift_error = way_within(speed, within_ns);
   const double since = seconds_between(before->stamp_ns, stamp_ns);
-  if (before == after ||
-      same_pose(before->value, after == nullptr ? before->value : after->value)) {
-    if (after == nullptr)
-      past.shift_error = rounded_up(of.plausible_speed() * since + past.shift_error);
-    return past;
+  if (after == nullptr) {
+    past.shift_error = rounded_up(speed * since + past.shift_error);
+  } else if (before != after && !same_pose(before->value, after->value)) {
+    const double until = seconds_between(stamp_ns, after->stamp_ns);
+    past.shift_error = rounded_up(deviation(since, until, speed, 0.0) + past.shift_error);
   }
-  const double until = seconds_between(stamp_ns, after->stamp_ns);
-  past.world_from_body = between(before->value, after->value, since / (since + until));
-  past.shift_error =
-      rounded_up(deviation(since, until, of.plausible_speed(), 0.0) + past.shift_error);
   return past;
 }
 
@@ -229,6 +230,7 @@ void PostureHistory::place_links() {
     bases_[robot].known = past.known;
     bases_[robot].pose = past.world_from_body;
     bases_[robot].unobserved_shift = past.shift_error;
+    bases_[robot].unobserved_turn = past.turn_error;
   }
   kinematics_.place(variables_, bases_);
 }

@@ -14,7 +14,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
-#include "monitor/sensors/stamped_series.hpp"
+#include "monitor/sensors/pose_series.hpp"
 
 namespace clearance {
 
@@ -84,7 +84,7 @@ class PostureHistory {
     Disputed disputed;
   };
   struct Body {
-    StampedSeries<Pose> poses{kKept};
+    PoseSeries poses{kKept};
     std::uint32_t source = kNoSource;
     Disputed disputed;
   };

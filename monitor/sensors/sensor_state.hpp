@@ -71,17 +71,19 @@ struct Sensors::Waiting {
 };
 
 struct Sensors::State {
-  State(std::uint32_t the_index, const Sensor& the_sensor, double max_speed)
+  State(std::uint32_t the_index, const Sensor& the_sensor, const Object& object)
       : index(the_index),
         sensor(the_sensor),
+        age_limit_ns(object.age_limit_ns),
         stream({.most_pixels = the_sensor.most_points,
                 .least_interval_ns = the_sensor.least_interval_ns}) {
     for (std::size_t i = 0; i < kClouds; ++i)
       clouds.push_back(std::make_unique<SeenCloud>(cloud_of(sensor)));
-    if (sensor.persist_frames > 1) persistence.emplace(sensor, max_speed);
+    if (sensor.persist_frames > 1) persistence.emplace(sensor, object.max_speed);
   }
   std::uint32_t index;
   const Sensor& sensor;
+  std::int64_t age_limit_ns;
   CameraStream stream;
   InfoPairing pairing;
   std::vector<std::unique_ptr<SeenCloud>> clouds;

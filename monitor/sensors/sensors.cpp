@@ -26,8 +26,8 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
       own_image_(cell.scene) {
   const Scene& scene = cell.scene;
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
-    states_.push_back(std::make_unique<State>(i, scene.sensors[i],
-                                              scene.objects[scene.sensors[i].object].max_speed));
+    states_.push_back(
+        std::make_unique<State>(i, scene.sensors[i], scene.objects[scene.sensors[i].object]));
     states_.back()->status.own.resize(own_image_.links());
   }
 }
@@ -105,8 +105,9 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   if (fault != FrameFault::kNoFault) return;
   if (state.stream.camera()) frame->camera = *state.stream.camera();
   if (options_.keep) frame->message = message;
+  // The frames that have waited for longest stay: what they wait for comes first.
   if (state.waiting.size() == kMostWaiting) {
-    state.waiting.pop_front();
+    state.waiting.pop_back();
     ++state.status.skipped;
   }
   state.waiting.push_back(std::move(frame));
@@ -154,15 +155,25 @@ void Sensors::add(const RawSensorMessage& message, std::int64_t now_ns) {
   }
 }
 
+// All that the frame needs is there, or it has waited for long enough. Without a transform it can
+// only be refused, if the mount has no stated speed: so it waits for as long as it is of use.
+bool Sensors::is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const {
+  const std::int64_t waited_ns = elapsed(frame.came_ns, now_ns);
+  const bool has_no_transform =
+      mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+  if (has_no_transform && !state.sensor.mount_speed.is_stated())
+    return waited_ns >= std::max(options_.patience_ns, state.age_limit_ns / 2);
+  return waited_ns >= options_.patience_ns ||
+         (!has_no_transform && postures_.covers(frame.stamp_ns) &&
+          !state.pairing.is_awaited(frame.stamp_ns));
+}
+
 void Sensors::settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use) {
   for (const std::unique_ptr<State>& state : states_) {
-    // The newest frame for which the joints are there, or that has waited for long enough.
+    // The newest one counts.
     std::size_t ready = 0;
     for (std::size_t i = 0; i < state->waiting.size(); ++i) {
-      const Waiting& frame = *state->waiting[i];
-      const bool is_whole =
-          postures_.covers(frame.stamp_ns) && !state->pairing.is_awaited(frame.stamp_ns);
-      if (is_whole || elapsed(frame.came_ns, now_ns) >= options_.patience_ns) ready = i + 1;
+      if (is_ready(*state, *state->waiting[i], now_ns)) ready = i + 1;
     }
     const auto is_free = [&](const auto& cloud) { return !is_used(cloud.get()); };
     const auto cloud = std::ranges::find_if(state->clouds, is_free);

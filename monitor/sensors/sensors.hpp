@@ -34,8 +34,10 @@ struct BuiltFrame {
 
 struct SensorsOptions {
   bool is_log = false;  // see IntakeOptions::is_log
-  // A frame waits for joints and poses up to its stamp for this long, ns of the caller's time. Then
-  // it is built with what their largest speeds allow.
+  // A frame waits for joints, poses and transforms up to its stamp for this long, ns of the
+  // caller's time. Then it is built with what their largest speeds allow. Where a transform is
+  // missing and the mount has no stated speed, a frame waits for up to half of the age limit, and
+  // is refused.
   std::int64_t patience_ns = 20'000'000;
   // Receives each frame that is built, before anything else does. Empty: messages are not kept.
   std::function<void(BuiltFrame frame)> keep = {};
@@ -111,6 +113,7 @@ class Sensors {
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
   void take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& state, std::int64_t now_ns);
+  [[nodiscard]] bool is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const;
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
                                     SeenCloud& cloud, const Use& use);

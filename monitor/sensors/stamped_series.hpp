@@ -43,8 +43,9 @@ class StampedSeries {
   }
   [[nodiscard]] const Entry& last() const noexcept { return at(size_ - 1); }
 
-  [[nodiscard]] Neighbours around(std::int64_t stamp_ns) const noexcept {
-    std::size_t low = 0, high = size_;  // the first entry at or after the time is in [low, high]
+  // The first entry at or after the time; size(): there is none.
+  [[nodiscard]] std::size_t first_from(std::int64_t stamp_ns) const noexcept {
+    std::size_t low = 0, high = size_;  // it is in [low, high]
     while (low < high) {
       const std::size_t middle = (low + high) / 2;
       if (at(middle).stamp_ns < stamp_ns) {
@@ -53,6 +54,11 @@ class StampedSeries {
         high = middle;
       }
     }
+    return low;
+  }
+
+  [[nodiscard]] Neighbours around(std::int64_t stamp_ns) const noexcept {
+    const std::size_t low = first_from(stamp_ns);
     Neighbours found;
     if (low < size_) found.after = &at(low);
     if (found.after != nullptr && found.after->stamp_ns == stamp_ns) {

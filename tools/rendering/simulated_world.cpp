@@ -73,7 +73,7 @@ void SimulatedWorld::add_bodies() {
 }
 
 std::optional<Pose> SimulatedWorld::sensor(const Sensor& sensor) const noexcept {
-  if (sensor.frames_by_message || !sensor.mount.frame.empty()) return std::nullopt;
+  if (sensor.is_on_tf()) return std::nullopt;
   const RobotBase& mount = sensor.mount;
   switch (mount.kind) {
     case RobotBase::Kind::kWorld:

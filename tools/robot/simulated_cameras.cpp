@@ -57,7 +57,7 @@ std::string fault_of(const Cell& cell, const SimulatedCameraOptions& options) {
     const PinholeCamera camera = camera_of(sensor, options);
     const double wide = 0.5 * std::max(options.columns, options.rows) / camera.fx;
     const bool is_image = sensor.kind == SensorKind::kDepthImage;
-    if (sensor.frames_by_message || !sensor.mount.frame.empty()) {
+    if (sensor.is_on_tf()) {
       return fmt::format(
           "the cell does not state where {} is; expected `mount` with a pose in the world, or on "
           "an "

@@ -103,6 +103,14 @@ TEST(SensorsOfACell, StandWhereTheirMountSays) {
   const Sensor in_frame = mount("frame: /head, pose: {xyz: [0, 0, 1]}");
   EXPECT_EQ(in_frame.mount.frame, "head");
   EXPECT_EQ(in_frame.mount.frame_from_root.position, Vec3(0, 0, 1));
+  EXPECT_FALSE(in_frame.mount_speed.is_stated());
+  const Sensor moving = mount("frame: head, max_speed: 0.5, max_turn_speed: 0.2");
+  EXPECT_EQ(moving.mount_speed.shift, 0.5);
+  EXPECT_EQ(moving.mount_speed.turn, 0.2);
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {frame: head, max_speed: 0.5}")),
+              in_line(5, "'max_speed'", "'max_turn_speed'"));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: right, max_speed: 0.5}")),
+              in_line(5, "'max_speed'"));
   EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: rigth}")),
               in_line(5, "'rigth'", "'right'"));
   EXPECT_THAT(errors_of(with_sensor(kDepth + ", mount: {on: eye}")), in_line(5, "'eye'"));

@@ -88,8 +88,7 @@ TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove)
   EXPECT_NEAR(frames.step("moving", at)->parent_from_child.position.x(), 0.45, 1e-12);
   EXPECT_GE(frames.step("moving", at)->shift_error, 0.05);
   EXPECT_EQ(frames.step("moving", kStart + 400 * kMs)->shift_error, 0.0);
-  EXPECT_GE(frames.step("moving", kStart + 950 * kMs)->shift_error, 0.05) << "after the last one";
-  EXPECT_FALSE(frames.step("moving", kStart + 2000 * kMs)) << "lost";
+  EXPECT_FALSE(frames.step("moving", kStart + 950 * kMs)) << "after the last one";
   EXPECT_FALSE(frames.step("moving", kStart - kMs));
   EXPECT_FALSE(frames.step("other", at));
   Pose nonsense;
@@ -98,13 +97,12 @@ TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove)
   EXPECT_FALSE(frames.step("nonsense", kStart));
 }
 
-// A second source of a joint or an object, whose values the first one cannot have.
 // A cart at 1 m/s whose transforms come every 10 ms.
 TEST(PastPlaces, OfFramesAtATimeThatIsNotWellKnownEncloseTheMotionWithin) {
   FrameHistory frames;
   for (int i = 0; i <= 20; ++i)
     frames.add("cart", "map", test::at(0.01 * i, 0, 0), kStart + 10 * i * kMs, false, 1);
-  for (const std::int64_t ms : {40, 105, 195}) {
+  for (const std::int64_t ms : {40, 105, 175}) {
     const auto known = frames.step("cart", kStart + ms * kMs);
     const auto step = frames.step("cart", kStart + ms * kMs, 20 * kMs);
     ASSERT_TRUE(known && step);
@@ -113,8 +111,10 @@ TEST(PastPlaces, OfFramesAtATimeThatIsNotWellKnownEncloseTheMotionWithin) {
     EXPECT_LT(step->shift_error, 0.06);
   }
   EXPECT_FALSE(frames.step("cart", kStart + 10 * kMs, 20 * kMs)) << "before the first one";
+  EXPECT_FALSE(frames.step("cart", kStart + 195 * kMs, 20 * kMs)) << "after the last one";
 }
 
+// A second source of a joint or an object, whose values the first one cannot have.
 TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
   const Scene scene = test::scara_cell();
   PostureHistory history(scene);
