@@ -199,9 +199,12 @@ void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
     }
     return;
   }
-  if (spacing != nullptr) {
+  sensor.by_neighbours = spacing != nullptr && spacing->text == "neighbours";
+  if (spacing != nullptr && !sensor.by_neighbours) {
     sensor.spacing = read_number(*spacing, kSpacings,
-                                 "the distance of neighbouring rays at a depth of 1", diagnostics_)
+                                 "the distance of neighbouring rays at a depth of 1, or "
+                                 "'neighbours'",
+                                 diagnostics_)
                          .value_or(0.0);
   }
   if (along == nullptr) return;

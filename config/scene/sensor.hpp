@@ -24,6 +24,10 @@ enum class SensorKind : std::uint8_t {
 inline constexpr double kWidestTangent = 1.2374368670764582;
 inline constexpr double kLongestRay = 2.0156;
 
+// The ball of a point with neighbours reaches at most this times its range, and this times the
+// largest error (monitor/sensors/organised_points.hpp).
+inline constexpr double kWidestReach = 0.2, kWidestErrors = 3.0;
+
 // The largest speed of a frame of tf in what carries it: of its origin, m/s, and rad/s.
 struct MountSpeed {
   double shift = std::numeric_limits<double>::infinity();
@@ -61,6 +65,9 @@ struct Sensor {
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
   double spacing = 0.0;
+  // Of organised points: the ball of each reaches to the middle between it and its neighbours on
+  // the same surface instead (monitor/sensors/organised_points.hpp).
+  bool by_neighbours = false;
 
   // The memory that is fixed: the largest image, or the most points that are kept.
   std::uint32_t columns = 0, rows = 0;
@@ -102,9 +109,10 @@ struct Sensor {
     if (kind == SensorKind::kOctomap) return 2.0 * greatest_depth;
     const double error = error_at(greatest_depth);
     const double farthest = kLongestRay * (greatest_depth + error);
-    return kind == SensorKind::kDepthImage
-               ? 1.001 * farthest
-               : 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
+    if (kind == SensorKind::kDepthImage) return 1.001 * farthest;
+    if (by_neighbours)
+      return 1.001 * ((1.0 + kWidestReach) * farthest + kWidestErrors * kLongestRay * error);
+    return 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
   }
 };
 

@@ -105,6 +105,8 @@ const char* text(FrameFault fault) noexcept {
       return "nothing is seen within the range but the robot itself: that is not clear";
     case FrameFault::kBeforeJoints:
       return "joints were first heard after its stamp: the robot's own image is not left out";
+    case FrameFault::kNotOrganised:
+      return "it has no rows, so its points have no neighbours";
     case FrameFault::kOctree:
       return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
   }
@@ -163,6 +165,8 @@ const char* name(FrameFault fault) noexcept {
       return "nothing seen but the robot";
     case FrameFault::kBeforeJoints:
       return "before the first joints";
+    case FrameFault::kNotOrganised:
+      return "not organised";
     case FrameFault::kOctree:
       return "a map that cannot be read";
   }

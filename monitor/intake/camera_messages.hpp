@@ -47,9 +47,10 @@ enum class FrameFault : std::uint8_t {
   kNothingSeen,     // no pixel or point within the range but the robot's own
   kBeforeJoints,    // joints were first heard after the stamp: the robot's image is taken for an
                     // obstacle
+  kNotOrganised,    // points in one row, where the cell says that their neighbours are known
   kOctree,  // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
 };
-inline constexpr std::size_t kFrameFaults = 26;
+inline constexpr std::size_t kFrameFaults = 27;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <chrono>
 #include <optional>
+#include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
 #include "monitor/sensors/measured_points.hpp"
@@ -149,7 +150,10 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
       return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
     }
   } else {
+    const auto [width, height] = std::pair(frame.points.width, frame.points.height);
+    if (sensor.by_neighbours && (width < 2 || height < 2)) return FrameFault::kNotOrganised;
     measured_points(frame.points, sensor, points_);
+    if (sensor.by_neighbours) organised_.widen(width, height, points_);
   }
   PointCloud& points = *cloud.points();
   const auto built = [&](const CloudCrop& crop) {

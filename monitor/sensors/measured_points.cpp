@@ -8,8 +8,6 @@ namespace clearance {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
-// Half of the diagonal of a square whose sides are 1, and of the roundings of a radius.
-constexpr double kHalfDiagonal = 0.70710678118654757 * (1.0 + 0x1p-40);
 
 float float_at(const std::byte* bytes) noexcept {
   float value = 0.0F;

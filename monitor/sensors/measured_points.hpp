@@ -9,6 +9,9 @@
 
 namespace clearance {
 
+// Half of the diagonal of a square whose sides are 1, and of the roundings of a radius.
+inline constexpr double kHalfDiagonal = 0.70710678118654757 * (1.0 + 0x1p-40);
+
 // Replaces the content of `points`. A point that is out of the range, or more than 51 degrees off
 // the axis along which the depth is measured, is missing: its coordinates are NaN.
 void measured_points(const PointsView& view, const Sensor& sensor,

@@ -17,6 +17,7 @@
 #include "monitor/intake/sensor_messages.hpp"
 #include "monitor/monitor.hpp"
 #include "monitor/sensors/mounts.hpp"
+#include "monitor/sensors/organised_points.hpp"
 #include "monitor/sensors/own_image.hpp"
 
 namespace clearance {
@@ -134,6 +135,7 @@ class Sensors {
   CdrDecoder decoder_;
   SlabBody body_;
   std::vector<MeasuredPoint> points_;
+  OrganisedPoints organised_;
 };
 
 }  // namespace clearance
