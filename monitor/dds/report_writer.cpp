@@ -192,9 +192,8 @@ bool ReportWriter::change() {
     const auto same = std::ranges::find(zones, now_->cell.scene.zones[zone].name, &Zone::name);
     if (same != zones.end()) {
       const auto number = static_cast<std::uint32_t>(same - zones.begin());
-      for (const bool active : {false, true}) {
-        if (now_->written_zones.is(zone, active)) changed->written_zones.set(number, active);
-      }
+      if (const auto& last = now_->written_zones.last(zone))
+        changed->written_zones.set(number, *last);
     }
     clearance_msg_ZoneState gone{};
     gone.zone = zone;
@@ -275,23 +274,22 @@ void ReportWriter::write_separation(const Report& report) {
   write(TopicKind::kSeparation, separation_, &*now_->separation, "separation");
 }
 
-// Writes a zone at the start, after each change, and again after another daemon may have written
-// it.
+// Writes a zone at the start, after each change of its state or cause, and again after another
+// daemon may have written it. The log has the changes of its state.
 void ReportWriter::write_zones(const Report& report) {
   const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
-    const bool active = report.zones[zone].active;
-    const bool is_written = now_->written_zones.is(zone, active);
-    if (is_written && !again) continue;
+    const WrittenZone present = WrittenZone::of(report.zones[zone]);
+    const std::optional<WrittenZone> before = now_->written_zones.last(zone);
+    if (before == present && !again) continue;
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);
     now_->pairs.in(state);
     write(TopicKind::kZones, zones_, &state, "zone state");
-    if (!is_written && (now_->written_zones.any(zone) || active)) {
+    if (before ? before->active != present.active : present.active)
       zone_log_.note(zone, report.zones[zone], report.cycle);
-    }
-    now_->written_zones.set(zone, active);
+    now_->written_zones.set(zone, present);
   }
 }
 
@@ -310,7 +308,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
         {.scene = now_->cell.scene,
          .health = *sample,
          .report = now_->distances->cycle == 0 ? nullptr : &*now_->distances,
-         .is_active = [this](std::uint32_t zone) { return now_->written_zones.is(zone, true); },
+         .is_active = [this](std::uint32_t zone) { return now_->written_zones.is_active(zone); },
          .statistics = &statistics});
   }
   zone_log_.end_second();

@@ -194,10 +194,10 @@ void Recorder::write_separation(const Report& report, std::int64_t publish_ns) {
 // Writes each zone at the start, then its changes, as the daemon does on DDS.
 void Recorder::write_zones(const Report& report) {
   for (std::uint32_t zone = 0; zone < now_->scene.zones.size(); ++zone) {
-    const bool active = report.zones[zone].active;
-    const bool repeated = now_->zones.is(zone, active);
+    const WrittenZone present = WrittenZone::of(report.zones[zone]);
+    const bool repeated = now_->zones.last(zone) == present;
     if (repeated && !states_all_zones_) continue;
-    now_->zones.set(zone, active);
+    now_->zones.set(zone, present);
     clearance_msg_ZoneState state{};
     to_wire(now_->scene, report, zone, state);
     write(TopicKind::kZones, report.now_ns, report.now_ns, state, repeated);

@@ -8,19 +8,38 @@
 
 namespace clearance {
 
+// What is written anew when it changes: a client sees why a zone is active now, and not only why it
+// was entered. The pair and the clearances of a state are those of the tick that it names.
+struct WrittenZone {
+  bool active = false;
+  std::uint8_t cause = 0;
+  std::uint32_t cause_object = 0;
+
+  // Of a ZoneReport or a state on the wire.
+  template <class Zone>
+  [[nodiscard]] static WrittenZone of(const Zone& zone) noexcept {
+    return {zone.active, static_cast<std::uint8_t>(zone.cause), zone.cause_object};
+  }
+  [[nodiscard]] bool operator==(const WrittenZone&) const = default;
+};
+
 // States are compared with what was written, not with ZoneReport::changed: a change must come
 // through even when the report in which it happened was dropped.
 class WrittenZones {
  public:
-  explicit WrittenZones(std::size_t zones) : active_(zones) {}
+  explicit WrittenZones(std::size_t zones) : last_(zones) {}
 
-  [[nodiscard]] bool any(std::uint32_t zone) const { return active_[zone].has_value(); }
-  // Returns true when the last state written of this zone is `active`.
-  [[nodiscard]] bool is(std::uint32_t zone, bool active) const { return active_[zone] == active; }
-  void set(std::uint32_t zone, bool active) { active_[zone] = active; }
+  // Nothing: never written.
+  [[nodiscard]] const std::optional<WrittenZone>& last(std::uint32_t zone) const {
+    return last_[zone];
+  }
+  [[nodiscard]] bool is_active(std::uint32_t zone) const {
+    return last_[zone] && last_[zone]->active;
+  }
+  void set(std::uint32_t zone, const WrittenZone& state) { last_[zone] = state; }
 
  private:
-  std::vector<std::optional<bool>> active_;  // none: never written
+  std::vector<std::optional<WrittenZone>> last_;
 };
 
 }  // namespace clearance

@@ -143,13 +143,13 @@ TEST_F(ViewPage, NegativeDistancesHaveTicks) {
   EXPECT_EQ(found["positive"], json({0, 250, 500}));
 }
 
-TEST_F(ViewPage, ZonesTellTheirStateAndWhatTheyWereEnteredBy) {
+TEST_F(ViewPage, ZonesTellTheirStateAndWhyTheyAreActive) {
   const json found = run({"zones"})["zones"];
   ASSERT_FALSE(found.empty());
   const std::string first = found[0].value("text", "");
   EXPECT_THAT(first, HasSubstr("zone_of_a_long_name_"));
   EXPECT_THAT(first, HasSubstr("ACTIVE"));
-  EXPECT_THAT(first, HasSubstr("entered: "));
+  EXPECT_THAT(first, HasSubstr("why: "));
   EXPECT_THAT(found[0].value("kind", ""), HasSubstr("alarm"));
 }
 

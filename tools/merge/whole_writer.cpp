@@ -67,14 +67,14 @@ void WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
 
 // Ids that a changed cell no longer has are withdrawn, and all others are written again.
 void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
-  std::map<std::uint32_t, bool> now;
+  std::map<std::uint32_t, WrittenZone> now;
   for (const auto& [id, state] : whole.zones()) {
-    now[id] = state.active;
+    now[id] = WrittenZone::of(state);
     const auto before = written_.find(id);
-    if (again || before == written_.end() || before->second != state.active)
+    if (again || before == written_.end() || before->second != now[id])
       put(TopicKind::kZones, zones_, &state);
   }
-  for (const auto& [id, active] : written_) {
+  for (const auto& [id, state] : written_) {
     if (now.contains(id)) continue;
     clearance_msg_ZoneState gone{};
     gone.zone = id;

@@ -14,6 +14,7 @@
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/ros_messages.hpp"
+#include "monitor/wire/written_zones.hpp"
 #include "tools/merge/zone_check.hpp"
 
 namespace clearance::merge {
@@ -49,8 +50,8 @@ class WholeWriter {
   dds_entity_t separation_ = 0, gradients_ = 0;  // 0: no share has had any yet
   RosMessages messages_;
   OtherDaemons others_;
-  std::uint64_t revision_ = 0;             // of the catalogue that was written; 0: none
-  std::map<std::uint32_t, bool> written_;  // zones, and whether they were active
+  std::uint64_t revision_ = 0;                    // of the catalogue that was written; 0: none
+  std::map<std::uint32_t, WrittenZone> written_;  // by zone
   std::int64_t health_ns_ = 0;
   std::uint64_t reports_ = 0, not_whole_ = 0, failed_ = 0;
   ZoneCheck zone_check_;

@@ -144,6 +144,42 @@ TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
   expect_next(false, 6);
 }
 
+// The zone stays active, and a client sees the cause of each tick in which it is another one.
+TEST(ReportWriter, PublishesAnActiveZoneAgainWhenItsCauseOrTheObjectOfThatChanges) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_ZoneState> zones(client, publisher.cell);
+  Report report = publisher.monitor.tick({}, publisher.now += test::kTick);
+  ASSERT_EQ(report.zones[0].cause, ZoneCause::kUnknown);
+  const auto publish = [&](ZoneCause cause, std::uint32_t object) {
+    ++report.cycle;
+    report.zones[0].cause = cause;
+    report.zones[0].cause_object = object;
+    publisher.queue.report(report, {});
+  };
+  const auto expect_next = [&] {
+    const clearance_msg_ZoneState* zone = zones.next();
+    ASSERT_NE(zone, nullptr);
+    EXPECT_TRUE(zone->active);
+    EXPECT_EQ(zone->cause, static_cast<std::uint8_t>(report.zones[0].cause));
+    EXPECT_EQ(zone->cause_object, report.zones[0].cause_object);
+    EXPECT_EQ(zone->cycle, report.cycle);
+    EXPECT_EQ(zone->since_cycle, 1u);
+  };
+  for (const ZoneCause cause :
+       {ZoneCause::kUnknown, ZoneCause::kNear, ZoneCause::kLate, ZoneCause::kDiscontinuous,
+        ZoneCause::kContradicted, ZoneCause::kContactTooDeep, ZoneCause::kContactTooLate}) {
+    publish(cause, 0);
+    expect_next();
+    report.zones[0].clearance -= 0.01;
+    publish(cause, 0);  // which is not written
+  }
+  publish(ZoneCause::kLate, 0);
+  expect_next();
+  publish(ZoneCause::kLate, 1);
+  expect_next();
+}
+
 TEST(ReportWriter, SaysHowTheDaemonIs) {
   Publisher publisher;
   Participant client(publisher.dds);

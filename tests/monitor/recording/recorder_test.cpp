@@ -62,6 +62,44 @@ TEST(Recorder, BatchesOfLaterTicksWaitForTheirReport) {
   EXPECT_EQ("pdpdpd", order);
 }
 
+// A ball of 1 m/s at most near a post: it is unknown, then near, late, and near again.
+TEST(Recorder, KeepsEachCauseOfAZoneThatStaysActive) {
+  const ScratchFolder folder;
+  Object ball = moving("ball", {test::ball(0.1)});
+  ball.max_speed = 1.0;
+  ball.may_jump = true;
+  Cell cell{cell_of({fixed("post", {test::ball(0.1)}, at(0, 0, 0)), ball})};
+  cell.scene.zones.push_back(zone_over(cell.scene, 0.3, 0.6));
+  Monitor monitor(cell.scene);
+  Recorder recorder(folder / "a.mcap", cell, kStart);
+  std::int64_t now = kStart;
+  const auto tick = [&](std::optional<double> x, std::int64_t after_ns = kTick) {
+    now += after_ns;
+    std::vector<PoseSample> samples;
+    if (x) samples.push_back(sample(1, at(*x, 0, 0), now));
+    recorder.report(monitor.tick(samples, now), {});
+  };
+  tick(std::nullopt);
+  tick(0.45);
+  tick(0.45);
+  tick(0.75);  // outside of 0.3 m, and not yet of 0.6 m
+  tick(0.85);
+  tick(std::nullopt, 150 * kTick);
+  tick(0.7);
+  ASSERT_TRUE(recorder.close());
+  std::vector<std::pair<std::uint64_t, ZoneCause>> causes;
+  for (const Kept& message : messages_of(folder / "a.mcap")) {
+    if (message.kind != TopicKind::kZones) continue;
+    const auto zone = decoded<clearance_msg_ZoneState>(message);
+    causes.emplace_back(zone->cycle, static_cast<ZoneCause>(zone->cause));
+    EXPECT_EQ(zone->since_cycle, 1u) << zone->cycle;
+  }
+  EXPECT_EQ(causes, (std::vector<std::pair<std::uint64_t, ZoneCause>>{{1, ZoneCause::kUnknown},
+                                                                      {2, ZoneCause::kNear},
+                                                                      {6, ZoneCause::kLate},
+                                                                      {7, ZoneCause::kNear}}));
+}
+
 TEST(Recorder, KeepsTheLineageOfAPartnersReport) {
   const ScratchFolder folder;
   const Cell cell{bench_cell()};

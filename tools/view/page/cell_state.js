@@ -106,8 +106,8 @@ export class CellState {
   zoneStates() {
     return this.scene.zones.map((zone, id) => {
       const state = this.zones.get(id);
-      const enteredBy = state?.active ? this.causeOf(state) : "";
-      return { id, zone, active: state?.active, known: state !== undefined, enteredBy, pair: this.pairs[state?.pair]?.name, cycle: state?.since_cycle };
+      const cause = state?.active ? this.causeOf(state) : "";
+      return { id, zone, active: state?.active, known: state !== undefined, cause, pair: this.pairs[state?.pair]?.name, cycle: state?.since_cycle };
     });
   }
   // "by distance", "poses of hand are late": the server's text for the cause of an active zone.

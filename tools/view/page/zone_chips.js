@@ -1,24 +1,24 @@
-// The zones in the header: a chip each with its state, and with what it was entered by. Those that do not fit into the
+// The zones in the header: a chip each with its state, and with why it is active. Those that do not fit into the
 // row are counted.
 import { mm } from "./format.js";
 
 const element = (id) => document.getElementById(id);
 
-// {kind, name, state, entered, title} of a zone; `frozen`: its state does not hold any more.
-export function chipOf({ zone, active, known, enteredBy, pair, cycle }, frozen) {
+// {kind, name, state, cause, title} of a zone; `frozen`: its state does not hold any more.
+export function chipOf({ zone, active, known, cause, pair, cycle }, frozen) {
   const state = !known ? "not known" : active ? "ACTIVE" : "clear";
   const rule = `Entered below ${mm(zone.enter_below)} mm between ${zone.between.join(" and ")}, left above ${mm(zone.leave_above)} mm`;
   return {
     kind: frozen || !known ? "" : active ? "alarm" : "live", name: zone.name, state,
-    entered: enteredBy && `entered: ${enteredBy}`,
-    title: `${zone.name}: ${state}${active ? `\nEntered at cycle ${cycle} (${enteredBy}), pair: ${pair}` : ""}\n${rule}`,
+    cause: cause && `why: ${cause}`,
+    title: `${zone.name}: ${state}${active ? `\nEntered at cycle ${cycle}; why: ${cause}; pair: ${pair}` : ""}\n${rule}`,
   };
 }
 
-function made({ kind, name, state, entered, title }) {
+function made({ kind, name, state, cause, title }) {
   const chip = Object.assign(document.createElement("span"), { className: `chip ${kind}`, title });
   chip.append(`${name} ${state}`);
-  if (entered) chip.append(Object.assign(document.createElement("small"), { textContent: entered }));
+  if (cause) chip.append(Object.assign(document.createElement("small"), { textContent: cause }));
   return chip;
 }
 
