@@ -160,7 +160,7 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
   const std::string file = places::sources() + "/config/cells/camera.yaml";
   ChildProcess daemon(kDaemon, with({file}, dds_arguments(dds)));
   std::size_t pairs = 0;
-  for (int attempt = 0; attempt < 8 && pairs < 8; ++attempt) {
+  for (int attempt = 0; attempt < 8 && pairs < 10; ++attempt) {
     ChildProcess simulated(kRobot, with({file, "--swing", "0.3", "--person", "1.8,-0.3:1.45,-0.15",
                                          "--camera-rate", "15", "--truth", "--seconds", "4"},
                                         dds_arguments(dds)));
@@ -174,7 +174,7 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
       EXPECT_TRUE(line.ends_with(", 0 above it")) << line;
     }
   }
-  EXPECT_EQ(pairs, 8u);
+  EXPECT_EQ(pairs, 10u);
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
 }
