@@ -57,17 +57,17 @@ const Kind* Intake::add(Arguments&&... arguments) {
 std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
   const auto known = numbers_.find({name.name, name.type});
   if (known != numbers_.end()) {
-    return Topic{known->second, routes_[known->second].wanted.delivery};
+    return Topic{known->second, routes_[known->second].ends.front().wanted.delivery};
   }
+  Route route;
   for (const std::unique_ptr<Decoder>& decoder : decoders_) {
-    const auto wanted = decoder->wants(name);
-    if (!wanted) continue;
-    const auto number = static_cast<std::uint32_t>(routes_.size());
-    numbers_.emplace(std::pair(name.name, name.type), number);
-    routes_.push_back({decoder.get(), *wanted, {}});
-    return Topic{number, wanted->delivery};
+    if (const auto wanted = decoder->wants(name)) route.ends.push_back({decoder.get(), *wanted});
   }
-  return std::nullopt;
+  if (route.ends.empty()) return std::nullopt;
+  const auto number = static_cast<std::uint32_t>(routes_.size());
+  numbers_.emplace(std::pair(name.name, name.type), number);
+  routes_.push_back(std::move(route));
+  return Topic{number, routes_.back().ends.front().wanted.delivery};
 }
 
 std::optional<Intake::Topic> Intake::topic(TopicKind kind) {
@@ -79,7 +79,9 @@ bool Intake::take(const RawMessage& message, const Now& now) {
   monotonic_ns_ = now.monotonic_ns;
   Route& route = routes_[message.topic];
   ++route.counts.messages;
-  const bool decodes = route.decoder->decode(route.wanted.port, message, now, route.counts);
+  bool decodes = true;
+  for (const Route::End& end : route.ends)
+    decodes = end.decoder->decode(end.wanted.port, message, now, route.counts) && decodes;
   if (!decodes) ++route.counts.undecodable;
   return decodes;
 }

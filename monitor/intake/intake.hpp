@@ -98,9 +98,13 @@ class Intake final : public Outlet {
   [[nodiscard]] const RosTransforms& transforms() const noexcept { return *transforms_; }
 
  private:
+  // All decoders that take a topic: MoveIt's scene may have a sensor's octomap.
   struct Route {
-    Decoder* decoder = nullptr;
-    Decoder::Wanted wanted;
+    struct End {
+      Decoder* decoder = nullptr;
+      Decoder::Wanted wanted;
+    };
+    std::vector<End> ends;
     TopicCounts counts;
   };
 

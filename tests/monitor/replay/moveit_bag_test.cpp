@@ -13,6 +13,7 @@
 #include "tests/monitor/bags/ros_bags.hpp"
 #include "tests/monitor/moveit/moveit_messages.hpp"
 #include "tests/monitor/scara_cell.hpp"
+#include "tests/shared/one_cube.hpp"
 
 namespace clearance::test {
 namespace {
@@ -154,6 +155,28 @@ TEST_F(MoveItBag, MessagesAreNamedWhereABagIsConverted) {
   replay({object_at(100, sphere_object("ball", "map", {4, 0, 0}))});
   const LogRecordingResult done = record_log(folder / "run.mcap", folder / "out.mcap", cell);
   EXPECT_THAT(done.notes, Contains(HasSubstr("/collision_object are not used")));
+}
+
+// The octomap of the scene is a sensor's. Its cube is from (4, 0, 0) to (4.1, 0.1, 0.1).
+TEST_F(MoveItBag, OneTopicChangesTheSceneAndGivesASensorItsMap) {
+  std::string text = kBagCell;
+  text.insert(text.find("pairs:"),
+              "sensors: [{name: seen, octomap: /planning_scene, range: 10, age_limit_ms: 5000}]\n");
+  text.replace(text.rfind("]"), 1, ", {between: [finger, seen]}]");
+  cell = read_good(text, folder / "cell.yaml");
+  const auto scene_at = [](std::int64_t ms, bool has_ball) {
+    moveit::PlanningScene scene;
+    scene.is_diff = true;
+    if (has_ball) scene.collision_objects = {sphere_object("ball", "map", {4, 0, 1})};
+    RosCdr cdr;
+    moveit::put(cdr, scene, one_cube({40, 0, 0}));
+    return RosMessage{"/planning_scene", "moveit_msgs/msg/PlanningScene",
+                      kBagBegin + ms * kMillisecond, cdr.bytes()};
+  };
+  replay({scene_at(100, false), scene_at(200, true), scene_at(300, false)});
+  EXPECT_NEAR(at(150, "finger-seen"), 4 - 2.15, 1e-6);
+  EXPECT_NEAR(at(400, "ball-finger"), std::hypot(1.9, 1.0) - 0.15, 1e-9);
+  EXPECT_NEAR(at(400, "finger-seen"), 4 - 2.15, 1e-6) << "of the map after the change";
 }
 
 TEST_F(MoveItBag, WhatIsCutOffOrCannotBeUsedIsNamedAndTheRestCounts) {
