@@ -286,14 +286,17 @@ async function seen() {
     if (known && !view.lines.shown.some(({ pair }) => isOfCamera(pair))) view.on.pairChosen(known.pair);
     return view.lines.shown.some(({ pair }) => isOfCamera(pair));
   });
-  const found = await page.evaluate(() => {
+  // The hand is not in every frame.
+  const found = await page.waitForFunction(() => {
     const { view, state } = window.clearance, { seen: shown, renderer } = view, [{ points }] = shown.sensors, [{ object: camera }] = shown.cell.sensors;
+    const shells = Object.fromEntries(Object.entries(shown.status[0].shells).map(([object, thickness]) => [shown.cell.objects[object].name, thickness]));
+    if (!shells.hand) return null;
     const pixels = () => {
       view.redraw();
       const gl = renderer.getContext(), { drawingBufferWidth: width, drawingBufferHeight: height } = gl, all = new Uint8Array(4 * width * height);
       gl.readPixels(0, 0, width, height, gl.RGBA, gl.UNSIGNED_BYTE, all);
-      const text = getComputedStyle(document.documentElement).getPropertyValue("--seen").trim();
-      const [red, green, blue] = [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16));
+      // A chosen pair's points have another colour.
+      const [red, green, blue] = points.material.uniforms.colour.value.toArray().map((share) => 255 * share);
       let count = 0;
       for (let i = 0; i < all.length; i += 4) count += Math.abs(all[i] - red) + Math.abs(all[i + 1] - green) + Math.abs(all[i + 2] - blue) < 12;
       return count;
@@ -306,7 +309,7 @@ async function seen() {
       lines: view.lines.shown.filter(({ pair }) => [state.pairs[pair.pair].a, state.pairs[pair.pair].b].includes(camera)).length,
       places: [...points.geometry.getAttribute("position").array], drawn, without,
       bodies: shown.cell.parts.filter(({ object }) => shown.cell.sensors.some((sensor) => sensor.object === object)).length,
-      shells: Object.fromEntries(Object.entries(shown.status[0].shells).map(([object, thickness]) => [shown.cell.objects[object].name, thickness])),
+      shells,
       pose: shown.status[0].pose, row: [...document.querySelector("#sensors tbody tr").cells].map(({ textContent }) => textContent),
     };
   });
@@ -316,7 +319,7 @@ async function seen() {
     await frames(3);
     modes.push(await page.evaluate(() => ({ all: window.clearance.view.seen.visible, shells: window.clearance.view.seen.shells.visible })));
   }
-  return { ...found, modes };
+  return { ...(await found.jsonValue()), modes };
 }
 
 const known = { seen, causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
