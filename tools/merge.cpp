@@ -115,9 +115,6 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
   client::SharedCellOptions options{.gradients = true};
   options.late_after = std::chrono::nanoseconds(std::llround(1e6 * arguments.late_ms));
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
-  for (const Zone& zone : cell.scene.zones) {
-    if (zone.separation) options.separated.push_back(zone.name);
-  }
   client::SharedCell whole(connection, options);
   merge::RosRelay ros(connection.participant(), cell, arguments.cell.reading(), arguments.ros);
   merge::WholeWriter writer(

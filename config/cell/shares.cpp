@@ -76,6 +76,9 @@ void select_share(Cell& cell, std::uint32_t share) {
     now[pair] = static_cast<std::uint32_t>(scene.pairs.size());
     scene.pairs.push_back(shares.pairs[pair]);
   }
+  for (std::uint32_t zone = 0; zone < scene.zones.size(); ++zone) {
+    if (scene.zones[zone].separation) shares.separated.push_back(zone);
+  }
   for (Zone& zone : scene.zones) {
     keep(now, zone.pairs);
     if (zone.pairs.empty()) zone.separation.reset();

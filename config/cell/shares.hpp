@@ -31,6 +31,7 @@ struct Shares {
   std::vector<Share> all;            // empty: the cell is not divided
   std::optional<std::uint32_t> own;  // index into `all`: the scene has only the pairs of this one
   std::vector<ObjectPair> pairs;     // with `own`: those of the whole cell
+  std::vector<std::uint32_t> separated;  // with `own`: the whole cell's zones with `separation`
 
   [[nodiscard]] bool is_one() const noexcept { return own.has_value(); }
   // Index into the whole cell's pairs by index into Scene::pairs. Empty if they are the same.

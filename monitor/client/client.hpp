@@ -82,7 +82,7 @@ class Stream {
   // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
   [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
-  // See PartnerMerge::senders(). The times are those of steady_clock.
+  // See PartnerMerge::senders(). The times are by monotonic_ns().
   [[nodiscard]] const std::array<PartnerMerge::Sender, 2>& senders() const noexcept {
     return merge_.senders();
   }
@@ -111,7 +111,7 @@ class Stream {
 };
 
 // Reports have all pairs here, even if the daemon publishes only those that changed. A pair that
-// cannot be known, since a report before was missed, is unknown until the next full report.
+// cannot be known, since a report before was missed, is unknown until it is listed again.
 using Reports = Stream<clearance_msg_Distances>;
 using Gradients = Stream<clearance_msg_Gradients>;    // `gradients: true` in the cell
 using Separation = Stream<clearance_msg_Separation>;  // zones with `separation`
@@ -223,7 +223,8 @@ class Health {
   bool known_ = false;
 };
 
-// The state of every zone by its id, at the last update().
+// The state of every zone by its id, at the last update(). Where several daemons have written one,
+// the state of the latest tick counts, as long as its daemon is there.
 class Zones {
  public:
   explicit Zones(Connection& connection);
@@ -242,6 +243,9 @@ class Zones {
 
 // CLOCK_REALTIME, the clock of stamps.
 [[nodiscard]] std::int64_t now_ns() noexcept;
+// A clock that is never set, for waits. It does not go on from one start of the machine to the
+// next.
+[[nodiscard]] std::int64_t monotonic_ns() noexcept;
 
 // Sends joint states of robots that the cell names. `source` has 1 to 32 bytes and must not belong
 // to another writer.

@@ -45,8 +45,8 @@ class Requests<Request, Result, Message>::Stop {
  public:
   explicit Stop(std::function<bool()> ask) : ask_(std::move(ask)) {}
   [[nodiscard]] bool operator()() {
-    if (stopped_ || !ask_ || dds_time() < next_ns_) return stopped_;
-    next_ns_ = dds_time() + kAskNs;
+    if (stopped_ || !ask_ || monotonic_ns() < next_ns_) return stopped_;
+    next_ns_ = monotonic_ns() + kAskNs;
     return stopped_ = ask_();
   }
   // The time until a wait has to end so that the caller can be asked.
@@ -112,32 +112,35 @@ template <class Request, class Result, class Message>
 std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
                                                                std::function<bool()> ask,
                                                                std::chrono::nanoseconds timeout) {
-  const std::int64_t end_ns = dds_time() + timeout.count();
+  const std::int64_t end_ns = monotonic_ns() + timeout.count();
   Stop stop(std::move(ask));
-  while (!is_heard() && dds_time() < end_ns && !stop()) dds_sleepfor(kLookNs);
+  while (!is_heard() && monotonic_ns() < end_ns && !stop()) dds_sleepfor(kLookNs);
   if (!is_heard() || stop()) return std::nullopt;
   const Request request = next(make);
-  const std::int64_t alone_ns = dds_time() + kLeaseNs + kAgainNs / 2;
+  const std::int64_t alone_ns = monotonic_ns() + kLeaseNs + kAgainNs / 2;
   do {
     const Met before = met(writer_, reader_);
     (void)write(request);
-    const std::int64_t again_ns = std::min(end_ns, dds_time() + kAgainNs);
+    const std::int64_t again_ns = std::min(end_ns, monotonic_ns() + kAgainNs);
     std::optional<Result> result;
     do {
-      result = wait_for(request_, std::min(again_ns, dds_time() + kMeetNs), stop);
-    } while (!result && dds_time() < again_ns && !stop() && !met(writer_, reader_).more(before));
+      result = wait_for(request_, std::min(again_ns, monotonic_ns() + kMeetNs), stop);
+    } while (!result && monotonic_ns() < again_ns && !stop() &&
+             !met(writer_, reader_).more(before));
     if (result) {
       // In these cases the daemon has not taken the request.
       using Status = decltype(Result::status);
-      const bool is_to_repeat = result->status == Status::kBusy ||
-                                (result->status == Status::kTwoWriters && dds_time() < alone_ns);
+      const bool is_to_repeat =
+          result->status == Status::kBusy ||
+          (result->status == Status::kTwoWriters && monotonic_ns() < alone_ns);
       if (!is_to_repeat) return result;
-      if (dds_time() + kAgainNs >= end_ns) return result;
+      if (monotonic_ns() + kAgainNs >= end_ns) return result;
       results_.erase(request_);
-      const std::int64_t pause_ns = dds_time() + kAgainNs;
-      while (dds_time() < pause_ns && !stop()) dds_sleepfor(stop.slice(pause_ns - dds_time()));
+      const std::int64_t pause_ns = monotonic_ns() + kAgainNs;
+      while (monotonic_ns() < pause_ns && !stop())
+        dds_sleepfor(stop.slice(pause_ns - monotonic_ns()));
     }
-  } while (dds_time() < end_ns && !stop());
+  } while (monotonic_ns() < end_ns && !stop());
   return std::nullopt;
 }
 
@@ -145,7 +148,7 @@ template <class Request, class Result, class Message>
 std::optional<Result> Requests<Request, Result, Message>::result(std::uint64_t request,
                                                                  std::chrono::nanoseconds timeout) {
   Stop never({});
-  return wait_for(request, dds_time() + timeout.count(), never);
+  return wait_for(request, monotonic_ns() + timeout.count(), never);
 }
 
 template <class Request, class Result, class Message>
@@ -167,7 +170,7 @@ std::optional<Result> Requests<Request, Result, Message>::wait_for(std::uint64_t
   while (true) {
     take_results();
     if (const auto found = results_.find(request); found != results_.end()) return found->second;
-    const std::int64_t left_ns = end_ns - dds_time();
+    const std::int64_t left_ns = end_ns - monotonic_ns();
     if (left_ns <= 0 || stop()) return std::nullopt;
     wait_->wait(stop.slice(left_ns));
   }

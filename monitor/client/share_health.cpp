@@ -1,11 +1,14 @@
 // One health of several shares. The fields stand in the order of the message.
 #include <algorithm>
 #include <array>
+#include <cstdlib>
 #include <cstring>
 #include <map>
 #include <span>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <vector>
 
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/share_merge.hpp"
@@ -99,10 +102,16 @@ void join_rejected(Views views, Message& out) {
   }
 }
 
+// Every share hears the same sources, and counts the same takeovers of the inputs that it reads.
 void join_notes(Views views, Message& out) {
   std::map<std::string, clearance_msg_InputNote> notes;
-  for_all(views, &Message::notes,
-          [&](const clearance_msg_InputNote& note) { notes.emplace(note.input, note); });
+  for_all(views, &Message::notes, [&](const clearance_msg_InputNote& note) {
+    const auto [at, is_new] = notes.emplace(note.input, note);
+    if (is_new) return;
+    const bool contradict = at->second.velocities_contradict || note.velocities_contradict;
+    if (note.takeovers > at->second.takeovers) at->second = note;
+    at->second.velocities_contradict = contradict;
+  });
   reserve_sequence(out.notes, std::min<std::size_t>(notes.size(), 4096));
   for (const auto& [input, note] : notes) {
     if (out.notes._length == out.notes._maximum) return;
@@ -112,16 +121,43 @@ void join_notes(Views views, Message& out) {
   }
 }
 
+// The share is told first whose partners do not agree, and among these the one with the most
+// differences.
+void join_partners(Views views, clearance_msg_PartnerHealth& out) {
+  clearance_msg_PartnerHealth sums{};
+  const clearance_msg_PartnerHealth* worst = nullptr;
+  for (const clearance_msg_Health* view : views) {
+    if (view == nullptr || *view->partner.partner == '\0') continue;
+    const clearance_msg_PartnerHealth& of = view->partner;
+    sums.compared += of.compared;
+    sums.different += of.different;
+    sums.other_inputs += of.other_inputs;
+    sums.missing += of.missing;
+    const auto trouble = [](const clearance_msg_PartnerHealth& each) {
+      return std::tuple(each.agrees_from == 0, each.different, each.other_inputs, each.missing);
+    };
+    if (worst == nullptr || trouble(of) > trouble(*worst)) worst = &of;
+  }
+  if (worst == nullptr) return;
+  out = *worst;
+  out.leads = true;  // the one program that joins writes what has one leader
+  out.compared = sums.compared;
+  out.different = sums.different;
+  out.other_inputs = sums.other_inputs;
+  out.missing = sums.missing;
+}
+
 }  // namespace
 
-void join_health(Views views, clearance_msg_Health& out) {
+void join_health(Views views, Views former, clearance_msg_Health& out) {
   std::string recording;
   for (const clearance_msg_Health* view : views) {
     if (view == nullptr) continue;
     for (double Message::*const largest : kLargest)
       out.*largest = std::max(out.*largest, view->*largest);
-    for (auto Message::*const sum : kSums) out.*sum += view->*sum;
     out.now_ns = std::max(out.now_ns, view->now_ns);
+    if (std::abs(view->clock_offset_ns) > std::abs(out.clock_offset_ns))
+      out.clock_offset_ns = view->clock_offset_ns;
     // A recording that has failed is told first, and decides what readers think of all.
     if (const std::string text = view->recording; text.starts_with("recording ")) {
       recording += (recording.empty() ? "" : "; ") + text;
@@ -130,11 +166,18 @@ void join_health(Views views, clearance_msg_Health& out) {
     }
   }
   out.recording = dds_string_dup(recording.c_str());
-  join_rejected(views, out);
+  std::vector<const clearance_msg_Health*> all(views.begin(), views.end());
+  all.insert(all.end(), former.begin(), former.end());
+  for (const clearance_msg_Health* view : all) {
+    if (view == nullptr) continue;
+    for (auto Message::*const sum : kSums) out.*sum += view->*sum;
+  }
+  join_rejected(all, out);
   join_ages(views, &Message::inputs, &clearance_msg_InputAge::object, out);
   join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
   join_sources(views, out);
   join_notes(views, out);
+  join_partners(views, out.partner);
 }
 
 }  // namespace clearance::client

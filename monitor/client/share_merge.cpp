@@ -137,6 +137,9 @@ ShareMap::ShareMap(const clearance_msg_Catalogue& catalogue)
     has_first[share] = true;
     if (pairs[i].published) published_.push_back({i, share});
   }
+  for (const std::uint32_t zone : list(catalogue.separated_zones)) {
+    if (zone < zones_.size() && !zones_[zone].empty()) separated_.push_back(zone);
+  }
 }
 
 void join_reports(const ShareMap& map, std::span<const ShareView> views,
@@ -184,14 +187,13 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
 }
 
 void join_separations(const ShareMap& map, std::span<const ShareView> views,
-                      const std::vector<std::uint32_t>& zones, clearance_msg_Separation& out) {
+                      clearance_msg_Separation& out) {
   std::size_t pairs = 0;
   for (const ShareView& view : views)
     pairs += view.separation == nullptr ? 0 : view.separation->pairs._length;
   begin(out.pairs, pairs);
-  begin(out.zones, zones.size());
-  for (const std::uint32_t zone : zones) {
-    if (zone >= map.zones().size()) continue;
+  begin(out.zones, map.separated().size());
+  for (const std::uint32_t zone : map.separated()) {
     clearance_msg_ZoneSeparation least{};
     bool is_known = true, has_any = false;
     for (const std::size_t share : map.zones()[zone]) {
@@ -222,7 +224,7 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
       has_any = true;
     }
     if (!is_known || !has_any) {
-      const std::size_t share = map.zones()[zone].empty() ? 0 : map.zones()[zone].front();
+      const std::size_t share = map.zones()[zone].front();
       least = {zone, 0, map.pairs(share) > 0 ? map.first_pair(share) : 0, -kNone, 0.0, 0.0};
     }
     append(out.zones, least);
@@ -259,18 +261,19 @@ clearance_msg_ZoneState join_zone(const ShareMap& map, std::uint32_t zone,
   joined.zone = zone;
   joined.certified = true;
   joined.clearance = joined.swept_clearance = kNone;
-  const std::vector<std::size_t>& shares = map.zones()[zone];
-  for (const std::size_t share : shares) {
+  const auto unknown = [&joined](std::uint32_t pair) {
+    joined.active = true;
+    joined.certified = false;
+    joined.cause = static_cast<std::uint8_t>(ZoneCause::kNoShare);
+    joined.cause_object = 0;
+    joined.pair = pair;
+    joined.clearance = joined.swept_clearance = -kNone;
+    return joined;
+  };
+  if (zone >= map.zones().size()) return unknown(0);
+  for (const std::size_t share : map.zones()[zone]) {
     const clearance_msg_ZoneState* const state = of_shares[share];
-    if (state == nullptr) {
-      joined.active = true;
-      joined.certified = false;
-      joined.cause = static_cast<std::uint8_t>(ZoneCause::kNoShare);
-      joined.cause_object = 0;
-      joined.pair = map.first_pair(share);
-      joined.clearance = joined.swept_clearance = -kNone;
-      return joined;
-    }
+    if (state == nullptr) return unknown(map.first_pair(share));
     const bool decides =
         (state->active && !joined.active) ||
         (state->active == joined.active && state->swept_clearance < joined.swept_clearance);

@@ -50,6 +50,8 @@ class ShareMap {
   [[nodiscard]] const std::vector<std::vector<std::size_t>>& zones() const noexcept {
     return zones_;
   }
+  // The zones with `separation` that have a pair of any share, ascending.
+  [[nodiscard]] const std::vector<std::uint32_t>& separated() const noexcept { return separated_; }
   // The first pair of a share in the cell, for a zone that is active because of it.
   [[nodiscard]] std::uint32_t first_pair(std::size_t share) const { return first_pairs_[share]; }
 
@@ -59,6 +61,7 @@ class ShareMap {
   std::vector<std::uint32_t> pairs_, first_pairs_;
   std::vector<Published> published_;
   std::vector<std::vector<std::size_t>> zones_;
+  std::vector<std::uint32_t> separated_;
 };
 
 // Fills `out` with the report of the whole cell. One view a share, in the order of the map.
@@ -72,11 +75,11 @@ class ShareMap {
 void join_reports(const ShareMap& map, std::span<const ShareView> views,
                   clearance_msg_Distances& out);
 
-// The same for separations. A zone of a share that is not whole, or that has no separation of the
-// time of its report, has validity 0 and scaling 0, as its pairs. `zones` are those with
-// `separation` that any share has reported.
+// The same for separations, with an entry for each of map.separated(). A zone of a share that is
+// not whole, or that has no separation of the time of its report, has validity 0 and scaling 0, as
+// its pairs.
 void join_separations(const ShareMap& map, std::span<const ShareView> views,
-                      const std::vector<std::uint32_t>& zones, clearance_msg_Separation& out);
+                      clearance_msg_Separation& out);
 
 // Fills an empty message with the pairs of all shares that are whole and have gradients, in the
 // order of the cell. Pairs of other shares are left out.
@@ -84,13 +87,16 @@ void join_gradients(const ShareMap& map, std::span<const ShareView> views,
                     clearance_msg_Gradients& out);
 
 // The state of a zone by those of its shares; null: not known. It is active if one of them is, or
-// if one is not known (ZoneCause::kNoShare). The least clearance decides what it says.
+// if one or the zone is not known (ZoneCause::kNoShare). The least clearance decides what it says.
 [[nodiscard]] clearance_msg_ZoneState join_zone(
     const ShareMap& map, std::uint32_t zone,
     std::span<const clearance_msg_ZoneState* const> of_shares);
 
 // The ages of inputs are the largest that any share has, counts are sums, times are the largest.
-// One health a share; null: none has come. `shares` is left to the caller.
-void join_health(std::span<const clearance_msg_Health* const> of_shares, clearance_msg_Health& out);
+// One health a share; null: none has come. `former` are the last ones of shares that are not whole:
+// only their counts are used, so that sums do not fall. Of partners, those of the share are told
+// that are the worst off, with the counts of all. `shares` is left to the caller.
+void join_health(std::span<const clearance_msg_Health* const> of_shares,
+                 std::span<const clearance_msg_Health* const> former, clearance_msg_Health& out);
 
 }  // namespace clearance::client

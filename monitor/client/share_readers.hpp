@@ -68,20 +68,21 @@ struct SharedCell::OfShare {
   // Up to two reports: the second one waits while the first one is not used yet.
   void take(std::int64_t now_ns) {
     while (!has_ahead && reports.next()) {
-      heard[reports->daemon] = now_ns;
+      came_at = heard[reports->daemon] = monotonic_ns();
       missed += reports.check().missed;
       if (!is_new) current.before_next(reports->scene_revision);
       reports.exchange(is_new ? ahead : current.latest);
       (is_new ? has_ahead : is_new) = true;
     }
+    taken_at = monotonic_ns();
     // The zones of a partner count whose reports come, although those of the other one come first.
     for (std::size_t i = 0; i < reports.senders().size(); ++i) {
       const PartnerMerge::Sender& sender = reports.senders()[i];
       if (sender.heard_ns == sender_heard_ns[i]) continue;
       sender_heard_ns[i] = sender.heard_ns;
-      heard[sender.daemon] = now_ns;
+      heard[sender.daemon] = taken_at;
     }
-    std::erase_if(heard, [now_ns](const auto& one) { return one.second + kHeardFor < now_ns; });
+    std::erase_if(heard, [&](const auto& one) { return one.second + kHeardFor < taken_at; });
     separation.take_all(separations);
     if (gradients) gradient.take_all(*gradients);
     catalogue.update();
@@ -89,7 +90,9 @@ struct SharedCell::OfShare {
     void* pointer = &state;
     dds_sample_info_t info;
     while (dds_take(zones, &pointer, &info, 1, 1) > 0) {
-      if (info.valid_data) note(state, now_ns);
+      if (!info.valid_data) continue;
+      note(state, now_ns);
+      writer_of[state.daemon] = info.publication_handle;
     }
   }
   // Keeps the state at the last report of the former scene, as long as that counts, and all later
@@ -98,10 +101,28 @@ struct SharedCell::OfShare {
     constexpr std::size_t kMost = 64;
     const bool counts = now_ns - current.former->publish_ns <= late_ns;
     const std::int64_t first_ns = (counts ? current.former : current.latest)->now_ns;
+    if (!states.contains({state.zone, state.daemon})) forget_gone(state.daemon);
     auto& all = states[{state.zone, state.daemon}];
     all.push_back(state);
     while (all.size() > 1 && (all[1].now_ns <= first_ns || all.size() > kMost)) all.pop_front();
   }
+  // A daemon whose reports come no more, and of which none is kept, is gone or was cut off. In the
+  // latter case DDS sends its states again.
+  void forget_gone(std::uint64_t but) {
+    if (states.empty()) return;
+    const auto writers = writers_of(zones);
+    std::erase_if(states, [&](const auto& one) {
+      const std::uint64_t daemon = one.first.second;
+      const bool is_kept = daemon == but || daemon == current.latest->daemon ||
+                           daemon == current.former->daemon || daemon == ahead->daemon;
+      return !is_kept && !hears(daemon) && std::ranges::count(writers, writer_of[daemon]) == 0;
+    });
+    std::erase_if(writer_of, [&](const auto& one) {
+      return std::ranges::none_of(states,
+                                  [&](const auto& of) { return of.first.second == one.first; });
+    });
+  }
+  [[nodiscard]] bool hears(std::uint64_t daemon) const { return heard.contains(daemon); }
   void use() {
     is_new = false;
     if (!has_ahead) return;
@@ -127,8 +148,7 @@ struct SharedCell::OfShare {
     const clearance_msg_ZoneState* latest = nullptr;
     for (auto at = states.lower_bound({id, 0}); at != states.end() && at->first.first == id; ++at) {
       const std::uint64_t daemon = at->first.second;
-      const bool counts =
-          *report.partner != '\0' ? heard.contains(daemon) : daemon == report.daemon;
+      const bool counts = *report.partner != '\0' ? hears(daemon) : daemon == report.daemon;
       if (!counts) continue;
       for (const clearance_msg_ZoneState& state : at->second) {
         if (state.now_ns > until_ns) continue;
@@ -180,8 +200,10 @@ struct SharedCell::OfShare {
   const clearance_msg_Distances* used = nullptr;  // in the joined report; one of `current`
   bool is_new = false, has_ahead = false;
   std::uint64_t missed = 0;
+  std::int64_t taken_at = 0, came_at = 0;       // the last take() and report, by monotonic_ns()
   std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
   std::array<std::int64_t, 2> sender_heard_ns{};
+  std::map<std::uint64_t, dds_instance_handle_t> writer_of;  // of zones, by daemon
   // By zone and daemon, in the order in which they came.
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::deque<clearance_msg_ZoneState>> states;
 };

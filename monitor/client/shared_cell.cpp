@@ -48,7 +48,7 @@ void SharedCell::open(const std::vector<std::string>& names) {
   map_ = {};
   shares_.clear();
   joined_ns_ = 0;
-  opened_ns_ = dds_time();
+  opened_at_ = monotonic_ns();
   std::vector<dds_entity_t> readers;
   if (discovery_) readers.push_back(discovery_->reader());
   for (const std::string& name : names) {
@@ -90,19 +90,19 @@ void SharedCell::take() {
   }
 }
 
-bool SharedCell::waits_for_first(std::int64_t now_ns) const {
+bool SharedCell::waits_for_first() const {
   if (joined_ns_ != 0) return false;
   const bool is_known = std::ranges::any_of(shares_, [this](const auto& share) {
     return catalogue_of(share->current.latest->scene_revision) != nullptr;
   });
   const std::int64_t waits_ns = std::max(options_.late_after.count(), kMeeting);
   return !is_known ||
-         (now_ns - opened_ns_ <= waits_ns &&
+         (monotonic_ns() - opened_at_ <= waits_ns &&
           !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); }));
 }
 
 bool SharedCell::next(std::chrono::nanoseconds timeout) {
-  const std::int64_t end_ns = dds_time() + timeout.count();
+  const std::int64_t end_ns = monotonic_ns() + timeout.count();
   for (;;) {
     if (discovery_) look_for_names();
     take();
@@ -111,8 +111,9 @@ bool SharedCell::next(std::chrono::nanoseconds timeout) {
       if (join(now)) return true;
       continue;
     }
-    if (now >= end_ns) return false;
-    wait_->wait(std::min(end_ns - now, options_.late_after.count() / 4));
+    const std::int64_t left_ns = end_ns - monotonic_ns();
+    if (left_ns <= 0) return false;
+    wait_->wait(std::min(left_ns, options_.late_after.count() / 4));
   }
 }
 
@@ -125,16 +126,17 @@ bool SharedCell::newest(std::chrono::nanoseconds timeout) {
 
 // A share that is late or missing is not waited for.
 bool SharedCell::is_due(std::int64_t now_ns) const {
-  if (shares_.empty() || waits_for_first(now_ns)) return false;
+  if (shares_.empty() || waits_for_first()) return false;
+  const std::int64_t late_ns = options_.late_after.count(), at = monotonic_ns();
   bool has_any = false, lacks_one = false;
   for (const auto& share : shares_) {
     if (share->has_ahead) return true;
     has_any = has_any || share->is_new;
     const std::int64_t age = now_ns - share->current.latest->publish_ns;
-    lacks_one = lacks_one || (!share->is_new && age <= options_.late_after.count());
+    lacks_one = lacks_one || (!share->is_new && age <= late_ns && at - share->came_at <= late_ns);
   }
   if (has_any) return !lacks_one;
-  return joined_ns_ != 0 && now_ns - joined_ns_ >= options_.late_after.count();
+  return joined_ns_ != 0 && at - joined_at_ >= late_ns;
 }
 
 bool SharedCell::is_here(const OfShare& share) const {
@@ -188,7 +190,6 @@ bool SharedCell::follow_revision() {
       return false;
     }
     map_ = std::move(map);
-    separated_.clear();
     return true;
   }
   return true;
@@ -230,6 +231,7 @@ void SharedCell::judge(std::int64_t now_ns) {
 
 bool SharedCell::join(std::int64_t now_ns) {
   joined_ns_ = now_ns;
+  joined_at_ = monotonic_ns();
   if (!follow_revision()) return false;
   judge(now_ns);
   std::vector<ShareView> views;
@@ -247,20 +249,20 @@ bool SharedCell::join(std::int64_t now_ns) {
     view.separation = of_now(share.separation);
     view.gradients = of_now(share.gradient);
   }
-  const std::int64_t before_ns = message_->now_ns, published_ns = message_->publish_ns;
+  const std::int64_t before_ns = message_->now_ns;
   join_reports(map_, views, *message_);
-  // Without any share there is no time of a tick. Times do not go back where a share comes again.
+  // Without any share there is no time of a tick. That does not go back where a share comes again,
+  // but where a clock was set. The report says truly when its oldest part was published.
   if (message_->now_ns == 0) message_->now_ns = now_ns;
   if (message_->publish_ns == 0) message_->publish_ns = now_ns;
-  message_->now_ns = std::max(message_->now_ns, before_ns);
-  message_->publish_ns = std::max(message_->publish_ns, published_ns);
+  if (before_ns - message_->now_ns < options_.late_after.count())
+    message_->now_ns = std::max(message_->now_ns, before_ns);
   message_->daemon = daemon_;
   ++message_->cycle;
   check_ = checker_.check(*message_, now_ns);
   join_zones();
-  note_separated(views);
-  if (!separated_.empty()) {
-    join_separations(map_, views, separated_, *separation_);
+  if (!map_.separated().empty()) {
+    join_separations(map_, views, *separation_);
     sign(*separation_);
   }
   gradients_ = {};
@@ -272,23 +274,6 @@ bool SharedCell::join(std::int64_t now_ns) {
   }
   for (const auto& share : shares_) share->use();
   return true;
-}
-
-void SharedCell::note_separated(const std::vector<ShareView>& views) {
-  const auto add = [this](std::uint32_t zone) {
-    const auto at = std::ranges::lower_bound(separated_, zone);
-    if (at == separated_.end() || *at != zone) separated_.insert(at, zone);
-  };
-  if (const clearance_msg_Catalogue* const names = catalogue()) {
-    for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
-      if (std::ranges::find(options_.separated, zone.name) != options_.separated.end())
-        add(zone.id);
-    }
-  }
-  for (const ShareView& view : views) {
-    if (view.separation == nullptr) continue;
-    for (const clearance_msg_ZoneSeparation& zone : list(view.separation->zones)) add(zone.zone);
-  }
 }
 
 template <class Message>
@@ -350,14 +335,14 @@ std::string SharedCell::what_is_missing() const {
 
 Sample<clearance_msg_Health> SharedCell::health() {
   Sample<clearance_msg_Health> joined;
-  std::vector<const clearance_msg_Health*> of_shares;
+  std::vector<const clearance_msg_Health*> of_shares, former;
   for (std::size_t i = 0; i < shares_.size(); ++i) {
     shares_[i]->health.update();
     const clearance_msg_Health* const health = shares_[i]->health.message();
     const bool is_used = i < checks_.size() && checks_[i].state == ShareState::kWhole;
-    of_shares.push_back(is_used ? health : nullptr);
+    (is_used ? of_shares : former).push_back(health);
   }
-  join_health(of_shares, *joined);
+  join_health(of_shares, former, *joined);
   joined->daemon = daemon_;
   joined->cycle = message_->cycle;
   joined->scene_revision = message_->scene_revision;

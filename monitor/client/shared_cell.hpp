@@ -25,9 +25,6 @@ struct SharedCellOptions {
   bool gradients = false;  // they are read and joined, too
   // The names of the shares. If empty, they are those of the first share that is met.
   std::vector<std::string> names = {};
-  // The names of the zones with `separation`. One of a share that says nothing has scaling 0.
-  // Others are in separation() once a share has had them.
-  std::vector<std::string> separated = {};
 };
 
 // The state of a share in the present report.
@@ -69,10 +66,9 @@ class SharedCell {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& zones() const noexcept {
     return zones_;
   }
-  // Separations of the report at hand; null if none is known. A zone that is not in it has scaling
-  // 0.
+  // Separations of the report at hand; null if the cell has none, or is not known yet.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
-    return separated_.empty() ? nullptr : &*separation_;
+    return map_.separated().empty() ? nullptr : &*separation_;
   }
   // Gradients of the report at hand, if they are asked for; null: no share has any. A pair of a
   // share that is not whole is not in them.
@@ -98,7 +94,7 @@ class SharedCell {
   void take();
   // No joined report has been made, and either no scene is known, or a share that may still be
   // met has not been heard.
-  [[nodiscard]] bool waits_for_first(std::int64_t now_ns) const;
+  [[nodiscard]] bool waits_for_first() const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
   // Its last report is not late.
   [[nodiscard]] bool is_here(const OfShare& share) const;
@@ -106,8 +102,8 @@ class SharedCell {
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
   [[nodiscard]] bool follow_revision();
   void judge(std::int64_t now_ns);
+  // False: the shares are others than those that were read, and nothing is joined.
   [[nodiscard]] bool join(std::int64_t now_ns);
-  void note_separated(const std::vector<ShareView>& views);
   void join_zones();
   // Writes who made a message beside the report.
   template <class Message>
@@ -125,12 +121,11 @@ class SharedCell {
   Sample<clearance_msg_Separation> separation_;
   Sample<clearance_msg_Gradients> gradients_;
   bool has_gradients_ = false;
-  std::vector<std::uint32_t> separated_;  // zones of which any share has reported separations
   std::map<std::uint32_t, clearance_msg_ZoneState> zones_;
   ReportChecker checker_;
   ReportCheck check_;
-  std::int64_t opened_ns_ = 0;
-  std::int64_t joined_ns_ = 0;  // when the last report was made, by dds_time()
+  std::int64_t joined_ns_ = 0;                  // when the last report was made, by now_ns()
+  std::int64_t opened_at_ = 0, joined_at_ = 0;  // by monotonic_ns()
 };
 
 }  // namespace clearance::client

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -14,11 +15,6 @@
 
 namespace clearance::client {
 namespace {
-
-// A clock that is never set.
-std::int64_t steady_ns() noexcept {
-  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
 
 template <class T>
 bool take_one(dds_entity_t reader, T& sample) {
@@ -48,6 +44,10 @@ TopicKind kind_of() {
 
 dds_entity_t make_reader(Connection& connection, TopicKind kind, std::int32_t depth = 0) {
   return connection.participant().reader(kind, connection.topics().*topic(kind).name, depth);
+}
+
+dds_entity_t make_reader_of_all(Connection& connection, TopicKind kind) {
+  return connection.participant().reader_of_several(kind, connection.topics().*topic(kind).name);
 }
 
 template <class Sequence>
@@ -113,7 +113,7 @@ bool Stream<Message>::take() {
     is_next = true;
     if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
       const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
-      is_next = is_of_one || merge_.take(*scratch_, steady_ns());
+      is_next = is_of_one || merge_.take(*scratch_, monotonic_ns());
       if (is_next) static_cast<void>(whole_.complete(*scratch_));
     }
   }
@@ -125,9 +125,9 @@ bool Stream<Message>::take() {
 // A writer that comes or leaves also ends the wait, with nothing to take.
 template <class Message>
 bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
-  const std::int64_t end_ns = dds_time() + timeout.count();
+  const std::int64_t end_ns = monotonic_ns() + timeout.count();
   while (!take()) {
-    const std::int64_t left_ns = end_ns - dds_time();
+    const std::int64_t left_ns = end_ns - monotonic_ns();
     if (left_ns <= 0) return false;
     wait_->wait(left_ns);
   }
@@ -171,8 +171,7 @@ const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
 }
 
 Catalogue::Catalogue(Connection& connection)
-    : reader_(connection.participant().reader_of_several(TopicKind::kCatalogue,
-                                                         connection.topics().catalogue)) {}
+    : reader_(make_reader_of_all(connection, TopicKind::kCatalogue)) {}
 
 // A catalogue that comes again, from a daemon that was started again, replaces the one before.
 void Catalogue::update() {
@@ -265,11 +264,9 @@ void Health::update() {
   while (take_newer(reader_, message_, scratch_)) known_ = true;
 }
 
-Zones::Zones(Connection& connection)
-    : reader_(connection.participant().reader_of_several(TopicKind::kZones,
-                                                         connection.topics().zones)) {}
+Zones::Zones(Connection& connection) : reader_(make_reader_of_all(connection, TopicKind::kZones)) {}
 
-// A partner that ticks apart does not write zones. What it wrote before is still sent to readers
+// A partner that ticks apart does not clear zones. What it wrote before is still sent to readers
 // that come later: it does not count beside a later state of a daemon that is there.
 void Zones::update() {
   clearance_msg_ZoneState zone{};
@@ -278,11 +275,11 @@ void Zones::update() {
   while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
     if (!info.valid_data) continue;
     const auto known = states_.find(zone.zone);
-    const bool is_earlier = known != states_.end() && known->second.daemon != zone.daemon &&
-                            zone.now_ns < known->second.now_ns;
-    if (is_earlier) {
-      const std::vector<std::uint64_t> there = writers_of(reader_);
-      if (std::ranges::find(there, writers_[zone.zone]) != there.end()) continue;
+    if (known != states_.end() && known->second.daemon != zone.daemon) {
+      const clearance_msg_ZoneState& other = known->second;
+      const bool is_newer = zone.now_ns > other.now_ns ||
+                            (zone.now_ns == other.now_ns && (zone.active || !other.active));
+      if (!is_newer && std::ranges::count(writers_of(reader_), writers_[zone.zone]) > 0) continue;
     }
     states_[zone.zone] = zone;
     writers_[zone.zone] = info.publication_handle;
@@ -294,5 +291,9 @@ void Zones::keep_only(std::uint64_t daemon) {
 }
 
 std::int64_t now_ns() noexcept { return dds_time(); }
+
+std::int64_t monotonic_ns() noexcept {
+  return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
 
 }  // namespace clearance::client

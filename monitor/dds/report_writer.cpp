@@ -150,8 +150,11 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
-  write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  write_zones_again_ = catalogue_is_due_ = true;
+}
+
+void ReportWriter::write_catalogue() {
+  catalogue_is_due_ = !write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
 }
 
 // Writes reports in order, then statistics. Ends when the queue is closed and empty, and no other
@@ -168,6 +171,8 @@ void ReportWriter::run() {
 
 void ReportWriter::write_all() {
   look_for_others();
+  const bool may_write = zones_to_write_ != Zones::kNone && !others_.give_way();
+  if (catalogue_is_due_ && may_write) write_catalogue();
   while (const QueuedReport* queued = now_->queue.reports().front()) {
     write_report(*queued);
     now_->queue.reports().pop();
@@ -206,7 +211,8 @@ bool ReportWriter::change() {
   health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
   write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  zones_to_write_ = Zones::kAll;
+  write_catalogue();
   const std::lock_guard lock(mutex_);
   written_ = &now_->queue;
   return true;
@@ -217,6 +223,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   TickTag tag;
   if (partner_ != nullptr) {
     tag = partner_->tag(queued.report.cycle);
+    note_standing(tag.standing);
     if (!tag.publishes) {
       published_ = queued.report.cycle;
       return;
@@ -230,7 +237,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  write_zones(queued.report);
+  if (zones_to_write_ != Zones::kNone) write_zones(queued.report);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
@@ -242,9 +249,6 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
     identity_.partner.copy(message.partner, sizeof message.partner - 1);
     message.lineage = tag.lineage;
     message.state_checksum = checksum_of_rest(queued.report, tag.state_checksum);
-    const bool may_write_zones = tag.standing != PartnerStanding::kApart;
-    write_zones_again_ = write_zones_again_ || (may_write_zones && !writes_zones_);
-    writes_zones_ = may_write_zones;
     note_lead(partner_->leads());
   }
   to_wire(queued.report, queued.sources(), dds_time(), message);
@@ -262,13 +266,43 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
   return published;
 }
 
+// A daemon that ticks apart still has clients, and its zones are true. But a reader keeps one state
+// of a zone: an inactive one must not take the place of the partner's active one, whereas one that
+// is active in vain is written again when this daemon follows. Ids and names of a scene that the
+// partner does not have could mean others.
+void ReportWriter::note_standing(PartnerStanding standing) {
+  const std::uint64_t other = partner_->partner_revision();
+  const bool is_other_scene = other != 0 && other != now_->cell.scene.revision;
+  const Zones now = standing != PartnerStanding::kApart ? Zones::kAll
+                    : is_other_scene                    ? Zones::kNone
+                                                        : Zones::kActive;
+  const Zones before = std::exchange(zones_to_write_, now);
+  if (now < before) withdraw(now == Zones::kNone);
+  if (now > before) write_zones_again_ = true;
+  if (now > before && before == Zones::kNone) write_catalogue();
+}
+
+// Takes back inactive zones, or all and the catalogue, so that a reader that comes later does not
+// get them. Readers that have them keep them.
+void ReportWriter::withdraw(bool all) {
+  for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
+    const std::optional<WrittenZone>& last = now_->written_zones.last(zone);
+    if (!all && (!last || last->active)) continue;
+    clearance_msg_ZoneState state{};
+    state.zone = zone;
+    dds_unregister_instance(zones_, &state);
+    now_->written_zones.forget(zone);
+  }
+  if (all) dds_unregister_instance(catalogue_, &*own_catalogue());
+}
+
 // Simple readers have the latched values of the leader before.
 void ReportWriter::note_lead(bool leads) {
   const bool begins = leads && !leads_;
   leads_ = leads;
   if (!begins) return;
   write_zones_again_ = true;
-  write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+  write_catalogue();
 }
 
 void ReportWriter::write_separation(const Report& report) {
@@ -278,21 +312,28 @@ void ReportWriter::write_separation(const Report& report) {
 }
 
 // Writes a zone at the start, after each change of its state or cause, and again after another
-// daemon may have written it. The log has the changes of its state. A daemon that ticks apart
-// does not clear zones: what it wrote last may be all that a reader has.
+// daemon may have written it, or after DDS has refused it. The log has the changes of its state.
 void ReportWriter::write_zones(const Report& report) {
-  const bool again = writes_zones_ && std::exchange(write_zones_again_, false);
+  const bool again = std::exchange(write_zones_again_, false);
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
     const WrittenZone present = WrittenZone::of(report.zones[zone]);
     const std::optional<WrittenZone> before = now_->written_zones.last(zone);
-    if ((before == present && !again) || (!writes_zones_ && !present.active)) continue;
+    if (before == present && !again) continue;
+    const bool is_change = before ? before->active != present.active : present.active;
+    if (!present.active && zones_to_write_ == Zones::kActive) {
+      if (is_change) zone_log_.note(zone, report.zones[zone], report.cycle);
+      now_->written_zones.forget(zone);
+      continue;
+    }
     clearance_msg_ZoneState state{};
     state.daemon = identity_.id;
     to_wire(now_->cell.scene, report, zone, state);
     now_->pairs.in(state);
-    write(TopicKind::kZones, zones_, &state, "zone state");
-    if (before ? before->active != present.active : present.active)
-      zone_log_.note(zone, report.zones[zone], report.cycle);
+    if (!write(TopicKind::kZones, zones_, &state, "zone state")) {
+      now_->written_zones.forget(zone);
+      continue;
+    }
+    if (is_change) zone_log_.note(zone, report.zones[zone], report.cycle);
     now_->written_zones.set(zone, present);
   }
 }

@@ -105,7 +105,10 @@ class ReportWriter {
   void look_for_others();
   void write_report(const QueuedReport& queued);
   [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
+  void note_standing(PartnerStanding standing);
+  void withdraw(bool all);
   void note_lead(bool leads);
+  void write_catalogue();
   void write_separation(const Report& report);
   void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
@@ -128,8 +131,11 @@ class ReportWriter {
   ContactLog contact_log_;
   HealthLog health_log_;
   bool write_zones_again_ = false;
-  bool leads_ = true;                 // writes what has one leader
-  bool writes_zones_ = true;          // not while its partner's may be others
+  bool leads_ = true;  // writes what has one leader
+  // While the partner's zones may be others, an inactive one of this daemon says nothing.
+  enum class Zones : std::uint8_t { kNone, kActive, kAll };
+  Zones zones_to_write_ = Zones::kAll;
+  bool catalogue_is_due_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};

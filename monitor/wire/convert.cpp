@@ -67,6 +67,20 @@ void fill(const Zone& zone, std::uint32_t id, clearance_msg_CatalogueZone& out) 
   out.leave_above = zone.leave_above;
 }
 
+void fill_separated(const Cell& cell, clearance_msg_Catalogue& out) {
+  reserve_sequence(out.separated_zones, cell.scene.zones.size());
+  const auto add = [&](std::uint32_t zone) {
+    out.separated_zones._buffer[out.separated_zones._length++] = zone;
+  };
+  if (cell.shares.is_one()) {
+    std::ranges::for_each(cell.shares.separated, add);
+  } else {
+    for (std::uint32_t zone = 0; zone < cell.scene.zones.size(); ++zone) {
+      if (cell.scene.zones[zone].separation) add(zone);
+    }
+  }
+}
+
 // The index of a share fits into an octet.
 void fill_shares(const Shares& shares, bool with_pairs, clearance_msg_Catalogue& out) {
   copy_text(shares.name(), out.share);
@@ -184,6 +198,7 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
   for (std::uint32_t i = 0; i < scene.zones.size(); ++i) {
     fill(scene.zones[i], i, sample->zones._buffer[sample->zones._length++]);
   }
+  fill_separated(cell, *sample);
   reserve_sequence(sample->joints, scene.variables.size());
   for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
     sample->joints._buffer[sample->joints._length++] = {i, duplicate(scene.variables[i].name)};

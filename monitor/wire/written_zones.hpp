@@ -38,6 +38,8 @@ class WrittenZones {
     return last_[zone] && last_[zone]->active;
   }
   void set(std::uint32_t zone, const WrittenZone& state) { last_[zone] = state; }
+  // Nothing is known to be written of it any longer.
+  void forget(std::uint32_t zone) { last_[zone].reset(); }
 
  private:
   std::vector<std::optional<WrittenZone>> last_;

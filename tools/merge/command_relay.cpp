@@ -59,7 +59,6 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
     for (const std::string& name : cell.commands.from)
       of.commands[name] = std::make_unique<client::Commands>(*of.connection, name);
   }
-  thread_ = std::thread([this] { run(); });
   port_ = std::make_unique<CommandPort>(
       cell, cell.commands.from, connection_.participant(), daemon,
       [this](QueuedCommand command) {
@@ -71,6 +70,7 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
       },
       [this] { return revision_.load(); });
   port_->start();
+  thread_ = std::thread([this] { run(); });
 }
 
 // The port ends last: results go through it.

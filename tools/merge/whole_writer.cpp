@@ -50,32 +50,35 @@ WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64
       others_(participant, topics_.distances, identity_),
       zone_check_(cell) {}
 
-void WholeWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
-  if (others_.give_way()) return;
-  if (dds_write(writer, sample) != DDS_RETCODE_OK) ++failed_;
+bool WholeWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
+  if (others_.give_way()) return false;
+  const bool is_taken = dds_write(writer, sample) == DDS_RETCODE_OK;
+  failed_ += is_taken ? 0 : 1;
   messages_.published(kind, sample);
+  return is_taken;
 }
 
 // The strings belong to the share's sample. Cycles are those of this program.
-void WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
+bool WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
   clearance_msg_Catalogue whole = catalogue;
   whole.daemon = identity_.id;
   whole.share[0] = '\0';
   whole.began_after = whole.in_force_from = 0;
-  put(TopicKind::kCatalogue, catalogue_, &whole);
+  return put(TopicKind::kCatalogue, catalogue_, &whole);
 }
 
-// Ids that a changed cell no longer has are withdrawn, and all others are written again.
+// Ids that a changed cell no longer has are withdrawn, and all others are written again. So is a
+// state that DDS has not taken.
 void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
   std::map<std::uint32_t, WrittenZone> now;
   for (const auto& [id, state] : whole.zones()) {
-    now[id] = WrittenZone::of(state);
+    const WrittenZone present = WrittenZone::of(state);
     const auto before = written_.find(id);
-    if (again || before == written_.end() || before->second != now[id])
-      put(TopicKind::kZones, zones_, &state);
+    const bool is_due = again || before == written_.end() || before->second != present;
+    if (!is_due || put(TopicKind::kZones, zones_, &state)) now[id] = present;
   }
   for (const auto& [id, state] : written_) {
-    if (now.contains(id)) continue;
+    if (whole.zones().contains(id)) continue;
     clearance_msg_ZoneState gone{};
     gone.zone = id;
     dds_dispose(zones_, &gone);
@@ -90,8 +93,7 @@ void WholeWriter::write(client::SharedCell& whole) {
   if (catalogue == nullptr) return;
   const bool is_new = catalogue->scene_revision != revision_ || others_.have_just_left();
   if (is_new) {
-    revision_ = catalogue->scene_revision;
-    write_catalogue(*catalogue);
+    revision_ = write_catalogue(*catalogue) ? catalogue->scene_revision : 0;
   }
   clearance_msg_Distances report = *whole;
   const std::int64_t oldest_ns = report.publish_ns;

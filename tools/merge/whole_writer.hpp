@@ -37,9 +37,10 @@ class WholeWriter {
   [[nodiscard]] std::string summary(const client::SharedCell& whole) const;
 
  private:
-  void write_catalogue(const clearance_msg_Catalogue& catalogue);
+  [[nodiscard]] bool write_catalogue(const clearance_msg_Catalogue& catalogue);
   void write_zones(const client::SharedCell& whole, bool again);
-  void put(TopicKind kind, dds_entity_t writer, const void* sample);
+  // False: DDS has not taken it.
+  bool put(TopicKind kind, dds_entity_t writer, const void* sample);
 
   Participant& participant_;
   DaemonIdentity identity_;

@@ -22,10 +22,20 @@ nlohmann::json point(const Vec3& at) {
 }  // namespace
 
 void Frame::take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr) {
+  if (kind == TopicKind::kDistances && is_sparse_) cdr = made_whole(cdr);
   keep(channel(kind), key_of(kind, cdr), time_ns, cdr);
   if (kind == TopicKind::kCatalogue && decoder_.decode(cdr, catalogue_)) {
     revision_ = catalogue_->scene_revision;
   }
+}
+
+// The result holds until the next message is encoded.
+std::span<const std::byte> Frame::made_whole(std::span<const std::byte> cdr) {
+  if (!decoder_.decode(cdr, taken_)) return cdr;
+  is_sparse_ = taken_->changes_since != 0;
+  if (!is_sparse_) return cdr;
+  static_cast<void>(whole_.complete(*taken_));
+  return encoder_.encode(*taken_);
 }
 
 // A key keeps messages from replacing each other: zones by id, batches by source. Poses and joints
@@ -85,6 +95,7 @@ std::string Frame::distance_json(std::uint32_t a, std::uint32_t b) {
 void Frame::use_report() {
   const auto report = new_.find({channel(TopicKind::kDistances), 0});
   if (report == new_.end() || !decoder_.decode(*report->second.payload, report_)) return;
+  is_sparse_ = is_sparse_ || report_->changes_since != 0;
   report_time_ns_ = report->second.time_ns;
   revision_ = report_->scene_revision;
   poses_.use(*report_);

@@ -12,6 +12,7 @@
 #include <string>
 #include <utility>
 
+#include "monitor/client/whole_reports.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/visual/measured_distance.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -28,7 +29,8 @@ class Frame {
       : scene_(scene), hear_(std::move(hear)), poses_(scene), own_(scene) {}
 
   // Takes one message of our topics. It only keeps the bytes of a report and the numbers of poses
-  // and joints, which is cheap for every message of a fast stream.
+  // and joints, which is cheap for every message of a fast stream. Reports that carry only the
+  // pairs that changed are made whole, so each of them has to come.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
   // Poses or joints of a topic of ROS 2.
   void take_from_ros(PoseBatch batch) {
@@ -57,6 +59,7 @@ class Frame {
   void keep(ChannelId channel, std::uint32_t key, std::int64_t time_ns,
             std::span<const std::byte> cdr);
   std::uint32_t key_of(TopicKind kind, std::span<const std::byte> cdr);
+  [[nodiscard]] std::span<const std::byte> made_whole(std::span<const std::byte> cdr);
   void use_report();
   // Publishes once per report; bodies only once.
   template <class Make>
@@ -69,7 +72,9 @@ class Frame {
   OwnBatches own_;
   CdrDecoder decoder_;
   CdrEncoder encoder_;
-  Sample<clearance_msg_Distances> report_;
+  Sample<clearance_msg_Distances> report_, taken_;
+  client::WholeReports whole_;
+  bool is_sparse_ = true;  // reports carry only what changed, or none has come
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;
   std::map<std::string, std::uint32_t> sources_;  // numbered in the order in which they came

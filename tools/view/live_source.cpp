@@ -141,7 +141,7 @@ void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
   while (take_cdr(reader, taken_) == kMostAtOnce) {
   }
   const bool are_reports = kind == TopicKind::kDistances;
-  const bool begins_merging = are_reports && !is_merging_ && have_partners(reader);
+  const bool begins_merging = are_reports && !is_merging_ && are_all_needed(reader);
   is_merging_ = is_merging_ || begins_merging;
   if (are_reports && taken_.size() >= kReportsCompared) merged_.note_loss(steady_ns);
   for (const CdrSample& sample : taken_) {
@@ -153,14 +153,14 @@ void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
 }
 
 // Only the first report of a daemon that is alone is decoded for this.
-bool LiveSource::have_partners(dds_entity_t reader) {
+bool LiveSource::are_all_needed(dds_entity_t reader) {
   if (taken_.empty() || (std::exchange(has_looked_, true) && writers_alive(reader) < 2))
     return false;
   return decoder_.decode(taken_.back().bytes(), report_, CdrBytes::kOfReader) &&
-         *report_->partner != '\0';
+         (*report_->partner != '\0' || report_->changes_since != 0);
 }
 
-// Both reports of a cycle are needed from now on, and not only the newest.
+// Both reports of a cycle, and all of what changed, are needed from now on: not only the newest.
 void LiveSource::merge(std::int64_t steady_ns) {
   dds_entity_t& reader = readers_[index(TopicKind::kDistances)];
   check_dds(dds_delete(reader), "deleting a reader");

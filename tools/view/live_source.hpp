@@ -46,7 +46,7 @@ class LiveSource final : public Source {
   void join(TopicKind kind);
   void leave(Server& server);
   void take(TopicKind kind, std::int64_t steady_ns);
-  [[nodiscard]] bool have_partners(dds_entity_t reader);
+  [[nodiscard]] bool are_all_needed(dds_entity_t reader);
   void merge(std::int64_t steady_ns);
   [[nodiscard]] bool is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns);
   void take_from_ros(const Now& now);
@@ -78,8 +78,8 @@ class LiveSource final : public Source {
   std::uint64_t attached_of_ = 0;  // the revision that these are of; 0: none yet
   std::uint64_t daemon_ = 0;       // of that catalogue
   RosReaders ros_;
-  bool is_merging_ = false;  // there are partners
-  bool has_looked_ = false;  // for partners, in the first report
+  bool is_merging_ = false;  // there are partners, or reports carry only what changed
+  bool has_looked_ = false;  // for these, in the first report
   MergedReports merged_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_Health> health_;

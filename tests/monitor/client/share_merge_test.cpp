@@ -229,6 +229,9 @@ TEST(ShareMerge, AZoneIsActiveIfItIsInOneShareOrIfAShareOfItIsNotHeard) {
 
 TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
   Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
+  auto& separated = shares.catalogue->separated_zones;
+  separated._buffer[separated._length++] = 0;
+  shares.map = ShareMap(*shares.catalogue);
   std::vector<Sample<clearance_msg_Separation>> of(3);
   for (std::size_t share = 0; share < 3; ++share) {
     reserve_sequence(of[share]->zones, 1);
@@ -237,12 +240,12 @@ TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
     shares.views[share].separation = &*of[share];
   }
   Sample<clearance_msg_Separation> joined;
-  join_separations(shares.map, shares.views, {0}, *joined);
+  join_separations(shares.map, shares.views, *joined);
   ASSERT_EQ(joined->zones._length, 1u);
   EXPECT_EQ(joined->zones._buffer[0].validity, 2);
   EXPECT_EQ(joined->zones._buffer[0].remaining, 0.8);
   shares.views[1].separation = nullptr;
-  join_separations(shares.map, shares.views, {0}, *joined);
+  join_separations(shares.map, shares.views, *joined);
   EXPECT_EQ(joined->zones._buffer[0].validity, 0);
   EXPECT_EQ(joined->zones._buffer[0].scaling, 0.0);
   EXPECT_EQ(joined->zones._buffer[0].speed_limit, 0.0);
@@ -308,7 +311,7 @@ TEST(ShareMerge, AnInputIsAsOldAsTheShareThatKnowsLeastOfItSays) {
   add(*of[1], 0, -1);
   of[1]->tick_max_us = 9.0;
   Sample<clearance_msg_Health> joined;
-  join_health(std::vector<const clearance_msg_Health*>{&*of[0], nullptr, &*of[1]}, *joined);
+  join_health(std::vector<const clearance_msg_Health*>{&*of[0], nullptr, &*of[1]}, {}, *joined);
   ASSERT_EQ(joined->inputs._length, 2u);
   EXPECT_EQ(joined->inputs._buffer[0].age_ns, -1);
   EXPECT_TRUE(joined->inputs._buffer[0].stale);

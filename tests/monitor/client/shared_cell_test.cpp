@@ -1,0 +1,205 @@
+// A client of a cell in shares over real DDS. The test plays the daemons.
+#include "monitor/client/shared_cell.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "config/cell/share_topics.hpp"
+#include "monitor/report.hpp"
+#include "monitor/wire/convert.hpp"
+#include "monitor/wire/report_checksum.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance::client {
+namespace {
+
+using std::chrono::milliseconds;
+using test::eventually;
+
+constexpr std::uint32_t kWide = 0, kFar = 1;
+
+// The zone `wide` has pairs of both shares, `far` those of the right one.
+Cell balls() {
+  const auto ball = [](const char* name, const char* group) {
+    return std::string("  - {name: ") + name + ", groups: [all, " + group +
+           "], sphere: {radius: 0.1}}\n";
+  };
+  return read_good(cell_text(
+      "objects:\n" + ball("a", "first") + ball("b", "first") + ball("c", "last") +
+      "pairs: [{between: [all, all], publish: true}]\nzones:\n"
+      "  - {name: wide, between: [all, all], enter_below: 1, leave_above: 1}\n"
+      "  - name: far\n    between: [first, last]\n    enter_below: 1\n    leave_above: 1\n"
+      "    separation: {human: last, reaction_time_ms: 1, stopping_time_ms: 1, "
+      "stopping_distance: 1, intrusion_distance: 1}\n"
+      "shares:\n  - {name: left, pairs: [{between: [first, first]}]}\n"
+      "  - {name: right, pairs: [{between: [first, last]}]}\n"));
+}
+
+// A daemon of a share. Partners have a name.
+class Daemon {
+ public:
+  Daemon(const DdsOptions& dds, const Cell& cell, const char* share, std::uint64_t id,
+         std::string partner = {})
+      : topics_(topics_of_share(cell.topics, share)),
+        participant_(dds),
+        id_(id),
+        revision_(cell.scene.revision),
+        partner_(std::move(partner)) {
+    auto catalogue = make_catalogue(cell);
+    check_dds(dds_write(catalogue_, &*catalogue), "writing");
+  }
+  [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
+  void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time()) {
+    clearance_msg_Distances message{};
+    partner_.copy(message.partner, sizeof message.partner - 1);
+    message.daemon = id_;
+    message.cycle = cycle;
+    message.lineage = 4;
+    message.now_ns = now_ns(cycle);
+    message.publish_ns = publish_ns;
+    message.scene_revision = revision_;
+    if (!partner_.empty()) message.checksum = checksum_of(message);
+    check_dds(dds_write(distances_, &message), "writing");
+  }
+  void zones(std::uint64_t cycle, bool active) {
+    for (const std::uint32_t zone : {kWide, kFar}) {
+      clearance_msg_ZoneState state{};
+      state.zone = zone;
+      std::strcpy(state.name, zone == kWide ? "wide" : "far");
+      state.daemon = id_;
+      state.active = active;
+      state.cause = active ? static_cast<std::uint8_t>(ZoneCause::kNear) : std::uint8_t{0};
+      state.cycle = cycle;
+      state.now_ns = now_ns(cycle);
+      check_dds(dds_write(zones_, &state), "writing");
+    }
+  }
+
+ private:
+  std::int64_t now_ns(std::uint64_t cycle) const {
+    return start_ns_ + static_cast<std::int64_t>(cycle) * 1'000'000;
+  }
+
+  inline static const std::int64_t start_ns_ = dds_time();
+  Topics topics_;
+  Participant participant_;
+  std::uint64_t id_, revision_;
+  std::string partner_;
+  dds_entity_t distances_ =
+      participant_.writer(TopicKind::kDistances, topics_.distances, {.lease_ns = 60'000'000'000});
+  dds_entity_t catalogue_ = participant_.writer(TopicKind::kCatalogue, topics_.catalogue);
+  dds_entity_t zones_ = participant_.writer(TopicKind::kZones, topics_.zones);
+};
+
+class ASharedCell : public testing::Test {
+ protected:
+  void open(std::vector<std::string> names) {
+    whole.emplace(connection, SharedCellOptions{.late_after = std::chrono::seconds(5),
+                                                .names = std::move(names)});
+  }
+  [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
+
+  Cell cell = balls();
+  DdsOptions dds = test::own_dds();
+  Connection connection{dds, cell.topics};
+  Daemon right{dds, cell, "right", 3};
+  std::optional<SharedCell> whole;
+};
+
+// The reports of the one partner, which ticks apart, always come first.
+TEST_F(ASharedCell, HasTheZonesOfAPartnerWhoseReportsComeSecond) {
+  open({"left", "right"});
+  Daemon apart(dds, cell, "left", 1, "one"), leader(dds, cell, "left", 2, "two");
+  ASSERT_TRUE(
+      eventually([&] { return apart.is_heard() && leader.is_heard() && right.is_heard(); }));
+  for (Daemon* const daemon : {&apart, &leader, &right}) daemon->zones(1, false);
+  std::uint64_t cycle = 1;
+  const auto next = [&] {
+    apart.report(cycle);
+    right.report(cycle);
+    const bool came = whole->next(milliseconds(500));
+    leader.report(cycle++);
+    return came;
+  };
+  ASSERT_TRUE(eventually([&] { return next() && whole->is_whole() && !is_active(kWide); }));
+  leader.zones(cycle, true);
+  EXPECT_TRUE(eventually([&] { return next() && is_active(kWide); }, std::chrono::seconds(10)));
+  EXPECT_EQ(whole->zones().at(kWide).cause, static_cast<std::uint8_t>(ZoneCause::kNear));
+}
+
+// The first report has the states of all zones, although the names came in another order.
+TEST_F(ASharedCell, BeginsWithAllZonesWhereNamesAreInAnotherOrder) {
+  Daemon left(dds, cell, "left", 1);
+  left.zones(1, false);
+  right.zones(1, false);
+  open({"right", "left"});
+  std::uint64_t cycle = 1;
+  ASSERT_TRUE(eventually([&] {
+    left.report(cycle);
+    right.report(cycle++);
+    return whole->next(milliseconds(50));
+  }));
+  EXPECT_EQ(whole->zones().size(), 2u);
+  EXPECT_NE(whole->catalogue(), nullptr);
+  EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
+}
+
+TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
+  Daemon left(dds, cell, "left", 1);
+  left.zones(1, false);
+  right.zones(1, false);
+  open({"left", "right"});
+  std::uint64_t cycle = 1;
+  ASSERT_TRUE(eventually([&] {
+    left.report(cycle);
+    right.report(cycle++);
+    return whole->next(milliseconds(50)) && whole->is_whole();
+  }));
+  ASSERT_NE(whole->separation(), nullptr);
+  ASSERT_EQ(whole->separation()->zones._length, 1u);
+  const clearance_msg_ZoneSeparation& zone = whole->separation()->zones._buffer[0];
+  EXPECT_EQ(zone.zone, kFar);
+  EXPECT_EQ(zone.validity, 0);
+  EXPECT_EQ(zone.scaling, 0.0);
+}
+
+// A clock was set back: the report is as old as it was published, and not younger.
+TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
+  Daemon left(dds, cell, "left", 1);
+  left.zones(1, false);
+  right.zones(1, false);
+  open({"left", "right"});
+  std::uint64_t cycle = 1;
+  ASSERT_TRUE(eventually([&] {
+    left.report(cycle);
+    right.report(cycle++);
+    return whole->next(milliseconds(50)) && whole->is_whole();
+  }));
+  const std::int64_t before = dds_time() - 1'000'000'000;
+  EXPECT_TRUE(eventually(
+      [&] {
+        left.report(cycle);
+        right.report(cycle++, before);
+        return whole->next(milliseconds(50)) && whole->publish_ns == before;
+      },
+      std::chrono::seconds(10)));
+}
+
+// The catalogue of one share names the separations of all.
+TEST(SharesCatalogue, NamesTheZonesWithSeparationOfAllShares) {
+  Cell cell = balls();
+  select_share(cell, 0);
+  ASSERT_FALSE(cell.scene.zones[kFar].separation) << "the share has no pair of it";
+  const auto catalogue = make_catalogue(cell, {}, CataloguePairs::kOfWholeCell);
+  ASSERT_EQ(catalogue->separated_zones._length, 1u);
+  EXPECT_EQ(catalogue->separated_zones._buffer[0], kFar);
+}
+
+}  // namespace
+}  // namespace clearance::client

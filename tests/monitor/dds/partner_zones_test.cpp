@@ -1,0 +1,179 @@
+// What one of two partners leaves latched while it ticks apart. The test acts as the tick thread.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <map>
+
+#include "monitor/client/client.hpp"
+#include "monitor/dds/report_writer.hpp"
+#include "tests/monitor/loop/listed_ports.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/shared/loopback.hpp"
+
+namespace clearance {
+namespace {
+
+using test::eventually;
+using enum PartnerStanding;
+
+constexpr std::uint32_t kNear = 0, kWide = 1;
+
+// A ball that moves towards a post, which is 0.8 m away from it at x = 0.
+Cell watched_cell() {
+  Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
+                               test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
+  scene.revision = 5;
+  scene.pairs[0].publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.2, 0.25));
+  scene.zones.push_back(test::zone_over(scene, 0.6, 0.65));
+  scene.zones[kWide].name = "wide";
+  return Cell{scene};
+}
+
+class APartner : public testing::Test {
+ protected:
+  ~APartner() override {
+    queue.close();
+    reports.reset();
+  }
+  void tick(double x, PartnerStanding standing) {
+    const PoseSample sample = test::sample(0, test::at(x, 0, 0), now += test::kTick);
+    const Report& report = monitor.tick({&sample, 1}, now);
+    TickTag* const tag = ticks.tags().back();
+    ASSERT_NE(tag, nullptr);
+    *tag = {.cycle = report.cycle, .lineage = 3, .standing = standing, .publishes = true};
+    ticks.tags().push();
+    queue.report(report, {});
+    ASSERT_TRUE(eventually([&] { return reports->published_cycle() == report.cycle; }));
+  }
+  // The zones that a client gets that comes now: by id, whether they are active. `count` come.
+  std::map<std::uint32_t, bool> latched(std::size_t count) {
+    client::Connection connection(dds, cell.topics);
+    client::Zones zones(connection);
+    EXPECT_TRUE(eventually([&] {
+      zones.update();
+      return zones.states().size() >= count;
+    }));
+    std::map<std::uint32_t, bool> active;
+    for (const auto& [id, state] : zones.states()) active[id] = state.active;
+    return active;
+  }
+
+  Cell cell = watched_cell();
+  DdsOptions dds = test::own_dds();
+  Participant participant{dds};
+  PoseReader poses{cell, participant};
+  ReportQueue queue{cell.scene, {.reports = 16}};
+  RecordingHealth recording;
+  DaemonIdentity identity = make_identity("right");
+  test::ListedPoses no_poses;
+  test::TurnedClock clock;
+  TickPartner ticks{no_poses, clock, {.daemon = identity.id, .batch = {.samples = 16}}};
+  PartnerPort port{participant, cell.topics, identity, ticks};
+  std::unique_ptr<ReportWriter> reports =
+      std::make_unique<ReportWriter>(cell, participant, queue, poses, recording,
+                                     ReportWriter::OnHealth(), nullptr, identity, &port);
+  Monitor monitor{cell.scene};
+  std::int64_t now = test::kStart;
+};
+
+using Active = std::map<std::uint32_t, bool>;
+
+TEST_F(APartner, ThatTicksApartLeavesNoInactiveZoneButWritesActiveOnes) {
+  tick(0.0, kFollowing);
+  EXPECT_EQ(latched(2), (Active{{kNear, false}, {kWide, false}}));
+  tick(0.0, kApart);
+  tick(0.3, kApart);
+  EXPECT_EQ(latched(1), (Active{{kWide, true}})) << "it is not known of the partner's";
+  tick(0.0, kApart);
+  tick(0.0, kApart);
+  EXPECT_EQ(latched(1), (Active{{kWide, true}})) << "active in vain is true enough";
+  tick(0.0, kFollowing);
+  EXPECT_EQ(latched(2), (Active{{kNear, false}, {kWide, false}}));
+}
+
+// Its ids and names are those of another scene than the partner's.
+TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
+  client::Connection connection(dds, cell.topics);
+  Participant& of_partner = connection.participant();
+  const dds_entity_t distances = of_partner.writer(TopicKind::kDistances, cell.topics.distances);
+  const dds_entity_t zones = of_partner.writer(TopicKind::kZones, cell.topics.zones);
+  const dds_entity_t catalogue = of_partner.writer(TopicKind::kCatalogue, cell.topics.catalogue);
+  Cell changed = watched_cell();
+  changed.scene.revision = 6;
+  check_dds(dds_write(catalogue, &*make_catalogue(changed)), "writing");
+  clearance_msg_ZoneState state{};
+  state.zone = 7;
+  check_dds(dds_write(zones, &state), "writing");
+  port.start({.wants_state = [] {}, .send_state = [] {}, .take_state = [](const auto&) {}});
+  tick(0.3, kFollowing);
+  EXPECT_EQ(latched(3), (Active{{kNear, false}, {kWide, true}, {7, false}}));
+  clearance_msg_Distances report{};
+  std::strcpy(report.partner, "left");
+  report.scene_revision = 6;
+  ASSERT_TRUE(eventually([&] {
+    ++report.cycle;
+    check_dds(dds_write(distances, &report), "writing");
+    return port.partner_revision() == 6;
+  }));
+  tick(0.3, kApart);
+  EXPECT_EQ(latched(1), (Active{{7, false}})) << "those of the partner only";
+  client::Connection late(dds, cell.topics);
+  client::Catalogue names(late);
+  ASSERT_TRUE(eventually([&] {
+    names.update();
+    return names.message() != nullptr;
+  }));
+  EXPECT_EQ(names.revision(), 6u);
+  EXPECT_EQ(names.message(5), nullptr);
+  tick(0.3, kFollowing);
+  EXPECT_EQ(latched(3), (Active{{kNear, false}, {kWide, true}, {7, false}}));
+  EXPECT_TRUE(eventually([&] {
+    names.update();
+    return names.message(5) != nullptr;
+  }));
+  port.stop();
+}
+
+// Two daemons write one zone, and a client hears them in any order.
+TEST(PartnersZones, TheStateOfTheLatestTickCountsAsLongAsItsDaemonIsThere) {
+  const DdsOptions dds = test::own_dds();
+  client::Connection connection(dds);
+  client::Zones zones(connection);
+  const auto write = [&](dds_entity_t writer, std::uint64_t daemon, bool active,
+                         std::int64_t now_ns) {
+    clearance_msg_ZoneState state{};
+    state.daemon = daemon;
+    state.active = active;
+    state.now_ns = now_ns;
+    check_dds(dds_write(writer, &state), "writing");
+    state.zone = static_cast<std::uint32_t>(now_ns);  // to be seen when it has come
+    check_dds(dds_write(writer, &state), "writing");
+    EXPECT_TRUE(eventually([&] {
+      zones.update();
+      return zones.states().contains(state.zone);
+    }));
+  };
+  const auto is_active = [&] { return zones.states().at(0).active; };
+  Participant stays(dds);
+  const dds_entity_t staying = stays.writer(TopicKind::kZones, connection.topics().zones);
+  {
+    Participant leaves(dds);
+    const dds_entity_t leaving = leaves.writer(TopicKind::kZones, connection.topics().zones);
+    write(leaving, 1, true, 100);
+    write(staying, 2, false, 50);
+    EXPECT_TRUE(is_active()) << "the other one's is from before";
+    write(leaving, 1, false, 110);
+    EXPECT_FALSE(is_active());
+    write(staying, 2, true, 120);
+    EXPECT_TRUE(is_active());
+    write(leaving, 1, true, 130);
+  }
+  EXPECT_TRUE(eventually([&] {
+    write(staying, 2, false, 20);
+    return !is_active();
+  })) << "a clock may have been set back";
+}
+
+}  // namespace
+}  // namespace clearance
