@@ -171,7 +171,7 @@ void ReportWriter::run() {
 
 void ReportWriter::write_all() {
   look_for_others();
-  const bool may_write = zones_to_write_ != Zones::kNone && !others_.give_way();
+  const bool may_write = zones_to_write_ != Zones::kNothing && !others_.give_way();
   if (catalogue_is_due_ && may_write) write_catalogue();
   while (const QueuedReport* queued = now_->queue.reports().front()) {
     write_report(*queued);
@@ -237,7 +237,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  if (zones_to_write_ != Zones::kNone) write_zones(queued.report);
+  if (zones_to_write_ != Zones::kNothing) write_zones(queued.report);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
@@ -274,12 +274,12 @@ void ReportWriter::note_standing(PartnerStanding standing) {
   const std::uint64_t other = partner_->partner_revision();
   const bool is_other_scene = other != 0 && other != now_->cell.scene.revision;
   const Zones now = standing != PartnerStanding::kApart ? Zones::kAll
-                    : is_other_scene                    ? Zones::kNone
+                    : is_other_scene                    ? Zones::kNothing
                                                         : Zones::kActive;
   const Zones before = std::exchange(zones_to_write_, now);
-  if (now < before) withdraw(now == Zones::kNone);
+  if (now < before) withdraw(now == Zones::kNothing);
   if (now > before) write_zones_again_ = true;
-  if (now > before && before == Zones::kNone) write_catalogue();
+  if (now > before && before == Zones::kNothing) write_catalogue();
 }
 
 // Takes back inactive zones, or all and the catalogue, so that a reader that comes later does not

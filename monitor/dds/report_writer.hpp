@@ -133,7 +133,7 @@ class ReportWriter {
   bool write_zones_again_ = false;
   bool leads_ = true;  // writes what has one leader
   // While the partner's zones may be others, an inactive one of this daemon says nothing.
-  enum class Zones : std::uint8_t { kNone, kActive, kAll };
+  enum class Zones : std::uint8_t { kNothing, kActive, kAll };
   Zones zones_to_write_ = Zones::kAll;
   bool catalogue_is_due_ = false;
   std::uint64_t dropped_before_ = 0;  // by queues of former cells

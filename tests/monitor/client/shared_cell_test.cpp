@@ -25,7 +25,7 @@ using test::eventually;
 constexpr std::uint32_t kWide = 0, kFar = 1;
 
 // The zone `wide` has pairs of both shares, `far` those of the right one.
-Cell balls() {
+Cell cell_in_shares() {
   const auto ball = [](const char* name, const char* group) {
     return std::string("  - {name: ") + name + ", groups: [all, " + group +
            "], sphere: {radius: 0.1}}\n";
@@ -105,7 +105,7 @@ class ASharedCell : public testing::Test {
   }
   [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
 
-  Cell cell = balls();
+  Cell cell = cell_in_shares();
   DdsOptions dds = test::own_dds();
   Connection connection{dds, cell.topics};
   Daemon right{dds, cell, "right", 3};
@@ -186,14 +186,14 @@ TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
       [&] {
         left.report(cycle);
         right.report(cycle++, before);
-        return whole->next(milliseconds(50)) && whole->publish_ns == before;
+        return whole->next(milliseconds(50)) && (*whole)->publish_ns == before;
       },
       std::chrono::seconds(10)));
 }
 
 // The catalogue of one share names the separations of all.
 TEST(SharesCatalogue, NamesTheZonesWithSeparationOfAllShares) {
-  Cell cell = balls();
+  Cell cell = cell_in_shares();
   select_share(cell, 0);
   ASSERT_FALSE(cell.scene.zones[kFar].separation) << "the share has no pair of it";
   const auto catalogue = make_catalogue(cell, {}, CataloguePairs::kOfWholeCell);
