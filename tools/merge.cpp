@@ -123,10 +123,10 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
   merge::CommandRelay commands(connection, cell, whole.daemon());
   log_line(lines::kMergeStarted, cell.scene.name, cell.shares.all.size(), connection.where());
   ShareLog log;
-  const std::int64_t started = dds_time();
+  const std::int64_t started = client::monotonic_ns();
   const auto is_over = [&] {
     return arguments.seconds > 0.0 &&
-           1e-9 * static_cast<double>(dds_time() - started) >= arguments.seconds;
+           1e-9 * static_cast<double>(client::monotonic_ns() - started) >= arguments.seconds;
   };
   while (!signal.wait(0) && !is_over()) {
     if (!whole.next(std::chrono::milliseconds(20))) continue;

@@ -207,7 +207,8 @@ class Pair {
   std::optional<std::uint32_t> id_;
 };
 
-// The daemon's health at the last update(); it comes once a second.
+// The daemon's health at the last update(); it comes once a second. Of partners, it is the
+// leader's.
 class Health {
  public:
   explicit Health(Connection& connection);
@@ -220,25 +221,36 @@ class Health {
  private:
   dds_entity_t reader_;
   Sample<clearance_msg_Health> message_, scratch_;
+  std::int64_t leader_ns_ = 0;  // when the last one of a leader came
   bool known_ = false;
 };
 
-// The state of every zone by its id, at the last update(). Where several daemons have written one,
-// the state of the latest tick counts, as long as its daemon is there.
+// The state of every zone by its id, at the last update(). Where several daemons that are there
+// have written one, the state of the latest tick counts. That of a daemon that has gone stays until
+// another one writes the zone.
 class Zones {
  public:
   explicit Zones(Connection& connection);
   void update();
-  // Forgets the states that other daemons have sent.
+  // Forgets the states that other daemons have sent: after a restart, ids may mean other zones. It
+  // is not for partners, either of whom may have written a state.
   void keep_only(std::uint64_t daemon);
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& states() const noexcept {
     return states_;
   }
 
  private:
+  struct Written {
+    clearance_msg_ZoneState state;
+    dds_instance_handle_t writer;
+  };
+  void forget_gone();
+  [[nodiscard]] static const clearance_msg_ZoneState& latest(
+      const std::map<std::uint64_t, Written>& of_daemons);
+
   dds_entity_t reader_;
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
-  std::map<std::uint32_t, dds_instance_handle_t> writers_;  // by zone: who wrote that state
+  std::map<std::uint32_t, std::map<std::uint64_t, Written>> written_;  // by zone and daemon
 };
 
 // CLOCK_REALTIME, the clock of stamps.

@@ -177,7 +177,7 @@ void join_health(Views views, Views former, clearance_msg_Health& out) {
   join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
   join_sources(views, out);
   join_notes(views, out);
-  join_partners(views, out.partner);
+  join_partners(all, out.partner);
 }
 
 }  // namespace clearance::client

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 #include <span>
 #include <type_traits>
 #include <utility>
@@ -260,34 +261,66 @@ const clearance_msg_PairGradient* Pair::in(const clearance_msg_Gradients& gradie
 
 Health::Health(Connection& connection) : reader_(make_reader(connection, TopicKind::kHealth)) {}
 
+// A message that is not of the leader counts when none of a leader has come for two seconds.
 void Health::update() {
-  while (take_newer(reader_, message_, scratch_)) known_ = true;
+  constexpr std::int64_t kSilentNs = 2'500'000'000;
+  while (take_one(reader_, *scratch_)) {
+    const bool leads = *scratch_->partner.partner == '\0' || scratch_->partner.leads;
+    if (leads) leader_ns_ = monotonic_ns();
+    const bool has_leader = leader_ns_ != 0 && monotonic_ns() - leader_ns_ < kSilentNs;
+    if (!leads && has_leader && scratch_->daemon != message_->daemon) continue;
+    std::swap(message_, scratch_);
+    known_ = true;
+  }
 }
 
 Zones::Zones(Connection& connection) : reader_(make_reader_of_all(connection, TopicKind::kZones)) {}
 
-// A partner that ticks apart does not clear zones. What it wrote before is still sent to readers
-// that come later: it does not count beside a later state of a daemon that is there.
 void Zones::update() {
-  clearance_msg_ZoneState zone{};
-  void* pointer = &zone;
+  clearance_msg_ZoneState state{};
+  void* pointer = &state;
   dds_sample_info_t info;
+  std::set<std::uint32_t> changed;
   while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
     if (!info.valid_data) continue;
-    const auto known = states_.find(zone.zone);
-    if (known != states_.end() && known->second.daemon != zone.daemon) {
-      const clearance_msg_ZoneState& other = known->second;
-      const bool is_newer = zone.now_ns > other.now_ns ||
-                            (zone.now_ns == other.now_ns && (zone.active || !other.active));
-      if (!is_newer && std::ranges::count(writers_of(reader_), writers_[zone.zone]) > 0) continue;
-    }
-    states_[zone.zone] = zone;
-    writers_[zone.zone] = info.publication_handle;
+    written_[state.zone][state.daemon] = {state, info.publication_handle};
+    changed.insert(state.zone);
+  }
+  const bool has_several =
+      std::ranges::any_of(written_, [](const auto& zone) { return zone.second.size() > 1; });
+  if (has_several) forget_gone();
+  for (const auto& [zone, of_daemons] : written_) {
+    if (has_several || changed.contains(zone)) states_[zone] = latest(of_daemons);
   }
 }
 
+// A daemon that has gone, or ticks apart, may have left its state of an earlier tick. A state that
+// no other daemon has written again still counts.
+void Zones::forget_gone() {
+  const std::vector<std::uint64_t> there = writers_of(reader_);
+  const auto is_there = [&](const auto& of_daemon) {
+    return std::ranges::count(there, of_daemon.second.writer) > 0;
+  };
+  for (auto& [zone, of_daemons] : written_) {
+    if (std::ranges::any_of(of_daemons, is_there))
+      std::erase_if(of_daemons, [&](const auto& one) { return !is_there(one); });
+  }
+}
+
+// Of the same tick, an active one counts.
+const clearance_msg_ZoneState& Zones::latest(const std::map<std::uint64_t, Written>& of_daemons) {
+  const auto rank = [](const auto& one) {
+    return std::pair(one.second.state.now_ns, one.second.state.active);
+  };
+  return std::ranges::max_element(of_daemons, {}, rank)->second.state;
+}
+
 void Zones::keep_only(std::uint64_t daemon) {
-  std::erase_if(states_, [=](const auto& zone) { return zone.second.daemon != daemon; });
+  for (auto& [zone, of_daemons] : written_)
+    std::erase_if(of_daemons, [=](const auto& one) { return one.first != daemon; });
+  std::erase_if(written_, [](const auto& zone) { return zone.second.empty(); });
+  std::erase_if(states_, [this](const auto& zone) { return !written_.contains(zone.first); });
+  for (const auto& [zone, of_daemons] : written_) states_[zone] = latest(of_daemons);
 }
 
 std::int64_t now_ns() noexcept { return dds_time(); }

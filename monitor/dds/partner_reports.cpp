@@ -84,6 +84,12 @@ bool PartnerReports::hears_any() {
   return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
 }
 
+bool PartnerReports::disagrees() {
+  const std::lock_guard lock(mutex_);
+  return agrees_from_ == 0 && heard_ns_ != 0 &&
+         SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+}
+
 std::string PartnerReports::name() {
   const std::lock_guard lock(mutex_);
   return name_;

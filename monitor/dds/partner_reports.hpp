@@ -19,6 +19,8 @@ class PartnerReports {
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();
+  // It has, and its last report that was compared is not that of this daemon.
+  [[nodiscard]] bool disagrees();
   [[nodiscard]] std::string name();  // of the partner that was heard last; empty: none
   // A partner of another name than this has published in the last tenth of a second: a third one is
   // not let in.

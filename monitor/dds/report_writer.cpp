@@ -11,11 +11,16 @@
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/files/build_info.hpp"
+#include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
 namespace {
+
+constexpr std::int64_t kAgainNs = 100'000'000;
+
+std::int64_t monotonic_ns() noexcept { return SystemClock().monotonic_ns(); }
 
 // A reader with other QoS gets nothing; only this line tells.
 void log_incompatible(dds_entity_t writer, const dds_offered_incompatible_qos_status_t status,
@@ -55,7 +60,6 @@ ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
       distances(make_distances(cell.scene)),
       separation(make_separation(cell.scene)),
       gradients(cell.scene),
-      written_zones(cell.scene.zones.size()),
       pairs(cell.shares.own_pairs()),
       changed(static_cast<std::uint64_t>(
           std::llround(std::ceil(cell.full_every_s * cell.scene.rate_hz)))) {
@@ -79,20 +83,26 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
           participant, topics_, TopicKind::kDistances,
           {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
       catalogue_(make_writer(participant, topics_, TopicKind::kCatalogue)),
-      zones_(make_writer(participant, topics_, TopicKind::kZones)),
       health_(make_writer(participant, topics_, TopicKind::kHealth)),
       others_(participant, topics_.distances, identity_),
       now_(std::make_unique<OfCell>(cell, SceneInForce(), queue, identity_.id)),
-      zone_log_(cell.scene),
+      zones_(make_writer(participant, topics_, TopicKind::kZones), cell.scene, identity_.id,
+             [this](dds_entity_t writer, const clearance_msg_ZoneState& state) {
+               return write(TopicKind::kZones, writer, &state, "zone state");
+             }),
       contact_log_(cell.scene),
       health_log_(cell.scene),
       queue_(&queue),
       written_(&queue) {
   open_topics(cell.scene);
-  const auto catalogue = own_catalogue();
-  check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
   leads_ = partner_ == nullptr;
-  if (also_ != nullptr && leads_) also_->published(TopicKind::kCatalogue, &*catalogue);
+  if (leads_) {
+    const auto catalogue = own_catalogue();
+    check_dds(dds_write(catalogue_, &*catalogue), "writing the catalogue");
+    if (also_ != nullptr) also_->published(TopicKind::kCatalogue, &*catalogue);
+  } else {
+    zones_.set(ZoneWriter::Which::kNothing);
+  }
   thread_ = std::thread([this] { run(); });
 }
 
@@ -150,11 +160,25 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 void ReportWriter::look_for_others() {
   others_.look();
   if (!others_.have_just_left()) return;
-  write_zones_again_ = catalogue_is_due_ = true;
+  zones_.write_again();
+  catalogue_is_due_ = true;
 }
 
-void ReportWriter::write_catalogue() {
-  catalogue_is_due_ = !write(TopicKind::kCatalogue, catalogue_, &*own_catalogue(), "catalogue");
+// Whoever has the catalogue expects the states of all zones behind it. DDS refuses where a reader
+// does not keep up, and each attempt takes as long as a write may block.
+void ReportWriter::settle_catalogue() {
+  const bool is_due = catalogue_is_due_ && zones_.which() != ZoneWriter::Which::kNothing;
+  if (!is_due && !takes_catalogue_back_) return;
+  if (others_.give_way() || monotonic_ns() - refused_ns_ < kAgainNs) return;
+  const auto catalogue = own_catalogue();
+  if (is_due) {
+    catalogue_is_due_ = !write(TopicKind::kCatalogue, catalogue_, &*catalogue, "catalogue");
+    takes_catalogue_back_ = false;
+    zones_.write_again();
+  } else {
+    takes_catalogue_back_ = dds_unregister_instance(catalogue_, &*catalogue) == DDS_RETCODE_TIMEOUT;
+  }
+  if (catalogue_is_due_ || takes_catalogue_back_) refused_ns_ = monotonic_ns();
 }
 
 // Writes reports in order, then statistics. Ends when the queue is closed and empty, and no other
@@ -171,8 +195,7 @@ void ReportWriter::run() {
 
 void ReportWriter::write_all() {
   look_for_others();
-  const bool may_write = zones_to_write_ != Zones::kNothing && !others_.give_way();
-  if (catalogue_is_due_ && may_write) write_catalogue();
+  if (partner_ == nullptr) settle_catalogue();
   while (const QueuedReport* queued = now_->queue.reports().front()) {
     write_report(*queued);
     now_->queue.reports().pop();
@@ -183,8 +206,8 @@ void ReportWriter::write_all() {
   }
 }
 
-// Returns false if no other cell follows. Zones of the same name are as they were. Their ids may be
-// others, so all states are written again, and those of ids that are gone are withdrawn.
+// Returns false if no other cell follows. A partner writes its catalogue once it knows whether the
+// other one has that cell, too.
 bool ReportWriter::change() {
   std::unique_ptr<OfCell> changed;
   {
@@ -192,27 +215,14 @@ bool ReportWriter::change() {
     changed = std::move(next_);
   }
   if (changed == nullptr) return false;
-  const std::vector<Zone>& zones = changed->cell.scene.zones;
-  for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
-    const auto same = std::ranges::find(zones, now_->cell.scene.zones[zone].name, &Zone::name);
-    if (same != zones.end()) {
-      const auto number = static_cast<std::uint32_t>(same - zones.begin());
-      if (const auto& last = now_->written_zones.last(zone))
-        changed->written_zones.set(number, *last);
-    }
-    clearance_msg_ZoneState gone{};
-    gone.zone = zone;
-    if (zone >= zones.size()) dds_dispose(zones_, &gone);
-  }
   dropped_before_ += now_->queue.dropped_reports();
+  zones_.change(changed->cell.scene, leads_);
   now_ = std::move(changed);
-  zone_log_.change(now_->cell.scene);
   contact_log_.change(now_->cell.scene);
   health_log_.change(now_->cell.scene);
   open_topics(now_->cell.scene);
-  write_zones_again_ = true;
-  zones_to_write_ = Zones::kAll;
-  write_catalogue();
+  catalogue_is_due_ = true;
+  if (partner_ == nullptr) settle_catalogue();
   const std::lock_guard lock(mutex_);
   written_ = &now_->queue;
   return true;
@@ -220,14 +230,16 @@ bool ReportWriter::change() {
 
 // The time of publishing is the only field of a report that the tick does not determine.
 void ReportWriter::write_report(const QueuedReport& queued) {
-  TickTag tag;
+  TickTag tag{.publishes = true};
   if (partner_ != nullptr) {
     tag = partner_->tag(queued.report.cycle);
     note_standing(tag.standing);
-    if (!tag.publishes) {
-      published_ = queued.report.cycle;
-      return;
-    }
+    settle_catalogue();
+  }
+  zones_.note(queued.report);
+  if (!tag.publishes) {
+    published_ = queued.report.cycle;
+    return;
   }
   const bool published = write_distances(queued, tag);
   if (leads_ && separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
@@ -237,7 +249,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     now_->pairs.in(gradients);
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
-  if (zones_to_write_ != Zones::kNothing) write_zones(queued.report);
+  zones_.write(queued.report, now_->pairs);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
@@ -249,7 +261,6 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
     identity_.partner.copy(message.partner, sizeof message.partner - 1);
     message.lineage = tag.lineage;
     message.state_checksum = checksum_of_rest(queued.report, tag.state_checksum);
-    note_lead(partner_->leads());
   }
   to_wire(queued.report, queued.sources(), dds_time(), message);
   now_->pairs.in(message);
@@ -266,76 +277,32 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
   return published;
 }
 
-// A daemon that ticks apart still has clients, and its zones are true. But a reader keeps one state
-// of a zone: an inactive one must not take the place of the partner's active one, whereas one that
-// is active in vain is written again when this daemon follows. Ids and names of a scene that the
-// partner does not have could mean others.
+// A daemon that ticks apart still has clients, and its zones are true: ZoneWriter::Which. While
+// partners do not agree, a zone that is active in one of them is written again and again, so that
+// it is active for every reader, although the other one may write it as inactive once.
 void ReportWriter::note_standing(PartnerStanding standing) {
+  using enum ZoneWriter::Which;
   const std::uint64_t other = partner_->partner_revision();
   const bool is_other_scene = other != 0 && other != now_->cell.scene.revision;
-  const Zones now = standing != PartnerStanding::kApart ? Zones::kAll
-                    : is_other_scene                    ? Zones::kNothing
-                                                        : Zones::kActive;
-  const Zones before = std::exchange(zones_to_write_, now);
-  if (now < before) withdraw(now == Zones::kNothing);
-  if (now > before) write_zones_again_ = true;
-  if (now > before && before == Zones::kNothing) write_catalogue();
-}
-
-// Takes back inactive zones, or all and the catalogue, so that a reader that comes later does not
-// get them. Readers that have them keep them.
-void ReportWriter::withdraw(bool all) {
-  for (std::uint32_t zone = 0; zone < now_->cell.scene.zones.size(); ++zone) {
-    const std::optional<WrittenZone>& last = now_->written_zones.last(zone);
-    if (!all && (!last || last->active)) continue;
-    clearance_msg_ZoneState state{};
-    state.zone = zone;
-    dds_unregister_instance(zones_, &state);
-    now_->written_zones.forget(zone);
-  }
-  if (all) dds_unregister_instance(catalogue_, &*own_catalogue());
-}
-
-// Simple readers have the latched values of the leader before.
-void ReportWriter::note_lead(bool leads) {
-  const bool begins = leads && !leads_;
+  const bool is_apart = standing == PartnerStanding::kApart;
+  const bool is_out = standing == PartnerStanding::kStarting || (is_apart && is_other_scene);
+  const auto before = zones_.which(), now = is_out ? kNothing : is_apart ? kActive : kAll;
+  zones_.set(now);
+  if (now != before && now == kNothing) takes_catalogue_back_ = true;
+  if (now != before && before == kNothing) catalogue_is_due_ = true;
+  // Simple readers have the latched values of the leader before.
+  const bool leads = partner_->leads();
+  if (leads && !leads_) catalogue_is_due_ = true;
   leads_ = leads;
-  if (!begins) return;
-  write_zones_again_ = true;
-  write_catalogue();
+  if (monotonic_ns() - active_again_ns_ < kAgainNs || !partner_->disagrees()) return;
+  active_again_ns_ = monotonic_ns();
+  zones_.write_active_again();
 }
 
 void ReportWriter::write_separation(const Report& report) {
   to_wire(report, dds_time(), *now_->separation);
   now_->pairs.in(*now_->separation);
   write(TopicKind::kSeparation, separation_, &*now_->separation, "separation");
-}
-
-// Writes a zone at the start, after each change of its state or cause, and again after another
-// daemon may have written it, or after DDS has refused it. The log has the changes of its state.
-void ReportWriter::write_zones(const Report& report) {
-  const bool again = std::exchange(write_zones_again_, false);
-  for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
-    const WrittenZone present = WrittenZone::of(report.zones[zone]);
-    const std::optional<WrittenZone> before = now_->written_zones.last(zone);
-    if (before == present && !again) continue;
-    const bool is_change = before ? before->active != present.active : present.active;
-    if (!present.active && zones_to_write_ == Zones::kActive) {
-      if (is_change) zone_log_.note(zone, report.zones[zone], report.cycle);
-      now_->written_zones.forget(zone);
-      continue;
-    }
-    clearance_msg_ZoneState state{};
-    state.daemon = identity_.id;
-    to_wire(now_->cell.scene, report, zone, state);
-    now_->pairs.in(state);
-    if (!write(TopicKind::kZones, zones_, &state, "zone state")) {
-      now_->written_zones.forget(zone);
-      continue;
-    }
-    if (is_change) zone_log_.note(zone, report.zones[zone], report.cycle);
-    now_->written_zones.set(zone, present);
-  }
 }
 
 // Failed writes count as dropped: in both cases the client got nothing.
@@ -349,14 +316,13 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   if (partner_ != nullptr) partner_->fill(sample->partner);
   write(TopicKind::kHealth, health_, &*sample, "health");
   if (on_health_) {
-    on_health_(
-        {.scene = now_->cell.scene,
-         .health = *sample,
-         .report = now_->distances->cycle == 0 ? nullptr : &*now_->distances,
-         .is_active = [this](std::uint32_t zone) { return now_->written_zones.is_active(zone); },
-         .statistics = &statistics});
+    on_health_({.scene = now_->cell.scene,
+                .health = *sample,
+                .report = now_->distances->cycle == 0 ? nullptr : &*now_->distances,
+                .is_active = [this](std::uint32_t zone) { return zones_.is_active(zone); },
+                .statistics = &statistics});
   }
-  zone_log_.end_second();
+  zones_.end_second();
   contact_log_.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }

@@ -17,7 +17,7 @@
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
-#include "monitor/dds/zone_log.hpp"
+#include "monitor/dds/zone_writer.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/metrics/metrics_text.hpp"
@@ -26,7 +26,6 @@
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/gradient_message.hpp"
-#include "monitor/wire/written_zones.hpp"
 
 namespace clearance {
 
@@ -89,7 +88,6 @@ class ReportWriter {
     Sample<clearance_msg_Distances> distances;
     Sample<clearance_msg_Separation> separation;
     GradientMessage gradients;
-    WrittenZones written_zones;
     MapPairs pairs;  // to the ids of the whole cell
     ChangedPairs changed;
 
@@ -106,11 +104,8 @@ class ReportWriter {
   void write_report(const QueuedReport& queued);
   [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
   void note_standing(PartnerStanding standing);
-  void withdraw(bool all);
-  void note_lead(bool leads);
-  void write_catalogue();
+  void settle_catalogue();
   void write_separation(const Report& report);
-  void write_zones(const Report& report);
   void write_health(const LoopStatistics& statistics);
   bool write(TopicKind kind, dds_entity_t writer, const void* sample, const char* what);
 
@@ -122,20 +117,18 @@ class ReportWriter {
   PublishedSamples* const also_;
   const DaemonIdentity identity_;
   PartnerPort* const partner_;
-  dds_entity_t distances_, catalogue_, zones_, health_;
+  dds_entity_t distances_, catalogue_, health_;
   dds_entity_t separation_ = 0;  // 0: no zone has had one yet
   dds_entity_t gradients_ = 0;   // 0: no scene has asked for them yet
   OtherDaemons others_;
   std::unique_ptr<OfCell> now_;
-  ZoneLog zone_log_;
+  ZoneWriter zones_;
   ContactLog contact_log_;
   HealthLog health_log_;
-  bool write_zones_again_ = false;
   bool leads_ = true;  // writes what has one leader
-  // While the partner's zones may be others, an inactive one of this daemon says nothing.
-  enum class Zones : std::uint8_t { kNothing, kActive, kAll };
-  Zones zones_to_write_ = Zones::kAll;
-  bool catalogue_is_due_ = false;
+  bool catalogue_is_due_ = false, takes_catalogue_back_ = false;
+  std::int64_t refused_ns_ = 0;       // the last time that DDS did not take the catalogue
+  std::int64_t active_again_ns_ = 0;  // the last time that active zones were due again
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 namespace clearance {
 namespace {
@@ -40,7 +41,6 @@ void RosMessages::published(TopicKind kind, const void* sample) {
   if (to == 0) return;
   if (kind == TopicKind::kZones) {
     const auto& state = *static_cast<const clearance_msg_ZoneState*>(sample);
-    if (state.zone >= zones_.size()) zones_.resize(state.zone + 1);
     zones_[state.zone] = state;
     zones_changed_ = true;
     return;
@@ -58,8 +58,10 @@ void RosMessages::report_ended() {
   if (to == 0 || !zones_changed_) return;
   zones_changed_ = false;
   clearance_msgs_msg_dds__ZoneStates_ states{};
-  states.zones._length = states.zones._maximum = static_cast<std::uint32_t>(zones_.size());
-  states.zones._buffer = reinterpret_cast<clearance_msgs_msg_dds__ZoneState_*>(zones_.data());
+  std::vector<clearance_msg_ZoneState> known;
+  for (const auto& [zone, state] : zones_) known.push_back(state);
+  states.zones._length = states.zones._maximum = static_cast<std::uint32_t>(known.size());
+  states.zones._buffer = reinterpret_cast<clearance_msgs_msg_dds__ZoneState_*>(known.data());
   writes_.write(to, &states);
 }
 

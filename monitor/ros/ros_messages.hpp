@@ -2,7 +2,8 @@
 #pragma once
 
 #include <array>
-#include <vector>
+#include <cstdint>
+#include <map>
 
 #include "config/cell/cell.hpp"
 #include "monitor/dds/report_writer.hpp"
@@ -26,7 +27,7 @@ class RosMessages final : public PublishedSamples {
 
   std::array<dds_entity_t, kTopics.size()> writers_{};  // 0: none
   // ROS 2 has no keys: one message has the states of all zones.
-  std::vector<clearance_msg_ZoneState> zones_;
+  std::map<std::uint32_t, clearance_msg_ZoneState> zones_;  // by id: those that were written
   bool zones_changed_ = false;
   RosWrites writes_;
 };

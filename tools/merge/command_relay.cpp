@@ -132,8 +132,8 @@ std::vector<CommandResult> CommandRelay::send_to_all(const Command& command, boo
 
 // The first report of that scene; 0: it has not come in time.
 std::uint64_t CommandRelay::in_force_from(std::uint64_t revision) const {
-  const std::int64_t end_ns = dds_time() + kReported.count();
-  while (revision_ != revision && !stop_ && dds_time() < end_ns)
+  const std::int64_t end_ns = client::monotonic_ns() + kReported.count();
+  while (revision_ != revision && !stop_ && client::monotonic_ns() < end_ns)
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   return revision_ == revision ? since_cycle_.load() : 0;
 }

@@ -124,8 +124,8 @@ void WholeWriter::write(client::SharedCell& whole) {
   write_zones(whole, is_new);
   if (!others_.give_way()) messages_.report_ended();
   zone_check_.look(whole);
-  if (dds_time() - health_ns_ < kHealthEvery) return;
-  health_ns_ = dds_time();
+  if (client::monotonic_ns() - health_ns_ < kHealthEvery) return;
+  health_ns_ = client::monotonic_ns();
   auto health = whole.health();
   health->dropped_reports += failed_;
   health->other_writers = others_.writers();

@@ -28,10 +28,12 @@ class Frame {
   explicit Frame(const Scene& scene, Hear hear = {})
       : scene_(scene), hear_(std::move(hear)), poses_(scene), own_(scene) {}
 
-  // Takes one message of our topics. It only keeps the bytes of a report and the numbers of poses
+  // Takes one message of our topics. It keeps the bytes of a report and the numbers of poses
   // and joints, which is cheap for every message of a fast stream. Reports that carry only the
   // pairs that changed are made whole, so each of them has to come.
   void take(TopicKind kind, std::int64_t time_ns, std::span<const std::byte> cdr);
+  // The last report that was used has only the pairs that changed, or none has come.
+  [[nodiscard]] bool lacks_pairs() const noexcept { return is_sparse_; }
   // Poses or joints of a topic of ROS 2.
   void take_from_ros(PoseBatch batch) {
     if (hear_) hear_(batch);

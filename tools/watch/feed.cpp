@@ -64,7 +64,7 @@ void Feed::begin_again() {
   const std::uint64_t daemon = reports_->daemon;
   if (daemon == 0 || !daemons_.contains(daemon)) ++restarts_;
   smallest_ = {};
-  zones_.keep_only(daemon);
+  if (*reports_->partner == '\0') zones_.keep_only(daemon);
 }
 
 std::set<std::string> Feed::shares() const {

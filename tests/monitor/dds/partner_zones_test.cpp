@@ -135,6 +135,92 @@ TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   port.stop();
 }
 
+// It may have another scene than its partner, which it has not heard yet.
+TEST_F(APartner, ThatStartsLeavesNoZonesAndNoCatalogue) {
+  tick(0.3, kStarting);
+  client::Connection late(dds, cell.topics);
+  client::Catalogue names(late);
+  const dds_entity_t zones = late.participant().writer(TopicKind::kZones, cell.topics.zones);
+  clearance_msg_ZoneState state{};
+  state.zone = 7;
+  check_dds(dds_write(zones, &state), "writing");
+  EXPECT_EQ(latched(1), (Active{{7, false}}));
+  names.update();
+  EXPECT_EQ(names.message(), nullptr);
+  tick(0.3, kLeading);
+  EXPECT_EQ(latched(3), (Active{{kNear, false}, {kWide, true}, {7, false}}));
+  EXPECT_TRUE(eventually([&] {
+    names.update();
+    return names.message(5) != nullptr;
+  }));
+}
+
+// One of both is wrong. The last writer decides for a simple reader, so the state is written again.
+TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
+  Participant other(dds);
+  const dds_entity_t distances = other.writer(TopicKind::kDistances, cell.topics.distances);
+  const dds_entity_t zones = other.writer(TopicKind::kZones, cell.topics.zones);
+  port.start({.wants_state = [] {}, .send_state = [] {}, .take_state = [](const auto&) {}});
+  tick(0.3, kFollowing);
+  clearance_msg_Distances report{};
+  std::strcpy(report.partner, "left");
+  report.scene_revision = cell.scene.revision;
+  report.lineage = 4;
+  ASSERT_TRUE(eventually([&] {
+    tick(0.3, kFollowing);
+    ++report.cycle;
+    check_dds(dds_write(distances, &report), "writing");
+    return port.disagrees();
+  }));
+  clearance_msg_ZoneState state{};
+  state.zone = kWide;
+  state.daemon = 77;
+  state.now_ns = now + 1;
+  check_dds(dds_write(zones, &state), "writing");
+  client::Connection connection(dds, cell.topics);
+  client::Zones seen(connection);
+  EXPECT_TRUE(eventually([&] {
+    check_dds(dds_write(distances, &(++report.cycle, report)), "writing");
+    tick(0.3, kFollowing);
+    seen.update();
+    const auto wide = seen.states().find(kWide);
+    return wide != seen.states().end() && wide->second.now_ns > state.now_ns && wide->second.active;
+  }));
+  port.stop();
+}
+
+// A daemon that has stopped may have left what it knew. One state each is kept.
+TEST(PartnersZones, AStateThatCameTooEarlyCountsOnceTheOtherDaemonHasGone) {
+  const DdsOptions dds = test::own_dds();
+  client::Connection connection(dds);
+  client::Zones zones(connection);
+  const auto state = [](std::uint64_t daemon, bool active, std::int64_t now_ns) {
+    clearance_msg_ZoneState made{};
+    made.daemon = daemon;
+    made.active = active;
+    made.now_ns = now_ns;
+    return made;
+  };
+  const auto is_active = [&](bool active) {
+    zones.update();
+    return zones.states().contains(0) && zones.states().at(0).active == active;
+  };
+  Participant stays(dds);
+  const dds_entity_t staying = stays.writer(TopicKind::kZones, connection.topics().zones);
+  {
+    Participant leaves(dds);
+    const dds_entity_t leaving = leaves.writer(TopicKind::kZones, connection.topics().zones);
+    const auto ahead = state(1, false, 1000), behind = state(2, true, 995);
+    check_dds(dds_write(staying, &behind), "writing");
+    ASSERT_TRUE(eventually([&] { return is_active(true); }));
+    check_dds(dds_write(leaving, &ahead), "writing");
+    ASSERT_TRUE(eventually([&] { return is_active(false); }));
+    check_dds(dds_write(staying, &behind), "writing");
+    zones.update();
+  }
+  EXPECT_TRUE(eventually([&] { return is_active(true); }));
+}
+
 // Two daemons write one zone, and a client hears them in any order.
 TEST(PartnersZones, TheStateOfTheLatestTickCountsAsLongAsItsDaemonIsThere) {
   const DdsOptions dds = test::own_dds();

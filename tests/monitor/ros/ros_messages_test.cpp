@@ -96,5 +96,17 @@ TEST_F(RosMessagesTest, ForgetTheZonesOfTheCellBefore) {
   EXPECT_EQ(list->zones._length, 1u);
 }
 
+TEST_F(RosMessagesTest, ListNoZoneThatWasNotWrittenAfterTheCatalogue) {
+  RosMessages messages(cell, participant);
+  const auto third = state(2, "third", true);
+  messages.published(TopicKind::kZones, &third);
+  messages.report_ended();
+  const ZoneStates* list = next(reader(TopicKind::kZones));
+  ASSERT_NE(list, nullptr);
+  ASSERT_EQ(list->zones._length, 1u);
+  EXPECT_EQ(list->zones._buffer[0].zone, 2u);
+  EXPECT_TRUE(list->zones._buffer[0].active);
+}
+
 }  // namespace
 }  // namespace clearance

@@ -217,11 +217,12 @@ class Reports : public Live<ReportParts> {
     return came ? py::cast(report_of(*parts, beside)) : py::none();
   }
 
-  // States of zones of other daemons than that of the last report are left out.
+  // States of zones of other daemons than that of the last report are left out, but for partners.
   py::dict zones() {
     const Use parts = use();
     parts->zones.update();
-    if (parts->stream->daemon != 0) parts->zones.keep_only(parts->stream->daemon);
+    if (parts->stream->daemon != 0 && *parts->stream->partner == '\0')
+      parts->zones.keep_only(parts->stream->daemon);
     return zones_of(parts->zones);
   }
   py::object health() {
