@@ -34,6 +34,7 @@ struct Facet {
   double offset;  // d, m
   // The boundary is facet_edges[first_side, first_side + sides); a half-space's plane has none. The
   // range goes on up to first_side + limits, where sides that end at a sharp vertex are repeated.
+  // first_side is a multiple of four, as VectorRows needs it.
   std::int32_t first_side;
   std::int32_t sides;
   std::int32_t limits;
@@ -64,7 +65,7 @@ struct EdgeUse {
 struct Vertex {
   Vec3 position;
   // vertex_edges[first_edge, first_edge + edges): the edges that leave it, counter-clockwise as
-  // seen from outside; none for a single point.
+  // seen from outside; none for a single point. first_edge is a multiple of four.
   std::int32_t first_edge;
   std::int32_t edges;
 };
@@ -76,12 +77,12 @@ struct Ray {
   bool is_line = false;  // its opposite, exactly, is one as well
 };
 
-// Selects the code of a query by one sum: both bodies' classes together are below 2 for the most
-// frequent code, 2 for two points, and more otherwise.
+// Selects the code of a query by one sum: both bodies' classes together are below 4 for the most
+// frequent code, 4 for two points, and more otherwise.
 enum class QueryClass : std::uint32_t {
   kPlain = 0,  // a bounded polyhedron or a segment
-  kPoint = 1,
-  kOther = 4,  // unbounded or curved
+  kPoint = 2,
+  kOther = 8,  // unbounded or curved
 };
 
 struct ConvexBody {
@@ -98,9 +99,9 @@ struct ConvexBody {
   RecessionCone recession_cone;  // of an unbounded body; made by add_query_tables()
 
   // The same numbers again, in the order in which queries read them; made by add_query_tables().
-  VectorRows outgoing{3};      // a row a vertex: unit, along vertex_edges[i], away from the vertex
-  VectorRows facet_limits{4};  // a row a facet: of facet_edges[i]
-  VectorRows planes{4};        // one row: normals and offsets of all facets
+  VectorRows<3> outgoing;      // a row a vertex: unit, along vertex_edges[i], away from the vertex
+  VectorRows<4> facet_limits;  // a row a facet: of facet_edges[i]
+  PlaneTable planes;
   // The vertices at the far ends of `vertex_edges`, kNone where such an edge does not end; and the
   // facets on the far sides of `facet_edges`.
   std::vector<std::int32_t> neighbours, facets_beside;
@@ -139,9 +140,7 @@ struct ConvexBody {
 
   // Unit, away from the vertex, along the i-th of its edges.
   [[nodiscard]] Vec3 outgoing_of(const Vertex& v, std::int32_t i) const noexcept {
-    const auto number = [&](std::int32_t k) {
-      return outgoing.number(v.first_edge, v.edges, i, k);
-    };
+    const auto number = [&](std::int32_t k) { return outgoing.number(v.first_edge, i, k); };
     return {number(0), number(1), number(2)};
   }
   void set_outgoing(const Vertex& v, std::int32_t i, const Vec3& to) noexcept {
@@ -153,9 +152,7 @@ struct ConvexBody {
   }
   // The i-th limit of the facet.
   [[nodiscard]] FacetLimit limit_of(const Facet& f, std::int32_t i) const noexcept {
-    const auto number = [&](std::int32_t k) {
-      return facet_limits.number(f.first_side, f.limits, i, k);
-    };
+    const auto number = [&](std::int32_t k) { return facet_limits.number(f.first_side, i, k); };
     return {{number(0), number(1), number(2)}, number(3)};
   }
   void set_limit(const Facet& f, std::int32_t i, const FacetLimit& to) noexcept {
@@ -169,6 +166,6 @@ static_assert(sizeof(std::vector<Facet>) == 3 * sizeof(void*),
               "compiled with _GLIBCXX_DEBUG: the library has the containers without it");
 static_assert(sizeof(Facet) == 48 && sizeof(Edge) == 128 && alignof(Edge) == 16);
 static_assert(sizeof(Vertex) == 32 && sizeof(Ray) == 32 && sizeof(RecessionCone) == 112);
-static_assert(sizeof(ConvexBody) == 2240 && alignof(ConvexBody) == 8);
+static_assert(sizeof(ConvexBody) == 2216 && alignof(ConvexBody) == 8);
 
 }  // namespace clearance

@@ -1,10 +1,12 @@
 // Tables that a ConvexBody keeps beside its features, in the order in which queries read them.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "core/vec.hpp"
@@ -13,34 +15,60 @@ namespace clearance {
 
 struct ConvexBody;
 
-// Rows of vectors, one row a feature, as vector registers read them. A row of n vectors is its n x,
-// then its n y, its n z, and for facets its n offsets. Reads of four may run over a row's end, but
-// not over the table's.
+// Rows of vectors, one row a feature, as vector registers read them: four vectors at a time, their
+// x, then their y, their z, and for facets their offsets. Each row begins with a new four. The last
+// vector of a row is repeated up to a multiple of four.
+template <int kNumbers>
 class VectorRows {
  public:
-  explicit VectorRows(std::int32_t numbers) noexcept : numbers_(numbers) {}
-
-  // Before the first vector of a row, `first` vectors lie in the rows before it.
+  // The length of a row of n vectors.
+  [[nodiscard]] static constexpr std::int32_t length(std::int32_t n) noexcept {
+    return (n + 3) / 4 * 4;
+  }
+  // Before the first vector of a row, the rows before it have a length of `first`.
   [[nodiscard]] const double* row(std::int32_t first) const noexcept {
-    return values_.data() + static_cast<std::ptrdiff_t>(first) * numbers_;
+    return values_.data() + static_cast<std::ptrdiff_t>(first) * kNumbers;
   }
-  // Number k of vector i of a row of n.
-  [[nodiscard]] double number(std::int32_t first, std::int32_t n, std::int32_t i,
-                              std::int32_t k) const noexcept {
-    return row(first)[k * n + i];
+  // Number k of vector i of a row.
+  [[nodiscard]] double number(std::int32_t first, std::int32_t i, std::int32_t k) const noexcept {
+    return values_[index(first, i, k)];
   }
+  // Of a row of n.
   void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
-    values_[static_cast<std::size_t>(first * numbers_ + k * n + i)] = to;
+    values_[index(first, i, k)] = to;
+    if (i != n - 1) return;
+    for (std::int32_t pad = n; pad < length(n); ++pad) values_[index(first, pad, k)] = to;
   }
   [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
-  void resize(std::size_t vectors) {
-    values_.assign(vectors * static_cast<std::size_t>(numbers_) + kOverrun, 0.0);
+  // All numbers are NaN then, and so stays the row of a feature without neighbours.
+  void resize(std::size_t length) {
+    values_.assign(std::max(length, std::size_t{4}) * kNumbers,
+                   std::numeric_limits<double>::quiet_NaN());
   }
 
  private:
-  static constexpr std::size_t kOverrun = 4;  // a point has a row of none
+  [[nodiscard]] static std::size_t index(std::int32_t first, std::int32_t i,
+                                         std::int32_t k) noexcept {
+    return static_cast<std::size_t>(first + i / 4 * 4) * kNumbers +
+           static_cast<std::size_t>(4 * k + i % 4);
+  }
   std::vector<double> values_;
-  std::int32_t numbers_;
+};
+
+// The normals and offsets of all facets: n x, then n y, n z and n offsets.
+class PlaneTable {
+ public:
+  [[nodiscard]] const double* data() const noexcept { return values_.data(); }
+  // Number k of facet i of n.
+  void set(std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
+    values_[static_cast<std::size_t>(k * n + i)] = to;
+  }
+  [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
+  // Reads of four may run over the end.
+  void resize(std::size_t n) { values_.assign(4 * n + 4, 0.0); }
+
+ private:
+  std::vector<double> values_;
 };
 
 // A limit of a facet's polygon in its plane: inward.x >= offset. An edge gives one limit, its inner

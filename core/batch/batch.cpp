@@ -15,7 +15,7 @@
 #include "core/batch/residence.hpp"
 #include "core/batch/slots.hpp"
 #include "core/distance.hpp"
-#include "core/query/tracked_query.hpp"
+#include "core/query/entries.hpp"
 
 namespace clearance {
 // A round judges all blocks. Pairs whose lanes failed leave their blocks. These, and the pairs in
@@ -32,6 +32,10 @@ class DistanceBatch::Rounds {
         failed_lanes_(slots_.blocks().size() + 1),
         unassigned_(pairs.size() / kBits + 1),
         residences_(pairs.size()) {
+    queried_.reserve(pairs.size());
+    for (const BodyPair& pair : pairs) {
+      queried_.push_back({bodies[pair.a], bodies[pair.b], pair.a, pair.b});
+    }
     changed_.reserve(pairs.size());
     order_.reserve(pairs.size());
     forget();
@@ -41,6 +45,7 @@ class DistanceBatch::Rounds {
     assert(world_from_body.size() == of_.bodies.size());
     ++rounds_;
     poses_ = world_from_body;
+    entries_ = &query_entries();
     changed_.clear();
     if (resting_ > 0) {
       --resting_;
@@ -56,7 +61,6 @@ class DistanceBatch::Rounds {
     waiting_.fill(0);
     query_unassigned();
     if (!changed_.empty()) {
-      query_after_ = tracked_query();
       query_changed();
       slots_.close_holes();
     }
@@ -90,6 +94,12 @@ class DistanceBatch::Rounds {
     std::uint32_t pair;
     FeaturePair features;
     TransitionsMade start;
+  };
+
+  // What a single query of a pair reads first.
+  struct Queried {
+    const ConvexBody *a, *b;
+    std::uint32_t pose_a, pose_b;
   };
 
   static constexpr std::uint32_t kBits = 64;  // of a word of unassigned_
@@ -168,14 +178,15 @@ class DistanceBatch::Rounds {
 
   // The results are made in their places, not copied there.
   void query(std::uint32_t pair) noexcept {
-    const auto [a, b] = of_.pairs[pair];
-    new (&results_[pair])
-        DistanceResult(distance(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair]));
+    const Queried& q = queried_[pair];
+    TrackingState& state = of_.states[pair];
+    new (&results_[pair]) DistanceResult(entries_->by_poses[entry_of(*q.a, *q.b, state)](
+        *q.a, *q.b, poses_[q.pose_a], poses_[q.pose_b], state));
   }
   void query_after(std::uint32_t pair, TransitionsMade start) noexcept {
-    const auto [a, b] = of_.pairs[pair];
-    new (&results_[pair]) DistanceResult(
-        query_after_(of_.a(pair), of_.b(pair), poses_[a], poses_[b], of_.states[pair], start));
+    const Queried& q = queried_[pair];
+    new (&results_[pair]) DistanceResult(entries_->after_transitions(
+        *q.a, *q.b, poses_[q.pose_a], poses_[q.pose_b], of_.states[pair], start));
   }
 
   // The pairs are sorted by their features, because the processor predicts branches that it has
@@ -266,9 +277,10 @@ class DistanceBatch::Rounds {
   std::vector<Changed> changed_;           // of this round
   std::vector<std::uint32_t> order_;       // of these, sorted
   std::span<const Pose> poses_;
-  TrackedQuery query_after_ = nullptr;
   std::vector<std::uint64_t> unassigned_;  // a bit a pair: it is in no block
   std::vector<Residence> residences_;      // [pair]
+  std::vector<Queried> queried_;           // [pair]
+  const QueryEntries* entries_ = nullptr;  // of this round
   // [features]: the unassigned pairs that would enter a lane, in this round and in the last one
   std::array<std::uint32_t, kFeaturePairs> waiting_{}, waiting_before_{};
   std::size_t unassigned_pairs_ = 0, single_queries_ = 0;

@@ -110,7 +110,7 @@ void put_repeats(BatchBlock& block, std::size_t lane, std::size_t row, const Con
   const double* const from = row_of<kKind>(body, side);
   LaneWriter to(block, lane, row);
   for (std::size_t i = 0; i < count; ++i) {
-    for (std::size_t k = 0; k < stride; ++k) to.put(from[k * count + i]);
+    for (std::size_t k = 0; k < stride; ++k) to.put(from[(i / 4 * stride + k) * 4 + i % 4]);
   }
   lengthen(block, lane, row, stride, count, most);
 }

@@ -68,6 +68,15 @@ HWY_INLINE Points cross(const Points& a, const Points& b) {
           hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
+// As for Vec4.
+HWY_INLINE Lanes triple(const Points& v, const Points& e, const Points& n) {
+  return dot(cross(v, e), n);
+}
+HWY_INLINE void double_cross(const Points& v, const Points& e, Points& product, Lanes& length) {
+  const Points c = cross(v, e);
+  product = cross(e, c);
+  length = norm(c);
+}
 
 HWY_INLINE Lanes load(const double* row) { return hn::Load(Tag(), row); }
 // Three rows of a block, from the first lane's number in the first of them.

@@ -5,7 +5,7 @@
 
 #include "core/batch/block.hpp"
 #include "core/distance_result.hpp"
-#include "core/query/tracked_query.hpp"
+#include "core/query/entries.hpp"
 
 namespace clearance {
 

@@ -170,8 +170,8 @@ ShapeResult segment(const Vec3& start, const Vec3& end, double radius) {
                         line.length.value,
                         {0, 1},
                         {kNone, kNone}});
-  body.vertices = {{start, 0, 1}, {end, 1, 1}};
-  body.vertex_edges = {{0, 0}, {0, 1}};
+  body.vertices = {{start, 0, 1}, {end, 4, 1}};
+  body.vertex_edges = {{0, 0}, {0, 0}, {0, 0}, {0, 0}, {0, 1}, {0, 1}, {0, 1}, {0, 1}};
   body.anchors = {start, end};
   body.interior = 0.5 * start + 0.5 * end;
   body.bounding_radius = std::max(start.norm(), end.norm()) * kRoundedUp;

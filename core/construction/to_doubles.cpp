@@ -137,6 +137,7 @@ class Assembler {
       body_.facets[f].sides = static_cast<std::int32_t>(sides[f].size());
       chain(sides[f]);
       add_sharp_corners(body_.facets[f]);
+      fill_row(body_.facet_edges);
     }
   }
 
@@ -195,7 +196,13 @@ class Assembler {
                                 static_cast<std::int32_t>(body_.vertex_edges.size()),
                                 static_cast<std::int32_t>(around[v].size())});
       turn(around[v]);
+      fill_row(body_.vertex_edges);
     }
+  }
+
+  // The next row begins with a new four: VectorRows.
+  static void fill_row(std::vector<EdgeUse>& uses) {
+    while (uses.size() % 4 != 0) uses.push_back(EdgeUse(uses.back()));
   }
 
   // Counter-clockwise as seen from outside: an edge's left facet, leaving the vertex, is the next

@@ -102,12 +102,12 @@ HWY_INLINE BodySupport round_support(const Side& side, const SideParts& active, 
 HWY_INLINE double ascent(const ConvexBody& body, std::int32_t number, const SideParts& active,
                          Vec4 m) {
   const Vertex& vertex = body.vertices[static_cast<std::size_t>(number)];
-  const double* row = body.outgoing.row(vertex.first_edge);
-  const Vec4 along[3] = {spread(lane(m, 0)), spread(lane(m, 1)), spread(lane(m, 2))};
+  const double* four = body.outgoing.row(vertex.first_edge);
+  const Spread3 along(m);
   double steepest = -kInfinity;
-  for (std::int32_t i = 0; i < vertex.edges; i += 4) {
-    const Vec4 all = derivatives(row, vertex.edges, i, along);
-    unsigned others = ~less(all, spread(-kDerivativeError)) & first_lanes(vertex.edges - i);
+  for (std::int32_t i = 0; i < vertex.edges; i += 4, four += kFourDirections) {
+    const Vec4 all = derivatives(four, along);
+    unsigned others = at_least(all, spread(-kDerivativeError));
     for (; HWY_UNLIKELY(others != 0); others &= others - 1) {
       const int k = std::countr_zero(others);
       if (active.has(body.neighbours[static_cast<std::size_t>(vertex.first_edge + i + k)]))

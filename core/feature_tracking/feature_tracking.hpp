@@ -37,9 +37,12 @@ struct TransitionsMade {
   int transitions = 0, parallel_transitions = 0;
 };
 
+[[nodiscard]] inline bool has_feature(const ConvexBody& body, FeatureKind kind,
+                                      const TrackingState::Side& side) noexcept {
+  return static_cast<std::uint32_t>(side.feature) < body.features[static_cast<std::size_t>(kind)];
+}
 [[nodiscard]] inline bool exists(const ConvexBody& body, const TrackingState::Side& side) noexcept {
-  return side.kind <= FeatureKind::kFacet && static_cast<std::uint32_t>(side.feature) <
-                                                 body.features[static_cast<std::size_t>(side.kind)];
+  return side.kind <= FeatureKind::kFacet && has_feature(body, side.kind, side);
 }
 
 // Is the first transition straight-line code? It is for two vertices, for two edges, and for a
@@ -64,7 +67,7 @@ struct TransitionsMade {
 [[nodiscard]] inline std::uint32_t query_class(const ConvexBody& a, const ConvexBody& b) noexcept {
   return static_cast<std::uint32_t>(a.query_class) + static_cast<std::uint32_t>(b.query_class);
 }
-inline constexpr std::uint32_t kTwoPoints = 2;
+inline constexpr std::uint32_t kTwoPoints = 4;
 
 // Moves the features of `state` by transitions until they are closest. If they are, `result` (of
 // the polyhedra, without radii) and the points of `state` belong to them.

@@ -165,13 +165,9 @@ struct EdgeAndVertex {
         from_start(tip - start),
         s(along_edge()) {}
 
-  // Finds `separation`, from the edge to the vertex, by two cross products; it is as long as
-  // `across`. In a difference of long vectors, cancellation would leave a part along the edge.
-  HWY_INLINE void find_separation() {
-    across = cross(from_start, e);
-    separation = cross(e, across);
-    length = norm(across);
-  }
+  // Finds `separation`, from the edge to the vertex, by two cross products; `length` is that of the
+  // first. In a difference of long vectors, cancellation would leave a part along the edge.
+  HWY_INLINE void find_separation() { double_cross(from_start, e, separation, length); }
   // |separation|, computed again if cross products are too coarse: kSlender.
   [[nodiscard]] HWY_INLINE Number slender_length() const {
     if constexpr (kIsB) return norm(separation) / inverse_norm_near_1(e);
@@ -194,7 +190,7 @@ struct EdgeAndVertex {
   BodyFrame<kIsB, Relative> frame;
   Vector local_start, local_e, local_tip, tip, start, e, from_start;
   Number s;  // m: the vertex's place along the edge
-  Vector across, separation;
+  Vector separation;
   Number length;  // m
 
  private:
@@ -224,7 +220,7 @@ struct EdgeLines {
   // is taken off first, so that its rounding is divided by the sine and not by its square.
   HWY_INLINE void find_nearest() {
     const Number cosine = dot(e, f), along_e = dot(between, e);
-    t = dot(cross(between, e), n) / sine2;
+    t = triple(between, e, n) / sine2;
     s = along_e + cosine * t;
   }
   template <class Found>

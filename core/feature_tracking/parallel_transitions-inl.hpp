@@ -25,9 +25,10 @@ namespace clearance::HWY_NAMESPACE {
 // m: the amount by which the certified distance is reduced if the normal is off a right angle to a
 // feature by `tilt`. The tilt may change a support value over the whole size of a body. It is
 // enough to count the smaller body.
+template <bool kBounded = false>
 HWY_INLINE double tilt_error(const TrackedPair& pair, double tilt) {
-  const double a = pair.a.bounded() ? pair.a.bounding_radius : kInfinity;
-  const double b = pair.b.bounded() ? pair.b.bounding_radius : kInfinity;
+  const double a = kBounded || pair.a.bounded() ? pair.a.bounding_radius : kInfinity;
+  const double b = kBounded || pair.b.bounded() ? pair.b.bounding_radius : kInfinity;
   return 2.0 * std::min(a, b) * (tilt + kTiltError);
 }
 
@@ -114,16 +115,11 @@ HWY_INLINE double greatest(Vec4 v) {
 // The same span without its edges, four sides at a time and without a branch on any of them.
 HWY_INLINE Span within(const ConvexBody& body, const Facet& facet, Vec4 start, Vec4 direction,
                        Span span) {
-  const double* row = body.facet_limits.row(facet.first_side);
-  const std::int32_t n = facet.limits;
-  const Vec4 at[3] = {spread(lane(start, 0)), spread(lane(start, 1)), spread(lane(start, 2))};
-  const Vec4 to[3] = {spread(lane(direction, 0)), spread(lane(direction, 1)),
-                      spread(lane(direction, 2))};
+  const double* four = body.facet_limits.row(facet.first_side);
+  const Spread3 at(start), to(direction);
   const Vec4 zero = spread(0.0), none = spread(-kInfinity);
-  for (std::int32_t i = 0; i < n; i += 4) {
-    // The last sides repeat the first lane instead of numbers from past the row's end.
-    const Vec4 speed = repeated_past(derivatives(row, n, i, to), n - i);
-    const Vec4 gap = repeated_past(derivatives(row, n, i, at) - load4(row + 3 * n + i), n - i);
+  for (std::int32_t i = 0; i < facet.limits; i += 4, four += kFourLimits) {
+    const Vec4 speed = derivatives(four, to), gap = inside_limits(four, at);
     const Vec4 meets = -gap / speed;
     span.from = std::max(span.from, greatest(where_less(zero, speed, meets, none)));
     span.to = std::min(span.to, -greatest(where_less(speed, zero, -meets, none)));
@@ -292,16 +288,17 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   pair.point_b = tip;
   pair.point_a = tip - pair.distance * n;
   pair.normal = n;
-  pair.certified = pair.distance - tilt_error(pair, std::sqrt(tilt2));
+  pair.certified =
+      pair.distance - tilt_error<kMode == Tracking::kFirstOfPlain>(pair, std::sqrt(tilt2));
   return Transition::kClosest;
 }
 
 // For parallel edges that face each other nowhere: the ends that are nearest to each other are
 // next.
-inline Transition to_facing_ends(TrackedPair& pair, const Edge& first, const Edge& second,
+inline Transition to_facing_ends(Side& on_a, Side& on_b, const Edge& first, const Edge& second,
                                  bool after, bool same_way) {
-  to_vertex(pair.on_a, first.vertex[after ? 1 : 0]);
-  to_vertex(pair.on_b, second.vertex[after == same_way ? 0 : 1]);
+  to_vertex(on_a, first.vertex[after ? 1 : 0]);
+  to_vertex(on_b, second.vertex[after == same_way ? 0 : 1]);
   return Transition::kMoved;
 }
 
@@ -314,7 +311,9 @@ HWY_INLINE Transition parallel_edges(TrackedPair& pair, Vec4 start_b, Vec4 f) {
   const double end = begin + cosine * second.end;
   const double from = std::max(0.0, std::min(begin, end));
   const double to = std::min(first.end, std::max(begin, end));
-  if (!(from < to)) return to_facing_ends(pair, first, second, !(from < first.end), cosine > 0.0);
+  if (!(from < to)) {
+    return to_facing_ends(pair.on_a, pair.on_b, first, second, !(from < first.end), cosine > 0.0);
+  }
   const double s = clamped(halfway(Owner<false>(pair), start_a, e), from, to);
   pair.point_a = start_a + s * e;
   pair.local_b = load3_of_4(second.point) + ((s - begin) * cosine) * load3_of_4(second.direction);

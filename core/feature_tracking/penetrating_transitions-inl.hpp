@@ -36,13 +36,12 @@ inline constexpr double kAmple = 1e-9;
 
 // The distance of a point of a facet's plane from the sides of the facet; negative: outside.
 HWY_INLINE double inradius_on_facet(const ConvexBody& body, const Facet& facet, Vec4 point) {
-  const double* row = body.facet_limits.row(facet.first_side);
-  const std::int32_t n = facet.limits;
-  const Vec4 at[3] = {spread(lane(point, 0)), spread(lane(point, 1)), spread(lane(point, 2))};
+  const double* four = body.facet_limits.row(facet.first_side);
+  const Spread3 at(point);
   double least = kInfinity;
-  for (std::int32_t i = 0; i < n; i += 4) {
-    const Vec4 within = derivatives(row, n, i, at) - load4(row + 3 * n + i);
-    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) least = std::min(least, lane(within, k));
+  for (std::int32_t i = 0; i < facet.limits; i += 4, four += kFourLimits) {
+    const Vec4 inside = inside_limits(four, at);
+    for (std::int32_t k = 0; k < 4; ++k) least = std::min(least, lane(inside, k));
   }
   return least;
 }

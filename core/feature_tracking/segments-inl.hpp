@@ -32,22 +32,16 @@ HWY_INLINE void to_only_vertex(Side& side) {
   side.feature = 0;
 }
 
-// B's point in frame A. A sphere is mostly around the origin of its frame, and then the translation
-// is its place, without a product with the rotation. This is so to the bit if no coordinate is 0,
-// whose sign the product might change.
-HWY_INLINE Vec4 place_of_point(const RelativePose4& a_from_b, Vec4 local_b) {
-  const Vec4 zero = spread(0.0), t = a_from_b.translation;
-  if (HWY_LIKELY(equal(local_b, zero) && (less(zero, t * t) & 7u) == 7u)) return t;
-  return point_to_a(a_from_b, local_b);
+HWY_INLINE void place_point_of_b(TrackedPair& pair) {
+  pair.local_b = load3_alone(pair.b.vertices[0].position);
+  pair.point_b = point_to_a(pair.a_from_b, pair.local_b);
 }
-
-// Two points. The arithmetic is that of two vertices, so that a batch gives the same bits.
+// Two points, after B's has been placed. The arithmetic is that of two vertices, so that a batch
+// gives the same bits.
 HWY_INLINE void meet_points(TrackedPair& pair) {
   to_only_vertex(pair.on_a);
   to_only_vertex(pair.on_b);
   pair.point_a = load3_alone(pair.a.vertices[0].position);
-  pair.local_b = load3_alone(pair.b.vertices[0].position);
-  pair.point_b = place_of_point(pair.a_from_b, pair.local_b);
   const Vec4 g = pair.point_b - pair.point_a;
   pair.distance = pair.certified = norm(g);
   pair.normal = over(g, pair.distance);

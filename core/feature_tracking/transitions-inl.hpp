@@ -174,28 +174,24 @@ inline HWY_NOINLINE Transition between_facets(TrackedPair& pair) {
   return facet_facet<Tracking::kFurther>(pair);
 }
 
-// For crossing edges beside which a facet approaches along g, the direction from A's to B's. If the
-// lines are so near that rounding may have reversed g, the edges may touch.
-inline HWY_NOINLINE Transition leave_edges(TrackedPair& pair, const Edge& first, const Edge& second,
-                                           Vec4 g, double limit, double along_n) {
-  Vec4 back = -direction_to_b(pair.a_from_b, g);
+// For crossing edges beside which a facet approaches along g, the direction from A's to B's, and
+// along `back` in frame B. `touching`: of bodies that touched, the lines are so near that rounding
+// may have reversed g.
+inline HWY_NOINLINE void leave_edges(const Edge& first, const Edge& second, Side& on_a, Side& on_b,
+                                     Vec4 g, Vec4 back, double limit, bool touching) {
   const auto steepest_of = [](const Edge& edge, Vec4 along) HWY_ATTR {
     const Vec2 both = facet_derivatives(edge, along);
     return edge.facet[0] == kNone ? -kInfinity : std::max(both[0], both[1]);
   };
-  if (std::abs(along_n) <= kMayTouch * size_of(pair)) {
-    if (!pair.penetrating) return Transition::kUndecided;
-    // Then g is the direction along which no facet approaches by more than rounding.
-    if (std::max(steepest_of(first, -g), steepest_of(second, -back)) <= -limit) {
-      g = -g;
-      back = -back;
-    }
+  // Then g is the direction along which no facet approaches by more than rounding.
+  if (touching && std::max(steepest_of(first, -g), steepest_of(second, -back)) <= -limit) {
+    g = -g;
+    back = -back;
   }
   // If facets of both approach, the one that approaches faster takes over.
   const double of_a = steepest_of(first, g), of_b = steepest_of(second, back);
-  if (!(of_b > -limit) || of_a >= of_b) to_approaching_facet(first, g, limit, pair.on_a);
-  if (!(of_a > -limit) || of_b > of_a) to_approaching_facet(second, back, limit, pair.on_b);
-  return pair.parallel();
+  if (!(of_b > -limit) || of_a >= of_b) to_approaching_facet(first, g, limit, on_a);
+  if (!(of_a > -limit) || of_b > of_a) to_approaching_facet(second, back, limit, on_b);
 }
 
 // Crossing edges are closest if the feet of their common perpendicular lie within both, and all
@@ -225,7 +221,10 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   const Vec4 back = -direction_to_b(pair.a_from_b, g);
   if (HWY_UNLIKELY(!both_facets_recede(first, g, limit) ||
                    !both_facets_recede(second, back, limit))) {
-    return leave_edges(pair, first, second, g, limit, along_n);
+    const bool may_touch = std::abs(along_n) <= kMayTouch * size_of(pair);
+    if (may_touch && !pair.penetrating) return Transition::kUndecided;
+    leave_edges(first, second, pair.on_a, pair.on_b, g, back, limit, may_touch);
+    return pair.parallel();
   }
   pair.normal = over(g, sine);
   lines.place_witnesses(pair);
@@ -236,6 +235,18 @@ HWY_INLINE Transition edge_edge(TrackedPair& pair) {
   return Transition::kClosest;
 }
 
+// The transition of straight features: see has_straight_features().
+template <FeaturePair kPair, Tracking kMode>
+HWY_INLINE Transition transition_of(TrackedPair& pair) {
+  if constexpr (kPair == FeaturePair::kVertexVertex) return vertex_vertex(pair);
+  if constexpr (kPair == FeaturePair::kVertexEdge) return edge_vertex(Owner<true>(pair));
+  if constexpr (kPair == FeaturePair::kVertexFacet) return facet_vertex(Owner<true>(pair));
+  if constexpr (kPair == FeaturePair::kEdgeVertex) return edge_vertex(Owner<false>(pair));
+  if constexpr (kPair == FeaturePair::kEdgeEdge) return edge_edge<kMode>(pair);
+  if constexpr (kPair == FeaturePair::kFacetVertex) return facet_vertex(Owner<false>(pair));
+  if constexpr (kPair == FeaturePair::kFacetFacet) return facet_facet<kMode>(pair);
+}
+
 // For disjoint bodies, this is the only branch on the pair of features.
 template <Tracking kMode>
 HWY_INLINE Transition transition(TrackedPair& pair) {
@@ -243,20 +254,22 @@ HWY_INLINE Transition transition(TrackedPair& pair) {
   assert(exists(pair.b, pair.on_b) || pair.on_b.kind == FeatureKind::kUnknown);
   switch (pair.features()) {
     case FeaturePair::kVertexVertex:
-      return vertex_vertex(pair);
+      return transition_of<FeaturePair::kVertexVertex, kMode>(pair);
     case FeaturePair::kVertexEdge:
-      return edge_vertex(Owner<true>(pair));
+      return transition_of<FeaturePair::kVertexEdge, kMode>(pair);
     case FeaturePair::kVertexFacet:
-      return facet_vertex(Owner<true>(pair));
+      return transition_of<FeaturePair::kVertexFacet, kMode>(pair);
     case FeaturePair::kEdgeVertex:
-      return edge_vertex(Owner<false>(pair));
+      return transition_of<FeaturePair::kEdgeVertex, kMode>(pair);
     case FeaturePair::kEdgeEdge:
-      return edge_edge<kMode>(pair);
+      return transition_of<FeaturePair::kEdgeEdge, kMode>(pair);
     default:
       break;
   }
   // has_straight_features() admits one more pair to a first transition.
-  if constexpr (kMode != Tracking::kFurther) return facet_vertex(Owner<false>(pair));
+  if constexpr (kMode != Tracking::kFurther) {
+    return transition_of<FeaturePair::kFacetVertex, kMode>(pair);
+  }
   switch (pair.features()) {
     case FeaturePair::kEdgeFacet:
       return edge_facet(Owner<false>(pair));

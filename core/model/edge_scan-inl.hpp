@@ -17,23 +17,32 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// The first lanes of four, at most.
-HWY_INLINE unsigned first_lanes(std::int32_t count) { return count < 4 ? 15u >> (4 - count) : 15u; }
-
-// The directional derivatives along g of up to four of a row's n vectors, from number i on.
-HWY_INLINE Vec4 derivatives(const double* row, std::int32_t n, std::int32_t i, const Vec4 (&g)[3]) {
-  return (load4(row + i) * g[0] + load4(row + n + i) * g[1]) + load4(row + 2 * n + i) * g[2];
+// A direction or a point, as products with the vectors of a row need it.
+struct Spread3 {
+  HWY_INLINE explicit Spread3(Vec4 v)
+      : x(spread(lane(v, 0))), y(spread(lane(v, 1))), z(spread(lane(v, 2))) {}
+  Vec4 x, y, z;
+};
+// The directional derivatives along g of the four vectors that begin at `four` of a row.
+HWY_INLINE Vec4 derivatives(const double* four, const Spread3& g) {
+  return (load4(four) * g.x + load4(four + 4) * g.y) + load4(four + 8) * g.z;
 }
+// How far a point is within the four limits that begin at `four` of a facet's row, m.
+HWY_INLINE Vec4 inside_limits(const double* four, const Spread3& at) {
+  return derivatives(four, at) - load4(four + 12);
+}
+inline constexpr std::ptrdiff_t kFourDirections = 12, kFourLimits = 16;  // numbers
 
 // Is the directional derivative along g of every edge of a vertex below `limit`, per unit length?
+// A point has no edges; its row is NaN.
 HWY_INLINE bool all_edges_recede(const ConvexBody& body, const Vertex& vertex, Vec4 g,
                                  double limit) {
-  const double* row = body.outgoing.row(vertex.first_edge);
-  const std::int32_t n = vertex.edges;
-  const Vec4 along[3] = {spread(lane(g, 0)), spread(lane(g, 1)), spread(lane(g, 2))};
-  unsigned others = ~less(derivatives(row, n, 0, along), spread(limit)) & first_lanes(n);
-  for (std::int32_t i = 4; HWY_UNLIKELY(i < n); i += 4) {
-    others |= ~less(derivatives(row, n, i, along), spread(limit)) & first_lanes(n - i);
+  const double* four = body.outgoing.row(vertex.first_edge);
+  const Spread3 along(g);
+  unsigned others = at_least(derivatives(four, along), spread(limit));
+  for (std::int32_t i = 4; HWY_UNLIKELY(i < vertex.edges); i += 4) {
+    four += kFourDirections;
+    others |= at_least(derivatives(four, along), spread(limit));
   }
   return others == 0;
 }
@@ -51,8 +60,8 @@ inline HWY_NOINLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& 
   const auto take = [&](double derivative, std::int32_t i) HWY_ATTR {
     if (derivative > best.derivative) best = {derivative, vertex.first_edge + i};
   };
-  const Vec4 along[3] = {spread(g.x()), spread(g.y()), spread(g.z())};
-  const Vec4 along_g = derivatives(body.outgoing.row(vertex.first_edge), n, 0, along);
+  const Vec4 along_g =
+      derivatives(body.outgoing.row(vertex.first_edge), Spread3(vec4(g.x(), g.y(), g.z(), 0.0)));
   if (n > 0) take(lane(along_g, 0), 0);
   if (n > 1) take(lane(along_g, 1), 1);
   if (n > 2) take(lane(along_g, 2), 2);
@@ -79,17 +88,16 @@ HWY_INLINE bool both_facets_recede(const Edge& edge, Vec4 g, double limit) {
 // The edge of the limit of the facet's polygon that the tip violates most; kNone: the tip lies
 // within.
 HWY_INLINE std::int32_t crossed_side(const ConvexBody& body, const Facet& facet, Vec4 tip) {
-  const double* row = body.facet_limits.row(facet.first_side);
-  const std::int32_t n = facet.limits;
-  const Vec4 at[3] = {spread(lane(tip, 0)), spread(lane(tip, 1)), spread(lane(tip, 2))};
+  const double* four = body.facet_limits.row(facet.first_side);
+  const Spread3 at(tip);
   double least = 0.0;
   std::int32_t crossed = kNone;
-  for (std::int32_t i = 0; i < n; i += 4) {
-    const Vec4 within = derivatives(row, n, i, at) - load4(row + 3 * n + i);
-    if (HWY_LIKELY((less(within, spread(least)) & first_lanes(n - i)) == 0)) continue;
-    for (std::int32_t k = 0; k < 4 && i + k < n; ++k) {
-      if (!(lane(within, k) < least)) continue;
-      least = lane(within, k);
+  for (std::int32_t i = 0; i < facet.limits; i += 4, four += kFourLimits) {
+    const Vec4 inside = inside_limits(four, at);
+    if (HWY_LIKELY(less(inside, spread(least)) == 0)) continue;
+    for (std::int32_t k = 0; k < 4; ++k) {
+      if (!(lane(inside, k) < least)) continue;
+      least = lane(inside, k);
       crossed = body.facet_edges[facet.first_side + i + k].edge;
     }
   }

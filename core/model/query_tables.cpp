@@ -73,9 +73,9 @@ void add_planes(ConvexBody& body) {
   body.planes.resize(body.facets.size());
   for (std::int32_t i = 0; i < count; ++i) {
     for (std::int32_t k = 0; k < 3; ++k) {
-      body.planes.set(0, count, i, k, body.facets[i].normal[k]);
+      body.planes.set(count, i, k, body.facets[i].normal[k]);
     }
-    body.planes.set(0, count, i, 3, body.facets[i].offset);
+    body.planes.set(count, i, 3, body.facets[i].offset);
   }
 }
 

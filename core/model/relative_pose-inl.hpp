@@ -57,36 +57,43 @@ HWY_INLINE Vec4 relative(Vec4 a, const double* b) {
   return (spread(b[0]) * by_x + spread(b[1]) * by_y) + (spread(b[2]) * by_z + spread(b[3]) * by_w);
 }
 
-HWY_INLINE double square_of(Vec4 q) {
-  const Vec4 s = q * q;
-  return (lane(s, 3) + lane(s, 0)) + (lane(s, 1) + lane(s, 2));
-}
-HWY_INLINE bool nearly_unit(double square) {
-  return HWY_LIKELY(std::abs(square - 1.0) <= kNearlyUnit);
-}
+// |a|^2 and |b|^2.
+HWY_INLINE Vec2 squares_of(Vec4 a, Vec4 b) { return sums4(a * a, b * b); }
 
 // 2 / |q|^2, the factor that makes a rotation of q without a square root. If q is of unit length to
 // a dozen digits, it takes no division: kMatrixError says why.
-HWY_INLINE double two_over_square(Vec4 q) {
-  const double square = square_of(q);
-  return nearly_unit(square) ? 2.0 * (2.0 - square) : 2.0 / square;
+HWY_INLINE Vec2 two_over_unit(Vec2 square) { return vec2(2.0) * (vec2(2.0) - square); }
+HWY_INLINE bool nearly_unit(double square) { return std::abs(square - 1.0) <= kNearlyUnit; }
+HWY_INLINE Vec2 two_over(Vec2 square) {
+  const Vec2 unit = two_over_unit(square), any = vec2(2.0) / square;
+  return Vec2{nearly_unit(square[0]) ? unit[0] : any[0], nearly_unit(square[1]) ? unit[1] : any[1]};
+}
+HWY_INLINE bool both_nearly_unit(Vec2 square) {
+  return HWY_LIKELY(both_at_most(magnitudes(square - vec2(1.0)), vec2(kNearlyUnit)));
 }
 
-// R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it.
-HWY_INLINE void set_rotation(Vec4 q, RelativePose4& r) {
-  const Vec4 s = spread(two_over_square(q)), squares = q * q;
-  const Vec4 products = q * yzx(q), by_w = zxy(spread(lane(q, 3)) * q);
-  const Vec4 d = spread(1.0) - s * (yzx(squares) + zxy(squares));  // 00, 11, 22
-  const Vec4 p = s * (products + by_w);                            // 10, 21, 02
-  const Vec4 m = s * (products - by_w);                            // 01, 12, 20
+// R(q/|q|) = N(q) / |q|^2, by its diagonal and the two triples beside it; s: 2 / |q|^2.
+HWY_INLINE void set_rotation(Vec4 q, double two_over_square, RelativePose4& r) {
+  const Vec4 s = spread(two_over_square), y = yzx(q), z = zxy(q);
+  const Vec4 products = q * y, by_w = spread(lane(q, 3)) * z;
+  const Vec4 d = spread(1.0) - s * (y * y + z * z);  // 00, 11, 22
+  const Vec4 p = s * (products + by_w);              // 10, 21, 02
+  const Vec4 m = s * (products - by_w);              // 01, 12, 20
   r.rotation = {d, m, zxy(p)};
   r.transposed = {d, p, zxy(m)};
 }
 
-// R(q/|q|)^T v by two cross products.
-HWY_INLINE Vec4 rotate_back(Vec4 q, Vec4 v) {
-  const Vec4 c = cross(q, v);
-  return v + two_over_square(q) * (cross(q, c) - spread(lane(q, 3)) * c);
+// R(q/|q|)^T v by two cross products; s: 2 / |q|^2.
+HWY_INLINE Vec4 rotate_back(Vec4 q, double two_over_square, Vec4 v) {
+  const Vec4 c = cross_zxy(q, v), by_w = spread(lane(q, 3)) * yzx(c);
+  return v + two_over_square * (cross_with_zxy(q, c) - by_w);
+}
+
+// `between`: from A's origin to B's, in the world.
+HWY_INLINE void set_translation(Vec4 a, double two_over_square, Vec4 between, RelativePose4& r) {
+  r.translation = rotate_back(a, two_over_square, between);
+  r.translation_length = norm(r.translation);
+  r.translation_error = kTranslationError * r.translation_length;
 }
 
 // A unit quaternion whose components are multiples of 1/2 permutes the axes, and products of two
@@ -102,8 +109,8 @@ HWY_INLINE void set_exactness(Vec4 a, Vec4 b, RelativePose4& r) {
 }
 // A quick test that moving orientations do not pass. If anything is exact, w of a or z of conj(a) b
 // is 0, 1/2 or 1 in magnitude, whose mantissas are zero.
+HWY_INLINE bool has_digits(double x) { return std::bit_cast<std::uint64_t>(x) << 12 != 0; }
 HWY_INLINE bool may_be_exact(double w_of_a, double z_of_both) {
-  const auto has_digits = [](double x) { return std::bit_cast<std::uint64_t>(x) << 12 != 0; };
   return !has_digits(w_of_a) || !has_digits(z_of_both);
 }
 
@@ -119,14 +126,15 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
   const Vec4 a = load4(world_from_a.orientation.coeffs().data());
   const Vec4 q = relative(a, world_from_b.orientation.coeffs().data());
   const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
+  const Vec2 squares = squares_of(a, q);
+  const bool unit = both_nearly_unit(squares);
+  const Vec2 factors = HWY_LIKELY(unit) ? two_over_unit(squares) : two_over(squares);
   RelativePose4 r;
-  set_rotation(q, r);
-  r.translation = rotate_back(a, between);
-  r.translation_length = norm(r.translation);
+  set_rotation(q, factors[1], r);
+  set_translation(a, factors[0], between, r);
   r.rotation_error = kRotationError;
-  r.translation_error = kTranslationError * r.translation_length;
-  const bool unit = nearly_unit(square_of(a)) && nearly_unit(square_of(q));
-  if (HWY_UNLIKELY(!unit || !(r.translation_length <= kLargestCoordinate)) &&
+  const double longest = HWY_LIKELY(unit) ? kLargestCoordinate : -1.0;
+  if (HWY_UNLIKELY(!(r.translation_length <= longest)) &&
       !is_good(world_from_a, world_from_b, r.translation_length)) {
     r.translation_length = std::numeric_limits<double>::quiet_NaN();
     r.translation = spread(r.translation_length);
@@ -135,6 +143,22 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     set_exactness(a, load4(world_from_b.orientation.coeffs().data()), r);
   }
   return r;
+}
+
+// The translation and its error alone, for a point of B at the origin of its frame. The errors of a
+// rotation do not move that point. False: the poses are not certainly good, or a product with the
+// rotation could change the sign of a zero.
+HWY_INLINE bool set_place(const Pose& world_from_a, const Pose& world_from_b, RelativePose4& r) {
+  const Vec4 a = load4(world_from_a.orientation.coeffs().data());
+  const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
+  const Vec2 squares = squares_of(a, load4(world_from_b.orientation.coeffs().data()));
+  set_translation(a, two_over_unit(squares)[0], between, r);
+  r.rotation_error = 0.0;
+  if (HWY_UNLIKELY(!has_digits(world_from_a.orientation.w())) && permutes_axes(a)) {
+    r.translation_error = kPermutedTranslationError * r.translation_length;
+  }
+  return both_nearly_unit(squares) && r.translation_length <= kLargestCoordinate &&
+         (less(spread(0.0), r.translation * r.translation) & 7u) == 7u;
 }
 
 // The nine numbers of the matrix are followed by the translation in the same object.

@@ -25,16 +25,17 @@ struct Climber {
 // it has moved. No branches: neither the move nor the edge is predictable.
 bool climb(const ConvexBody& body, Climber& climber) noexcept {
   const Vertex& vertex = body.vertices[climber.at];
-  const double* row = body.outgoing.row(vertex.first_edge);
-  const std::int32_t n = vertex.edges;
+  const double* four = body.outgoing.row(vertex.first_edge);
   const double x = climber.m.x(), y = climber.m.y(), z = climber.m.z();
   double greatest = -kInfinity;
   std::int32_t steepest = 0;
-  for (std::int32_t i = 0; i < n; ++i) {
-    const double derivative = (x * row[i] + y * row[n + i]) + z * row[2 * n + i];
-    const std::int32_t steeper = derivative > greatest;
-    steepest ^= (steepest ^ i) & -steeper;
-    greatest = std::max(greatest, derivative);
+  for (std::int32_t first = 0; first < vertex.edges; first += 4, four += 12) {
+    for (std::int32_t k = 0; k < 4; ++k) {
+      const double derivative = (x * four[k] + y * four[4 + k]) + z * four[8 + k];
+      const std::int32_t steeper = derivative > greatest;
+      steepest ^= (steepest ^ (first + k)) & -steeper;
+      greatest = std::max(greatest, derivative);
+    }
   }
   const std::int32_t ascends = greatest > kDerivativeError;
   const std::int32_t to = body.neighbours[vertex.first_edge + steepest];

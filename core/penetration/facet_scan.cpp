@@ -152,7 +152,7 @@ void DeepestVertices::find_deepest() noexcept {
   const std::size_t facets = body_.facets.size();
   for (std::size_t first = 0; first < facets; first += kMostScanned) {
     const std::size_t end = std::min(kMostScanned, facets - first);
-    const double least = HWY_DYNAMIC_DISPATCH(deepest_of_all)(body_.planes.row(0) + first, facets,
+    const double least = HWY_DYNAMIC_DISPATCH(deepest_of_all)(body_.planes.data() + first, facets,
                                                               end, points_[0].data(), count_,
                                                               depths_.data(), whose_.data());
     if (!(least < least_)) continue;
@@ -166,7 +166,7 @@ void DeepestVertices::find_deepest() noexcept {
 std::span<const std::int32_t> DeepestVertices::mark(double enough, std::size_t main) noexcept {
   const std::size_t facets = body_.facets.size();
   HWY_DYNAMIC_DISPATCH(mark_deep)
-  (body_.planes.row(0), facets, points_[0].data(), count_, enough, marks_.data());
+  (body_.planes.data(), facets, points_[0].data(), count_, enough, marks_.data());
   main_ = std::uint64_t{1} << main;
   std::size_t size = 0;
   for (std::size_t i = 0; i < facets; ++i) {
@@ -182,7 +182,7 @@ HWY_EXPORT(list_not_below);
 DeepestPoints::Shallow DeepestPoints::list_shallow(double enough) noexcept {
   Shallow out;
   const std::size_t size =
-      HWY_DYNAMIC_DISPATCH(list_shallow)(body_.planes.row(0), body_.facets.size(), points_.data(),
+      HWY_DYNAMIC_DISPATCH(list_shallow)(body_.planes.data(), body_.facets.size(), points_.data(),
                                          count_, enough, list_.data(), out.rest, out.where_least);
   out.facets = {list_.data(), size};
   return out;
@@ -191,7 +191,7 @@ DeepestPoints::Shallow DeepestPoints::list_shallow(double enough) noexcept {
 std::span<const std::uint16_t> DeepestPoints::list_not_below(const Point& point,
                                                              double enough) noexcept {
   const std::size_t facets = body_.facets.size();
-  std::size_t size = HWY_DYNAMIC_DISPATCH(list_not_below)(body_.planes.row(0), facets, &point,
+  std::size_t size = HWY_DYNAMIC_DISPATCH(list_not_below)(body_.planes.data(), facets, &point,
                                                           point.for_arcs(enough), list_.data());
   while (size > 0 && list_[size - 1] >= facets) --size;
   std::fill_n(listed_.begin(), facets, false);

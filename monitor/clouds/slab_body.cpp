@@ -147,8 +147,8 @@ void SlabBody::fill_tables() noexcept {
   const auto facets = static_cast<std::int32_t>(body_.facets.size());
   for (std::int32_t f = 0; f < facets; ++f) {
     const Facet& facet = body_.facets[static_cast<std::size_t>(f)];
-    for (std::int32_t k = 0; k < 3; ++k) body_.planes.set(0, facets, f, k, facet.normal[k]);
-    body_.planes.set(0, facets, f, 3, facet.offset);
+    for (std::int32_t k = 0; k < 3; ++k) body_.planes.set(facets, f, k, facet.normal[k]);
+    body_.planes.set(facets, f, 3, facet.offset);
   }
 }
 

@@ -49,7 +49,7 @@ class Inspection {
     for (const Facet& facet : body_.facets) {
       expect(facet.sides >= 0 && facet.limits >= facet.sides && at(facet.first_side) == next,
              "facets list their sides in order", next);
-      next += at(facet.limits);
+      next += at(VectorRows<4>::length(facet.limits));
       expect(in_range(facet.anchor, body_.anchors.size()) && facet.anchor != kNone,
              "a facet's point exists", at(facet.first_side));
     }
@@ -58,7 +58,7 @@ class Inspection {
     for (const Vertex& vertex : body_.vertices) {
       expect(vertex.edges >= 0 && at(vertex.first_edge) == next,
              "vertices list their edges in order", next);
-      next += at(vertex.edges);
+      next += at(VectorRows<3>::length(vertex.edges));
     }
     expect(next == body_.vertex_edges.size(), "vertex_edges belong to vertices", next);
     for (std::size_t e = 0; e < body_.edges.size(); ++e) {

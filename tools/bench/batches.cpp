@@ -13,6 +13,7 @@
 
 #include "core/batch.hpp"
 #include "core/distance.hpp"
+#include "core/query/entries.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 
@@ -164,16 +165,20 @@ std::int64_t up_to(std::int64_t target) {
   return target == 0 ? 0 : (hwy::SupportedTargets() & -target) | target;
 }
 
+void use_targets(std::int64_t targets) {
+  hwy::SetSupportedTargetsForTest(targets);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  choose_query_entries();
+}
+
 template <class Solver>
 void register_fleet(const std::string& name, const std::string& load, std::int64_t target,
                     Shapes shapes = Shapes::kInCommon) {
   benchmark::RegisterBenchmark(name.c_str(), [=](benchmark::State& state) {
     Fleet fleet(workload(load), shapes);
-    hwy::SetSupportedTargetsForTest(up_to(target));
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    use_targets(up_to(target));
     time_fleet<Solver>(state, fleet);
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    use_targets(0);
   });
 }
 
