@@ -122,8 +122,7 @@ TEST(OwnPoints, ExactlyTheBallsWithinTheShellOfAPartAreShelvedAndNoQueryMeetsThe
   }
 }
 
-// Balls of up to a fifth of the range, with an error of 1 cm. The oracle is the place of each
-// point.
+// Balls reach up to 0.4 m, with an error of 1 cm. The oracle is the place of each point.
 TEST(OwnPoints, NoPointBeyondTheLimitIsShelvedHoweverFarItsBallReachesAndThePartItselfIs) {
   const ConvexBody part = made(segment({0, 0, 1.8}, {0, 0, 2.2}, 0.07));
   const double error = 0.01, most = 0.1;

@@ -299,7 +299,7 @@ class OrganisedFrames : public SensorsTest {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 
-// A hand before a wall that is out of range. The rows are 2 degrees apart, the columns 0.2.
+// A hand is before a wall that is out of range. The rows are 2 degrees apart, the columns 0.2.
 TEST_F(OrganisedFrames, AHandThatOneRowHitsIsContainedUpToTheMiddleBetweenTheRows) {
   make(kPoints + ", spacing: neighbours" + kAbove);
   const auto frames = take(16, 40, 2 * kDegree, 0.2 * kDegree, [](std::size_t v, std::size_t u) {
@@ -336,7 +336,7 @@ TEST_F(OrganisedFrames, AreRefusedIfNothingShowsHowFarApartTheRowsOrColumnsAre) 
   EXPECT_EQ(take(16, 40, 0.03, 0.003, [](std::size_t, std::size_t) { return 1.5; }).size(), 1u);
 }
 
-// A ranging chip with four by four zones, and lidars.
+// The first is a ranging chip with four by four zones; the others are lidars.
 TEST_F(OrganisedFrames, AreRefusedIfTheirRaysAreTooFarApartWhetherOrNotTheyAreWithinTheRange) {
   make(kPoints + ", spacing: neighbours" + kAbove);
   EXPECT_TRUE(
