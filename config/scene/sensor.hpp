@@ -80,7 +80,8 @@ struct Sensor {
   // m. The error of the part's pose is added.
   double own_shell = 0.0;
   // However uncertain a pose is, elements farther than this from where the part is believed to be
-  // are not taken for its image, m. At least own_shell.
+  // are not taken for its image, m. Of a ball, the centre counts, to within its own error. At least
+  // own_shell.
   double most_shell = 0.3;
 
   // A frame whose stamp is less than this after that of the frame before is refused; 0: none is.

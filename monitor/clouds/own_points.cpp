@@ -92,8 +92,8 @@ class SlabShelf {
 class BallShelf {
  public:
   BallShelf(const ConvexBody& part, const RelativePose& pose, double shell,
-            PointCloud& cloud) noexcept
-      : part_(part), pose_(pose), shell_(shell), cloud_(cloud) {}
+            const CentreLimit& limit, PointCloud& cloud) noexcept
+      : part_(part), pose_(pose), shell_(shell), limit_(limit), cloud_(cloud) {}
 
   BlindShell run() noexcept {
     if (cloud_.levels() > 0) descend(cloud_.levels() - 1, 0);
@@ -122,6 +122,13 @@ class BallShelf {
     return r.status != DistanceStatus::kBadPose && r.lower <= shell_ * kRoundedUp;
   }
 
+  // The centre of a ball that is shelved is within the shell and this of the part.
+  [[nodiscard]] double reach(const Vec3& p, double radius) const noexcept {
+    const double range = p.norm(), depth = limit_.along_ray ? range : p.z();
+    const double error = limit_.error.at(depth) * (range / depth) * kRoundedUp;
+    return std::min(radius, limit_.most - shell_ + error);
+  }
+
   void descend(std::size_t level, std::size_t i) noexcept {
     const PointCloud::Node& node = cloud_.node(level, i);
     if (PointCloud::is_empty(node)) return;
@@ -146,18 +153,18 @@ class BallShelf {
       if (!block.is_present(lane)) continue;
       const bool is_cube = cloud_.shape() == ElementShape::kCube;
       const double radius = (is_cube ? kCubeRadius : 1.0) * block.radius[lane];
-      if (is_cube ? !is_near(cloud_.cube(b, lane))
-                  : !is_near({block.x[lane], block.y[lane], block.z[lane]}, radius)) {
-        continue;
-      }
+      const Vec3 p(block.x[lane], block.y[lane], block.z[lane]);
+      const double near = is_cube ? radius : reach(p, radius);
+      if (is_cube ? !is_near(cloud_.cube(b, lane)) : !is_near(p, near)) continue;
       blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
-      blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * radius);
+      blind_.thickness = std::max(blind_.thickness, shell_ + near + radius);
     }
   }
 
   const ConvexBody& part_;
   const RelativePose& pose_;
   double shell_;
+  const CentreLimit& limit_;
   PointCloud& cloud_;
   TrackingState features_, cube_features_;
   BlindShell blind_;
@@ -171,8 +178,8 @@ BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_fr
 }
 
 BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,
-                             double shell, PointCloud& cloud) noexcept {
-  return BallShelf(part, part_from_cloud, shell, cloud).run();
+                             double shell, PointCloud& cloud, const CentreLimit& limit) noexcept {
+  return BallShelf(part, part_from_cloud, shell, limit, cloud).run();
 }
 
 }  // namespace clearance

@@ -18,17 +18,26 @@ struct BlindShell {
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
 };
 
+// The true place of a ball's point is within the stated error of its centre. The rest of the radius
+// spans the way to its neighbours, and may be far longer.
+struct CentreLimit {
+  double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
+  DepthError error;
+  bool along_ray = false;  // depth is the distance from the sensor, not z
+};
+
 // Shelves every element that comes within `shell` (m, >= 0) of the part: queries do not meet it any
 // more. The pose is that of the frame's stamp, never the present one. A surface of the robot lies
 // in the parts, and the elements contain it, so a shell of 0 is enough if the pose is exact. The
 // caller adds the error of the pose to the shell, and calls refit() of the cloud after the last
-// part. A bad pose shelves nothing. noexcept, no heap,
-// deterministic.
+// part. A ball stays if its centre is farther from the part than the limit and its own error. A bad
+// pose shelves nothing. noexcept, no heap, deterministic.
 [[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
                                            const RelativePose& part_from_cloud, double shell,
                                            DepthCloud& cloud, SlabBody& body) noexcept;
 [[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
                                            const RelativePose& part_from_cloud, double shell,
-                                           PointCloud& cloud) noexcept;
+                                           PointCloud& cloud,
+                                           const CentreLimit& limit = {}) noexcept;
 
 }  // namespace clearance

@@ -95,10 +95,10 @@ class SeenCloud {
   }
   // See own_points.hpp. Call refit() after the last part.
   [[nodiscard]] BlindShell shelve(const ConvexBody& part, const RelativePose& part_from_cloud,
-                                  double shell, SlabBody& body) noexcept {
+                                  double shell, const CentreLimit& limit, SlabBody& body) noexcept {
     if (DepthCloud* const slabs = depth())
       return shelve_own_points(part, part_from_cloud, shell, *slabs, body);
-    return shelve_own_points(part, part_from_cloud, shell, *points());
+    return shelve_own_points(part, part_from_cloud, shell, *points(), limit);
   }
   // By the caller, in ascending order of objects.
   [[nodiscard]] std::span<const HiddenNear> hidden() const noexcept { return hidden_; }

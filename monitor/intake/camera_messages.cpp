@@ -109,6 +109,11 @@ const char* text(FrameFault fault) noexcept {
       return "it has no rows, so its points have no neighbours";
     case FrameFault::kOctree:
       return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
+    case FrameFault::kWideRays:
+      return "the rays of pixels beside each other are more than 0.1 rad apart: state 'spacing' as "
+             "a number";
+    case FrameFault::kUnknownRays:
+      return "no two points in one row, or none in one column, show how far apart its rays are";
   }
   return "";
 }
@@ -169,6 +174,10 @@ const char* name(FrameFault fault) noexcept {
       return "not organised";
     case FrameFault::kOctree:
       return "a map that cannot be read";
+    case FrameFault::kWideRays:
+      return "rays too far apart";
+    case FrameFault::kUnknownRays:
+      return "rays unknown";
   }
   return "";
 }

@@ -48,9 +48,11 @@ enum class FrameFault : std::uint8_t {
   kBeforeJoints,    // joints were first heard after the stamp: the robot's image is taken for an
                     // obstacle
   kNotOrganised,    // points in one row, where the cell says that their neighbours are known
-  kOctree,  // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
+  kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
+  kWideRays,     // of organised points: no ball may span the way from one ray to the next
+  kUnknownRays,  // of organised points: too few show how far apart the rays are
 };
-inline constexpr std::size_t kFrameFaults = 27;
+inline constexpr std::size_t kFrameFaults = 29;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

@@ -156,10 +156,11 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
       return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
     }
   } else {
-    const auto [width, height] = std::pair(frame.points.width, frame.points.height);
-    if (sensor.by_neighbours && (width < 2 || height < 2)) return FrameFault::kNotOrganised;
     measured_points(frame.points, sensor, points_);
-    if (sensor.by_neighbours) organised_.widen(width, height, points_);
+    if (sensor.by_neighbours) {
+      const FrameFault fault = organised_.widen(frame.points.width, frame.points.height, points_);
+      if (fault != FrameFault::kNoFault) return fault;
+    }
   }
   PointCloud& points = *cloud.points();
   const auto built = [&](const CloudCrop& crop) {

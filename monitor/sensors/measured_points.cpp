@@ -22,6 +22,7 @@ MeasuredPoint ball(float x, float y, float z, const Sensor& sensor) noexcept {
   const double depth = sensor.along_ray ? range : double{z};
   const bool is_there =
       depth >= sensor.least_depth && depth <= sensor.greatest_depth && range <= kLongestRay * depth;
+  if (!is_there && sensor.by_neighbours) return {x, y, z, kMissing};
   if (!is_there) return {kMissing, kMissing, kMissing, 0.0F};
   const double error = sensor.error_at(depth);
   const double radius = error * (range / depth) + (depth + error) * sensor.spacing * kHalfDiagonal;

@@ -13,7 +13,8 @@ namespace clearance {
 inline constexpr double kHalfDiagonal = 0.70710678118654757 * (1.0 + 0x1p-40);
 
 // Replaces the content of `points`. A point that is out of the range, or more than 51 degrees off
-// the axis along which the depth is measured, is missing: its coordinates are NaN.
+// the axis along which the depth is measured, is missing: its coordinates are NaN. With
+// Sensor::by_neighbours its radius is NaN instead, since OrganisedPoints needs its ray.
 void measured_points(const PointsView& view, const Sensor& sensor,
                      std::vector<MeasuredPoint>& points);
 

@@ -32,10 +32,9 @@ void OrganisedPoints::add_cell(const std::array<const Ray*, 4>& rays,
       const Ray &a = *rays[i], &b = *rays[k];
       if (a.range == 0.0 || b.range == 0.0) continue;
       const double chord2 = (a.direction - b.direction).squaredNorm();
-      if (chord2 > kWidestNeighbour * kWidestNeighbour) continue;
-      const bool is_diagonal = i + k == 3;
-      if (!is_diagonal) widest2_ = std::max(widest2_, chord2);
-      if (!on_one_surface(a, b, chord2)) continue;
+      const std::size_t side = i + k == 3 ? 2 : k - i - 1;
+      widest2_[side] = std::max(widest2_[side], chord2);
+      if (std::isnan(a.error) || std::isnan(b.error) || !on_one_surface(a, b, chord2)) continue;
       const Vec3 way = b.point - a.point;
       const double half2 = 0.25 * way.squaredNorm(), error = std::max(a.error, b.error);
       for (Reach* const reach : {reaches[i], reaches[k]}) {
@@ -54,11 +53,13 @@ void OrganisedPoints::add_cell(const std::array<const Ray*, 4>& rays,
   }
 }
 
-void OrganisedPoints::widen(std::uint32_t width, std::uint32_t height,
-                            std::span<MeasuredPoint> points) {
+FrameFault OrganisedPoints::widen(std::uint32_t width, std::uint32_t height,
+                                  std::span<MeasuredPoint> points) {
+  if (width < 2 || height < 2) return FrameFault::kNotOrganised;
   rows_.resize(2 * std::size_t{width});
   reaches_.assign(points.size(), {});
-  widest2_ = 0.0;
+  widest2_.fill(0.0);
+  bool is_empty = true;
   for (std::size_t row = 0; row < height; ++row) {
     Ray* const above = &rows_[(row + 1) % 2 * width];
     Ray* const here = &rows_[row % 2 * width];
@@ -67,24 +68,30 @@ void OrganisedPoints::widen(std::uint32_t width, std::uint32_t height,
       const MeasuredPoint& p = points[row * width + column];
       const Vec3 at(p.x, p.y, p.z);
       const double range = at.norm();
-      // The negated comparison leaves NaN out.
-      here[column] = !(range > 0.0) ? Ray{} : Ray{at, at / range, range, p.radius};
+      here[column] =
+          range > 0.0 && std::isfinite(range) ? Ray{at, at / range, range, p.radius} : Ray{};
+      is_empty = is_empty && !(here[column].range > 0.0 && p.radius >= 0.0F);
       if (row == 0 || column == 0) continue;
       add_cell({&above[column - 1], &above[column], &here[column - 1], &here[column]},
                {&reaches[column - 1] - width, &reaches[column] - width, &reaches[column - 1],
                 &reaches[column]});
     }
   }
-  const double pixel = kHalfDiagonal * std::sqrt(widest2_);
+  if (std::ranges::max(widest2_) > kWidestNeighbour * kWidestNeighbour)
+    return FrameFault::kWideRays;
+  if (!is_empty && (widest2_[0] == 0.0 || widest2_[1] == 0.0)) return FrameFault::kUnknownRays;
+  const double pixel = kHalfDiagonal * std::sqrt(std::max(widest2_[0], widest2_[1]));
   for (std::size_t i = 0; i < points.size(); ++i) {
     MeasuredPoint& p = points[i];
     const double range = Vec3(p.x, p.y, p.z).norm();
-    if (!(range > 0.0)) continue;
+    if (std::isnan(p.radius)) p.x = std::numeric_limits<float>::quiet_NaN();
+    if (!(range > 0.0) || std::isnan(p.radius)) continue;
     const double reach = std::max(std::sqrt(reaches_[i].squared), pixel * range);
     const double radius = reach + std::max(reaches_[i].error, double{p.radius});
     p.radius = std::nextafter(static_cast<float>(radius * (1.0 + kRounded)),
                               std::numeric_limits<float>::infinity());
   }
+  return FrameFault::kNoFault;
 }
 
 }  // namespace clearance

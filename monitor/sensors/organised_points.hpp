@@ -9,6 +9,9 @@
 // Around corner i, |s - P_i| <= |sum w_k (P_k - P_i)| + sum w_k e_k. The first term is convex in
 // each parameter of the cell, so it is largest in the middle of an edge or of the cell. The second
 // one is at most the largest e_k.
+//
+// All corners of a plane's cell are neighbours if its incidence t is nowhere above 80 degrees, and
+// tan t <= kWidestNeighbour / (the distance of the rays across the diagonal at a range of 1).
 #pragma once
 
 #include <array>
@@ -17,27 +20,31 @@
 #include <vector>
 
 #include "monitor/clouds/point_cloud.hpp"
+#include "monitor/intake/camera_messages.hpp"
 
 namespace clearance {
 
 // Two points are on one surface if the ranges differ, beyond both errors, by at most this times the
 // distance of the rays at the nearer one: an incidence of 80 degrees.
 inline constexpr double kSteepest = 6.0;
-// And by at most this times the nearer range. Rays that are as far apart at a range of 1 are of no
-// neighbours. Sensor::extent() rests on both.
+// And by at most this times the nearer range. The rays of a cell are at most as far apart at a
+// range of 1. Sensor::extent() rests on both.
 inline constexpr double kWidestNeighbour = 0.1;
 
 class OrganisedPoints {
  public:
   // `points` come row by row, in the frame of the sensor; missing ones are NaN. Their radii bound
   // their errors, and are replaced. Each is at least half of the diagonal between the widest rays
-  // of the frame, so that a point without neighbours contains what its pixel sees.
-  void widen(std::uint32_t width, std::uint32_t height, std::span<MeasuredPoint> points);
+  // of the frame, so that a point without neighbours contains what its pixel sees. A point whose
+  // radius is NaN shows its ray only, and is missing afterwards. Any other result than kNoFault
+  // leaves the points as they are: kNotOrganised, kWideRays or kUnknownRays.
+  [[nodiscard]] FrameFault widen(std::uint32_t width, std::uint32_t height,
+                                 std::span<MeasuredPoint> points);
 
  private:
   struct Ray {
     Vec3 point = Vec3::Zero(), direction = Vec3::Zero();
-    double range = 0.0, error = 0.0;  // m; range 0: missing
+    double range = 0.0, error = 0.0;  // m; range 0: missing; error NaN: only a ray
   };
   struct Reach {
     double squared = 0.0;  // m2
@@ -49,7 +56,9 @@ class OrganisedPoints {
 
   std::vector<Ray> rows_;  // two
   std::vector<Reach> reaches_;
-  double widest2_ = 0.0;  // the squared distance of neighbouring rays at a range of 1
+  // The squared distances of neighbouring rays at a range of 1: in a row, in a column, and across
+  // the diagonal.
+  std::array<double, 3> widest2_{};
 };
 
 }  // namespace clearance

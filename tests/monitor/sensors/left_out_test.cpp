@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 
 #include "core/shapes.hpp"
 #include "monitor/sensors/persistence.hpp"
@@ -98,6 +99,30 @@ TEST_F(LeftOutTest, TheCellStatesHowThickTheShellOfALateLinkMayBe) {
   add_joints(0.0, kStart);
   EXPECT_EQ(elements(flat(31, 1800)), 48u) << "0.15 m above the arm";
   EXPECT_LT(elements(flat(32, 1900)), 48u) << "some of it is less than 0.1 m from the arm";
+}
+
+// The joints are late, so the shell is as thick as the cell allows. The points are 0.06 of the
+// depth apart, and so their balls reach 8 cm.
+TEST_F(LeftOutTest, AnOrganisedPointBeyondTheThickestShellStaysHoweverFarItsBallReaches) {
+  make(kPoints + ", spacing: neighbours, most_shell: 0.1" + kAbove);
+  add_joints(0.0, kStart);
+  const auto elements_at = [&](int number, float depth) {
+    CloudText cloud;
+    cloud.stamp_ns += number * kFrame;
+    cloud.width = cloud.height = 4;
+    cloud.row_step = 80;
+    cloud.data.assign(320, 0);
+    for (std::size_t i = 0; i < 16; ++i) {
+      const std::array point = {0.06F * depth * (static_cast<float>(i % 4) - 1.5F),
+                                0.06F * depth * (static_cast<float>(i / 4) - 1.5F), depth};
+      std::memcpy(&cloud.data[20 * i], &point, sizeof point);
+    }
+    add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+    const auto frames = settle(cloud.stamp_ns + 25'000'000);
+    return frames.empty() ? 0 : frames[0].cloud->size();
+  };
+  EXPECT_EQ(elements_at(31, 1.80F), 16u) << "0.15 m above the arm";
+  EXPECT_LT(elements_at(32, 1.92F), 16u) << "some of it is less than 0.1 m from the arm";
 }
 
 TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {

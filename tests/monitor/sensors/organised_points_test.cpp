@@ -1,5 +1,5 @@
 // The balls of organised points. Oracles: the definition, point by point; and samples of the true
-// surface, which the test makes.
+// surface, which the test makes. Some of them need nothing of the definition.
 #include "monitor/sensors/organised_points.hpp"
 
 #include <gtest/gtest.h>
@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numbers>
 #include <optional>
 
 #include "tests/monitor/sensors/small_camera.hpp"
@@ -56,8 +57,7 @@ class Definition {
     for (std::size_t i = 0; i < of.points.size(); ++i) {
       for (const std::size_t k : {i + 1, i + of.width}) {
         const bool is_beside = k < of.points.size() && (k != i + 1 || k % of.width != 0);
-        if (is_beside && chord(i, k) && *chord(i, k) <= kWidestNeighbour)
-          widest_ = std::max(widest_, *chord(i, k));
+        if (is_beside && chord(i, k)) widest_ = std::max(widest_, *chord(i, k));
       }
     }
   }
@@ -112,7 +112,7 @@ TEST(OrganisedPoints, HaveTheRadiusOfTheirDefinitionRoundedUp) {
   Random random(3);
   OrganisedPoints organised;
   for (int run = 0; run < 40; ++run) {
-    Picture picture{.focal = random.uniform(12.0, 300.0), .error = random.uniform(0.0, 0.03)};
+    Picture picture{.focal = random.uniform(14.2, 300.0), .error = random.uniform(0.0, 0.03)};
     const double slope = random.uniform(-0.2, 0.2), step = random.uniform(0.0, 1.0);
     picture.make(
         [&](std::size_t u, std::size_t v) {
@@ -121,7 +121,7 @@ TEST(OrganisedPoints, HaveTheRadiusOfTheirDefinitionRoundedUp) {
         0.2, random);
     const Definition definition(picture);
     std::vector<MeasuredPoint> widened = picture.points;
-    organised.widen(picture.width, picture.height, widened);
+    ASSERT_EQ(organised.widen(picture.width, picture.height, widened), FrameFault::kNoFault);
     for (std::size_t i = 0; i < widened.size(); ++i) {
       EXPECT_EQ(std::isfinite(widened[i].x), picture.is_there(i));
       if (!picture.is_there(i)) continue;
@@ -149,7 +149,7 @@ TEST(OrganisedPoints, ContainTheSurfaceBetweenTrueNeighboursWhateverTheErrors) {
         0.0, random);
     const Definition definition(picture);
     std::vector<MeasuredPoint> widened = picture.points;
-    organised.widen(picture.width, picture.height, widened);
+    ASSERT_EQ(organised.widen(picture.width, picture.height, widened), FrameFault::kNoFault);
     for (std::size_t v = 0; v + 1 < picture.height; ++v) {
       for (std::size_t u = 0; u + 1 < picture.width; ++u) {
         const std::size_t a = v * picture.width + u, c = a + picture.width;
@@ -183,7 +183,7 @@ TEST(OrganisedPoints, DoNotSpanTheEdgesOfBodies) {
   const auto is_box = [](std::size_t u, std::size_t v) { return u > 6 && u < 15 && v > 4; };
   picture.make([&](std::size_t u, std::size_t v) { return is_box(u, v) ? 1.0 : 1.3; }, 0.0, random);
   OrganisedPoints organised;
-  organised.widen(picture.width, picture.height, picture.points);
+  ASSERT_EQ(organised.widen(picture.width, picture.height, picture.points), FrameFault::kNoFault);
   for (const MeasuredPoint& p : picture.points) {
     // Half of a pixel's diagonal, the error, and what the errors add to the way to a neighbour.
     EXPECT_LE(p.radius, 0.75 * 0.013 + 0.008 + 0.5 * 0.017) << p.z;
@@ -197,14 +197,158 @@ TEST(OrganisedPoints, ReachNoFartherThanTheViewOfTheirSensor) {
   const Cell cell = cell_with(kPoints + ", spacing: neighbours" + kAbove);
   const Sensor& sensor = cell.scene.sensors[0];
   for (int run = 0; run < 20; ++run) {
-    Picture picture{.focal = random.uniform(10.0, 20.0), .error = sensor.error_at(4.0)};
+    Picture picture{.focal = random.uniform(14.2, 25.0), .error = sensor.error_at(4.0)};
     picture.make([&](std::size_t, std::size_t) { return random.uniform(3.4, 4.0); }, 0.1, random);
-    organised.widen(picture.width, picture.height, picture.points);
+    ASSERT_EQ(organised.widen(picture.width, picture.height, picture.points), FrameFault::kNoFault);
     for (std::size_t i = 0; i < picture.points.size(); ++i) {
       if (!picture.is_there(i)) continue;
       EXPECT_LE(picture.point(i).norm() + picture.points[i].radius, sensor.extent());
     }
   }
+}
+
+// A plane is given by its unit normal. No step of the definition says here which cells count.
+TEST(OrganisedPoints, ContainEachPlaneUpToTheStatedSteepnessOrRefuseItsFrame) {
+  Random random(7);
+  OrganisedPoints organised;
+  int samples = 0, steep = 0, refused = 0;
+  for (int run = 0; run < 400; ++run) {
+    Picture picture{.width = 9, .height = 7, .focal = 1.0 / random.uniform(0.005, 0.15)};
+    const double turn = random.uniform(0.0, 6.3), tilt = random.uniform(0.0, 1.39);
+    const Vec3 normal(std::sin(tilt) * std::cos(turn), std::sin(tilt) * std::sin(turn),
+                      std::cos(tilt));
+    const auto along = [&](std::size_t i) {
+      return normal.dot(picture.at(i % picture.width, i / picture.width, 1.0).normalized());
+    };
+    picture.make(
+        [&](std::size_t u, std::size_t v) {
+          const double facing = normal.dot(picture.at(u, v, 1.0));
+          return facing > 0.02 ? 2.0 / facing : 100.0;
+        },
+        0.0, random);
+    std::vector<MeasuredPoint> widened = picture.points;
+    if (organised.widen(picture.width, picture.height, widened) == FrameFault::kWideRays) {
+      ++refused;
+      EXPECT_GT(std::sqrt(2.0) / picture.focal, 0.1);
+      continue;
+    }
+    for (std::size_t a = 0; a + picture.width + 1 < picture.points.size(); ++a) {
+      if ((a + 1) % picture.width == 0) continue;
+      const std::array cell{a, a + 1, a + picture.width, a + picture.width + 1};
+      const auto way = [&](std::size_t i, std::size_t k) {
+        return (picture.truth[i].normalized() - picture.truth[k].normalized()).norm();
+      };
+      const double diagonal = std::max(way(cell[0], cell[3]), way(cell[1], cell[2]));
+      const double steepest = std::min(80.0 * std::numbers::pi / 180.0, std::atan(0.1 / diagonal));
+      const double incidence = std::acos(std::ranges::min(
+          std::array{along(cell[0]), along(cell[1]), along(cell[2]), along(cell[3])}));
+      if (!(incidence < 0.9999 * steepest)) continue;
+      steep += incidence > 0.8 * steepest ? 1 : 0;
+      for (int sample = 0; sample < 20; ++sample, ++samples) {
+        const double s = random.uniform(0.0, 1.0), t = random.uniform(0.0, 1.0);
+        const Vec3 ray = (1 - t) * ((1 - s) * picture.at(a % 9, a / 9, 1.0) +
+                                    s * picture.at(a % 9 + 1, a / 9, 1.0)) +
+                         t * ((1 - s) * picture.at(a % 9, a / 9 + 1, 1.0) +
+                              s * picture.at(a % 9 + 1, a / 9 + 1, 1.0));
+        const Vec3 at = ray * (2.0 / normal.dot(ray));
+        EXPECT_TRUE(std::ranges::any_of(cell,
+                                        [&](std::size_t i) {
+                                          return (picture.point(i) - at).norm() <=
+                                                 widened[i].radius + 1e-6;
+                                        }))
+            << run << " " << a << " " << 1.0 / picture.focal;
+      }
+    }
+  }
+  EXPECT_GT(samples, 20'000);
+  EXPECT_GT(steep, 200);
+  EXPECT_GT(refused, 50);
+}
+
+class OrganisedFrames : public SensorsTest {
+ protected:
+  // A frame of a scanner whose rows and columns are these angles apart. No range: NaN.
+  template <class Range>
+  std::vector<SensorFrame> take(std::uint32_t rows, std::uint32_t columns, double row,
+                                double column, const Range& range) {
+    CloudText cloud;
+    cloud.stamp_ns += frames_++ * kFrame;
+    cloud.height = rows;
+    cloud.width = columns;
+    cloud.row_step = 20 * columns;
+    cloud.data.assign(std::size_t{20} * rows * columns, 0);
+    for (std::uint32_t v = 0; v < rows; ++v) {
+      for (std::uint32_t u = 0; u < columns; ++u) {
+        const double far = range(v, u);
+        const Vec3 p =
+            far * direction((v - 0.5 * (rows - 1)) * row, (u - 0.5 * (columns - 1)) * column);
+        const std::array point = {static_cast<float>(p.x()), static_cast<float>(p.y()),
+                                  static_cast<float>(p.z())};
+        std::memcpy(&cloud.data[std::size_t{20} * (v * columns + u)], &point, sizeof point);
+      }
+    }
+    add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+    return settle(cloud.stamp_ns + 1000);
+  }
+  static Vec3 direction(double up, double right) {
+    return {std::cos(up) * std::sin(right), std::sin(up), std::cos(up) * std::cos(right)};
+  }
+
+  std::int64_t frames_ = 0;
+};
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+
+// A hand is before a wall that is out of range. The rows are 2 degrees apart, the columns 0.2.
+TEST_F(OrganisedFrames, AHandThatOneRowHitsIsContainedUpToTheMiddleBetweenTheRows) {
+  make(kPoints + ", spacing: neighbours" + kAbove);
+  const auto frames = take(16, 40, 2 * kDegree, 0.2 * kDegree, [](std::size_t v, std::size_t u) {
+    return v == 9 && u >= 15 && u < 22 ? 1.5 : 6.0;
+  });
+  ASSERT_EQ(frames.size(), 1u);
+  ASSERT_EQ(frames[0].cloud->size(), 7u);
+  const PointCloud::Block& block = frames[0].cloud->points()->block(0);
+  for (double up = 2.02; up < 4.0; up += 0.04) {
+    for (double right = -0.95; right < 0.4; right += 0.05) {
+      const Vec3 at = 1.5 * direction(up * kDegree, right * kDegree);
+      bool is_contained = false;
+      for (std::size_t i = 0; i < 7; ++i) {
+        const Vec3 centre(block.x[i], block.y[i], block.z[i]);
+        is_contained = is_contained || (centre - at).norm() <= block.radius[i];
+      }
+      EXPECT_TRUE(is_contained) << up << " " << right;
+    }
+  }
+}
+
+TEST_F(OrganisedFrames, AreRefusedIfNothingShowsHowFarApartTheRowsOrColumnsAre) {
+  make(kPoints + ", spacing: neighbours" + kAbove);
+  EXPECT_TRUE(take(16, 40, 0.03, 0.003, [](std::size_t v, std::size_t) {
+                return v == 9 ? 1.5 : kNone;
+              }).empty());
+  EXPECT_EQ(count(FrameFault::kUnknownRays), 1u) << "one row";
+  EXPECT_TRUE(take(16, 40, 0.03, 0.003, [](std::size_t v, std::size_t u) {
+                return v % 2 == 0 && u == 9 ? 1.5 : kNone;
+              }).empty());
+  EXPECT_EQ(count(FrameFault::kUnknownRays), 2u) << "every point is alone";
+  EXPECT_TRUE(take(16, 40, 0.03, 0.003, [](std::size_t, std::size_t) { return kNone; }).empty());
+  EXPECT_EQ(count(FrameFault::kNothingSeen), 1u) << "no point at all";
+  EXPECT_EQ(take(16, 40, 0.03, 0.003, [](std::size_t, std::size_t) { return 1.5; }).size(), 1u);
+}
+
+// The first is a ranging chip with four by four zones; the others are lidars.
+TEST_F(OrganisedFrames, AreRefusedIfTheirRaysAreTooFarApartWhetherOrNotTheyAreWithinTheRange) {
+  make(kPoints + ", spacing: neighbours" + kAbove);
+  EXPECT_TRUE(
+      take(4, 4, 11 * kDegree, 11 * kDegree, [](std::size_t, std::size_t) { return 1.0; }).empty());
+  EXPECT_EQ(count(FrameFault::kWideRays), 1u);
+  EXPECT_TRUE(take(8, 40, 6 * kDegree, 0.2 * kDegree, [](std::size_t v, std::size_t u) {
+                return v == 4 && u == 20 ? 1.0 : 6.0;
+              }).empty());
+  EXPECT_EQ(count(FrameFault::kWideRays), 2u);
+  EXPECT_EQ(
+      take(8, 40, 5 * kDegree, 0.2 * kDegree, [](std::size_t, std::size_t) { return 1.0; }).size(),
+      1u);
 }
 
 TEST_F(SensorsTest, MakeBallsOfOrganisedPointsThatReachToTheirNeighbours) {
