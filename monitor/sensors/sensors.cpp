@@ -34,6 +34,7 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
 }
 Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.options_) {
   frames_ = std::move(before.frames_);
+  last_came_ns_ = before.last_came_ns_;
   for (const std::unique_ptr<State>& state : states_) {
     for (const std::unique_ptr<State>& old : before.states_) {
       const Sensor &a = old->sensor, &b = state->sensor;
