@@ -90,6 +90,11 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.contacts.take_over(before.state_->contacts, map);
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
+  for (std::size_t i = 0; i < s.shown.size(); ++i) {
+    const std::uint32_t old = map.objects[s.scene.sensors[i].object];
+    if (old == SceneMap::kNone || !before.state_->scene.objects[old].is_seen()) continue;
+    s.shown[i].clock = before.state_->shown[before.state_->scene.objects[old].sensor].clock;
+  }
   if (s.scene.revision != before.state_->scene.revision) return true;
   for (std::size_t i = 0; i < s.shown.size(); ++i)
     s.shown[i].frame = before.state_->shown[i].in_use;
@@ -101,7 +106,10 @@ void Monitor::save(StateWriter& out) const {
   clearance::save(s.inputs, out);
   s.contacts.save(out);
   s.zones.save(out);
-  for (const State::Shown& shown : s.shown) out.put(shown.frame.content);
+  for (const State::Shown& shown : s.shown) {
+    out.put(shown.frame.content);
+    out.put(shown.clock);
+  }
 }
 
 bool Monitor::restore(StateReader& in) noexcept {
@@ -111,7 +119,10 @@ bool Monitor::restore(StateReader& in) noexcept {
   s.contacts.restore(in);
   s.zones.restore(in);
   s.zones.count_absent(s.inputs.objects);
-  for (State::Shown& shown : s.shown) in.take(shown.awaited);
+  for (State::Shown& shown : s.shown) {
+    in.take(shown.awaited);
+    in.take(shown.clock);
+  }
   return in.complete();
 }
 

@@ -8,6 +8,7 @@
 
 #include "config/scene/scene_map.hpp"
 #include "monitor/app/log_lines.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
@@ -31,7 +32,9 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       sensors_(std::make_unique<Sensors>(cell, SensorsOptions{})),
       intake_(cell,
               {.use_sensor =
-                   [this](const RawSensorMessage& message) { sensors_->add(message, now_ns_); },
+                   [this](const RawSensorMessage& message) {
+                     sensors_->add(message, {SystemClock().realtime_ns(), now_ns_});
+                   },
                .only_sensors = true},
               [](PoseBatch&) { return true; }),
       ros_(participant, intake_),
@@ -83,9 +86,10 @@ void SensorReader::change(const Cell& cell) {
 }
 
 void SensorReader::note(const PoseBatch& batch) {
-  PoseBatch* const slot = batches_.back();
+  NotedBatch* const slot = batches_.back();
   if (slot == nullptr) return;
-  *slot = batch;
+  slot->batch = batch;
+  slot->came_ns = SystemClock().realtime_ns();
   batches_.push();
 }
 
@@ -145,11 +149,12 @@ void SensorReader::look() {
 
 // Joints and poses come first: they may be those at the stamp of a frame.
 void SensorReader::take_all() {
-  poses_.clear();
-  joints_.clear();
-  for (; PoseBatch* const batch = batches_.front(); batches_.pop())
-    static_cast<void>(ids_.append(*batch, poses_, joints_));
-  sensors_->add(poses_, joints_);
+  for (; const NotedBatch* const noted = batches_.front(); batches_.pop()) {
+    poses_.clear();
+    joints_.clear();
+    static_cast<void>(ids_.append(noted->batch, poses_, joints_));
+    sensors_->add(poses_, joints_, noted->came_ns);
+  }
   const Now now{.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = now_ns_};
   for (const RosReaders::Reader& reader : ros_.readers()) ros_.take(reader, now, taken_);
   if (!partner_) return;
@@ -179,7 +184,11 @@ bool SensorReader::is_used(const SeenCloud* cloud) const noexcept {
 void SensorReader::use(std::uint32_t sensor, SensorFrame frame) {
   frame.content = std::exchange(content_, 0);
   frames_.put(sensor, frame, cell_->scene.revision);
-  last_[sensor] = {frame, cell_->scene.revision, nullptr};
+  // A follower and its leader may build the same frames in another order.
+  Last& last = last_[sensor];
+  const std::int64_t older_ns = elapsed(frame.stamp_ns, last.frame.stamp_ns);
+  if (last.frame.cloud != nullptr && older_ns > 0 && older_ns <= kSetBackNs) return;
+  last = {frame, cell_->scene.revision, nullptr};
 }
 
 void SensorReader::build_own() {
@@ -192,6 +201,7 @@ void SensorReader::build_own() {
 // frames were missed that still count (persist), is of no use to it.
 void SensorReader::build_shared() {
   is_shared_ = true;
+  sensors_->drop_waiting();
   for (std::uint32_t sensor = 0; sensor < sent_.size(); ++sensor) {
     const auto in_use = [this](const SeenCloud* cloud) { return is_used(cloud); };
     if (sent_[sensor].content == 0 || !sensors_->has_room(sensor, in_use)) continue;

@@ -82,7 +82,11 @@ class SensorReader {
   Participant& participant_;
   FrameExchange frames_;
   BuiltFrames built_;
-  SpscRing<PoseBatch> batches_;
+  struct NotedBatch {
+    PoseBatch batch;
+    std::int64_t came_ns = 0;  // CLOCK_REALTIME
+  };
+  SpscRing<NotedBatch> batches_;
   std::mutex mutex_;  // guards what follows, but for the statuses
   SceneIds ids_;
   std::unique_ptr<Sensors> sensors_;

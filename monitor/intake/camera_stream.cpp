@@ -118,7 +118,11 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
   const bool is_heard =
       time_between(origin.sent_ns, last_.sent_ns) < static_cast<std::uint64_t>(options_.silence_ns);
   if (origin.writer != last_.writer && is_heard) return FrameFault::kSecondPublisher;
-  if (origin.stamp_ns <= last_.stamp_ns) return FrameFault::kOldStamp;
+  if (origin.stamp_ns <= last_.stamp_ns) {
+    const bool is_set_back =
+        time_between(origin.stamp_ns, last_.stamp_ns) > static_cast<std::uint64_t>(kSetBackNs);
+    return is_set_back && !is_heard ? FrameFault::kNoFault : FrameFault::kOldStamp;
+  }
   if (time_between(origin.stamp_ns, last_.stamp_ns) <
       static_cast<std::uint64_t>(options_.least_interval_ns)) {
     return FrameFault::kTooOften;

@@ -28,9 +28,13 @@ struct FrameOrigin {
   std::uint64_t writer = 0;
 };
 
-// To be used by one thread. A frame that is refused leaves no trace but its count.
+// To be used by one thread. Stamps increase, unless the clock was set back: after a silence, a
+// stamp counts that is more than kSetBackNs older than the last one. A frame that is refused leaves
+// no trace but its count.
 class CameraStream {
  public:
+  static constexpr std::int64_t kSetBackNs = 1'000'000'000;
+
   explicit CameraStream(const CameraStreamOptions& options) : options_(options) {}
 
   // Each returns kNoFault if the message can be used. The views are those of camera_messages.hpp.

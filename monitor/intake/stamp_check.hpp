@@ -19,6 +19,10 @@ enum class OtherClock : std::uint8_t {
 // One object for each publisher.
 class StampCheck {
  public:
+  // The time that counts, ns, whoever asks. A stamp of 0 counts as absent.
+  [[nodiscard]] static std::int64_t time_of(std::int64_t stamp_ns, std::int64_t sent_ns,
+                                            RosStamps wanted, OtherClock other) noexcept;
+
   // The difference that shows another clock, ns: that of a live message, then that of a message in
   // a log, since recorders may be late. The last figure is the number of consecutive messages that
   // must show it.
@@ -31,7 +35,7 @@ class StampCheck {
     std::string messages, key;
   };
 
-  // Returns the time to use, ns. A stamp of 0 counts as absent.
+  // The same; counts and reports what is wrong with the stamp.
   [[nodiscard]] std::int64_t time_of(std::int64_t stamp_ns, std::int64_t sent_ns, RosStamps wanted,
                                      OtherClock other, TopicCounts& counts, Outlet& out,
                                      const std::function<Whose()>& whose);

@@ -15,6 +15,7 @@ void FrameExchange::put(std::uint32_t sensor, const SensorFrame& frame,
   CLEARANCE_INVARIANT(free != of.slots.end());
   free->frame = frame;
   free->scene_revision = scene_revision;
+  free->content.store(frame.content, std::memory_order_relaxed);
   free->is_used.store(true, std::memory_order_relaxed);
   Slot* const before = of.offered.exchange(&*free, std::memory_order_acq_rel);
   if (before != nullptr) before->is_used.store(false, std::memory_order_release);
@@ -45,6 +46,17 @@ const SensorFrame* FrameExchange::newest(std::uint32_t sensor,
   if (of.next != nullptr && of.next->scene_revision != scene_revision)
     std::exchange(of.next, nullptr)->is_used.store(false, std::memory_order_release);
   return of.next == nullptr ? nullptr : &of.next->frame;
+}
+
+const SensorFrame* FrameExchange::awaiting_answer(std::uint32_t sensor,
+                                                  std::uint64_t scene_revision) noexcept {
+  OfSensor& of = of_[sensor];
+  if (of.next == nullptr || of.next->scene_revision != scene_revision)
+    return newest(sensor, scene_revision);
+  const Slot* const offered = of.offered.load(std::memory_order_acquire);
+  const bool is_newer_built =
+      offered != nullptr && is_built(sensor, offered->content.load(std::memory_order_relaxed));
+  return is_newer_built ? newest(sensor, scene_revision) : &of.next->frame;
 }
 
 bool FrameExchange::has(std::uint32_t sensor, std::uint64_t content) noexcept {

@@ -46,6 +46,10 @@ class FrameExchange {
   [[nodiscard]] std::size_t sensors() const noexcept { return sensors_; }
   // The newest frame that has come and was not shown; null: none.
   const SensorFrame* newest(std::uint32_t sensor, std::uint64_t scene_revision) noexcept;
+  // The same, while a partner is to build it, too: the frame that was found before stays until its
+  // answer, or that of a newer one, has come. Otherwise no answer of a partner that needs longer
+  // than the time between two frames would count.
+  const SensorFrame* awaiting_answer(std::uint32_t sensor, std::uint64_t scene_revision) noexcept;
   // The partner's note_built() of that frame has come.
   [[nodiscard]] bool is_built(std::uint32_t sensor, std::uint64_t content) const noexcept {
     return of_[sensor].built.load(std::memory_order_relaxed) == content;
@@ -71,6 +75,7 @@ class FrameExchange {
   struct Slot {
     SensorFrame frame;
     std::uint64_t scene_revision = 0;
+    std::atomic<std::uint64_t> content{0};  // of the frame, for a look while it is offered
     std::atomic<bool> is_used{false};
   };
   struct OfSensor {

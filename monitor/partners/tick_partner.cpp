@@ -230,7 +230,9 @@ void TickPartner::choose_frames(FramesWait wait) noexcept {
   const std::int64_t patience =
       wait == FramesWait::kForNotice ? 2 * options_.frame_patience_ns : options_.frame_patience_ns;
   for (std::uint32_t sensor = 0; sensor < sensors; ++sensor) {
-    const SensorFrame* const frame = options_.frames->newest(sensor, revision_);
+    const SensorFrame* frame = wait == FramesWait::kForAnswer && becoming_ == 0
+                                   ? options_.frames->awaiting_answer(sensor, revision_)
+                                   : options_.frames->newest(sensor, revision_);
     if (frame == nullptr || becoming_ != 0) continue;
     if (waits_[sensor] == 0) waits_[sensor] = now;
     const bool is_ready = wait == FramesWait::kForAnswer
@@ -239,6 +241,8 @@ void TickPartner::choose_frames(FramesWait wait) noexcept {
     const bool is_patient = (wait == FramesWait::kForNotice && newest_becoming_ != 0) ||
                             now - waits_[sensor] < patience;
     if (!is_ready && is_patient) continue;
+    if (!is_ready) frame = options_.frames->newest(sensor, revision_);
+    if (frame == nullptr) continue;
     waits_[sensor] = 0;
     frames_[frame_count_++] = {sensor, frame->content};
     options_.frames->choose(sensor);

@@ -72,8 +72,9 @@ const Report* RecordedLoop::tick(const TickInput& input) {
 void RecordedLoop::show_frames(const TickInput& input) {
   const std::int64_t now_ns = input.time.now_ns;
   if (input.recorded != nullptr) return show_recorded(input);
-  sensors_->add(poses_, joints_);
-  for (const auto& message : input.sensors) sensors_->add(*message, now_ns);
+  const Now now{.realtime_ns = now_ns + input.time.clock_offset_ns, .monotonic_ns = now_ns};
+  sensors_->add(poses_, joints_, now.realtime_ns);
+  for (const auto& message : input.sensors) sensors_->add(*message, now);
   sensors_->settle(
       now_ns, [this](const SeenCloud* cloud) { return is_used(cloud); },
       [this](std::uint32_t sensor, const SensorFrame& frame) { monitor_->show(sensor, frame); });

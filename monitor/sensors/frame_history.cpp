@@ -88,6 +88,26 @@ void FrameHistory::keep(std::span<const std::uint64_t> writers) {
   }
 }
 
+void FrameHistory::forget() {
+  for (auto& [name, frame] : frames_) {
+    if (frame.is_static) continue;
+    frame.poses.clear();
+    frame.rival.reset();
+  }
+}
+
+void FrameHistory::append_stamps(const std::string& child, std::int64_t first_ns,
+                                 std::int64_t last_ns, std::vector<std::int64_t>& stamps) const {
+  const auto found = frames_.find(child);
+  if (found == frames_.end() || found->second.is_static) return;
+  const PoseSeries& poses = found->second.poses;
+  std::size_t i = poses.first_from(first_ns);
+  for (i = i > 0 ? i - 1 : i; i < poses.size(); ++i) {
+    stamps.push_back(poses.at(i).stamp_ns);
+    if (stamps.back() >= last_ns) break;
+  }
+}
+
 std::optional<FrameHistory::Parent> FrameHistory::parent(const std::string& child,
                                                          std::int64_t stamp_ns) const {
   const Frame* const frame = undisputed(child, stamp_ns);

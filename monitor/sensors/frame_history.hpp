@@ -13,6 +13,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/pose.hpp"
 #include "monitor/sensors/pose_series.hpp"
@@ -32,6 +33,9 @@ class FrameHistory {
            std::int64_t stamp_ns, bool is_static, std::uint64_t writer = 0);
   // `writers` are those that still exist; sorted.
   void keep(std::span<const std::uint64_t> writers);
+  // This machine's clock was set back: the transforms that have stamps say nothing about times that
+  // come again.
+  void forget();
 
   struct Step {
     std::string parent;
@@ -42,6 +46,11 @@ class FrameHistory {
   // errors enclose its motion within.
   [[nodiscard]] std::optional<Step> step(const std::string& child, std::int64_t stamp_ns,
                                          std::int64_t within_ns = 0) const;
+
+  // Appends the stamps of its transforms from the first time to the last one, and those of the two
+  // around these times. A static frame has none.
+  void append_stamps(const std::string& child, std::int64_t first_ns, std::int64_t last_ns,
+                     std::vector<std::int64_t>& stamps) const;
 
   struct Parent {
     const std::string* name = nullptr;

@@ -6,6 +6,12 @@
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
+namespace {
+
+// A path that stands still seems to move by less, m and rad.
+constexpr double kRounding = 1e-9;
+
+}  // namespace
 
 Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_root) {
   const Scene& scene = cell.scene;
@@ -60,6 +66,46 @@ bool Mounts::awaits_transforms(const Sensor& sensor, const std::string& frame,
          elapsed(path.known_until_ns, stamp_ns) <= FrameHistory::kLostNs;
 }
 
+// Frames of a path may leap and correct each other, as those of a localisation and its odometry do.
+// So the path is compared as a whole. Timing errors are those that the tick allows of an input.
+std::optional<Mounts::Excess> Mounts::excess(const Sensor& sensor, const Path& path,
+                                             std::int64_t last_ns,
+                                             const FrameHistory& frames) const {
+  std::vector<std::int64_t> stamps;
+  for (const std::string& child : path.frames)
+    frames.append_stamps(child, less(last_ns, FrameHistory::kLostNs), last_ns, stamps);
+  std::ranges::sort(stamps);
+  Excess found;
+  std::optional<Pose> before;
+  std::int64_t before_ns = 0;
+  const double age_s = seconds(cell_.scene.objects[sensor.object].age_limit_ns);
+  const MountSpeed& speed = sensor.mount_speed;
+  for (const std::int64_t stamp_ns : stamps) {
+    if (before && stamp_ns == before_ns) continue;
+    std::optional<Pose> pose = Pose{};
+    for (auto child = path.frames.rbegin(); pose && child != path.frames.rend(); ++child) {
+      const auto step = frames.step(*child, stamp_ns);
+      if (step) {
+        pose = compose(*pose, step->parent_from_child);
+      } else {
+        pose.reset();
+      }
+    }
+    if (pose && before) {
+      const double time_s = seconds(elapsed(before_ns, stamp_ns));
+      const double shift = way_between(*before, *pose) - speed.shift * time_s;
+      const double turn = angle_between(*before, *pose) - speed.turn * time_s;
+      if (shift > speed.shift * age_s + kRounding || turn > speed.turn * age_s + kRounding)
+        return std::nullopt;
+      found.shift = std::max(found.shift, shift);
+      found.turn = std::max(found.turn, turn);
+    }
+    before = pose;
+    before_ns = stamp_ns;
+  }
+  return found;
+}
+
 // If the transforms end before the stamp, the frame moves on from the last place that is known at
 // no more than the stated speeds. They are those of the whole path, and not of each of its frames.
 PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
@@ -77,6 +123,11 @@ PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::i
     if (!step) return {};
     place = carried(place, step->parent_from_child, step->shift_error, step->turn_error);
   }
+  if (!sensor.mount_speed.is_stated()) return place;
+  const auto beyond = excess(sensor, path, is_late ? until_ns : stamp_ns + within_ns, frames);
+  if (!beyond) return {};
+  place.shift_error = rounded_up(place.shift_error + beyond->shift);
+  place.turn_error = rounded_up(place.turn_error + beyond->turn);
   if (is_late) {
     const double late_s = seconds(late_ns + elapsed(stamp_ns, until_ns) + within_ns);
     place.shift_error =

@@ -25,7 +25,8 @@ class Mounts {
   // stamp. A path of frames ends at the first one that is a link, an object or the world of the
   // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
   // nowhere, or to what has no pose at that time, or its transforms end before the stamp. In the
-  // last case, a stated speed of the mount gives a pose all the same.
+  // last case, a stated speed of the mount gives a pose all the same. A path whose transforms have
+  // leapt farther than that speed allows is not known for a second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
   // True if the path leads to a place, and its last transforms are from before the stamp, but no
@@ -44,6 +45,14 @@ class Mounts {
 
   [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                              const FrameHistory& frames, const PostureHistory& postures) const;
+  // How far the whole path moved between its transforms of the last second beyond the stated
+  // speeds; nothing: farther than wrong stamps explain.
+  struct Excess {
+    double shift = 0.0, turn = 0.0;  // m, rad
+  };
+  [[nodiscard]] std::optional<Excess> excess(const Sensor& sensor, const Path& path,
+                                             std::int64_t last_ns,
+                                             const FrameHistory& frames) const;
   [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
                                   std::int64_t stamp_ns, const FrameHistory& frames,
                                   const PostureHistory& postures) const;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+#include <limits>
 
 #include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
@@ -13,6 +13,9 @@ namespace {
 
 // A source that was silent for this long has lost its inputs, ns.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
+// Between two poses that are farther apart, an object may have moved and come back, ns: ten poses a
+// second are usual for mobile bases, and late now and then.
+constexpr std::int64_t kLongGapNs = 150'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
 // The rounding of a product of two poses, relative to the lengths that take part.
@@ -45,10 +48,47 @@ double way_within(double speed, std::int64_t within_ns) noexcept {
   return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
 }
 
+// The part of a line's length that this speed does not explain, and the rounding.
+double excess(double time_s, double speed, double mean) noexcept {
+  return (std::max(0.0, std::abs(mean) - speed) + 0x1p-48 * speed) * time_s;
+}
+
 }  // namespace
 
+void PostureHistory::Disputed::add(std::int64_t stamp_ns, std::int64_t hold_ns) noexcept {
+  const std::int64_t first_ns = less(stamp_ns, hold_ns), last_ns = less(stamp_ns, -hold_ns);
+  const bool goes_on = ever && first_ns <= until_ns && last_ns >= from_ns;
+  from_ns = goes_on ? std::min(from_ns, first_ns) : first_ns;
+  until_ns = goes_on ? std::max(until_ns, last_ns) : last_ns;
+  ever = true;
+}
+
 bool PostureHistory::Disputed::at(std::int64_t time_ns) const noexcept {
-  return ever && elapsed(stamp_ns, time_ns) <= kSilentNs && elapsed(time_ns, stamp_ns) <= kSilentNs;
+  return ever && from_ns <= time_ns && time_ns <= until_ns;
+}
+
+// Values that stay for long where the input cannot be are taken, as in the tick.
+template <class Metric>
+void PostureHistory::Input<Metric>::take(std::uint32_t from, std::int64_t stamp_ns,
+                                         const typename Metric::Value& value,
+                                         const MotionLimits& limits, const Metric& metric) {
+  if (!is_of_source(from, stamp_ns, values, source)) {
+    const auto& last = values.last();
+    const double within = limits.fastest * time_between(last.stamp_ns, stamp_ns) + kSameValue;
+    if (!metric.stay_within(within, last.value, value)) disputed.add(stamp_ns, kSilentNs);
+    return;
+  }
+  if (!values.empty() && stamp_ns > values.last().stamp_ns) {
+    const auto& last = values.last();
+    if (can_reach(metric, last.value, value, elapsed(last.stamp_ns, stamp_ns), limits)) {
+      elsewhere.clear();
+    } else {
+      disputed.add(stamp_ns, limits.age_limit_ns);
+      if (!elsewhere.add(value, stamp_ns, limits, metric)) return;
+      values.clear();
+    }
+  }
+  values.add(stamp_ns, value);
 }
 
 double PastPose::error(double radius) const noexcept {
@@ -75,7 +115,24 @@ double deviation(double before_s, double after_s, double speed, double mean) noe
   const double ahead = std::min(before_s * (speed - u), after_s * (speed + u));
   const double behind = std::min(before_s * (speed + u), after_s * (speed - u));
   // The differences above lose digits where both speeds are nearly equal.
-  return rounded_up(std::max(ahead, behind) + 0x1p-48 * speed * (before_s + after_s));
+  return rounded_up(std::max(ahead, behind) + excess(before_s + after_s, speed, mean));
+}
+
+// With x between a and b, and p on the line at its time: |x - p| is no more than |x - a| + |a - p|.
+// By Stewart's theorem, its square is no more than before_s after_s (speed^2 - mean^2).
+double deviation_in_space(double before_s, double after_s, double speed, double mean) noexcept {
+  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
+  const double u = std::min(std::abs(mean), speed);
+  const double square = before_s * after_s * (speed + u) * (speed - u + 0x1p-48 * speed);
+  return std::min(deviation_of_turn(before_s, after_s, speed, mean),
+                  rounded_up(std::sqrt(square) + excess(before_s + after_s, speed, mean)));
+}
+
+double deviation_of_turn(double before_s, double after_s, double speed, double mean) noexcept {
+  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
+  const double u = std::min(std::abs(mean), speed);
+  return rounded_up((speed + u) * std::min(before_s, after_s) +
+                    excess(before_s + after_s, speed, mean));
 }
 
 PostureHistory::PostureHistory(const Scene& scene)
@@ -88,17 +145,14 @@ PostureHistory::PostureHistory(const Scene& scene)
 
 void PostureHistory::add(const JointSample& sample) {
   if (sample.variable >= joints_.size() || !(std::abs(sample.position) <= kLargestJoint)) return;
-  Joint& joint = joints_[sample.variable];
-  if (!is_of_source(sample.source, sample.stamp_ns, joint.positions, joint.source)) {
-    const JointVariable& of = scene_.variables[sample.variable];
-    const auto& last = joint.positions.last();
-    const double within = of.plausible_speed() * time_between(last.stamp_ns, sample.stamp_ns);
-    double way = sample.position - last.value;
-    if (of.wraps) way = std::remainder(way, 2.0 * std::numbers::pi);
-    if (!(std::abs(way) <= within + kSameValue)) joint.disputed = {true, sample.stamp_ns};
-    return;
-  }
-  joint.positions.add(sample.stamp_ns, sample.position);
+  const JointVariable& of = scene_.variables[sample.variable];
+  const double fastest = of.plausible_speed();
+  const double sent = sample.has_velocity ? std::abs(sample.velocity) : 0.0;
+  const MotionLimits limits{
+      .fastest = sent > fastest ? std::min(sent, of.speed_tolerance * fastest) : fastest,
+      .age_limit_ns = of.age_limit_ns};
+  joints_[sample.variable].take(sample.source, sample.stamp_ns, sample.position, limits,
+                                JointMetric(of.wraps));
 }
 
 void PostureHistory::add(const PoseSample& sample) {
@@ -108,15 +162,19 @@ void PostureHistory::add(const PoseSample& sample) {
   const bool is_pose = pose.position.allFinite() && pose.orientation.coeffs().allFinite() &&
                        std::abs(pose.orientation.norm() - 1.0) <= kSampleUnitTolerance;
   if (object.fixed || object.is_seen() || !is_pose) return;
-  Body& body = bodies_[sample.object];
-  if (!is_of_source(sample.source, sample.stamp_ns, body.poses, body.source)) {
-    const auto& last = body.poses.last();
-    const double within = object.plausible_speed() * time_between(last.stamp_ns, sample.stamp_ns);
-    if (!((pose.position - last.value.position).norm() <= within + kSameValue))
-      body.disputed = {true, sample.stamp_ns};
-    return;
-  }
-  body.poses.add(sample.stamp_ns, {pose.position, pose.orientation.normalized()});
+  const double fastest = object.plausible_speed();
+  const MotionLimits limits{.fastest = fastest,
+                            .age_limit_ns = object.may_jump
+                                                ? std::numeric_limits<std::int64_t>::max()
+                                                : object.age_limit_ns};
+  bodies_[sample.object].take(sample.source, sample.stamp_ns,
+                              {pose.position, pose.orientation.normalized()}, limits,
+                              CarrierMetric{kFastestBaseTurn / fastest});
+}
+
+void PostureHistory::forget() {
+  std::ranges::fill(joints_, Joint{});
+  bodies_.clear();
 }
 
 bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {
@@ -124,9 +182,9 @@ bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {
     return series.empty() || series.last().stamp_ns >= stamp_ns ||
            elapsed(series.last().stamp_ns, stamp_ns) > kSilentNs;
   };
-  return std::ranges::all_of(joints_,
-                             [&](const Joint& joint) { return reaches(joint.positions); }) &&
-         std::ranges::all_of(bodies_, [&](const auto& body) { return reaches(body.second.poses); });
+  return std::ranges::all_of(joints_, [&](const Joint& joint) { return reaches(joint.values); }) &&
+         std::ranges::all_of(bodies_,
+                             [&](const auto& body) { return reaches(body.second.values); });
 }
 
 void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
@@ -134,7 +192,7 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
   const JointVariable& of = scene_.variables[variable];
   TrackedVariable& state = variables_[variable];
   state.may_have_moved = 0.0;
-  const auto [before, after] = joints_[variable].positions.around(stamp_ns);
+  const auto [before, after] = joints_[variable].values.around(stamp_ns);
   // Before the first position, nothing is known.
   state.input.has_value = before != nullptr && !joints_[variable].disputed.at(stamp_ns);
   if (!state.input.has_value) return;
@@ -148,8 +206,7 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
     return;
   }
   const double until = seconds_between(stamp_ns, after->stamp_ns);
-  double way = after->value - before->value;
-  if (of.wraps) way = std::remainder(way, 2.0 * std::numbers::pi);
+  const double way = JointMetric(of.wraps).difference(before->value, after->value);
   state.position += way * (since / (since + until));
   const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
   state.may_have_moved = rounded_up(deviation(since, until, speed, way / (since + until)) +
@@ -157,8 +214,8 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
 }
 
 // An object is nowhere faster than its largest speed, and neither is any point of it. What stands
-// on it may be far away, so how it turns counts as well: between two poses, as they show it, and
-// after the last one, at the largest speed of a base.
+// on it may be far away, so how it turns counts as well: between two poses that
+// are near in time, as they show it; else, at the largest speed of a base.
 PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
                                  std::int64_t within_ns) const {
   PastPose past;
@@ -166,7 +223,7 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
   const auto body = bodies_.find(object);
   if (body == bodies_.end() || body->second.disputed.at(stamp_ns)) return past;
-  const PoseSeries& poses = body->second.poses;
+  const PoseSeries& poses = body->second.values;
   const auto [before, after] = poses.around(stamp_ns);
   if (before == nullptr) return past;
   const double speed = of.plausible_speed();
@@ -181,16 +238,28 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   if (after == nullptr) {
     past.shift_error = rounded_up(speed * since + past.shift_error);
-  } else if (before != after && !same_pose(before->value, after->value)) {
-    const double until = seconds_between(stamp_ns, after->stamp_ns);
-    past.shift_error = rounded_up(deviation(since, until, speed, 0.0) + past.shift_error);
+    return past;
+  }
+  const std::int64_t gap_ns = elapsed(before->stamp_ns, after->stamp_ns);
+  if (gap_ns == 0) return past;
+  const double until = seconds_between(stamp_ns, after->stamp_ns), gap = seconds(gap_ns);
+  const Pose &a = before->value, &b = after->value;
+  if (gap_ns > kLongGapNs || !same_pose(a, b)) {
+    const double shift = deviation_in_space(since, until, speed, way_between(a, b) / gap);
+    past.shift_error = rounded_up(shift + past.shift_error);
+  }
+  if (gap_ns > kLongGapNs) {
+    const double turn =
+        deviation_of_turn(since, until, kFastestBaseTurn, angle_between(a, b) / gap);
+    past.turn_error =
+        std::max(past.turn_error, rounded_up(turn + way_within(kFastestBaseTurn, within_ns)));
   }
   return past;
 }
 
 bool PostureHistory::began_by(std::int64_t stamp_ns) const noexcept {
   return std::ranges::all_of(joints_, [&](const Joint& joint) {
-    return joint.positions.empty() || joint.positions.around(stamp_ns).before != nullptr;
+    return joint.values.empty() || joint.values.around(stamp_ns).before != nullptr;
   });
 }
 

@@ -4,6 +4,9 @@
 // straight line leads, to within what its largest speed allows; that deviation is part of the error
 // of every link which the joint carries. After the last one, it is within its largest speed times
 // the time since then. The speeds are those by which the tick bounds late inputs.
+//
+// A value that the one before cannot have become is refused by the tick's rule
+// (monitor/inputs/plausibility.hpp), and the input is unknown around it.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +15,10 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/plausibility.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/kinematics/joint_metric.hpp"
 #include "monitor/sensors/pose_series.hpp"
 
 namespace clearance {
@@ -43,6 +48,17 @@ struct PlacedPostures {
   std::vector<PastPose> objects;  // by object; those that are no links
 };
 
+// The distance of two poses of an object that carries sensors or robots, as the metric of the
+// plausibility: the way of its origin, m. It may turn by `turn_per_way` at the same time, rad/m.
+struct CarrierMetric {
+  using Value = Pose;
+  double turn_per_way = 0.0;
+
+  [[nodiscard]] bool stay_within(double limit, const Pose& from, const Pose& to) const noexcept {
+    return way_between(from, to) <= limit && angle_between(from, to) <= limit * turn_per_way;
+  }
+};
+
 class PostureHistory {
  public:
   // At 1 kHz, two seconds.
@@ -52,9 +68,11 @@ class PostureHistory {
   explicit PostureHistory(const Scene& scene);
 
   // Samples in the order in which they came. Those of a second source are left out while the first
-  // one sends. If it sends what the input cannot have reached, the input has no value then.
+  // one sends. If either sends what the input cannot have reached, the input has no value then.
   void add(const JointSample& sample);
   void add(const PoseSample& sample);
+  // This machine's clock was set back: what was heard says nothing about times that come again.
+  void forget();
 
   // True if no joint or pose that was heard lacks a value at or after the stamp.
   [[nodiscard]] bool covers(std::int64_t stamp_ns) const noexcept;
@@ -72,22 +90,26 @@ class PostureHistory {
   [[nodiscard]] PastPose object(std::uint32_t object) const noexcept;
 
  private:
-  // The last sample of another source that contradicted the one in use.
+  // The last time in which samples contradicted those in use.
   struct Disputed {
     bool ever = false;
-    std::int64_t stamp_ns = 0;
+    std::int64_t from_ns = 0, until_ns = 0;
+    void add(std::int64_t stamp_ns, std::int64_t hold_ns) noexcept;
     [[nodiscard]] bool at(std::int64_t time_ns) const noexcept;
   };
-  struct Joint {
-    StampedSeries<double> positions{kKept};
+  template <class Metric>
+  struct Input {
+    StampedSeries<typename Metric::Value> values{kKept};
     std::uint32_t source = kNoSource;
     Disputed disputed;
+    OtherPlace<Metric> elsewhere;
+
+    // Every sample of joints and objects goes through this.
+    void take(std::uint32_t from, std::int64_t stamp_ns, const typename Metric::Value& value,
+              const MotionLimits& limits, const Metric& metric);
   };
-  struct Body {
-    PoseSeries poses{kKept};
-    std::uint32_t source = kNoSource;
-    Disputed disputed;
-  };
+  using Joint = Input<JointMetric>;
+  using Body = Input<CarrierMetric>;
 
   void place_joint(std::size_t variable, std::int64_t stamp_ns, std::int64_t within_ns);
   void place_links();
@@ -105,7 +127,12 @@ class PostureHistory {
 
 // Bounds the distance of a value from the straight line between two others, one of them `before_s`
 // earlier and the other `after_s` later, if its speed is at most `speed` and that of the line is
-// `mean`.
+// `mean`. A line that is faster shows that stamps are wrong: then the excess is added.
 [[nodiscard]] double deviation(double before_s, double after_s, double speed, double mean) noexcept;
+// The same of a position in space; and of a rotation, in rad.
+[[nodiscard]] double deviation_in_space(double before_s, double after_s, double speed,
+                                        double mean) noexcept;
+[[nodiscard]] double deviation_of_turn(double before_s, double after_s, double speed,
+                                       double mean) noexcept;
 
 }  // namespace clearance

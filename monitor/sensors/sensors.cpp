@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tf_tree.hpp"
 #include "monitor/sensors/sensor_state.hpp"
 #include "monitor/wire/ros_types.hpp"
@@ -33,6 +34,7 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
 }
 Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.options_) {
   frames_ = std::move(before.frames_);
+  last_came_ns_ = before.last_came_ns_;
   for (const std::unique_ptr<State>& state : states_) {
     for (const std::unique_ptr<State>& old : before.states_) {
       const Sensor &a = old->sensor, &b = state->sensor;
@@ -46,20 +48,40 @@ Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.optio
 }
 Sensors::~Sensors() = default;
 
-void Sensors::add(std::span<const PoseSample> poses, std::span<const JointSample> joints) {
-  for (const JointSample& sample : joints) postures_.add(sample);
-  for (const PoseSample& sample : poses) postures_.add(sample);
+// What came before this machine's clock was set back says nothing about the times that come again.
+void Sensors::note_time(std::int64_t came_ns) {
+  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kSetBackNs) return;
+  postures_.forget();
+  frames_.forget();
 }
 
-void Sensors::add_transforms(const RawSensorMessage& message) {
+bool Sensors::is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept {
+  return elapsed(came_ns, stamp_ns) > cell_.scene.future_limit_ns;
+}
+
+void Sensors::add(std::span<const PoseSample> poses, std::span<const JointSample> joints,
+                  std::int64_t came_ns) {
+  note_time(came_ns);
+  for (const JointSample& sample : joints) {
+    if (!is_ahead(sample.stamp_ns, came_ns)) postures_.add(sample);
+  }
+  for (const PoseSample& sample : poses) {
+    if (!is_ahead(sample.stamp_ns, came_ns)) postures_.add(sample);
+  }
+}
+
+void Sensors::add_transforms(const RawSensorMessage& message, std::int64_t came_ns) {
   Sample<tf2_msgs_msg_dds__TFMessage_> transforms;
   if (!decoder_.decode(message.cdr, transforms, message.bytes)) return;
   for (std::uint32_t i = 0; i < transforms->transforms._length; ++i) {
     const auto& each = transforms->transforms._buffer[i];
-    const std::int64_t stamp = stamp_ns(each.header);
+    const bool is_static = message.type == Type::kStaticTransforms;
+    const std::int64_t stamp =
+        StampCheck::time_of(stamp_ns(each.header), message.sent_ns, cell_.ros.stamps,
+                            options_.is_log ? OtherClock::kReplaced : OtherClock::kTold);
+    if (!is_static && is_ahead(stamp, came_ns)) continue;
     frames_.add(frame_name(each.child_frame_id), frame_name(each.header.frame_id),
-                pose_of(each.transform), stamp == 0 ? message.sent_ns : stamp,
-                message.type == Type::kStaticTransforms, message.writer);
+                pose_of(each.transform), stamp, is_static, message.writer);
   }
 }
 
@@ -128,9 +150,11 @@ void Sensors::take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& sta
   add_frame<sensor_msgs_msg_dds__Image_>(first, state, now_ns);
 }
 
-void Sensors::add(const RawSensorMessage& message, std::int64_t now_ns) {
+void Sensors::add(const RawSensorMessage& message, const Now& now) {
+  note_time(now.realtime_ns);
   if (message.type == Type::kTransforms || message.type == Type::kStaticTransforms)
-    return add_transforms(message);
+    return add_transforms(message, now.realtime_ns);
+  const std::int64_t now_ns = now.monotonic_ns;
   for (const std::unique_ptr<State>& state : states_) {
     const Sensor& sensor = state->sensor;
     const bool is_image = sensor.kind == SensorKind::kDepthImage;
@@ -183,6 +207,13 @@ void Sensors::settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use)
     state->waiting.erase(state->waiting.begin(),
                          state->waiting.begin() + static_cast<std::ptrdiff_t>(ready));
     build(*state, *frame, **cloud, use);
+  }
+}
+
+void Sensors::drop_waiting() noexcept {
+  for (const std::unique_ptr<State>& state : states_) {
+    state->status.skipped += state->waiting.size();
+    state->waiting.clear();
   }
 }
 

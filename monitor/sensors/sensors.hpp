@@ -78,10 +78,13 @@ class Sensors {
   Sensors(const Cell& cell, Sensors& before);
   ~Sensors();
 
-  // Samples as the tick gets them.
-  void add(std::span<const PoseSample> poses, std::span<const JointSample> joints);
-  // `now_ns`: the caller's time.
-  void add(const RawSensorMessage& message, std::int64_t now_ns);
+  // Samples as the tick gets them, and transforms. Those stamped farther ahead of the time at which
+  // they came than the scene's future_limit_ns place nothing. `came_ns` is this machine's
+  // CLOCK_REALTIME, ns; in a log, the time of recording.
+  void add(std::span<const PoseSample> poses, std::span<const JointSample> joints,
+           std::int64_t came_ns);
+  // `now`: when it came. The monotonic time is the caller's.
+  void add(const RawSensorMessage& message, const Now& now);
 
   // The publishers that still exist; sorted. Names of frames become free that others had.
   void keep(std::span<const std::uint64_t> writers) { frames_.keep(writers); }
@@ -101,6 +104,8 @@ class Sensors {
   // As SensorsOptions::keep; before the first message.
   void keep(std::function<void(BuiltFrame frame)> keep) { options_.keep = std::move(keep); }
 
+  // Frames that wait are not built, since others are (rebuild()).
+  void drop_waiting() noexcept;
   // True if a frame waits.
   [[nodiscard]] bool any_waiting() const noexcept;
   [[nodiscard]] SensorStatus status(std::uint32_t sensor) const;
@@ -112,7 +117,9 @@ class Sensors {
   struct Waiting;
   struct State;
 
-  void add_transforms(const RawSensorMessage& message);
+  void note_time(std::int64_t came_ns);
+  [[nodiscard]] bool is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept;
+  void add_transforms(const RawSensorMessage& message, std::int64_t came_ns);
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
   void take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& state, std::int64_t now_ns);
@@ -138,6 +145,7 @@ class Sensors {
   SlabBody body_;
   std::vector<MeasuredPoint> points_;
   OrganisedPoints organised_;
+  std::int64_t last_came_ns_ = 0;
 };
 
 }  // namespace clearance

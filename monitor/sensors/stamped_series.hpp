@@ -6,7 +6,12 @@
 #include <cstdint>
 #include <vector>
 
+#include "monitor/inputs/elapsed.hpp"
+
 namespace clearance {
+
+// A stamp that is this much older than the last one is of a clock that was set back, ns.
+inline constexpr std::int64_t kSetBackNs = 1'000'000'000;
 
 // A ring of fixed memory. Stamps increase.
 template <class Value>
@@ -24,9 +29,13 @@ class StampedSeries {
     const Entry* after = nullptr;
   };
 
-  // Values that are not newer than the last one are left out.
+  // Values that are not newer than the last one are left out. One of a clock that was set back
+  // begins the series anew.
   void add(std::int64_t stamp_ns, const Value& value) {
-    if (size_ > 0 && stamp_ns <= last().stamp_ns) return;
+    if (size_ > 0 && stamp_ns <= last().stamp_ns) {
+      if (elapsed(stamp_ns, last().stamp_ns) <= kSetBackNs) return;
+      clear();
+    }
     entries_[(first_ + size_) % entries_.size()] = {stamp_ns, value};
     if (size_ < entries_.size()) {
       ++size_;

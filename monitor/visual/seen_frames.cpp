@@ -1,10 +1,15 @@
 #include "monitor/visual/seen_frames.hpp"
 
+#include <limits>
+
 #include "monitor/sensors/sensors.hpp"
 #include "monitor/visual/seen_points.hpp"
 
 namespace clearance {
 namespace {
+
+// The clock of a viewer's machine may be behind the others: no stamp is ahead of this time.
+constexpr std::int64_t kAnyTime = std::numeric_limits<std::int64_t>::max();
 
 bool is_frame(const RawSensorMessage& message) {
   return message.type == RawSensorMessage::Type::kImage ||
@@ -31,7 +36,7 @@ void SeenFrames::hear(const PoseBatch& batch) {
   poses_.clear();
   joints_.clear();
   numbers_.append(batch, poses_, joints_);
-  sensors_->add(poses_, joints_);
+  sensors_->add(poses_, joints_, kAnyTime);
 }
 
 void SeenFrames::hear(const RawSensorMessage& message, std::int64_t now_ns) {
@@ -41,7 +46,7 @@ void SeenFrames::hear(const RawSensorMessage& message, std::int64_t now_ns) {
     if (!is_first && since >= 0 && since < kLeastIntervalNs) return;
     last->second = now_ns;
   }
-  sensors_->add(message, now_ns);
+  sensors_->add(message, {.realtime_ns = kAnyTime, .monotonic_ns = now_ns});
 }
 
 void SeenFrames::keep(std::span<const std::uint64_t> writers) { sensors_->keep(writers); }

@@ -176,6 +176,18 @@ TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePubl
   EXPECT_EQ(take(frame(23), 1), FrameFault::kSecondPublisher);
 }
 
+// Its own clock, or that of this machine in a log.
+TEST_F(CameraStreamTest, AClockThatWasSetBackCostsHalfASecondAndNotTheWholeStep) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  ASSERT_EQ(take(frame(200)), FrameFault::kNoFault);
+  const std::int64_t sent = frame(200).stamp_ns;
+  EXPECT_EQ(take(frame(100), {frame(100).stamp_ns, sent + kFrame, 1}), FrameFault::kOldStamp);
+  EXPECT_EQ(take(frame(115), {frame(115).stamp_ns, sent + 16 * kFrame, 1}), FrameFault::kNoFault);
+  EXPECT_EQ(take(frame(116), {frame(116).stamp_ns, sent + 17 * kFrame, 1}), FrameFault::kNoFault);
+  EXPECT_EQ(take(frame(20)), FrameFault::kNoFault) << "the time of sending was set back, too";
+  EXPECT_EQ(take(frame(19)), FrameFault::kOldStamp);
+}
+
 TEST_F(CameraStreamTest, CloudsThatLieAboutTheirFieldsAreRefusedByCause) {
   const auto with = [&](const auto& change) {
     CloudText text;

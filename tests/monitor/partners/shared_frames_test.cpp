@@ -156,6 +156,23 @@ TEST_F(SharedFrames, AreNotHeldUpByNewerOnes) {
   EXPECT_LE(ticks * kTick, kPatience + 5 * kTick);
 }
 
+// 60 frames a second, each of which needs 18 ms at the partner.
+TEST_F(SharedFrames, WaitForAnAnswerThatComesAfterTheNextFrame) {
+  join();
+  for (int ms = 0; ms < 200; ++ms) {
+    if (ms % 16 == 0) build(left, static_cast<std::uint64_t>(ms / 16 + 1), 2.0F);
+    if (ms % 16 == 2 && ms > 16) {
+      const auto number = static_cast<std::uint64_t>(ms / 16);
+      build(right, number, 2.0F);
+      left.frames.note_built(0, number);
+    }
+    tick_both();
+    expect_agreement();
+    ASSERT_EQ(right.ticks.standing(), kFollowing) << ms << " ms";
+  }
+  EXPECT_GE(used(left), 11u);
+}
+
 // The follower has built a newer frame before the leader's tick names the older one.
 TEST_F(SharedFrames, OfTheNameThatTheLeaderSaysAreShownAlthoughANewerOneHasCome) {
   join();

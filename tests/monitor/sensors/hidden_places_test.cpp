@@ -176,7 +176,7 @@ TEST_F(HiddenPlacesTest, ABodyThatIsNotAttachedIsAnObstacleAtTheSamePlace) {
   add(Type::kCameraInfo, narrow().cdr(), kStart);
   ASSERT_EQ(cell.scene.objects[1].name, "ball");
   sensors->add(std::vector{test::sample(1, {kBall, Eigen::Quaterniond::Identity()}, kStart)},
-               test::joints(kTurned, 0.0, 0.0, kStart));
+               test::joints(kTurned, 0.0, 0.0, kStart), kStart);
   add(flat(0, 1700));
   const auto frames = settle(kStart + 2000);
   ASSERT_EQ(frames.size(), 1u);
@@ -200,7 +200,7 @@ TEST_F(HiddenPlacesTest, WhatNoRobotCarriesIsAnObstacleAlthoughItIsAttached) {
   ASSERT_EQ(cell.scene.objects[0].name, "cart");
   sensors->add(
       std::vector{test::sample(0, {{5.0, 0.0, 0.1}, Eigen::Quaterniond::Identity()}, kStart)},
-      test::joints(kTurned, 0.0, 0.0, kStart));
+      test::joints(kTurned, 0.0, 0.0, kStart), kStart);
   add(flat(0, 1700));
   const auto frames = settle(kStart + 2000);
   ASSERT_EQ(frames.size(), 1u);

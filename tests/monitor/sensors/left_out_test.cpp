@@ -298,7 +298,7 @@ TEST_F(LeftOutTest, TheReachOfARobotOnAMovingBaseIsAroundThatBase) {
     for (int ms = -20; ms <= 20; ms += 10) {
       const std::int64_t stamp = image.stamp_ns + 1'000'000 * ms;
       sensors->add(std::vector{test::sample(cart, test::at(0, 0, each.base), stamp)},
-                   test::joints(0.0, 0.0, 0.0, stamp));
+                   test::joints(0.0, 0.0, 0.0, stamp), stamp);
     }
     add(Type::kCameraInfo, narrow().cdr(), kStart);
     EXPECT_EQ(elements(image), each.left) << each.base;

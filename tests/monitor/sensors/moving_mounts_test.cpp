@@ -149,7 +149,7 @@ TEST_F(MovingMounts, OnAnObjectCountHowItMayHaveTurnedSinceItsLastPose) {
   const auto add_cart = [&](double angle, std::int64_t stamp_ns) {
     PoseSample sample = test::sample(cell.scene.sensors[0].mount.object, {}, stamp_ns);
     sample.world_from_object.orientation = Eigen::AngleAxisd(angle, Vec3::UnitZ());
-    sensors->add(std::vector{sample}, {});
+    sensors->add(std::vector{sample}, {}, stamp_ns);
   };
   add_cart(0.0, kStart);
   add_image(kStart + 10 * kMs);

@@ -28,7 +28,7 @@ class OctomapsTest : public SensorsTest {
  protected:
   void add_map(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns) {
     sensors->add({.type = type, .topic = "/map", .sent_ns = sent_ns, .writer = 1, .cdr = cdr},
-                 sent_ns);
+                 {.realtime_ns = sent_ns, .monotonic_ns = sent_ns});
   }
   // The pair of the cart, a ball of 0.1 m at the origin.
   PairReport cart(const std::vector<SensorFrame>& frames, std::int64_t now_ns) {

@@ -88,11 +88,11 @@ class SensorsTest : public testing::Test {
                   .sent_ns = sent_ns,
                   .writer = writer,
                   .cdr = cdr},
-                 sent_ns);
+                 {.realtime_ns = sent_ns, .monotonic_ns = sent_ns});
   }
   void add(const ImageText& image) { add(Type::kImage, image.cdr(), image.stamp_ns + 1000); }
   void add_joints(double shoulder, std::int64_t stamp_ns) {
-    sensors->add({}, test::joints(shoulder, 0.0, 0.0, stamp_ns));
+    sensors->add({}, test::joints(shoulder, 0.0, 0.0, stamp_ns), stamp_ns);
   }
   // Returns the frames that are built by this time.
   std::vector<SensorFrame> settle(std::int64_t now_ns) {

@@ -1,0 +1,90 @@
+// The clock of a sensor's frames, when one monitor takes over from another.
+//
+// Oracle: a camera on another machine, whose frames are 50 ms old, while this machine's clock is
+// stepped back.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "monitor/clouds/seen_cloud.hpp"
+#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/taken_over.hpp"
+
+namespace clearance {
+namespace {
+
+using test::kStart;
+using test::kTick;
+
+constexpr std::int64_t kStep = -30'000'000, kAge = 50'000'000;
+
+class SensorClocks : public testing::Test {
+ protected:
+  static Scene make(std::uint64_t revision, const std::vector<const char*>& names) {
+    std::vector<Object> objects;
+    std::vector<Sensor> sensors;
+    for (const char* name : names) {
+      objects.push_back(test::moving(name, {test::ball(name[0] == 's' ? 50.0 : 0.1)}));
+      objects.back().age_limit_ns = 100'000'000;
+      if (name[0] != 's') continue;
+      objects.back().sensor = static_cast<std::uint32_t>(sensors.size());
+      sensors.emplace_back().object = static_cast<std::uint32_t>(objects.size() - 1);
+    }
+    Scene scene = test::cell_of(std::move(objects));
+    scene.revision = revision;
+    scene.sensors = std::move(sensors);
+    std::erase_if(scene.pairs, [&](const ObjectPair& pair) {
+      return scene.objects[pair.first].is_seen() && scene.objects[pair.second].is_seen();
+    });
+    return scene;
+  }
+  // Returns the age of what the sensor of this object sees.
+  std::int64_t age(Monitor& of, std::uint32_t sensor, std::uint32_t object,
+                   std::int64_t offset_ns) {
+    now += kTick;
+    const SensorFrame frame{
+        .cloud = &cloud, .stamp_ns = now - kAge, .world_from_sensor = {}, .content = 1};
+    EXPECT_TRUE(of.show(sensor, frame));
+    of.tick({}, {}, {now, offset_ns});
+    return of.input_age(object).age_ns;
+  }
+  void SetUp() override {
+    const std::array<MeasuredPoint, 1> point = {{{2.0F, 0.0F, 0.0F, 0.0F}}};
+    ASSERT_EQ(cloud.points()->build(point, {Vec3::Zero(), 100.0}), CloudBuild::kBuilt);
+    ASSERT_EQ(age(*monitor, 0, 1, 0), kAge);
+    ASSERT_EQ(age(*monitor, 0, 1, kStep), kAge);
+  }
+
+  SeenCloud cloud = SeenCloud::of_points(1);
+  std::int64_t now = kStart;
+  Scene scene = make(7, {"ball", "seen"});
+  SourceNumbers numbers{scene};
+  std::unique_ptr<Monitor> monitor = std::make_unique<Monitor>(scene);
+};
+
+TEST_F(SensorClocks, AreTakenOverSoThatNoFrameBecomesYounger) {
+  const auto same = test::taken_over(*monitor, scene, scene, numbers);
+  EXPECT_EQ(age(*same, 0, 1, kStep), kAge);
+}
+
+TEST_F(SensorClocks, AreThoseOfTheSameSensorInAChangedScene) {
+  const Scene changed = make(8, {"sound", "new", "ball", "seen"});
+  const auto next = test::taken_over(*monitor, scene, changed, numbers);
+  EXPECT_EQ(age(*next, 1, 3, kStep), kAge);
+}
+
+TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
+  const auto before = test::taken_over(*monitor, scene, scene, numbers);
+  std::vector<std::byte> bytes;
+  StateWriter out(bytes);
+  before->save(out);
+  Monitor joined(scene);
+  StateReader in(bytes);
+  ASSERT_TRUE(joined.restore(in));
+  EXPECT_EQ(age(joined, 0, 1, kStep), kAge);
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,197 @@
+// What does not place a camera: samples of clocks that are ahead or were set back, and leaps that
+// the tick refuses. Oracles: the motions that the test makes.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/sensors/small_camera.hpp"
+#include "tests/shared/random.hpp"
+
+namespace clearance::sensors_test {
+namespace {
+
+constexpr std::int64_t kMs = 1'000'000;
+
+class ClocksAndLeaps : public SensorsTest {
+ protected:
+  void make_with_info(const std::string& mount, const std::string& ros = "world_frame: map") {
+    make(kImage + ", mount: {" + mount + "}", "ros2: {" + ros + "}\n");
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  }
+  void add_cart(double x, std::int64_t stamp_ns, std::int64_t came_ns) {
+    sensors->add(std::vector{test::sample(0, test::at(x, 0, 0), stamp_ns)}, {}, came_ns);
+  }
+  void add_frame(const char* parent, const char* child, double x, std::int64_t stamp_ns,
+                 std::int64_t came_ns) {
+    add(Type::kTransforms, test::transforms(came_ns, stamp_ns, {{parent, child, {x, 0, 0}}}).cdr,
+        came_ns);
+  }
+  void add_mast(double x, std::int64_t stamp_ns) {
+    add_frame("map", "mast", x, stamp_ns, stamp_ns);
+  }
+  // The frames of an image with this stamp, after all that a frame waits for.
+  std::vector<SensorFrame> see(std::int64_t stamp_ns, std::int64_t wait_ns = 60 * kMs,
+                               std::int64_t late_ns = 0) {
+    ImageText image = flat(0, static_cast<std::uint16_t>(1000 + ++images_));
+    image.stamp_ns = stamp_ns;
+    add(Type::kImage, image.cdr(), stamp_ns + late_ns);
+    return settle(stamp_ns + late_ns + wait_ns);
+  }
+
+ private:
+  int images_ = 0;
+};
+
+// The sources of a pose, of transforms and of joints have clocks that are 200 ms ahead.
+TEST_F(ClocksAndLeaps, SamplesOfAClockThatIsAheadPlaceNoCamera) {
+  const std::int64_t ahead = 200 * kMs, image = kStart + 250 * kMs;
+  make_with_info("on: cart");
+  for (int ms = 0; ms <= 300; ms += 10)
+    add_cart(0.001 * ms, kStart + ms * kMs + ahead, kStart + ms * kMs);
+  EXPECT_TRUE(see(image).empty());
+  make_with_info("frame: mast");
+  for (int ms = 0; ms <= 300; ms += 10)
+    add_frame("map", "mast", 0.001 * ms, kStart + ms * kMs + ahead, kStart + ms * kMs);
+  EXPECT_TRUE(see(image).empty());
+  make_with_info("on: upper");
+  for (int ms = 0; ms <= 300; ms += 10) {
+    const std::int64_t came = kStart + ms * kMs;
+    sensors->add({}, test::joints(0.002 * ms, 0.0, 0.0, came + ahead), came);
+  }
+  EXPECT_TRUE(see(image).empty());
+}
+
+TEST_F(ClocksAndLeaps, SamplesAheadByNoMoreThanTheCellsLimitPlaceACamera) {
+  make_with_info("on: cart");
+  for (int ms = 0; ms <= 300; ms += 10)
+    add_cart(1.0, kStart + ms * kMs + 4 * kMs, kStart + ms * kMs);
+  EXPECT_EQ(see(kStart + 250 * kMs).size(), 1u);
+}
+
+TEST_F(ClocksAndLeaps, TransformsHoldAtTheTimeThatTheCellChooses) {
+  make_with_info("frame: mast", "world_frame: map, stamps: sent");
+  for (int ms = 0; ms <= 300; ms += 10)
+    add_frame("map", "mast", 0.001 * ms, kStart + ms * kMs + 1000 * kMs, kStart + ms * kMs);
+  const auto frames = see(kStart + 250 * kMs);
+  ASSERT_EQ(frames.size(), 1u) << "as if AMCL's transforms, which are of the future";
+  EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 0.25, 1e-6);
+}
+
+TEST_F(ClocksAndLeaps, APositionThatAJointCannotReachPlacesNoLink) {
+  const Scene scene = test::scara_cell();  // 2 rad/s
+  PostureHistory history(scene);
+  const auto add = [&](double position, int ms) {
+    for (const JointSample& sample : test::joints(position, 0.0, 0.0, kStart + ms * kMs))
+      history.add(sample);
+  };
+  const auto is_known = [&](int ms) {
+    history.place(kStart + ms * kMs);
+    return history.link(0, 1).known;
+  };
+  for (int ms = 0; ms <= 2000; ms += 10) add(0.0, ms);
+  EXPECT_TRUE(is_known(2000));
+  add(0.5, 2010);
+  EXPECT_FALSE(is_known(2008));
+  EXPECT_FALSE(is_known(2010));
+  add(0.5, 2020);
+  EXPECT_FALSE(is_known(2018)) << "two in a row";
+  for (int ms = 2030; ms <= 3000; ms += 10) add(0.0, ms);
+  EXPECT_TRUE(is_known(2800));
+  EXPECT_NEAR(history.link(0, 1).world_from_body.orientation.z(), 0.0, 1e-12);
+}
+
+TEST_F(ClocksAndLeaps, APoseThatAnObjectCannotReachPlacesNoCamera) {
+  make_with_info("on: cart");
+  cell.scene.objects[0].max_speed = 1.5;
+  for (int ms = 0; ms <= 500; ms += 10)
+    add_cart(ms == 300 ? 2.0 : 0.0, kStart + ms * kMs, kStart + ms * kMs);
+  EXPECT_TRUE(see(kStart + 298 * kMs).empty());
+  EXPECT_TRUE(see(kStart + 300 * kMs).empty());
+  for (int ms = 510; ms <= 1000; ms += 10) add_cart(0.0, kStart + ms * kMs, kStart + ms * kMs);
+  EXPECT_EQ(see(kStart + 900 * kMs).size(), 1u);
+}
+
+TEST_F(ClocksAndLeaps, ATransformThatAStatedSpeedDoesNotAllowPlacesNoCamera) {
+  make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");
+  for (int ms = 0; ms <= 400; ms += 20)
+    add_mast(ms == 200 || ms == 220 ? 2.0 : 0.0, kStart + ms * kMs);
+  EXPECT_EQ(see(kStart + 180 * kMs, kMs).size(), 1u) << "before";
+  EXPECT_TRUE(see(kStart + 200 * kMs).empty()) << "at its own stamp";
+  EXPECT_TRUE(see(kStart + 210 * kMs).empty()) << "between two in a row";
+  for (int ms = 420; ms <= 1500; ms += 20) add_mast(0.0, kStart + ms * kMs);
+  EXPECT_EQ(see(kStart + 1450 * kMs).size(), 1u);
+}
+
+// A localisation corrects an odometry that was set to 0 at the same time.
+TEST_F(ClocksAndLeaps, FramesOfAPathMayLeapIfTheyCorrectEachOther) {
+  make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");
+  for (int ms = 0; ms <= 400; ms += 20) {
+    const double odom = ms < 200 ? 0.0 : 7.0, stamp = ms;
+    const std::int64_t at = kStart + static_cast<std::int64_t>(stamp) * kMs;
+    add_frame("map", "odom", odom, at, at);
+    add_frame("odom", "mast", 1.0 - odom, at, at);
+  }
+  const auto frames = see(kStart + 300 * kMs);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 1.0, 1e-9);
+}
+
+TEST_F(ClocksAndLeaps, TransformsFromBeforeTheirClockWasSetBackPlaceNoCamera) {
+  make_with_info("frame: mast");
+  const std::int64_t back = 5000 * kMs;
+  for (int ms = 0; ms <= 5000; ms += 100) add_mast(0.0001 * ms, kStart + ms * kMs);
+  for (int ms = 0; ms <= 200; ms += 100)
+    add_frame("map", "mast", 5.0, kStart + ms * kMs, kStart + ms * kMs + back);
+  const auto frames = see(kStart + 130 * kMs, 60 * kMs, back);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 5.0, 1e-9);
+}
+
+// The first message after the step is the image.
+TEST_F(ClocksAndLeaps, WhatCameBeforeThisMachinesClockWasSetBackPlacesNoCamera) {
+  make_with_info("on: cart");
+  for (int ms = 0; ms <= 10'000; ms += 10) add_cart(1.0, kStart + ms * kMs, kStart + ms * kMs);
+  EXPECT_TRUE(see(kStart + 35 * kMs).empty());
+}
+
+TEST_F(ClocksAndLeaps, AnObjectMayHaveMovedAndTurnedBetweenPosesThatAreFarFromEachOther) {
+  make_with_info("on: cart");
+  cell.scene.objects[0].max_speed = 1.5;
+  add_cart(1.0, kStart, kStart);
+  add_cart(1.0, kStart + 400 * kMs, kStart + 400 * kMs);
+  const auto frames = see(kStart + 200 * kMs);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_GE(frames[0].pose_error, 0.2 * (1.5 + 6.3 * cell.scene.sensors[0].extent()));
+}
+
+TEST_F(ClocksAndLeaps, FramesThatWaitAreNotBuiltOnceTheyAreDropped) {
+  make_with_info("on: cart");
+  add_cart(1.0, kStart, kStart);
+  EXPECT_TRUE(see(kStart + 10 * kMs, kMs).empty());
+  ASSERT_TRUE(sensors->any_waiting());
+  sensors->drop_waiting();
+  EXPECT_FALSE(sensors->any_waiting());
+  EXPECT_TRUE(settle(kStart + 100 * kMs).empty());
+  EXPECT_EQ(sensors->status(0).skipped, 1u);
+}
+
+// A point that always moves at full speed, from one end to the other.
+TEST(PlacesInSpace, LieWithinTheDeviationThatASpeedAllows) {
+  Random random(17);
+  for (int path = 0; path < 20'000; ++path) {
+    const double speed = random.uniform(0.1, 3.0), share = random.uniform(0.0, 1.0);
+    const Vec3 end(random.uniform(0.0, 1.0) * speed, 0.0, 0.0);  // 1 s after the origin
+    const double angle = random.uniform(0.0, 3.2);
+    const Vec3 at =
+        random.uniform(0.0, 1.0) * share * speed * Vec3(std::cos(angle), std::sin(angle), 0.0);
+    if ((end - at).norm() > speed * (1.0 - share)) continue;
+    EXPECT_LE((at - share * end).norm(), deviation_in_space(share, 1.0 - share, speed, end.norm()));
+  }
+  EXPECT_NEAR(deviation_in_space(0.5, 0.5, 2.0, 2.0), 0.0, 1e-5);
+  EXPECT_GE(deviation_in_space(0.5, 0.5, 2.0, 3.0), 1.0) << "stamps are off by as much";
+}
+
+}  // namespace
+}  // namespace clearance::sensors_test
