@@ -33,7 +33,7 @@ class VectorRows {
   [[nodiscard]] double number(std::int32_t first, std::int32_t i, std::int32_t k) const noexcept {
     return values_[index(first, i, k)];
   }
-  // Of a row of n.
+  // For a row of n.
   void set(std::int32_t first, std::int32_t n, std::int32_t i, std::int32_t k, double to) noexcept {
     values_[index(first, i, k)] = to;
     if (i != n - 1) return;

@@ -96,7 +96,7 @@ class DistanceBatch::Rounds {
     TransitionsMade start;
   };
 
-  // What a single query of a pair reads first.
+  // A single query of a pair reads this first.
   struct Queried {
     const ConvexBody *a, *b;
     std::uint32_t pose_a, pose_b;

@@ -68,7 +68,7 @@ HWY_INLINE Points cross(const Points& a, const Points& b) {
           hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
           hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
 }
-// As for Vec4.
+// Like those for Vec4.
 HWY_INLINE Lanes triple(const Points& v, const Points& e, const Points& n) {
   return dot(cross(v, e), n);
 }

@@ -27,7 +27,7 @@ struct Spread3 {
 HWY_INLINE Vec4 derivatives(const double* four, const Spread3& g) {
   return (load4(four) * g.x + load4(four + 4) * g.y) + load4(four + 8) * g.z;
 }
-// How far a point is within the four limits that begin at `four` of a facet's row, m.
+// Returns how far a point is within the four limits from `four` of a facet's row, m.
 HWY_INLINE Vec4 inside_limits(const double* four, const Spread3& at) {
   return derivatives(four, at) - load4(four + 12);
 }

@@ -165,7 +165,7 @@ HWY_NOINLINE DistanceResult tracked_or_searched(const ConvexBody& a, const Conve
   return search_distance(a, b, pose_of(a_from_b), state, depth);
 }
 
-// The features of disjoint bodies, one of which is unbounded.
+// The features of disjoint bodies, at least one of them unbounded.
 template <class Place>
 HWY_NOINLINE DistanceResult from_straight_features(const ConvexBody& a, const ConvexBody& b,
                                                    Place place, TrackingState& state) {

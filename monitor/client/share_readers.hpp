@@ -106,7 +106,7 @@ struct SharedCell::OfShare {
     all.push_back(state);
     while (all.size() > 1 && (all[1].now_ns <= first_ns || all.size() > kMost)) all.pop_front();
   }
-  // A daemon whose reports come no more, and of which none is kept, is gone or was cut off. In the
+  // A daemon whose reports come no more, without one that is kept, is gone or was cut off. In the
   // latter case DDS sends its states again.
   void forget_gone(std::uint64_t but) {
     if (states.empty()) return;

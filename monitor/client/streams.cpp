@@ -307,7 +307,7 @@ void Zones::forget_gone() {
   }
 }
 
-// Of the same tick, an active one counts.
+// Among those of the same tick, an active one counts.
 const clearance_msg_ZoneState& Zones::latest(const std::map<std::uint64_t, Written>& of_daemons) {
   const auto rank = [](const auto& one) {
     return std::pair(one.second.state.now_ns, one.second.state.active);

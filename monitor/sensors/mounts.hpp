@@ -45,7 +45,7 @@ class Mounts {
 
   [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                              const FrameHistory& frames, const PostureHistory& postures) const;
-  // How far the whole path moved between its transforms of the last second beyond the stated
+  // The way of the whole path between its transforms of the last second beyond the stated
   // speeds; nothing: farther than wrong stamps explain.
   struct Excess {
     double shift = 0.0, turn = 0.0;  // m, rad

@@ -48,7 +48,7 @@ Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.optio
 }
 Sensors::~Sensors() = default;
 
-// What came before this machine's clock was set back says nothing about the times that come again.
+// Samples from before this machine's clock was set back say nothing about later times.
 void Sensors::note_time(std::int64_t came_ns) {
   if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kSetBackNs) return;
   postures_.forget();

@@ -152,7 +152,7 @@ void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
   if (begins_merging) merge(steady_ns);
 }
 
-// Of a daemon that is alone, only the first report is decoded for this, and one after reports that
+// Only the first report of a daemon that is alone is decoded for this, and one after reports that
 // lacked pairs were shown: it may have been started again with other options.
 bool LiveSource::are_all_needed(dds_entity_t reader) {
   const bool is_known = std::exchange(has_looked_, true) && !frame_->lacks_pairs();

@@ -1,4 +1,4 @@
-// What one of two partners leaves latched while it ticks apart. The test acts as the tick thread.
+// The latched states of one of two partners while it ticks apart. The test acts as the tick thread.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,4 @@
-// What does not place a camera: samples of clocks that are ahead or were set back, and leaps that
+// These do not place a camera: samples of clocks that are ahead or were set back, and leaps that
 // the tick refuses. Oracles: the motions that the test makes.
 #include <gtest/gtest.h>
 
