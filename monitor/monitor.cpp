@@ -90,10 +90,10 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.contacts.take_over(before.state_->contacts, map);
   s.zones.take_over(before.state_->zones, map);
   s.zones.count_absent(s.inputs.objects);
-  for (std::size_t i = 0; i < s.shown.size(); ++i) {
-    const std::uint32_t old = map.objects[s.scene.sensors[i].object];
-    if (old == SceneMap::kNone || !before.state_->scene.objects[old].is_seen()) continue;
-    s.shown[i].clock = before.state_->shown[before.state_->scene.objects[old].sensor].clock;
+  for (std::size_t i = 0; i < before.state_->shown.size(); ++i) {
+    const std::uint32_t now = map.objects_now[before.state_->scene.sensors[i].object];
+    if (now != SceneMap::kNone && s.scene.objects[now].is_seen())
+      s.shown[s.scene.objects[now].sensor].clock = before.state_->shown[i].clock;
   }
   if (s.scene.revision != before.state_->scene.revision) return true;
   for (std::size_t i = 0; i < s.shown.size(); ++i)

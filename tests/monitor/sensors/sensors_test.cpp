@@ -141,11 +141,12 @@ TEST_F(SensorsTest, RefuseAFrameWhoseTransformsLeadToNoPlaceOfTheCell) {
   EXPECT_TRUE(settle(kStart + 30'000'000).empty());
   EXPECT_EQ(count(FrameFault::kNoPlace), 1u);
   // A late transform, and one that circles.
-  add(Type::kTransforms, test::transforms(kStart, kStart + kFrame, {{"map", "odom"}}).cdr, kStart);
+  add(Type::kTransforms, test::transforms(kStart, kStart + kFrame, {{"map", "odom"}}).cdr,
+      kStart + kFrame);
   add(flat(1, 1100));
   EXPECT_EQ(settle(kStart + kFrame + 30'000'000).size(), 1u);
   add(Type::kTransforms, test::transforms(kStart, kStart + kFrame, {{"camera", "odom"}}).cdr,
-      kStart);
+      kStart + kFrame);
   add(flat(2, 1200));
   EXPECT_TRUE(settle(kStart + 2 * kFrame + 30'000'000).empty());
   EXPECT_EQ(count(FrameFault::kNoPlace), 2u);
