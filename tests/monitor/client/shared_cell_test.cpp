@@ -103,6 +103,18 @@ class ASharedCell : public testing::Test {
     whole.emplace(connection, SharedCellOptions{.late_after = std::chrono::seconds(5),
                                                 .names = std::move(names)});
   }
+  // Both shares report until a report of the whole cell has come.
+  void begin(Daemon& left, std::vector<std::string> names) {
+    left.zones(1, false);
+    right.zones(1, false);
+    open(std::move(names));
+    ASSERT_TRUE(eventually([&] {
+      left.report(cycle);
+      right.report(cycle++);
+      return whole->next(milliseconds(50));
+    }));
+    EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
+  }
   [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
 
   Cell cell = cell_in_shares();
@@ -110,6 +122,7 @@ class ASharedCell : public testing::Test {
   Connection connection{dds, cell.topics};
   Daemon right{dds, cell, "right", 3};
   std::optional<SharedCell> whole;
+  std::uint64_t cycle = 1;
 };
 
 // The reports of the one partner, which ticks apart, always come first.
@@ -119,7 +132,6 @@ TEST_F(ASharedCell, HasTheZonesOfAPartnerWhoseReportsComeSecond) {
   ASSERT_TRUE(
       eventually([&] { return apart.is_heard() && leader.is_heard() && right.is_heard(); }));
   for (Daemon* const daemon : {&apart, &leader, &right}) daemon->zones(1, false);
-  std::uint64_t cycle = 1;
   const auto next = [&] {
     apart.report(cycle);
     right.report(cycle);
@@ -136,31 +148,14 @@ TEST_F(ASharedCell, HasTheZonesOfAPartnerWhoseReportsComeSecond) {
 // The first report has the states of all zones, although the names came in another order.
 TEST_F(ASharedCell, BeginsWithAllZonesWhereNamesAreInAnotherOrder) {
   Daemon left(dds, cell, "left", 1);
-  left.zones(1, false);
-  right.zones(1, false);
-  open({"right", "left"});
-  std::uint64_t cycle = 1;
-  ASSERT_TRUE(eventually([&] {
-    left.report(cycle);
-    right.report(cycle++);
-    return whole->next(milliseconds(50));
-  }));
+  begin(left, {"right", "left"});
   EXPECT_EQ(whole->zones().size(), 2u);
   EXPECT_NE(whole->catalogue(), nullptr);
-  EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
 }
 
 TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
   Daemon left(dds, cell, "left", 1);
-  left.zones(1, false);
-  right.zones(1, false);
-  open({"left", "right"});
-  std::uint64_t cycle = 1;
-  ASSERT_TRUE(eventually([&] {
-    left.report(cycle);
-    right.report(cycle++);
-    return whole->next(milliseconds(50)) && whole->is_whole();
-  }));
+  begin(left, {"left", "right"});
   ASSERT_NE(whole->separation(), nullptr);
   ASSERT_EQ(whole->separation()->zones._length, 1u);
   const clearance_msg_ZoneSeparation& zone = whole->separation()->zones._buffer[0];
@@ -172,15 +167,7 @@ TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
 // A clock was set back: the report is as old as it was published, and not younger.
 TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
   Daemon left(dds, cell, "left", 1);
-  left.zones(1, false);
-  right.zones(1, false);
-  open({"left", "right"});
-  std::uint64_t cycle = 1;
-  ASSERT_TRUE(eventually([&] {
-    left.report(cycle);
-    right.report(cycle++);
-    return whole->next(milliseconds(50)) && whole->is_whole();
-  }));
+  begin(left, {"left", "right"});
   const std::int64_t before = dds_time() - 1'000'000'000;
   EXPECT_TRUE(eventually(
       [&] {
