@@ -26,7 +26,7 @@ class Mounts {
   // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
   // nowhere, or to what has no pose at that time, or its transforms end before the stamp. In the
   // last case, a stated speed of the mount gives a pose all the same. A path whose transforms have
-  // leapt farther than that speed allows is not known for a second.
+  // jumped farther than that speed allows is not known for a second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
   // True if the path leads to a place, and its last transforms are from before the stamp, but no

@@ -156,7 +156,7 @@ TEST_F(SharedFrames, AreNotHeldUpByNewerOnes) {
   EXPECT_LE(ticks * kTick, kPatience + 5 * kTick);
 }
 
-// 60 frames a second, each of which needs 18 ms at the partner.
+// 60 frames a second come, and the partner needs 18 ms for each.
 TEST_F(SharedFrames, WaitForAnAnswerThatComesAfterTheNextFrame) {
   join();
   for (int ms = 0; ms < 200; ++ms) {
