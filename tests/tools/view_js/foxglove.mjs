@@ -11,7 +11,7 @@ const { FoxgloveClient } = protocol;
 const [url, what, figure, ...topics] = process.argv.slice(2);
 const STANDS = 20; // frames without a message
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-const found = { channels: {}, first: {}, last: {}, cycles: [], statuses: [] };
+const found = { channels: {}, first: {}, last: {}, cycles: [], times: [], statuses: [] };
 const channels = new Map();
 
 client.on("serverInfo", ({ name, capabilities }) => Object.assign(found, { name, capabilities }));
@@ -38,7 +38,10 @@ client.on("message", ({ subscriptionId, data }) => {
   const { topic, reader } = channels.get(subscriptionId);
   const message = reader.readMessage(data);
   quiet = 0;
-  if (topic.endsWith("distances")) found.cycles.push(message.cycle);
+  if (topic.endsWith("distances")) {
+    found.cycles.push(message.cycle);
+    found.times.push(message.now_ns);
+  }
   found.last[topic] = message.markers ? markersOf(message) : message;
   found.first[topic] ??= found.last[topic];
   if (what === "reports" && found.cycles.length >= Number(figure) && topics.every((each) => found.last[each])) say();
