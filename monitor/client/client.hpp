@@ -225,6 +225,12 @@ class Health {
   bool known_ = false;
 };
 
+// The report lists a zone as active whose last state is not: the state is late, or was lost.
+[[nodiscard]] bool is_raised(const clearance_msg_ZoneState& state,
+                             const clearance_msg_Distances& report);
+// Makes the state that of the report's tick: active, by a pair whose clearance is not known.
+void raise(clearance_msg_ZoneState& state, const clearance_msg_Distances& report);
+
 // The state of every zone by its id, at the last update(). Where several daemons that are there
 // have written one, the state of the latest tick counts. That of a daemon that has gone stays until
 // another one writes the zone.
@@ -232,6 +238,9 @@ class Zones {
  public:
   explicit Zones(Connection& connection);
   void update();
+  // The same, and the zones that this report lists are active, although their states may come
+  // later, or were lost. Of such a state the figures are not known.
+  void update(const clearance_msg_Distances& report);
   // Forgets the states that other daemons have sent: after a restart, ids may mean other zones. It
   // is not for partners, either of whom may have written a state.
   void keep_only(std::uint64_t daemon);
@@ -251,6 +260,7 @@ class Zones {
   dds_entity_t reader_;
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
   std::map<std::uint32_t, std::map<std::uint64_t, Written>> written_;  // by zone and daemon
+  std::vector<std::uint32_t> raised_;  // those that only the last report says are active
 };
 
 // CLOCK_REALTIME, the clock of stamps.

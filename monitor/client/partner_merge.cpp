@@ -20,6 +20,26 @@ const char* name(PartnerState state) noexcept {
   return index < kNames.size() ? kNames[index] : "";
 }
 
+bool PartnerMerge::is_silent(std::int64_t heard_ns, std::int64_t now_ns) const noexcept {
+  return now_ns - heard_ns > std::max(kSilentNs, 4 * step_ns_);
+}
+
+// Partners may change their scene one after the other, or one of them cannot: its distances would
+// leave out what the other one has added.
+bool PartnerMerge::is_of_scene(const clearance_msg_Distances& report,
+                               std::int64_t heard_ns) const noexcept {
+  if (cycle_ == 0 || report.scene_revision == revision_) return true;
+  const auto keeps_scene = [&](const Sender& sender) {
+    return sender.revision == revision_ && sender.daemon != report.daemon &&
+           !is_silent(sender.heard_ns, heard_ns);
+  };
+  const auto changes_scene = [&](const Sender& sender) {
+    return sender.revision == revision_ && sender.daemon == report.daemon;
+  };
+  return std::ranges::any_of(senders_, changes_scene) ||
+         std::ranges::none_of(senders_, keeps_scene);
+}
+
 // Cycles decide between partners that agree. Time decides where they do not count alike: the one
 // that counts lower takes the other's place when that has been silent for more than a period. A
 // report that was handed out with a wrong cycle or time does not keep out those after it. After a
@@ -27,8 +47,7 @@ const char* name(PartnerState state) noexcept {
 bool PartnerMerge::is_next(const clearance_msg_Distances& report,
                            std::int64_t heard_ns) const noexcept {
   if (cycle_ == 0) return true;
-  const std::int64_t silent_ns = heard_ns - handed_out_ns_;
-  if (report.lineage != lineage_ && silent_ns > std::max(kSilentNs, 4 * step_ns_)) return true;
+  if (report.lineage != lineage_ && is_silent(handed_out_ns_, heard_ns)) return true;
   const bool is_older = report.now_ns < now_ns_;
   const std::int64_t newer_ns = elapsed(now_ns_, report.now_ns);
   if (report.cycle > cycle_) return newer_ns > 0 || (is_older && contradicts(report));
@@ -48,9 +67,10 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
     note(PartnerState::kCorrupt, report);
     return false;
   }
+  const bool is_of_one = is_of_scene(report, heard_ns);
   note_sender(report, heard_ns);
   if (contradicts(report)) note(PartnerState::kDifferent, report);
-  if (!is_next(report, heard_ns)) {
+  if (!is_of_one || !is_next(report, heard_ns)) {
     compare(report);
     return false;
   }
@@ -63,6 +83,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
   if (report.cycle == cycle_ + 1) step_ns_ = elapsed(now_ns_, report.now_ns);
   cycle_ = report.cycle;
   lineage_ = report.lineage;
+  revision_ = report.scene_revision;
   now_ns_ = report.now_ns;
   handed_out_ns_ = heard_ns;
   seen_[cycle_ % kSeen] = {.cycle = cycle_,
@@ -92,7 +113,7 @@ void PartnerMerge::note(PartnerState state, const clearance_msg_Distances& repor
 
 void PartnerMerge::note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns) {
   if (senders_[0].partner != report.partner) std::swap(senders_[0], senders_[1]);
-  senders_[0] = {report.partner, report.daemon, heard_ns};
+  senders_[0] = {report.partner, report.daemon, heard_ns, report.scene_revision};
 }
 
 }  // namespace clearance::client

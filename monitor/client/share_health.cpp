@@ -29,6 +29,10 @@ constexpr std::array kSums = {&Message::clock_steps,     &Message::overruns,
                               &Message::dropped_reports, &Message::other_writers,
                               &Message::foreign_reports, &Message::recording_missing};
 
+constexpr std::array kPartnerSums = {
+    &clearance_msg_PartnerHealth::compared, &clearance_msg_PartnerHealth::different,
+    &clearance_msg_PartnerHealth::other_inputs, &clearance_msg_PartnerHealth::missing};
+
 using Views = std::span<const clearance_msg_Health* const>;
 
 // Calls use(element) for each element of a list of all shares.
@@ -89,11 +93,7 @@ void join_sources(Views views, Message& out) {
   }
 }
 
-void join_rejected(Views views, Message& out) {
-  std::map<std::pair<std::string, std::string>, std::uint64_t> counts;
-  for_all(views, &Message::rejected, [&](const clearance_msg_RejectCount& entry) {
-    counts[{entry.object, entry.cause}] += entry.count;
-  });
+void write_rejected(const HealthCounts::Rejected& counts, Message& out) {
   reserve_sequence(out.rejected, std::min<std::size_t>(counts.size(), 4096));
   for (const auto& [what, count] : counts) {
     if (out.rejected._length == out.rejected._maximum) return;
@@ -124,32 +124,55 @@ void join_notes(Views views, Message& out) {
 // The share is told first whose partners do not agree, and among these the one with the most
 // differences.
 void join_partners(Views views, clearance_msg_PartnerHealth& out) {
-  clearance_msg_PartnerHealth sums{};
   const clearance_msg_PartnerHealth* worst = nullptr;
+  const auto trouble = [](const clearance_msg_PartnerHealth& each) {
+    return std::tuple(each.agrees_from == 0, each.different, each.other_inputs, each.missing);
+  };
   for (const clearance_msg_Health* view : views) {
     if (view == nullptr || *view->partner.partner == '\0') continue;
-    const clearance_msg_PartnerHealth& of = view->partner;
-    sums.compared += of.compared;
-    sums.different += of.different;
-    sums.other_inputs += of.other_inputs;
-    sums.missing += of.missing;
-    const auto trouble = [](const clearance_msg_PartnerHealth& each) {
-      return std::tuple(each.agrees_from == 0, each.different, each.other_inputs, each.missing);
-    };
-    if (worst == nullptr || trouble(of) > trouble(*worst)) worst = &of;
+    if (worst == nullptr || trouble(view->partner) > trouble(*worst)) worst = &view->partner;
   }
   if (worst == nullptr) return;
   out = *worst;
   out.leads = true;  // the one program that joins writes what has one leader
-  out.compared = sums.compared;
-  out.different = sums.different;
-  out.other_inputs = sums.other_inputs;
-  out.missing = sums.missing;
+  for (auto clearance_msg_PartnerHealth::*const sum : kPartnerSums) out.*sum = 0;
+}
+
+// What has been counted since the last time; another daemon has not counted since then.
+std::uint64_t increase(std::uint64_t before, std::uint64_t now) {
+  return now > before ? now - before : 0;
 }
 
 }  // namespace
 
-void join_health(Views views, Views former, clearance_msg_Health& out) {
+void HealthCounts::take(const clearance_msg_Health& health) {
+  Counts now;
+  for (auto Message::*const sum : kSums) now.all.push_back(health.*sum);
+  for (auto clearance_msg_PartnerHealth::*const sum : kPartnerSums)
+    now.all.push_back(health.partner.*sum);
+  for (const clearance_msg_RejectCount& entry : list(health.rejected))
+    now.rejected[{entry.object, entry.cause}] += entry.count;
+  if (told_.all.empty()) {
+    told_ = now;
+  } else if (health.daemon == daemon_) {
+    for (std::size_t i = 0; i < now.all.size(); ++i)
+      told_.all[i] += increase(last_.all[i], now.all[i]);
+    for (const auto& [what, count] : now.rejected)
+      told_.rejected[what] += increase(last_.rejected[what], count);
+  }
+  daemon_ = health.daemon;
+  last_ = std::move(now);
+}
+
+void HealthCounts::add_to(clearance_msg_Health& sums) const {
+  if (told_.all.empty()) return;
+  auto told = told_.all.begin();
+  for (auto Message::*const sum : kSums) sums.*sum += *told++;
+  for (auto clearance_msg_PartnerHealth::*const sum : kPartnerSums) sums.partner.*sum += *told++;
+}
+
+void join_health(Views views, std::span<const HealthCounts* const> counts,
+                 clearance_msg_Health& out) {
   std::string recording;
   for (const clearance_msg_Health* view : views) {
     if (view == nullptr) continue;
@@ -166,18 +189,17 @@ void join_health(Views views, Views former, clearance_msg_Health& out) {
     }
   }
   out.recording = dds_string_dup(recording.c_str());
-  std::vector<const clearance_msg_Health*> all(views.begin(), views.end());
-  all.insert(all.end(), former.begin(), former.end());
-  for (const clearance_msg_Health* view : all) {
-    if (view == nullptr) continue;
-    for (auto Message::*const sum : kSums) out.*sum += view->*sum;
+  join_partners(views, out.partner);
+  HealthCounts::Rejected rejected;
+  for (const HealthCounts* of_share : counts) {
+    of_share->add_to(out);
+    for (const auto& [what, count] : of_share->rejected()) rejected[what] += count;
   }
-  join_rejected(all, out);
+  write_rejected(rejected, out);
   join_ages(views, &Message::inputs, &clearance_msg_InputAge::object, out);
   join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
   join_sources(views, out);
   join_notes(views, out);
-  join_partners(all, out.partner);
 }
 
 }  // namespace clearance::client

@@ -101,11 +101,13 @@ void join_sources(std::span<const ShareView> views, clearance_msg_Distances& out
   }
 }
 
-// No pair of a share is nearer than its lower_all, and none but its minimum is nearer than that one
-// if it is certified.
+// No pair of a share is nearer than its lower_all. If its minimum is certified, none of its other
+// pairs is nearer than that. That pair itself may be, unless it was evaluated.
 bool allows_minimum(const clearance_msg_Distances& report,
                     const clearance_msg_PairDistance& least) {
-  return report.minimum_certified || report.lower_all >= least.upper;
+  const auto evaluated = static_cast<std::uint8_t>(PairStatus::kOverlapping);
+  const bool is_tight = report.minimum.pair == least.pair || report.minimum.status <= evaluated;
+  return report.lower_all >= least.upper || (report.minimum_certified && is_tight);
 }
 
 }  // namespace
@@ -216,11 +218,13 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
           !has_any || found->scaling < least.scaling ||
           (found->scaling == least.scaling && found->remaining < least.remaining);
       const auto worst = has_any ? std::min(validity(*found), validity(least)) : validity(*found);
-      const double speed =
-          has_any ? std::min(found->speed_limit, least.speed_limit) : found->speed_limit;
+      const auto less = [&](double a, double b) { return has_any ? std::min(a, b) : a; };
+      const double speed = less(found->speed_limit, least.speed_limit);
+      const double remaining = less(found->remaining, least.remaining);
       if (is_nearer) least = *found;
       least.validity = worst;
       least.speed_limit = speed;
+      least.remaining = remaining;
       has_any = true;
     }
     if (!is_known || !has_any) {

@@ -6,6 +6,7 @@
 #include <map>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "clearance.h"
@@ -92,11 +93,30 @@ void join_gradients(const ShareMap& map, std::span<const ShareView> views,
     const ShareMap& map, std::uint32_t zone,
     std::span<const clearance_msg_ZoneState* const> of_shares);
 
-// The ages of inputs are the largest that any share has, counts are sums, times are the largest.
-// One health a share; null: none has come. `former` are the last ones of shares that are not whole:
-// only their counts are used, so that sums do not fall. Of partners, those of the share are told
-// that are the worst off, with the counts of all. `shares` is left to the caller.
+// What the daemons of one share have counted since the first one was heard. It does not fall where
+// another daemon follows, as after a restart or a change of the leader: what that had counted
+// before is left out.
+class HealthCounts {
+ public:
+  void take(const clearance_msg_Health& health);
+  void add_to(clearance_msg_Health& sums) const;
+  using Rejected = std::map<std::pair<std::string, std::string>, std::uint64_t>;  // object, cause
+  [[nodiscard]] const Rejected& rejected() const noexcept { return told_.rejected; }
+
+ private:
+  struct Counts {
+    std::vector<std::uint64_t> all;
+    Rejected rejected;
+  };
+  std::uint64_t daemon_ = 0;  // that of the last one
+  Counts last_, told_;
+};
+
+// The ages of inputs are the largest that any share has, times are the largest, and counts are the
+// sums of `counts`. One health a share; null: none has come, or the share is not whole. Of
+// partners, those of the share are told that are the worst off, with the counts of all. `shares` is
+// left to the caller.
 void join_health(std::span<const clearance_msg_Health* const> of_shares,
-                 std::span<const clearance_msg_Health* const> former, clearance_msg_Health& out);
+                 std::span<const HealthCounts* const> counts, clearance_msg_Health& out);
 
 }  // namespace clearance::client

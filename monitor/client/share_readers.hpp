@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -76,12 +75,14 @@ struct SharedCell::OfShare {
     }
     taken_at = monotonic_ns();
     // The zones of a partner count whose reports come, although those of the other one come first.
-    for (std::size_t i = 0; i < reports.senders().size(); ++i) {
-      const PartnerMerge::Sender& sender = reports.senders()[i];
-      if (sender.heard_ns == sender_heard_ns[i]) continue;
-      sender_heard_ns[i] = sender.heard_ns;
-      heard[sender.daemon] = taken_at;
+    for (const PartnerMerge::Sender& sender : reports.senders()) {
+      std::int64_t& before_ns = sender_heard_ns[sender.daemon];
+      if (std::exchange(before_ns, sender.heard_ns) != sender.heard_ns)
+        heard[sender.daemon] = taken_at;
     }
+    std::erase_if(sender_heard_ns, [this](const auto& one) {
+      return std::ranges::count(reports.senders(), one.first, &PartnerMerge::Sender::daemon) == 0;
+    });
     std::erase_if(heard, [&](const auto& one) { return one.second + kHeardFor < taken_at; });
     separation.take_all(separations);
     if (gradients) gradient.take_all(*gradients);
@@ -192,6 +193,7 @@ struct SharedCell::OfShare {
   std::optional<Gradients> gradients;  // none: they are not asked for
   Catalogue catalogue;
   client::Health health;
+  HealthCounts counted;
   dds_entity_t zones;
   OfTwoScenes<clearance_msg_Distances> current;
   OfTwoScenes<clearance_msg_Separation> separation;
@@ -202,7 +204,7 @@ struct SharedCell::OfShare {
   std::uint64_t missed = 0;
   std::int64_t taken_at = 0, came_at = 0;       // the last take() and report, by monotonic_ns()
   std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
-  std::array<std::int64_t, 2> sender_heard_ns{};
+  std::map<std::uint64_t, std::int64_t> sender_heard_ns;     // of reports.senders(), by daemon
   std::map<std::uint64_t, dds_instance_handle_t> writer_of;  // of zones, by daemon
   // By zone and daemon, in the order in which they came.
   std::map<std::pair<std::uint32_t, std::uint64_t>, std::deque<clearance_msg_ZoneState>> states;

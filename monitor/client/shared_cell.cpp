@@ -221,11 +221,13 @@ void SharedCell::judge(std::int64_t now_ns) {
     check.partner = share->reports.partner();
     if (report.cycle == 0) continue;
     check.age_ns = now_ns - report.publish_ns;
+    // The times of two machines are compared, so that silence counts as well.
     const std::int64_t limit = options_.late_after.count();
-    if (check.age_ns > limit && share->reports.daemons() == 0) continue;
-    check.state = check.age_ns > limit || check.age_ns < -limit ? ShareState::kLate
-                  : report.scene_revision != map_.revision()    ? ShareState::kOtherRevision
-                                                                : ShareState::kWhole;
+    const bool is_late = check.age_ns > limit || share->taken_at - share->came_at > limit;
+    if (is_late && share->reports.daemons() == 0) continue;
+    check.state = is_late || check.age_ns < -limit           ? ShareState::kLate
+                  : report.scene_revision != map_.revision() ? ShareState::kOtherRevision
+                                                             : ShareState::kWhole;
   }
 }
 
@@ -290,10 +292,16 @@ void SharedCell::join_zones() {
   if (names == nullptr) return zones_.clear();
   std::map<std::uint32_t, clearance_msg_ZoneState> joined;
   std::vector<const clearance_msg_ZoneState*> of_shares(shares_.size());
+  std::vector<clearance_msg_ZoneState> raised(shares_.size());
+  reserve_sequence(message_->active_zones, names->zones._length);
   for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
     for (std::size_t i = 0; i < shares_.size(); ++i) {
       const bool is_used = checks_[i].state == ShareState::kWhole;
       of_shares[i] = is_used ? shares_[i]->zone(zone.id, zone.name, *shares_[i]->used) : nullptr;
+      if (of_shares[i] == nullptr || !is_raised(*of_shares[i], *shares_[i]->used)) continue;
+      raised[i] = *of_shares[i];
+      raise(raised[i], *shares_[i]->used);
+      of_shares[i] = &raised[i];
     }
     clearance_msg_ZoneState state = join_zone(map_, zone.id, of_shares);
     const std::string_view name = zone.name;
@@ -307,6 +315,9 @@ void SharedCell::join_zones() {
                               name.substr(0, sizeof state.name - 1) == before->second.name;
     state.since_cycle = is_as_before ? before->second.since_cycle : message_->cycle;
     joined[zone.id] = state;
+    auto& active = message_->active_zones;
+    if (state.active && active._length < active._maximum)
+      active._buffer[active._length++] = zone.id;
   }
   zones_ = std::move(joined);
 }
@@ -335,14 +346,18 @@ std::string SharedCell::what_is_missing() const {
 
 Sample<clearance_msg_Health> SharedCell::health() {
   Sample<clearance_msg_Health> joined;
-  std::vector<const clearance_msg_Health*> of_shares, former;
+  std::vector<const clearance_msg_Health*> of_shares;
+  std::vector<const HealthCounts*> counts;
   for (std::size_t i = 0; i < shares_.size(); ++i) {
-    shares_[i]->health.update();
-    const clearance_msg_Health* const health = shares_[i]->health.message();
-    const bool is_used = i < checks_.size() && checks_[i].state == ShareState::kWhole;
-    (is_used ? of_shares : former).push_back(health);
+    OfShare& share = *shares_[i];
+    share.health.update();
+    const clearance_msg_Health* const health = share.health.message();
+    if (health == nullptr) continue;
+    share.counted.take(*health);
+    counts.push_back(&share.counted);
+    if (i < checks_.size() && checks_[i].state == ShareState::kWhole) of_shares.push_back(health);
   }
-  join_health(of_shares, former, *joined);
+  join_health(of_shares, counts, *joined);
   joined->daemon = daemon_;
   joined->cycle = message_->cycle;
   joined->scene_revision = message_->scene_revision;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <set>
 #include <span>
 #include <type_traits>
@@ -13,6 +14,7 @@
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/pair_name.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/report.hpp"
 
 namespace clearance::client {
 namespace {
@@ -291,6 +293,39 @@ void Zones::update() {
   if (has_several) forget_gone();
   for (const auto& [zone, of_daemons] : written_) {
     if (has_several || changed.contains(zone)) states_[zone] = latest(of_daemons);
+  }
+}
+
+bool is_raised(const clearance_msg_ZoneState& state, const clearance_msg_Distances& report) {
+  const auto listed = list(report.active_zones);
+  return !state.active && std::ranges::find(listed, state.zone) != listed.end();
+}
+
+void raise(clearance_msg_ZoneState& state, const clearance_msg_Distances& report) {
+  state.daemon = report.daemon;
+  state.active = true;
+  state.certified = false;
+  state.cause = static_cast<std::uint8_t>(ZoneCause::kNear);
+  state.clearance = state.swept_clearance = -std::numeric_limits<double>::infinity();
+  state.since_cycle = state.cycle = report.cycle;
+  state.now_ns = report.now_ns;
+}
+
+void Zones::update(const clearance_msg_Distances& report) {
+  for (const std::uint32_t zone : std::exchange(raised_, {})) {
+    const auto written = written_.find(zone);
+    if (written == written_.end())
+      states_.erase(zone);
+    else
+      states_[zone] = latest(written->second);
+  }
+  update();
+  for (const std::uint32_t zone : list(report.active_zones)) {
+    clearance_msg_ZoneState& state = states_[zone];
+    state.zone = zone;
+    if (!is_raised(state, report)) continue;
+    raise(state, report);
+    raised_.push_back(zone);
   }
 }
 

@@ -126,8 +126,9 @@ void PartnerPort::write_notices() {
       out.frames._length = static_cast<std::uint32_t>(notice->frame_count);
       for (std::size_t i = 0; i < notice->frame_count; ++i)
         out.frames._buffer[i] = {notice->frames[i].sensor, notice->frames[i].content};
-      if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK)
-        written_ns_ = SystemClock().monotonic_ns();
+      // A notice that has waited while this daemon stood still is no sign that it led meanwhile.
+      const std::int64_t now_ns = std::min(notice->due_ns, SystemClock().monotonic_ns());
+      if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK) written_ns_ = now_ns;
     }
   }
 }

@@ -84,8 +84,8 @@ class PartnerPort {
   [[nodiscard]] bool leads() const;
   void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
   void fill(clearance_msg_PartnerHealth& out);
-  // The partner has published in the last tenth of a second; whether its reports do not agree with
-  // those of this daemon; its name, and the revision of its last report.
+  // The partner has published in the last tenth of a second; it was heard once, and its reports do
+  // not agree with those of this daemon; its name, and the revision of its last report.
   [[nodiscard]] bool hears_partner() { return reports_.hears_any(); }
   [[nodiscard]] bool disagrees() { return reports_.disagrees(); }
   [[nodiscard]] std::string partner() { return reports_.name(); }

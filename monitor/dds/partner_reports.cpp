@@ -31,7 +31,11 @@ bool PartnerReports::may_tell(Kind kind) {
 
 void PartnerReports::note(const clearance_msg_Distances& report, bool is_other) {
   const std::lock_guard lock(mutex_);
-  const Kept kept{report.cycle, report.lineage, compared_checksum(report), report.state_checksum,
+  const Kept kept{report.cycle,
+                  report.lineage,
+                  compared_checksum(report),
+                  report.state_checksum,
+                  inputs_checksum_of(report),
                   report.publish_ns};
   (is_other ? other_ : own_)[report.cycle % kKept] = kept;
   const Kept& counterpart = (is_other ? own_ : other_)[report.cycle % kKept];
@@ -57,7 +61,8 @@ void PartnerReports::compare(const Kept& own, const Kept& other) {
     return;
   }
   ++compared_;
-  if (own.checksum != other.checksum || own.state_checksum != other.state_checksum) {
+  if (own.checksum != other.checksum || own.state_checksum != other.state_checksum ||
+      own.inputs_checksum != other.inputs_checksum) {
     ++different_;
     agrees_from_ = 0;
     if (may_tell(kDifferent)) log_line(lines::kPartnerDiffers, name_, own.cycle, different_);
@@ -86,8 +91,7 @@ bool PartnerReports::hears_any() {
 
 bool PartnerReports::disagrees() {
   const std::lock_guard lock(mutex_);
-  return agrees_from_ == 0 && heard_ns_ != 0 &&
-         SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+  return agrees_from_ == 0 && heard_ns_ != 0;
 }
 
 std::string PartnerReports::name() {

@@ -19,7 +19,7 @@ class PartnerReports {
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();
-  // It has, and its last report that was compared is not that of this daemon.
+  // It has published once, and since then the two have not agreed, or do so no longer.
   [[nodiscard]] bool disagrees();
   [[nodiscard]] std::string name();  // of the partner that was heard last; empty: none
   // A partner of another name than this has published in the last tenth of a second: a third one is
@@ -31,7 +31,7 @@ class PartnerReports {
  private:
   static constexpr std::size_t kKept = 256;
   struct Kept {
-    std::uint64_t cycle = 0, lineage = 0, checksum = 0, state_checksum = 0;
+    std::uint64_t cycle = 0, lineage = 0, checksum = 0, state_checksum = 0, inputs_checksum = 0;
     std::int64_t publish_ns = 0;
   };
   using Cycles = std::array<Kept, kKept>;

@@ -114,6 +114,7 @@ Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   reserve_sequence(sample->sources, clearance_msg_kMaxSources);
   reserve_sequence(sample->contacts, contact_pairs(scene).size());
   reserve_sequence(sample->hidden, hidden_pairs(scene).size());
+  reserve_sequence(sample->active_zones, scene.zones.size());
   return sample;
 }
 
@@ -126,6 +127,12 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
   for (std::uint32_t i = 0; i < out.sources._length; ++i) {
     copy_text(sources[i].source.view(), out.sources._buffer[i].source);
     out.sources._buffer[i].sequence_number = sources[i].sequence_number;
+  }
+  auto& active = out.active_zones;
+  active._length = 0;
+  for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {
+    if (report.zones[zone].active && active._length < active._maximum)
+      active._buffer[active._length++] = zone;
   }
   return out.sources._length == sources.size() && out.pairs._length == report.pairs.size();
 }

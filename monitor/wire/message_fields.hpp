@@ -35,6 +35,7 @@ struct DistancesMessageFields {
     visit(Field{"state_checksum", Meaning::kDelivery}, message.state_checksum...);
     visit(Field{"changes_since", Meaning::kDelivery}, message.changes_since...);
     visit(Field{"delivery_checksum", Meaning::kDelivery}, message.delivery_checksum...);
+    visit(Field{"active_zones", Meaning::kDelivery}, message.active_zones...);
     DistanceFields::for_each(visit, message...);
   }
 };

@@ -59,11 +59,15 @@ template <class Report>
   return sum.value();
 }
 
-// The checksum that partners compare beside state_checksum. A message that carries only what
-// changed depends on those before it: then state_checksum stands for the whole report, too.
+// The checksum that partners compare beside state_checksum: of the report, and of the zones that
+// the message says are active. A message that carries only what changed depends on those before it:
+// then state_checksum stands for the whole report, too.
 [[nodiscard]] inline std::uint64_t compared_checksum(
     const clearance_msg_Distances& message) noexcept {
-  return message.changes_since == 0 ? message.checksum : 0;
+  Checksum sum;
+  sum.add(message.changes_since == 0 ? message.checksum : std::uint64_t{0});
+  AddToChecksum{sum}(Field{}, message.active_zones);
+  return sum.value();
 }
 
 inline void add_text(const char* text, Checksum& sum) noexcept {
@@ -83,7 +87,8 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
   return sum.value();
 }
 
-// Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs.
+// Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs,
+// and the zones, whose whole states are in state_checksum.
 [[nodiscard]] inline std::uint64_t delivery_checksum_of(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;
@@ -95,6 +100,7 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
   sum.add(message.state_checksum);
   sum.add(message.changes_since);
   sum.add(inputs_checksum_of(message));
+  AddToChecksum{sum}(Field{}, message.active_zones);
   return sum.value();
 }
 

@@ -117,6 +117,8 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
         if (const auto* const pair = boxes.in(*reports)) {
           if (pair->swept_lower < 0.3) is_inside = true;
           if (pair->swept_lower > 0.35) is_inside = false;
+          const bool is_decided = pair->swept_lower < 0.3 || pair->swept_lower > 0.35;
+          zones_wrong += is_decided && (reports->active_zones._length > 0) != is_inside;
         }
         if (until()) return true;
       }

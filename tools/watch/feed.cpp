@@ -31,7 +31,7 @@ void Feed::take(std::int64_t now_ns) {
     last_ns_ = now_ns;
     note_report(now_ns);
   }
-  zones_.update();
+  any() ? zones_.update(*reports_) : zones_.update();
   if (any()) shares_.reset();
   if (shares_) shares_->look();
 }

@@ -99,7 +99,7 @@ class Watcher {
  private:
   void take() {
     if (catalogue_.revision() != reports_->scene_revision) catalogue_.update();
-    zones_.update();
+    zones_.update(*reports_);
     for (const auto& [id, zone] : zones_.states()) {
       if (!zone.active) {
         active_.erase(zone.name);

@@ -222,6 +222,37 @@ TEST(Client, BelievesTheLaterOfTwoDaemonsAboutAZoneAsLongAsItIsThere) {
   }));
 }
 
+// DDS may lose the message of a zone, or bring it later than the report.
+TEST(Client, HasTheZonesActiveThatTheReportLists) {
+  const DdsOptions dds = test::own_dds();
+  Participant daemon(dds);
+  const dds_entity_t writer = daemon.writer(TopicKind::kZones, Topics{}.zones);
+  clearance_msg_ZoneState clear{};
+  clear.daemon = 1;
+  clear.clearance = 2.0;
+  ASSERT_EQ(dds_write(writer, &clear), DDS_RETCODE_OK);
+  client::Connection connection(dds, Topics{});
+  client::Zones zones(connection);
+  ASSERT_TRUE(eventually([&] { return zones.update(), zones.states().contains(0); }));
+  Sample<clearance_msg_Distances> report;
+  report->cycle = 7;
+  reserve_sequence(report->active_zones, 2);
+  report->active_zones._length = 2;
+  report->active_zones._buffer[1] = 4;  // whose state has not come
+  zones.update(*report);
+  for (const std::uint32_t zone : {0u, 4u}) {
+    const clearance_msg_ZoneState& state = zones.states().at(zone);
+    EXPECT_TRUE(state.active && !state.certified);
+    EXPECT_EQ(state.since_cycle, 7u);
+    EXPECT_LT(state.clearance, 0.0);
+  }
+  report->active_zones._length = 0;
+  zones.update(*report);
+  EXPECT_FALSE(zones.states().at(0).active);
+  EXPECT_EQ(zones.states().at(0).clearance, 2.0);
+  EXPECT_FALSE(zones.states().contains(4));
+}
+
 TEST(Client, JointsAndPosesArriveAsTheDaemonWantsThem) {
   const DdsOptions dds = test::own_dds();
   Daemon daemon(dds);

@@ -59,6 +59,37 @@ TEST_F(Merge, HandsOutEachCycleOnceAndTellsThatBothAgree) {
   EXPECT_EQ(cycles, (std::vector<std::uint64_t>{1, 2, 3, 4, 5}));
 }
 
+clearance_msg_Distances of_scene(std::uint64_t revision, clearance_msg_Distances message) {
+  message.scene_revision = revision;
+  message.checksum = checksum_of(message);
+  return message;
+}
+
+// The scene of the one has a new obstacle, which the other one cannot read, or has not read yet.
+TEST_F(Merge, HandsOutOneSceneAtATime) {
+  constexpr std::uint64_t kBefore = 5, kAfter = 6;
+  for (std::uint64_t cycle = 1; cycle <= 3; ++cycle) {
+    take(of_scene(kBefore, report("left", cycle)));
+    take(of_scene(kBefore, report("right", cycle)));
+  }
+  for (std::uint64_t cycle = 4; cycle <= 1200; ++cycle) {
+    EXPECT_FALSE(cycle > 4 && take(of_scene(kBefore, report("right", cycle, 2))));
+    ASSERT_TRUE(take(of_scene(kAfter, report("left", cycle))));
+  }
+  EXPECT_TRUE(take(of_scene(kAfter, report("right", 1201, 2)))) << "it has changed, too";
+  EXPECT_FALSE(take(of_scene(kAfter, report("left", 1201))));
+}
+
+TEST_F(Merge, HandsOutTheFormerSceneOnceNoneIsHeardOfTheLaterOne) {
+  take(of_scene(5, report("left", 1)));
+  take(of_scene(5, report("right", 1)));
+  take(of_scene(6, report("left", 2)));
+  std::uint64_t cycle = 3;
+  while (!take(of_scene(5, report("right", cycle, 2)))) ASSERT_LT(++cycle, 1100u);
+  EXPECT_GT(cycle, 900u);
+  EXPECT_TRUE(take(of_scene(5, report("right", cycle + 1, 2))));
+}
+
 // Each leaves out what it has said before (`publish: changes`), and one has joined since.
 TEST_F(Merge, ComparesMessagesOfChangesByTheWholeReports) {
   const auto changes = [](const char* partner, std::uint64_t cycle, double lower,
@@ -225,6 +256,10 @@ Sample<clearance_msg_Distances> full_report(Random& random) {
   reserve_sequence(message.pairs, 5);
   reserve_sequence(message.sources, 2);
   reserve_sequence(message.contacts, 1);
+  reserve_sequence(message.active_zones, 2);
+  message.active_zones._length = 2;
+  message.active_zones._buffer[0] = 3;
+  message.active_zones._buffer[1] = 9;
   message.pairs._length = 5;
   message.sources._length = 2;
   message.contacts._length = 1;

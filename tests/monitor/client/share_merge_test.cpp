@@ -187,6 +187,19 @@ TEST(ShareMerge, TheMinimumIsCertifiedOnlyIfNoOtherShareCanHaveANearerPair) {
   EXPECT_EQ(shares.join().minimum.pair, near);
 }
 
+// A carried pair is the nearest of its share by its upper bound, and may be nearer than that.
+TEST(ShareMerge, ALooseMinimumOfAShareMayBeNearerThanThatOfTheWhole) {
+  std::vector<std::pair<double, double>> bounds(15, {2.0, 2.0});
+  const Cell cell = balls();
+  const std::uint32_t near = cell.shares.all[0].pairs[0], loose = cell.shares.all[1].pairs[0];
+  bounds[near] = {1.0, 1.0};
+  bounds[loose] = {0.5, 1.1};
+  Shares shares(bounds);
+  shares.reports[1]->minimum.status = static_cast<std::uint8_t>(PairStatus::kCarried);
+  EXPECT_EQ(shares.join().minimum.pair, near);
+  EXPECT_FALSE(shares.join().minimum_certified);
+}
+
 // A pair that a report leaves out is not clear.
 TEST(ShareMerge, APublishedPairThatItsShareDoesNotReportIsUnknown) {
   Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
@@ -244,6 +257,10 @@ TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
   ASSERT_EQ(joined->zones._length, 1u);
   EXPECT_EQ(joined->zones._buffer[0].validity, 2);
   EXPECT_EQ(joined->zones._buffer[0].remaining, 0.8);
+  of[0]->zones._buffer[0].scaling = 0.5;
+  join_separations(shares.map, shares.views, *joined);
+  EXPECT_EQ(joined->zones._buffer[0].scaling, 0.5);
+  EXPECT_EQ(joined->zones._buffer[0].remaining, 0.8) << "the least of each figure";
   shares.views[1].separation = nullptr;
   join_separations(shares.map, shares.views, *joined);
   EXPECT_EQ(joined->zones._buffer[0].validity, 0);
@@ -303,7 +320,6 @@ TEST(ShareMerge, AnInputIsAsOldAsTheShareThatKnowsLeastOfItSays) {
   for (auto& health : of) {
     reserve_sequence(health->inputs, 2);
     health->recording = dds_string_dup("");
-    health->overruns = 3;
     health->tick_max_us = 5.0;
   }
   add(*of[0], 0, 7);
@@ -316,8 +332,36 @@ TEST(ShareMerge, AnInputIsAsOldAsTheShareThatKnowsLeastOfItSays) {
   EXPECT_EQ(joined->inputs._buffer[0].age_ns, -1);
   EXPECT_TRUE(joined->inputs._buffer[0].stale);
   EXPECT_EQ(joined->inputs._buffer[1].age_ns, 7);
-  EXPECT_EQ(joined->overruns, 6u);
   EXPECT_EQ(joined->tick_max_us, 9.0);
+}
+
+// The lead changes to a daemon that has counted less, and back.
+TEST(ShareMerge, CountsOfAShareDoNotFallWhereAnotherDaemonFollows) {
+  const auto health = [](std::uint64_t daemon, std::uint64_t count) {
+    Sample<clearance_msg_Health> message;
+    message->daemon = daemon;
+    message->recording = dds_string_dup("");
+    message->overruns = message->partner.missing = count;
+    reserve_sequence(message->rejected, 1);
+    message->rejected._buffer[message->rejected._length++] = {dds_string_dup("a"),
+                                                              dds_string_dup("late"), count};
+    return message;
+  };
+  HealthCounts counts, of_another;
+  of_another.take(*health(3, 100));
+  const auto joined = [&](std::uint64_t daemon, std::uint64_t count) {
+    counts.take(*health(daemon, count));
+    Sample<clearance_msg_Health> sums;
+    join_health({}, std::vector<const HealthCounts*>{&counts, &of_another}, *sums);
+    EXPECT_EQ(sums->overruns, sums->partner.missing);
+    EXPECT_EQ(sums->overruns, sums->rejected._buffer[0].count);
+    return sums->overruns;
+  };
+  EXPECT_EQ(joined(1, 50), 150u);
+  EXPECT_EQ(joined(2, 3), 150u);
+  EXPECT_EQ(joined(2, 4), 151u);
+  EXPECT_EQ(joined(1, 60), 151u);
+  EXPECT_EQ(joined(1, 62), 153u);
 }
 
 }  // namespace

@@ -55,8 +55,12 @@ class Daemon {
     check_dds(dds_write(catalogue_, &*catalogue), "writing");
   }
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
-  void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time()) {
+  void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time(),
+              std::vector<std::uint32_t> active = {}) {
     clearance_msg_Distances message{};
+    message.active_zones._length = message.active_zones._maximum =
+        static_cast<std::uint32_t>(active.size());
+    message.active_zones._buffer = active.data();
     partner_.copy(message.partner, sizeof message.partner - 1);
     message.daemon = id_;
     message.cycle = cycle;
@@ -162,6 +166,47 @@ TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
   EXPECT_EQ(zone.zone, kFar);
   EXPECT_EQ(zone.validity, 0);
   EXPECT_EQ(zone.scaling, 0.0);
+}
+
+// The state of a zone comes after the report of its tick, or is lost.
+TEST_F(ASharedCell, HasTheZonesActiveThatTheReportOfAShareLists) {
+  Daemon left(dds, cell, "left", 1);
+  begin(left, {"left", "right"});
+  EXPECT_FALSE(is_active(kWide));
+  EXPECT_EQ((*whole)->active_zones._length, 0u);
+  ASSERT_TRUE(eventually([&] {
+    left.report(cycle, dds_time(), {kWide});
+    right.report(cycle++);
+    return whole->next(milliseconds(50)) && is_active(kWide);
+  }));
+  EXPECT_EQ(whole->zones().at(kWide).cause, static_cast<std::uint8_t>(ZoneCause::kNear));
+  ASSERT_EQ((*whole)->active_zones._length, 1u);
+  EXPECT_EQ((*whole)->active_zones._buffer[0], kWide);
+  EXPECT_FALSE(is_active(kFar));
+}
+
+// The clock of the share's machine is ahead, so that its last report seems young for longer.
+TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
+  Daemon left(dds, cell, "left", 1);
+  begin(left, {"left", "right"});
+  whole.emplace(connection,
+                SharedCellOptions{.late_after = milliseconds(400), .names = {"left", "right"}});
+  const std::int64_t last = dds_time() + 350'000'000;
+  ASSERT_TRUE(eventually([&] {
+    left.report(cycle);
+    right.report(cycle++, dds_time() + 350'000'000);
+    return whole->next(milliseconds(50)) && whole->is_whole();
+  }));
+  EXPECT_TRUE(eventually([&] {
+    left.report(cycle++);
+    return whole->next(milliseconds(50)) && !whole->is_whole();
+  }));
+  EXPECT_LT(dds_time() - last, 3'000'000'000);
+  for (const ShareCheck& check : whole->checks()) {
+    if (check.name != "right") continue;
+    EXPECT_EQ(check.state, ShareState::kLate);
+    EXPECT_LT(check.age_ns, 400'000'000) << "by its stamp it is on time";
+  }
 }
 
 // A clock was set back: the report is as old as it was published, and not younger.

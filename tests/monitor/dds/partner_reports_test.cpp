@@ -168,6 +168,27 @@ TEST_F(PartnerReportsTest, OfAPartnerThatIsGoneAreMissedOnlyOnce) {
   EXPECT_EQ(lines("partner-missing"), 1u);
 }
 
+// One that has stood still may yet write what it had begun to write.
+TEST_F(PartnerReportsTest, OfAPartnerThatIsSilentDoNotAgree) {
+  EXPECT_FALSE(reports_.disagrees()) << "there is none";
+  agree(1, 5);
+  EXPECT_FALSE(reports_.disagrees());
+  std::this_thread::sleep_for(std::chrono::milliseconds(120));
+  for (std::uint64_t cycle = 6; cycle <= 20; ++cycle) own(cycle);
+  EXPECT_TRUE(reports_.disagrees());
+}
+
+TEST_F(PartnerReportsTest, WithOtherNumbersOfInputsDifferAsForClients) {
+  auto mine = report("left", 1), yours = report("right", 1);
+  clearance_msg_SourceUse use[2] = {{"arm", 7}, {"arm", 8}};
+  mine.sources._buffer = &use[0];
+  yours.sources._buffer = &use[1];
+  mine.sources._length = yours.sources._length = 1;
+  reports_.note_own(mine);
+  reports_.note_other(yours);
+  EXPECT_EQ(health().different, 1u);
+}
+
 TEST_F(PartnerReportsTest, ThatComeLongAfterwardsAreNotComparedWithOthers) {
   for (std::uint64_t cycle = 1; cycle <= 300; ++cycle) own(cycle);
   other(44);

@@ -132,6 +132,9 @@ json distances(Cdr& cdr) {
   out["hidden"] = take<std::uint32_t>(cdr);  // the number of them: the cell has no sensors
   for (const char* field : {"changes_since", "delivery_checksum"})
     out[field] = take<std::uint64_t>(cdr);
+  out["active_zones"] = json::array();
+  for (auto n = take<std::uint32_t>(cdr); n > 0; --n)
+    out["active_zones"].push_back(take<std::uint32_t>(cdr));
   return out;
 }
 

@@ -220,7 +220,8 @@ class Reports : public Live<ReportParts> {
   // States of zones of other daemons than that of the last report are left out, but for partners.
   py::dict zones() {
     const Use parts = use();
-    parts->zones.update();
+    const clearance_msg_Distances& last = *parts->stream;
+    last.cycle == 0 ? parts->zones.update() : parts->zones.update(last);
     if (parts->stream->daemon != 0 && *parts->stream->partner == '\0')
       parts->zones.keep_only(parts->stream->daemon);
     return zones_of(parts->zones);
