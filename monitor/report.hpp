@@ -197,8 +197,9 @@ struct ContactReport {
 struct HiddenReport {
   std::uint32_t pair = 0;      // index into Scene::pairs: the sensor, and a link or what it carries
   std::uint32_t elements = 0;  // of the frame, left out as the link's own image
-  // The blind shell, m: anything within this of the link may be left out with its own image, and
-  // the pair's distance is then not that of it. Infinity: no frame is in use.
+  // The blind shell, m: anything within this of the link may be left out with its own image. Then
+  // no distance from the sensor to any object is that of it: the shells of all links count for each
+  // pair of the sensor. Infinity: no frame is in use.
   double thickness = kInfinity;
   // A lower bound of the distance to the nearest place in the picture that the frame has not seen
   // (monitor/clouds/README.md), and about where that is, in the world, m. -infinity and NaN: not

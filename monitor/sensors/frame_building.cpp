@@ -156,7 +156,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
       return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
     }
   } else {
-    measured_points(frame.points, sensor, points_);
+    if (!measured_points(frame.points, sensor, points_)) return FrameFault::kCannotBuild;
     if (sensor.by_neighbours) {
       const FrameFault fault = organised_.widen(frame.points.width, frame.points.height, points_);
       if (fault != FrameFault::kNoFault) return fault;

@@ -17,11 +17,12 @@ float float_at(const std::byte* bytes) noexcept {
 
 // The true point lies within the error along the ray of the measured one, and its neighbours within
 // half of the spacing across it.
-MeasuredPoint ball(float x, float y, float z, const Sensor& sensor) noexcept {
+MeasuredPoint ball(float x, float y, float z, const Sensor& sensor, bool& is_wide) noexcept {
   const double range = std::sqrt(double{x} * x + double{y} * y + double{z} * z);
   const double depth = sensor.along_ray ? range : double{z};
-  const bool is_there =
-      depth >= sensor.least_depth && depth <= sensor.greatest_depth && range <= kLongestRay * depth;
+  is_wide = is_wide ||
+            (std::isfinite(range) && range >= sensor.least_depth && range > kLongestRay * depth);
+  const bool is_there = depth >= sensor.least_depth && depth <= sensor.greatest_depth;
   if (!is_there && sensor.by_neighbours) return {x, y, z, kMissing};
   if (!is_there) return {kMissing, kMissing, kMissing, 0.0F};
   const double error = sensor.error_at(depth);
@@ -33,16 +34,18 @@ MeasuredPoint ball(float x, float y, float z, const Sensor& sensor) noexcept {
 
 }  // namespace
 
-void measured_points(const PointsView& view, const Sensor& sensor,
+bool measured_points(const PointsView& view, const Sensor& sensor,
                      std::vector<MeasuredPoint>& points) {
   points.clear();
+  bool is_wide = false;
   for (std::uint32_t row = 0; row < view.height; ++row) {
     const std::byte* point = view.bytes.data() + row * view.row_step;
     for (std::uint32_t column = 0; column < view.width; ++column, point += view.point_step) {
       points.push_back(ball(float_at(point + view.x), float_at(point + view.y),
-                            float_at(point + view.z), sensor));
+                            float_at(point + view.z), sensor, is_wide));
     }
   }
+  return !is_wide;
 }
 
 }  // namespace clearance

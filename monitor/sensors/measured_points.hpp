@@ -12,10 +12,11 @@ namespace clearance {
 // Half of the diagonal of a square whose sides are 1, and of the roundings of a radius.
 inline constexpr double kHalfDiagonal = 0.70710678118654757 * (1.0 + 0x1p-40);
 
-// Replaces the content of `points`. A point that is out of the range, or more than 51 degrees off
-// the axis along which the depth is measured, is missing: its coordinates are NaN. With
-// Sensor::by_neighbours its radius is NaN instead, since OrganisedPoints needs its ray.
-void measured_points(const PointsView& view, const Sensor& sensor,
+// Replaces the content of `points`. A point that is out of the range is missing: its coordinates
+// are NaN. With Sensor::by_neighbours its radius is NaN instead, since OrganisedPoints needs its
+// ray. Returns false if a point is more than 60 degrees off the axis along which the depth is
+// measured: no ball of it would be within Sensor::extent().
+[[nodiscard]] bool measured_points(const PointsView& view, const Sensor& sensor,
                      std::vector<MeasuredPoint>& points);
 
 }  // namespace clearance

@@ -202,7 +202,7 @@ TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
     return whole->next(milliseconds(50)) && !whole->is_whole();
   }));
   EXPECT_LT(dds_time() - last, 3'000'000'000);
-  for (const ShareCheck& check : whole->checks()) {
+  for (const ShareCheck& check : whole->shares()) {
     if (check.name != "right") continue;
     EXPECT_EQ(check.state, ShareState::kLate);
     EXPECT_LT(check.age_ns, 400'000'000) << "by its stamp it is on time";

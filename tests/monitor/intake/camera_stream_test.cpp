@@ -155,6 +155,21 @@ TEST_F(CameraStreamTest, ADepthThatRepeatsUnderFreshStampsIsFrozenUnlessItMay) {
   EXPECT_EQ(take(same), FrameFault::kNoFault);
 }
 
+// The colours of each point go on.
+TEST_F(CameraStreamTest, PointsThatRepeatAreFrozenWhateverTheirColours) {
+  CloudText text;
+  ASSERT_EQ(take(text), FrameFault::kNoFault);
+  text.stamp_ns += kFrame;
+  text.data[16] ^= 7;
+  EXPECT_EQ(take(text), FrameFault::kFrozen);
+  EXPECT_EQ(stream.stamp_ns(), kStart) << "the frame in use grows old";
+  for (const std::size_t byte : {20U, 24U, 28U}) {  // x, y and z of the second point
+    text.stamp_ns += kFrame;
+    text.data[byte] ^= 7;
+    EXPECT_EQ(take(text), FrameFault::kNoFault) << byte;
+  }
+}
+
 TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePublisher) {
   ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ImageText unstamped = frame(0);

@@ -357,5 +357,26 @@ TEST_F(SensorsTest, MakeBallsOfPointsThatContainErrorAndSpacing) {
   EXPECT_LT(radius, exact * 1.0001);
 }
 
+// A point far to the side of a camera that looks along z: a person there is not left out.
+TEST_F(SensorsTest, RefuseAPictureWithPointsThatAreTooFarToTheSide) {
+  const auto take = [&](int number, float x, float z, const char* depth = "") {
+    make(std::string(kPoints) + ", spacing: 0.02" + depth + kAbove);
+    CloudText cloud;
+    cloud.stamp_ns += number * 100'000'000;
+    for (std::size_t i = 0; i < cloud.data.size(); i += 20) {
+      const std::array<float, 3> point = {i == 0 ? x : 0.1F, 0.0F, i == 0 ? z : 1.0F};
+      std::memcpy(&cloud.data[i], point.data(), sizeof point);
+    }
+    add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+    return settle(cloud.stamp_ns + 1000).size();
+  };
+  EXPECT_EQ(take(0, 1.7F, 1.0F), 1u);  // 59.5 degrees
+  EXPECT_EQ(take(1, 1.8F, 1.0F), 0u);  // 60.9 degrees
+  EXPECT_EQ(count(FrameFault::kCannotBuild), 1u);
+  EXPECT_EQ(take(2, 1.0F, -0.1F), 0u);
+  EXPECT_EQ(take(3, 0.0F, 0.0F), 1u) << "a driver's mark for a missing point";
+  EXPECT_EQ(take(4, 1.0F, -0.1F, ", depth_along: ray"), 1u);
+}
+
 }  // namespace
 }  // namespace clearance::sensors_test
