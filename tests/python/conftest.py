@@ -75,8 +75,8 @@ def arm(arm_files):
 
 
 class Daemon:
-    def __init__(self, arguments):
-        self.partition = "python-" + uuid.uuid4().hex[:12]
+    def __init__(self, arguments, partition=None):
+        self.partition = partition or "python-" + uuid.uuid4().hex[:12]
         program = os.path.join(os.environ["CLEARANCE_BIN"], "clearanced")
         network = ["--domain", str(DOMAIN), "--partition", self.partition]
         self.process = subprocess.Popen(
@@ -97,8 +97,8 @@ class Daemon:
 def run_daemon():
     running = []
 
-    def run(*arguments):
-        running.append(Daemon(arguments))
+    def run(*arguments, partition=None):
+        running.append(Daemon(arguments, partition))
         return running[-1]
 
     yield run

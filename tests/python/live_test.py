@@ -346,6 +346,18 @@ def test_a_closed_object_says_so(nobody, make, calls):
             call(live)
 
 
+def test_two_partners_are_one_stream_that_says_when_one_is_missing(run_daemon, planar_file):
+    left = run_daemon(planar_file, "--partner", "left")
+    right = run_daemon(planar_file, "--partner", "right", partition=left.partition)
+    with clearance.Reports(left.connection()) as reports:
+        eventually(lambda: reports.next(0.1), lambda r: r.partner == "agrees")
+        times = [reports.next(1.0).now_ns for _ in range(50)]
+        assert times == sorted(set(times)), "a report comes once, and none after a newer one"
+        right.process.kill()
+        report = eventually(lambda: reports.next(0.1), lambda r: r.partner == "missing")
+        assert report.pair_names
+
+
 @pytest.mark.parametrize(
     "call, error",
     [

@@ -56,7 +56,11 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
       << "the page shows a report once, and none after a newer one: " << both["times"];
   EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("mixed")));
   EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("different")));
+  ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
+  EXPECT_TRUE(eventually([&] { return watch.wrote("partners agree"); }));
   right.reset();  // it is killed
+  EXPECT_TRUE(eventually([&] { return watch.wrote("partner 'right': missing"); }))
+      << watch.output();
   const nlohmann::json one = shown(view, 60);
   EXPECT_THAT(one["statuses"].dump(), HasSubstr("partner 'right': missing"));
   EXPECT_THAT(one["statuses"].dump(), Not(HasSubstr("mixed")));

@@ -41,15 +41,22 @@ bool is_stale(const clearance_msg_PairDistance& pair) {
 }
 
 // Says whether both partners report the same.
+std::string partner_text(const client::PartnerCheck& check) {
+  using client::PartnerState;
+  if (check.state == PartnerState::kAlone) return "no partner yet";
+  if (check.state == PartnerState::kAgrees) return "partners agree";
+  return fmt::format("partner '{}': {}", check.partner, name(check.state));
+}
+
 Line& add_partner(Line& line, const Feed& feed) {
   using client::PartnerState;
-  const client::PartnerCheck& check = feed.partner();
-  if (check.state == PartnerState::kAlone) return line.add("  no partner yet", Style::kDim);
-  if (check.state == PartnerState::kAgrees) return line.add("  partners agree", Style::kGood);
-  const bool is_fault =
-      check.state == PartnerState::kDifferent || check.state == PartnerState::kCorrupt;
-  return line.add(fmt::format("  partner '{}': {}", check.partner, name(check.state)),
-                  is_fault ? Style::kAlarm : Style::kWarning);
+  const PartnerState state = feed.partner().state;
+  const bool is_fault = state == PartnerState::kDifferent || state == PartnerState::kCorrupt;
+  const Style style = state == PartnerState::kAlone    ? Style::kDim
+                      : state == PartnerState::kAgrees ? Style::kGood
+                      : is_fault                       ? Style::kAlarm
+                                                       : Style::kWarning;
+  return line.add("  " + partner_text(feed.partner()), style);
 }
 
 Line title_line(const Feed& feed, const ViewContext& context, std::size_t width) {
@@ -274,6 +281,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (const std::string why = frozen(feed, context.now_ns); !why.empty()) return why;
   const clearance_msg_Distances& report = feed.distances();
   std::string text = fmt::format("cycle {}", report.cycle);
+  if (feed.has_partner()) text += fmt::format("  {}", partner_text(feed.partner()));
   if (const std::string why = not_fresh(feed, context.now_ns); !why.empty()) {
     text += fmt::format("  ({})", why);
   }
