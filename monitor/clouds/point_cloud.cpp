@@ -190,6 +190,15 @@ bool PointCloud::remove(std::size_t block, std::size_t lane) noexcept {
   return true;
 }
 
+void PointCloud::narrow(std::span<const MeasuredPoint> points) noexcept {
+  for (std::size_t b = 0; b < blocks(); ++b) {
+    Block& block = blocks_[b];
+    for (std::size_t lane = 0; lane < kFanOut; ++lane) {
+      if (block.is_present(lane)) block.radius[lane] = points[block.source[lane]].radius;
+    }
+  }
+}
+
 void PointCloud::refit() noexcept {
   if (levels_ == 0) return;
   for (std::size_t b = 0; b < count_[0]; ++b) {

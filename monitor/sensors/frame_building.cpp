@@ -1,6 +1,7 @@
 // The part of Sensors that makes a cloud of a frame.
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -12,6 +13,8 @@ namespace clearance {
 namespace {
 
 using Type = RawSensorMessage::Type;
+
+const CloudCrop kNoCrop{.centre = Vec3::Zero(), .radius = kInfinity};
 
 // The crop is the ball of the cell's robots, in the frame of the sensor. The ball's
 // place is off by the errors of both, which costs only some of the elements that it was to keep.
@@ -70,7 +73,7 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
                    .camera = frame.camera,
                    .message = frame.message});
   }
-  leave_out(state, place, frame.stamp_ns, cloud);
+  leave_out(state, frame, place, cloud);
   if (cloud.size() == 0) return FrameFault::kNothingSeen;
   const SensorFrame out{.cloud = &cloud,
                         .stamp_ns = frame.stamp_ns,
@@ -138,16 +141,19 @@ bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use&
   return fault == FrameFault::kNoFault || fault == FrameFault::kNothingSeen;
 }
 
+// Fills a cloud with what the frame shows, without the robot's own image.
 FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& place,
                          SeenCloud& cloud) {
   const Sensor& sensor = state.sensor;
-  cloud.note_crop({.centre = Vec3::Zero(), .radius = kInfinity});
+  cloud.note_crop(kNoCrop);
   if (DepthCloud* const depth = cloud.depth()) {
     const DepthBuild built =
         depth->build(frame.camera, frame.image,
                      {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
                      {.least = sensor.least_depth, .greatest = sensor.greatest_depth});
-    return built == DepthBuild::kBuilt ? FrameFault::kNoFault : FrameFault::kCannotBuild;
+    if (built != DepthBuild::kBuilt) return FrameFault::kCannotBuild;
+    own_image_.leave_out(sensor, place, postures_, cloud, body_);
+    return FrameFault::kNoFault;
   }
   const bool is_map = sensor.kind == SensorKind::kOctomap;
   if (is_map) {
@@ -158,40 +164,58 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
   } else {
     if (!measured_points(frame.points, sensor, points_)) return FrameFault::kCannotBuild;
     if (sensor.by_neighbours) {
+      narrow_ = points_;
       const FrameFault fault = organised_.widen(frame.points.width, frame.points.height, points_);
       if (fault != FrameFault::kNoFault) return fault;
     }
   }
   PointCloud& points = *cloud.points();
-  const auto built = [&](const CloudCrop& crop) {
-    return is_map ? points.build_cubes(points_, crop) : points.build(points_, crop);
+  // False: it cannot be built.
+  const auto build_within = [&](const CloudCrop& crop) {
+    const CloudBuild built =
+        is_map ? points.build_cubes(points_, crop) : points.build(points_, crop);
+    if (built != CloudBuild::kBuilt || points.extent() > sensor.extent()) return false;
+    state.status.cropped = points.cropped();
+    cloud.note_crop(points.cropped() > 0 ? crop : kNoCrop);
+    own_image_.leave_out(sensor, place, postures_, cloud, body_);
+    return true;
   };
   // A map is cropped to the range, and nothing of it is dropped.
   const CloudCrop whole{.centre = Vec3::Zero(),
                         .radius = is_map ? sensor.greatest_depth : sensor.extent()};
-  CloudCrop crop = crop_of(sensor, place, postures_).value_or(whole);
-  CloudBuild result = built(crop);
-  // If all points are beyond the links' reach, none are cropped: the frame shows something.
-  if (result == CloudBuild::kBuilt && points.size() == 0 && points.cropped() > 0) {
-    crop = whole;
-    result = built(crop);
-  }
-  if (result != CloudBuild::kBuilt || points.extent() > sensor.extent())
+  if (!build_within(crop_of(sensor, place, postures_).value_or(whole)))
     return FrameFault::kCannotBuild;
-  state.status.cropped = points.cropped();
-  if (points.cropped() > 0) cloud.note_crop(crop);
+  // If all but the robot is beyond the links' reach, none is cropped: the frame shows something.
+  if (points.size() == 0 && points.cropped() > 0 && !build_within(whole))
+    return FrameFault::kCannotBuild;
+  if (sensor.by_neighbours) narrow(frame.points, points);
   return FrameFault::kNoFault;
 }
 
-// Leaves out what is no obstacle, or none that matters, and notes what may be hidden by that.
-void Sensors::leave_out(State& state, const PastPose& place, std::int64_t stamp_ns,
+// Own points count as rays from now on: no ball reaches towards them, into the robot. A surface
+// between an own point and a neighbour is in the blind shell, which was found with balls that reach
+// that way, so a whole way is no longer than the diameter of the own point's ball.
+void Sensors::narrow(const PointsView& frame, PointCloud& points) {
+  for (std::size_t b = 0; b < points.blocks(); ++b) {
+    const PointCloud::Block& block = points.block(b);
+    for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
+      if (!block.is_present(lane))
+        narrow_[block.source[lane]].radius = std::numeric_limits<float>::quiet_NaN();
+    }
+  }
+  // The rays are those of the frame that was widened before, so there is no fault.
+  static_cast<void>(organised_.widen(frame.width, frame.height, narrow_));
+  points.narrow(narrow_);
+}
+
+// Leaves out what else is no obstacle, or none that matters, and notes what may be hidden by that.
+void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& place,
                         SeenCloud& cloud) {
   const Sensor& sensor = state.sensor;
-  own_image_.leave_out(sensor, place, postures_, cloud, body_);
   if (state.persistence) {
     DepthCloud* const unseen = own_image_.unseen(sensor);
-    state.status.hidden = state.persistence->hide(cloud, place.world_from_body,
-                                                  place.error(sensor.extent()), stamp_ns, unseen);
+    state.status.hidden = state.persistence->hide(
+        cloud, place.world_from_body, place.error(sensor.extent()), frame.stamp_ns, unseen);
     if (unseen != nullptr) unseen->refit();
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);

@@ -35,8 +35,7 @@ OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
 void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
                          const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
   const double place_error = place.error(sensor.extent());
-  const CentreLimit limit{
-      .most = sensor.most_shell,
+  CentreLimit limit{
       .error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
       .along_ray = sensor.along_ray};
   Unseen* const unseen = of_sensor(sensor);
@@ -53,9 +52,11 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
     for (const Part& part : scene_.objects[link.object].parts) {
       const double error = place_error + past.error(radius_of(part));
       const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
+      const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
+      // The way of an organised point to its neighbours says nothing about whose image it is.
+      limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
       const BlindShell blind = cloud.shelve(
-          part.shape, relative_pose(world_from_part, place.world_from_body),
-          std::min(sensor.most_shell, rounded_up(sensor.own_shell + error)), limit, body);
+          part.shape, relative_pose(world_from_part, place.world_from_body), shell, limit, body);
       near.shell.elements += blind.elements;
       if (blind.elements > 0)
         near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));

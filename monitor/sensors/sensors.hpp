@@ -132,7 +132,8 @@ class Sensors {
   [[nodiscard]] bool decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out);
   [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, const PastPose& place,
                                 SeenCloud& cloud);
-  void leave_out(State& state, const PastPose& place, std::int64_t stamp_ns, SeenCloud& cloud);
+  void leave_out(State& state, const Waiting& frame, const PastPose& place, SeenCloud& cloud);
+  void narrow(const PointsView& frame, PointCloud& points);
 
   const Cell& cell_;
   SensorsOptions options_;
@@ -143,7 +144,7 @@ class Sensors {
   std::vector<std::unique_ptr<State>> states_;  // by sensor
   CdrDecoder decoder_;
   SlabBody body_;
-  std::vector<MeasuredPoint> points_;
+  std::vector<MeasuredPoint> points_, narrow_;
   OrganisedPoints organised_;
   std::int64_t last_came_ns_ = 0;
 };

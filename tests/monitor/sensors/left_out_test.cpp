@@ -272,6 +272,32 @@ TEST_F(LeftOutTest, AFrameThatIsBeyondTheReachAsAWholeIsKept) {
   EXPECT_EQ(sensors->status(0).cropped, 40u);
 }
 
+// What is beyond the reach is 2 m beside the arm and 2 m below it.
+TEST_F(LeftOutTest, PointsBeyondTheReachAreKeptIfOnlyTheRobotIsWithinIt) {
+  make(kPoints + ", reach: 0" + kAbove);
+  const auto elements_of = [&](int number, const std::vector<std::array<float, 3>>& points) {
+    CloudText cloud;
+    cloud.stamp_ns += number * kFrame;
+    cloud.width = static_cast<std::uint32_t>(points.size());
+    cloud.height = 1;
+    cloud.row_step = 20 * cloud.width;
+    cloud.data.assign(cloud.row_step, 0);
+    for (std::size_t i = 0; i < points.size(); ++i)
+      std::memcpy(&cloud.data[20 * i], &points[i], sizeof points[i]);
+    add_joints(0.0, cloud.stamp_ns);
+    add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+    const auto frames = settle(cloud.stamp_ns + 1000);
+    return frames.empty() ? 0 : frames[0].cloud->size();
+  };
+  const std::array<float, 3> arm{0.5F, 0, 1.95F}, near{0.5F, 0.5F, 1.5F}, far{2, 0, 3.9F};
+  EXPECT_EQ(elements_of(0, {arm, near, far, far}), 1u);
+  EXPECT_EQ(sensors->status(0).cropped, 2u);
+  EXPECT_EQ(elements_of(1, {arm, arm, far, far}), 2u);
+  EXPECT_EQ(sensors->status(0).cropped, 0u);
+  EXPECT_EQ(elements_of(2, {arm, arm}), 0u) << "nothing shows that the place is clear";
+  EXPECT_EQ(count(FrameFault::kNothingSeen), 1u);
+}
+
 // The camera looks down from 6 m. One row of the picture is 2 m above the floor, the others 5 m.
 TEST_F(LeftOutTest, TheReachOfARobotOnAMovingBaseIsAroundThatBase) {
   struct Case {
