@@ -77,10 +77,11 @@ void SensorReader::change(const Cell& cell) {
   if (&cell == cell_) return;
   SceneMap map = scene_map(cell_->scene, cell.scene);
   ids_.change(cell.scene.revision, map);
+  static_cast<void>(ids_.sources().add_named(named_sources(cell.scene)));
   last_.assign(cell.scene.sensors.size(), {});
   names_ = FrameNames(cell.scene);
   sent_.assign(cell.scene.sensors.size(), {});
-  sensors_ = std::make_unique<Sensors>(cell, *sensors_);
+  sensors_ = std::make_unique<Sensors>(cell, *sensors_, ids_.sources());
   intake_.change(cell);
   cell_ = &cell;
 }

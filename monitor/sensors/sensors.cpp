@@ -20,9 +20,11 @@ using Type = RawSensorMessage::Type;
 }  // namespace
 
 Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
+    : Sensors(cell, options, SourceNumbers(cell.scene)) {}
+Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNumbers& numbers)
     : cell_(cell),
       options_(options),
-      postures_(cell.scene),
+      postures_(cell.scene, numbers),
       mounts_(cell, options.is_log),
       own_image_(cell.scene) {
   const Scene& scene = cell.scene;
@@ -32,7 +34,8 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
     states_.back()->status.own.resize(own_image_.links());
   }
 }
-Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.options_) {
+Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)
+    : Sensors(cell, before.options_, numbers) {
   frames_ = std::move(before.frames_);
   last_came_ns_ = before.last_came_ns_;
   for (const std::unique_ptr<State>& state : states_) {

@@ -13,6 +13,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/camera_stream.hpp"
 #include "monitor/intake/sensor_messages.hpp"
 #include "monitor/monitor.hpp"
@@ -71,11 +72,13 @@ struct SensorStatus {
 
 class Sensors {
  public:
-  // Allocates the memory of all clouds. The cell must outlive this.
+  // Allocates the memory of all clouds. The cell must outlive this. `numbers` are those of the
+  // samples' sources, with the sources that the cell names; without them, those of a first cell.
+  Sensors(const Cell& cell, const SensorsOptions& options, const SourceNumbers& numbers);
   Sensors(const Cell& cell, const SensorsOptions& options);
   // For a changed cell: goes on with the transforms of `before` and the judged streams of sensors
   // that are the same. Joints and poses are heard anew.
-  Sensors(const Cell& cell, Sensors& before);
+  Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers);
   ~Sensors();
 
   // Samples as the tick gets them, and transforms. Those stamped farther ahead of the time at which
