@@ -53,6 +53,20 @@ class Mounts {
   [[nodiscard]] std::optional<Excess> excess(const Sensor& sensor, const Path& path,
                                              std::int64_t last_ns,
                                              const FrameHistory& frames) const;
+  // The place at the end of the path, whose base is at `place`; nothing: a frame has none.
+  struct PathPlace {
+    PastPose place;
+    std::int64_t longest_ns = 0;  // between two transforms of a frame
+  };
+  [[nodiscard]] static std::optional<PathPlace> along(const Path& path, PastPose place,
+                                                      std::int64_t stamp_ns, std::int64_t within_ns,
+                                                      const FrameHistory& frames);
+  // The distance of the path at this time from where along() has it, by the stated speeds since
+  // the transforms before it and until those after it; nothing: not known.
+  [[nodiscard]] static std::optional<Excess> deviation_in_gap(const MountSpeed& speed,
+                                                              const Path& path,
+                                                              std::int64_t stamp_ns,
+                                                              const FrameHistory& frames);
   [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
                                   std::int64_t stamp_ns, const FrameHistory& frames,
                                   const PostureHistory& postures) const;

@@ -13,9 +13,6 @@ namespace {
 
 // A source that was silent for this long has lost its inputs, ns.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
-// Between two poses that are farther apart, an object may have moved and come back, ns: ten poses a
-// second are usual for mobile bases, and late now and then.
-constexpr std::int64_t kLongGapNs = 150'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
 // The rounding of a product of two poses, relative to the lengths that take part.

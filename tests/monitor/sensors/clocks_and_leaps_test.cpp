@@ -166,6 +166,49 @@ TEST_F(ClocksAndLeaps, AnObjectMayHaveMovedAndTurnedBetweenPosesThatAreFarFromEa
   EXPECT_GE(frames[0].pose_error, 0.2 * (1.5 + 6.3 * cell.scene.sensors[0].extent()));
 }
 
+TEST_F(ClocksAndLeaps, AFrameMayHaveMovedAndTurnedBetweenTransformsThatAreFarFromEachOther) {
+  make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");
+  for (int ms = 0; ms <= 200; ms += 20) add_mast(0.0, kStart + ms * kMs);
+  add_mast(0.0, kStart + 1000 * kMs);
+  const auto frames = see(kStart + 600 * kMs, 60 * kMs, 400 * kMs);
+  ASSERT_EQ(frames.size(), 1u);
+  const double extent = cell.scene.sensors[0].extent();
+  EXPECT_GE(frames[0].pose_error, 0.4 * (0.5 + 0.1 * extent)) << "out and back";
+  EXPECT_LE(frames[0].pose_error, 0.41 * (0.5 + 0.1 * extent));
+  const auto nearer = see(kStart + 950 * kMs, 60 * kMs, 50 * kMs);
+  ASSERT_EQ(nearer.size(), 1u);
+  EXPECT_LE(nearer[0].pose_error, 0.051 * (0.5 + 0.1 * extent)) << "50 ms before the next one";
+}
+
+// A localisation that is seldom heard corrects an odometry that drifts. The mast itself swings at
+// up to its stated speed.
+TEST_F(ClocksAndLeaps, PathsOfSeveralFramesAreWithinTheirErrorAcrossGaps) {
+  Random random(23);
+  int frames_seen = 0, gaps = 0;
+  for (int run = 0; run < 200; ++run) {
+    make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");
+    const double swing = random.uniform(0.0, 0.1), drift = random.uniform(0.0, 0.03);
+    const double at_s = random.uniform(0.0, 1.0);
+    const auto truth = [&](double s) { return swing * std::sin(0.5 / 0.1 * (s + at_s)); };
+    const auto drifted = [&](double s) { return drift * std::sin(8.0 * (s - at_s)); };
+    const int period = 20 * static_cast<int>(random.integer(1, 30));
+    for (int ms = 0; ms <= 1800; ms += 20) {
+      const std::int64_t at = kStart + ms * kMs;
+      if (ms % period == 0) add_frame("map", "odom", drifted(1e-3 * ms), at, at);
+      if (ms % 60 == 0) add_frame("odom", "mast", truth(1e-3 * ms) - drifted(1e-3 * ms), at, at);
+    }
+    const int ms = 700 + static_cast<int>(random.integer(0, 400));
+    const auto frames = see(kStart + ms * kMs, 60 * kMs, 1100 * kMs);
+    if (frames.empty()) continue;
+    ++frames_seen;
+    gaps += period > 150 ? 1 : 0;
+    const double x = frames[0].world_from_sensor.position.x();
+    EXPECT_LE(std::abs(x - truth(1e-3 * ms)), frames[0].pose_error + 1e-9) << run;
+  }
+  EXPECT_GT(frames_seen, 150);
+  EXPECT_GT(gaps, 50);
+}
+
 TEST_F(ClocksAndLeaps, FramesThatWaitAreNotBuiltOnceTheyAreDropped) {
   make_with_info("on: cart");
   add_cart(1.0, kStart, kStart);
