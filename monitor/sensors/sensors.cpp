@@ -17,6 +17,10 @@ namespace {
 
 using Type = RawSensorMessage::Type;
 
+// This machine's clock was set back if messages come this much before the last one, ns. Batches
+// wait in a queue, so smaller steps are usual.
+constexpr std::int64_t kClockSetBackNs = 100'000'000;
+
 }  // namespace
 
 Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
@@ -51,11 +55,13 @@ Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers
 }
 Sensors::~Sensors() = default;
 
-// Samples from before this machine's clock was set back say nothing about later times.
+// Stamps come again after this machine's clock was set back. Samples from before say nothing about
+// frames from after it, and the other way round.
 void Sensors::note_time(std::int64_t came_ns) {
-  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kSetBackNs) return;
+  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kClockSetBackNs) return;
   postures_.forget();
   frames_.forget();
+  drop_waiting();
 }
 
 bool Sensors::is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept {

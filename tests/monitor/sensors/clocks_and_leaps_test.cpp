@@ -107,8 +107,8 @@ TEST_F(ClocksAndLeaps, APoseThatAnObjectCannotReachPlacesNoCamera) {
   cell.scene.objects[0].max_speed = 1.5;
   for (int ms = 0; ms <= 500; ms += 10)
     add_cart(ms == 300 ? 2.0 : 0.0, kStart + ms * kMs, kStart + ms * kMs);
-  EXPECT_TRUE(see(kStart + 298 * kMs).empty());
-  EXPECT_TRUE(see(kStart + 300 * kMs).empty());
+  EXPECT_TRUE(see(kStart + 298 * kMs, 60 * kMs, 202 * kMs).empty());
+  EXPECT_TRUE(see(kStart + 300 * kMs, 60 * kMs, 200 * kMs).empty());
   for (int ms = 510; ms <= 1000; ms += 10) add_cart(0.0, kStart + ms * kMs, kStart + ms * kMs);
   EXPECT_EQ(see(kStart + 900 * kMs).size(), 1u);
 }
@@ -117,9 +117,9 @@ TEST_F(ClocksAndLeaps, ATransformThatAStatedSpeedDoesNotAllowPlacesNoCamera) {
   make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");
   for (int ms = 0; ms <= 400; ms += 20)
     add_mast(ms == 200 || ms == 220 ? 2.0 : 0.0, kStart + ms * kMs);
-  EXPECT_EQ(see(kStart + 180 * kMs, kMs).size(), 1u) << "before";
-  EXPECT_TRUE(see(kStart + 200 * kMs).empty()) << "at its own stamp";
-  EXPECT_TRUE(see(kStart + 210 * kMs).empty()) << "between two in a row";
+  EXPECT_EQ(see(kStart + 180 * kMs, kMs, 220 * kMs).size(), 1u) << "before";
+  EXPECT_TRUE(see(kStart + 200 * kMs, 60 * kMs, 200 * kMs).empty()) << "at its own stamp";
+  EXPECT_TRUE(see(kStart + 210 * kMs, 60 * kMs, 190 * kMs).empty()) << "between two in a row";
   for (int ms = 420; ms <= 1500; ms += 20) add_mast(0.0, kStart + ms * kMs);
   EXPECT_EQ(see(kStart + 1450 * kMs).size(), 1u);
 }
@@ -149,6 +149,28 @@ TEST_F(ClocksAndLeaps, TransformsFromBeforeTheirClockWasSetBackPlaceNoCamera) {
   EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 5.0, 1e-9);
 }
 
+TEST_F(ClocksAndLeaps, ASmallStepBackOfThisMachinesClockLeavesNothingToPlaceACamera) {
+  make_with_info("on: cart");
+  for (int ms = 0; ms <= 1000; ms += 10) add_cart(1.0, kStart + ms * kMs, kStart + ms * kMs);
+  EXPECT_TRUE(see(kStart + 535 * kMs).empty()) << "the cart may have left since";
+  for (int ms = 550; ms <= 700; ms += 10) add_cart(1.4, kStart + ms * kMs, kStart + ms * kMs);
+  const auto frames = see(kStart + 655 * kMs);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 1.4, 1e-9);
+}
+
+// The frame is from before the step, and the transforms around its stamp are from after it.
+TEST_F(ClocksAndLeaps, AFrameThatWaitsWhenThisMachinesClockIsSetBackIsDropped) {
+  make(kImage + ", age_limit_ms: 4000, mount: {frame: mast}", "ros2: {world_frame: map}\n");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  for (int ms = 0; ms <= 1000; ms += 20) add_mast(0.0, kStart + ms * kMs);
+  EXPECT_TRUE(see(kStart + 1005 * kMs, kMs).empty());
+  ASSERT_TRUE(sensors->any_waiting());
+  for (int ms = 500; ms <= 1100; ms += 20) add_mast(0.2, kStart + ms * kMs);
+  EXPECT_TRUE(settle(kStart + 1600 * kMs).empty());
+  EXPECT_FALSE(sensors->any_waiting());
+}
+
 // The first message after the step is the image.
 TEST_F(ClocksAndLeaps, WhatCameBeforeThisMachinesClockWasSetBackPlacesNoCamera) {
   make_with_info("on: cart");
@@ -161,7 +183,7 @@ TEST_F(ClocksAndLeaps, AnObjectMayHaveMovedAndTurnedBetweenPosesThatAreFarFromEa
   cell.scene.objects[0].max_speed = 1.5;
   add_cart(1.0, kStart, kStart);
   add_cart(1.0, kStart + 400 * kMs, kStart + 400 * kMs);
-  const auto frames = see(kStart + 200 * kMs);
+  const auto frames = see(kStart + 200 * kMs, 60 * kMs, 200 * kMs);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_GE(frames[0].pose_error, 0.2 * (1.5 + 6.3 * cell.scene.sensors[0].extent()));
 }
