@@ -45,6 +45,9 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
                             std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
   if (s.displacer.is_first()) s.begin_first_tick();
+  if (time.now_ns < s.inputs.time.now_ns) {
+    for (State::Shown& sensor : s.shown) sensor.clock.forget();
+  }
   ingest(samples, joints, time, s.scene, s.inputs);
   s.take_frames();
   s.displacer.displace(s.inputs);

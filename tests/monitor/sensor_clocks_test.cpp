@@ -75,6 +75,14 @@ TEST_F(SensorClocks, AreThoseOfTheSameSensorInAChangedScene) {
   EXPECT_EQ(age(*next, 1, 3, kStep), kAge);
 }
 
+// As in a replay that begins again, when the clock was another one.
+TEST_F(SensorClocks, AreForgottenWhenTheTicksTimeGoesBackwards) {
+  constexpr std::int64_t kOffset = 20'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, kOffset), kAge) << "the clock is the one before";
+  now -= 5'000'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, kOffset), kAge + kOffset);
+}
+
 TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
   const auto before = test::taken_over(*monitor, scene, scene, numbers);
   std::vector<std::byte> bytes;
