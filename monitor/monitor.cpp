@@ -288,9 +288,23 @@ void Monitor::State::make_absent(std::uint32_t object) noexcept {
   note_presence(object);
 }
 
+// A frame that helps no pair any more leaves, since a partner would have to build it before it
+// joins. The object is unknown until the next frame comes.
+void Monitor::State::drop_useless_frame(std::uint32_t sensor) noexcept {
+  constexpr std::int64_t kKeptNs = 1'000'000'000;  // after it has become late
+  if (shown[sensor].in_use.cloud == nullptr) return;
+  const std::uint32_t object = scene.sensors[sensor].object;
+  const TrackedObject& state = inputs.objects[object];
+  const std::int64_t earlier_ns = less(inputs.time.now_ns, kKeptNs);
+  if (state.input.has_value && !may_be_anywhere(scene.objects[object], earlier_ns, state)) return;
+  shown[sensor].in_use = {};
+  clouds->set(sensor, {});
+}
+
 // The former frame is forgotten as an object that goes away. What is seen now may be elsewhere.
 void Monitor::State::take_frames() noexcept {
   for (std::uint32_t sensor = 0; sensor < shown.size(); ++sensor) {
+    drop_useless_frame(sensor);
     const SensorFrame frame = std::exchange(shown[sensor].frame, {});
     if (frame.cloud == nullptr) continue;
     const std::uint32_t object = scene.sensors[sensor].object;

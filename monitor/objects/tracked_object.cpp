@@ -181,6 +181,13 @@ std::optional<Reject> see(const Pose& world_from_sensor, std::int64_t stamp_ns,
   return std::nullopt;
 }
 
+bool may_be_anywhere(const Object& object, std::int64_t now_ns,
+                     const TrackedObject& state) noexcept {
+  const std::int64_t age_ns = state.input.age_ns(now_ns);
+  return age_ns > object.age_limit_ns &&
+         rounded_up(object.max_speed * seconds(age_ns)) > state.bounding_radius;
+}
+
 void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
             TrackedObject& state) noexcept {
   const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
@@ -230,7 +237,9 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
     state.may_have_moved = state.unobserved_by_joints;
   } else {
     const bool may_move = input.late || (object.is_seen() && object.max_speed < kInfinity);
-    state.may_have_moved = input.contradicted ? kInfinity
+    const bool is_lost =
+        input.contradicted || (object.is_seen() && may_be_anywhere(object, now_ns, state));
+    state.may_have_moved = is_lost    ? kInfinity
                            : may_move ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
                                       : 0.0;
   }
