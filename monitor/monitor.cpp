@@ -95,8 +95,10 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.zones.count_absent(s.inputs.objects);
   for (std::size_t i = 0; i < before.state_->shown.size(); ++i) {
     const std::uint32_t now = map.objects_now[before.state_->scene.sensors[i].object];
-    if (now != SceneMap::kNone && s.scene.objects[now].is_seen())
-      s.shown[s.scene.objects[now].sensor].clock = before.state_->shown[i].clock;
+    if (now == SceneMap::kNone || !s.scene.objects[now].is_seen()) continue;
+    s.shown[s.scene.objects[now].sensor].clock = before.state_->shown[i].clock;
+    s.inputs.sensors[s.scene.objects[now].sensor].lost_ns =
+        before.state_->inputs.sensors[i].lost_ns;
   }
   if (s.scene.revision != before.state_->scene.revision) return true;
   for (std::size_t i = 0; i < s.shown.size(); ++i)
@@ -321,6 +323,7 @@ void Monitor::State::take_frames() noexcept {
     culling.forget_object(object, table);
     clouds->set(sensor, {frame.cloud, frame.pose_error});
     shown[sensor].in_use = frame;
+    inputs.sensors[sensor].carrier = frame.carrier;
     hidden.take(sensor, *frame.cloud);
     inputs.visits.visit(object);
   }

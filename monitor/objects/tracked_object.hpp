@@ -138,8 +138,10 @@ void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Ends the tick's input: sets the motion since the last tick, the age and the lateness.
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
+// Ends the tick's input: sets the motion since the last tick, the age and the lateness. `is_lost`:
+// what carries this sensor is not known, which counts as a contradiction.
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
+             bool is_lost = false) noexcept;
 
 // Accumulates this tick's motion. `bounding_radius` is that of the object around its
 // origin, m.

@@ -29,15 +29,17 @@ Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_roo
   }
 }
 
-std::optional<PastPose> Mounts::known_place(const std::string& frame,
-                                            const PostureHistory& postures) const {
-  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame)
-    return PastPose{.known = true, .world_from_body = {}};
-  if (const auto link = links_.find(frame); link != links_.end())
-    return postures.link(link->second.first, link->second.second);
-  if (const auto object = objects_.find(frame); object != objects_.end())
-    return postures.object(object->second);
-  return std::nullopt;
+void Mounts::find_base(const std::string& frame, const PostureHistory& postures, Path& path) const {
+  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame) {
+    path.base = kOrigin;
+  } else if (const auto link = links_.find(frame); link != links_.end()) {
+    const auto [robot, number] = link->second;
+    path.base = postures.link(robot, number);
+    path.carrier = {.kind = RobotBase::Kind::kLink, .robot = robot, .link = number};
+  } else if (const auto object = objects_.find(frame); object != objects_.end()) {
+    path.base = postures.object(object->second);
+    path.carrier = {.kind = RobotBase::Kind::kObject, .object = object->second};
+  }
 }
 
 // A path that is longer than the number of frames contains a cycle.
@@ -45,17 +47,16 @@ Mounts::Path Mounts::path_of(const Sensor& sensor, const std::string& frame, std
                              const FrameHistory& frames, const PostureHistory& postures) const {
   Path path;
   std::string at = sensor.frames_by_message ? frame : sensor.mount.frame;
-  path.base = known_place(at, postures);
+  find_base(at, postures, path);
   while (!path.base && path.frames.size() <= FrameHistory::kMostFrames) {
     const auto parent = frames.parent(at, stamp_ns);
     if (!parent) {
-      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty())
-        path.base = PastPose{.known = true, .world_from_body = {}};
+      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty()) path.base = kOrigin;
       break;
     }
     path.known_until_ns = std::min(path.known_until_ns, parent->known_until_ns);
     path.frames.push_back(std::exchange(at, *parent->name));
-    path.base = known_place(at, postures);
+    find_base(at, postures, path);
   }
   return path;
 }
@@ -196,6 +197,13 @@ PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::i
     place.turn_error = rounded_up(place.turn_error + rounded_up(sensor.mount_speed.turn * late_s));
   }
   return place;
+}
+
+Carrier Mounts::carrier(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                        const FrameHistory& frames, const PostureHistory& postures) const {
+  const RobotBase& mount = sensor.mount;
+  return sensor.is_on_tf() ? path_of(sensor, frame, stamp_ns, frames, postures).carrier
+                           : Carrier{mount.kind, mount.object, mount.robot, mount.link};
 }
 
 PastPose Mounts::find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "config/scene/carrier.hpp"
 #include "monitor/sensors/frame_history.hpp"
 #include "monitor/sensors/posture_history.hpp"
 
@@ -29,6 +30,10 @@ class Mounts {
   // jumped farther than that speed allows is not known for a second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
+  // What carries it then.
+  [[nodiscard]] Carrier carrier(const Sensor& sensor, const std::string& frame,
+                                std::int64_t stamp_ns, const FrameHistory& frames,
+                                const PostureHistory& postures) const;
   // True if the path leads to a place, and its last transforms are from before the stamp, but no
   // older than FrameHistory::kLostNs: later ones may still come.
   [[nodiscard]] bool awaits_transforms(const Sensor& sensor, const std::string& frame,
@@ -38,6 +43,7 @@ class Mounts {
  private:
   struct Path {
     std::optional<PastPose> base;     // what carries the frames; none: the path leads nowhere
+    Carrier carrier;                  // the same, for the tick
     std::vector<std::string> frames;  // from the sensor to the base
     // The first of the last transforms.
     std::int64_t known_until_ns = std::numeric_limits<std::int64_t>::max();
@@ -70,8 +76,8 @@ class Mounts {
   [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
                                   std::int64_t stamp_ns, const FrameHistory& frames,
                                   const PostureHistory& postures) const;
-  [[nodiscard]] std::optional<PastPose> known_place(const std::string& frame,
-                                                    const PostureHistory& postures) const;
+  // Writes the base and the carrier of the path, if the frame is one of the cell.
+  void find_base(const std::string& frame, const PostureHistory& postures, Path& path) const;
 
   const Cell& cell_;
   bool any_root_;

@@ -29,6 +29,7 @@ struct BuiltFrame {
   std::int64_t stamp_ns = 0;
   std::uint64_t scene_revision = 0;
   PastPose place;
+  Carrier carrier;
   PlacedPostures postures;
   PinholeCamera camera;  // of depth images
   RawSensorMessage message;
@@ -129,7 +130,7 @@ class Sensors {
   [[nodiscard]] bool is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const;
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
-                                    SeenCloud& cloud, const Use& use);
+                                    const Carrier& carrier, SeenCloud& cloud, const Use& use);
   [[nodiscard]] bool decode_again(const BuiltFrame& built, Waiting& frame);
   template <class Message, class View>
   [[nodiscard]] bool decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out);

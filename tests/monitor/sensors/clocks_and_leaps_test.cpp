@@ -231,6 +231,33 @@ TEST_F(ClocksAndLeaps, PathsOfSeveralFramesAreWithinTheirErrorAcrossGaps) {
   EXPECT_GT(gaps, 50);
 }
 
+TEST_F(ClocksAndLeaps, AFrameNamesWhatCarriesItsCamera) {
+  const auto carrier = [&](const std::string& mount, const char* parent) {
+    make_with_info(mount);
+    for (int ms = 0; ms <= 300; ms += 10) {
+      const std::int64_t at = kStart + ms * kMs;
+      add_cart(1.0, at, at);
+      sensors->add({}, test::joints(0.0, 0.0, 0.0, at), at);
+      if (parent != nullptr) {
+        add_frame(parent, "between", 0.1, at, at);
+        add_frame("between", "mast", 0.1, at, at);
+      }
+    }
+    const auto frames = see(kStart + 250 * kMs);
+    EXPECT_EQ(frames.size(), 1u);
+    return frames.empty() ? Carrier{} : frames[0].carrier;
+  };
+  const auto expect = [](const Carrier& is, RobotBase::Kind kind, std::uint32_t index) {
+    EXPECT_EQ(is.kind, kind);
+    EXPECT_EQ(kind == RobotBase::Kind::kLink ? is.link : is.object, index);
+  };
+  expect(carrier("on: upper", nullptr), RobotBase::Kind::kLink, 1);
+  expect(carrier("frame: mast", "upper"), RobotBase::Kind::kLink, 1);
+  expect(carrier("on: cart", nullptr), RobotBase::Kind::kObject, 0);
+  expect(carrier("frame: mast", "cart"), RobotBase::Kind::kObject, 0);
+  expect(carrier("frame: mast", "map"), RobotBase::Kind::kWorld, 0);
+}
+
 TEST_F(ClocksAndLeaps, FramesThatWaitAreNotBuiltOnceTheyAreDropped) {
   make_with_info("on: cart");
   add_cart(1.0, kStart, kStart);
