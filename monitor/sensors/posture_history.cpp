@@ -139,6 +139,7 @@ double deviation_of_turn(double before_s, double after_s, double speed, double m
 PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
     : scene_(scene),
       joints_(scene.variables.size()),
+      judged_(scene.variables.size()),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
       objects_(scene.objects.size()),
@@ -149,6 +150,21 @@ PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
   for (const JointVariable& variable : scene.variables)
     joint_sources_.push_back(number(variable.source));
   for (const Object& object : scene.objects) object_sources_.push_back(number(object.source));
+}
+
+// What the tick refuses only to say that another source is used is none of this.
+void PostureHistory::judge(const JointSample& sample) {
+  const JointVariable& of = scene_.variables[sample.variable];
+  TrackedVariable& state = judged_[sample.variable];
+  if (elapsed(sample.stamp_ns, state.input.stamp_ns) > kSetBackNs) state = {};
+  const std::uint32_t stated = joint_sources_[sample.variable];
+  if (stated != kNoSource && sample.source != stated) return;
+  const auto cause = clearance::take(of, sample, sample.stamp_ns, {sample.stamp_ns, 0}, state,
+                                     judged_[of.first_of_joint].repetition);
+  if (cause == Reject::kFrozen || cause == Reject::kOtherWay || cause == Reject::kOutsideLimits) {
+    const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
+    joints_[sample.variable].disputed.add(sample.stamp_ns, hold_ns);
+  }
 }
 
 void PostureHistory::add(const JointSample& sample) {
@@ -162,6 +178,7 @@ void PostureHistory::add(const JointSample& sample) {
   joints_[sample.variable].take({sample.source, sample.namesake, sample.stamp_ns},
                                 joint_sources_[sample.variable], sample.position, limits,
                                 JointMetric(of.wraps));
+  judge(sample);
 }
 
 void PostureHistory::add(const PoseSample& sample) {
@@ -184,6 +201,7 @@ void PostureHistory::add(const PoseSample& sample) {
 
 void PostureHistory::forget() {
   std::ranges::fill(joints_, Joint{});
+  std::ranges::fill(judged_, TrackedVariable{});
   bodies_.clear();
 }
 

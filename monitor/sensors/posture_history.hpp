@@ -6,7 +6,8 @@
 // the time since then. The speeds are those by which the tick bounds late inputs.
 //
 // A value that the one before cannot have become is refused by the tick's rule
-// (monitor/inputs/plausibility.hpp), and the input is unknown around it.
+// (monitor/inputs/plausibility.hpp), and the input is unknown around it. So is a joint whose
+// positions are frozen, are not where its velocities lead, or are outside of its limits.
 #pragma once
 
 #include <cstdint>
@@ -118,6 +119,7 @@ class PostureHistory {
   using Joint = Input<JointMetric>;
   using Body = Input<CarrierMetric>;
 
+  void judge(const JointSample& sample);
   void place_joint(std::size_t variable, std::int64_t stamp_ns, std::int64_t within_ns);
   void place_links();
   [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns,
@@ -126,6 +128,7 @@ class PostureHistory {
   const Scene& scene_;
   std::vector<std::uint32_t> joint_sources_, object_sources_;  // that the cell states
   std::vector<Joint> joints_;                                  // by variable
+  std::vector<TrackedVariable> judged_;                        // as the tick judges their positions
   std::map<std::uint32_t, Body> bodies_;                       // by object
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;   // by robot

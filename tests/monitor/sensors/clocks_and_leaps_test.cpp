@@ -231,6 +231,30 @@ TEST_F(ClocksAndLeaps, PathsOfSeveralFramesAreWithinTheirErrorAcrossGaps) {
   EXPECT_GT(gaps, 50);
 }
 
+// The shoulder turns at 0.5 rad/s, and its encoder is stuck.
+TEST_F(ClocksAndLeaps, ALinkWhoseJointIsFrozenHidesNothingAndPlacesNoCamera) {
+  for (const bool is_stuck : {false, true}) {
+    make(kImage + kAbove);
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+    for (int ms = 0; ms <= 5000; ms += 10) {
+      const std::int64_t at = kStart + ms * kMs;
+      auto joints = test::joints(0.0, 0.0, 0.0, at);
+      joints[0].has_velocity = true;
+      joints[0].velocity = is_stuck ? 0.5 : 0.0;
+      sensors->add({}, joints, at);
+    }
+    ImageText image = flat(0, 1950);  // where the upper arm is
+    image.stamp_ns = kStart + 4995 * kMs;
+    add(image);
+    const auto frames = settle(kStart + 5060 * kMs);
+    ASSERT_EQ(frames.size(), 1u);
+    std::size_t left_out = 0;
+    for (const OwnImageStatus& own : sensors->status(0).own) left_out += own.elements;
+    EXPECT_EQ(left_out == 0, is_stuck);
+    EXPECT_EQ(frames[0].cloud->size() + left_out, 48u);
+  }
+}
+
 TEST_F(ClocksAndLeaps, AFrameNamesWhatCarriesItsCamera) {
   const auto carrier = [&](const std::string& mount, const char* parent) {
     make_with_info(mount);
