@@ -45,6 +45,9 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
                             std::span<const JointSample> joints, const TickTime& time) noexcept {
   State& s = *state_;
   if (s.displacer.is_first()) s.begin_first_tick();
+  if (time.now_ns < s.inputs.time.now_ns) {
+    for (State::Shown& sensor : s.shown) sensor.clock.forget();
+  }
   ingest(samples, joints, time, s.scene, s.inputs);
   s.take_frames();
   s.displacer.displace(s.inputs);
@@ -92,8 +95,10 @@ bool Monitor::take_over(const Monitor& before, const SceneMap& map,
   s.zones.count_absent(s.inputs.objects);
   for (std::size_t i = 0; i < before.state_->shown.size(); ++i) {
     const std::uint32_t now = map.objects_now[before.state_->scene.sensors[i].object];
-    if (now != SceneMap::kNone && s.scene.objects[now].is_seen())
-      s.shown[s.scene.objects[now].sensor].clock = before.state_->shown[i].clock;
+    if (now == SceneMap::kNone || !s.scene.objects[now].is_seen()) continue;
+    s.shown[s.scene.objects[now].sensor].clock = before.state_->shown[i].clock;
+    s.inputs.sensors[s.scene.objects[now].sensor].lost_ns =
+        before.state_->inputs.sensors[i].lost_ns;
   }
   if (s.scene.revision != before.state_->scene.revision) return true;
   for (std::size_t i = 0; i < s.shown.size(); ++i)
@@ -285,9 +290,23 @@ void Monitor::State::make_absent(std::uint32_t object) noexcept {
   note_presence(object);
 }
 
+// A frame that helps no pair any more leaves, since a partner would have to build it before it
+// joins. The object is unknown until the next frame comes.
+void Monitor::State::drop_useless_frame(std::uint32_t sensor) noexcept {
+  constexpr std::int64_t kKeptNs = 1'000'000'000;  // after it has become late
+  if (shown[sensor].in_use.cloud == nullptr) return;
+  const std::uint32_t object = scene.sensors[sensor].object;
+  const TrackedObject& state = inputs.objects[object];
+  const std::int64_t earlier_ns = less(inputs.time.now_ns, kKeptNs);
+  if (state.input.has_value && !may_be_anywhere(scene.objects[object], earlier_ns, state)) return;
+  shown[sensor].in_use = {};
+  clouds->set(sensor, {});
+}
+
 // The former frame is forgotten as an object that goes away. What is seen now may be elsewhere.
 void Monitor::State::take_frames() noexcept {
   for (std::uint32_t sensor = 0; sensor < shown.size(); ++sensor) {
+    drop_useless_frame(sensor);
     const SensorFrame frame = std::exchange(shown[sensor].frame, {});
     if (frame.cloud == nullptr) continue;
     const std::uint32_t object = scene.sensors[sensor].object;
@@ -304,6 +323,7 @@ void Monitor::State::take_frames() noexcept {
     culling.forget_object(object, table);
     clouds->set(sensor, {frame.cloud, frame.pose_error});
     shown[sensor].in_use = frame;
+    inputs.sensors[sensor].carrier = frame.carrier;
     hidden.take(sensor, *frame.cloud);
     inputs.visits.visit(object);
   }

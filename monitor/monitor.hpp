@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "config/scene/carrier.hpp"
 #include "config/scene/scene.hpp"
 #include "config/scene/scene_map.hpp"
 #include "monitor/inputs/joint_batch.hpp"
@@ -57,6 +58,7 @@ struct SensorFrame {
   double pose_error = 0.0;           // m: no element is farther from its exact place in the world
   // Frames of the same content are the same to the bit. 0: not known.
   std::uint64_t content = 0;
+  Carrier carrier = {};  // what has placed it: while that is unknown, so is what the frame shows
 };
 
 class Monitor {

@@ -66,6 +66,7 @@ struct Monitor::State {
   }
   void make_absent(std::uint32_t object) noexcept;
   void note_presence(std::uint32_t object) noexcept;
+  void drop_useless_frame(std::uint32_t sensor) noexcept;
   void take_frames() noexcept;
   void begin_first_tick() noexcept;
   void add_presence_changes() noexcept;

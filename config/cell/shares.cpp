@@ -30,7 +30,9 @@ class Needs {
     for (const ObjectPair& pair : scene.pairs) objects_[pair.first] = objects_[pair.second] = true;
     for (std::size_t i = scene.robots.size(); i-- > 0;) note(scene.robots[i], i);
     for (const Sensor& sensor : scene.sensors) {
-      if (objects_[sensor.object]) note(sensor.mount);
+      if (!objects_[sensor.object]) continue;
+      note(sensor.mount);
+      if (sensor.is_on_tf()) note_all();
     }
     // A sensor may be mounted on any robot.
     for (std::size_t i = scene.robots.size(); i-- > 0;) note(scene.robots[i], i);
@@ -54,6 +56,12 @@ class Needs {
           return link.object != RobotLink::kNoObject && objects_[link.object];
         });
     if (robots_[index]) note(robot.base);
+  }
+  // Any robot or object may carry a frame of tf.
+  void note_all() {
+    robots_.assign(robots_.size(), true);
+    for (std::size_t i = 0; i < objects_.size(); ++i)
+      objects_[i] = objects_[i] || !scene_.objects[i].is_seen();
   }
   void note(const RobotBase& base) {
     if (base.kind == RobotBase::Kind::kObject) objects_[base.object] = true;

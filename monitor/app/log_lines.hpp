@@ -108,6 +108,10 @@ inline constexpr LogLine<Text, std::int64_t> kFramesLate{
     "frames-late", kWarn,
     "the last usable frame of sensor {} is {} ms old: its pairs are stale, or unknown without "
     "max_speed"};
+inline constexpr LogLine<Text> kFramesUnplaced{
+    "frames-unplaced", kWarn,
+    "the place of sensor {} is not known: an input of what carries it is contradicted, or so late "
+    "that it may be anywhere. Its pairs are unknown until a frame from after that"};
 inline constexpr LogLine<Text> kFramesBack{"frames-back", kInfo, "frames of sensor {} are back"};
 inline constexpr LogLine<Text, Text> kFramesSilent{"frames-silent", kWarn,
                                                    "no usable frame of sensor {} has come: {}"};
@@ -327,6 +331,7 @@ inline constexpr std::tuple kAll{kStarted,
                                  kRefused,
                                  kMoreLeftOut,
                                  kFramesLate,
+                                 kFramesUnplaced,
                                  kFramesBack,
                                  kFramesSilent,
                                  kJointsHeard,

@@ -34,7 +34,9 @@ void HealthLog::note_sensors(const Scene& scene) {
 // Says that an input is late, and why; or that it is back.
 void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) {
   const std::int64_t age_ms = input.age_ns / 1'000'000;
-  if (now.is_of_sensor && now.stale) {
+  if (now.is_of_sensor && now.stale && input.contradicted) {
+    log_line(lines::kFramesUnplaced, input.name);
+  } else if (now.is_of_sensor && now.stale) {
     log_line(lines::kFramesLate, input.name, age_ms);
   } else if (now.is_of_sensor) {
     log_line(lines::kFramesBack, input.name);

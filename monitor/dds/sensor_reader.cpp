@@ -4,6 +4,7 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <new>
 #include <utility>
 
 #include "config/scene/scene_map.hpp"
@@ -77,10 +78,11 @@ void SensorReader::change(const Cell& cell) {
   if (&cell == cell_) return;
   SceneMap map = scene_map(cell_->scene, cell.scene);
   ids_.change(cell.scene.revision, map);
+  static_cast<void>(ids_.sources().add_named(named_sources(cell.scene)));
   last_.assign(cell.scene.sensors.size(), {});
   names_ = FrameNames(cell.scene);
   sent_.assign(cell.scene.sensors.size(), {});
-  sensors_ = std::make_unique<Sensors>(cell, *sensors_);
+  sensors_ = std::make_unique<Sensors>(cell, *sensors_, ids_.sources());
   intake_.change(cell);
   cell_ = &cell;
 }
@@ -126,10 +128,12 @@ void SensorReader::run() {
     try {
       look();
       take_all();
+      build();
     } catch (const DdsError& error) {
       log_line(lines::kInputsFailed, error.what());
+    } catch (const std::bad_alloc&) {
+      tell_of_no_memory();
     }
-    build();
     log_news();
     const bool builds_own = !partner_ || partner_->builds_its_own(now_ns_);
     patience = builds_own && sensors_->any_waiting() ? kFrameWaitsNs : kIdleNs;
@@ -192,6 +196,7 @@ void SensorReader::use(std::uint32_t sensor, SensorFrame frame) {
 }
 
 void SensorReader::build_own() {
+  is_shared_ = false;  // also if the last shared frame found no memory
   sensors_->settle(
       now_ns_, [this](const SeenCloud* cloud) { return is_used(cloud); },
       [this](std::uint32_t sensor, const SensorFrame& frame) { use(sensor, frame); });
@@ -227,6 +232,14 @@ void SensorReader::build() {
   const std::lock_guard lock(status_mutex_);
   statuses_.resize(cell_->scene.sensors.size());
   for (std::uint32_t i = 0; i < statuses_.size(); ++i) statuses_[i] = sensors_->status(i);
+}
+
+// What was being taken or built is gone.
+void SensorReader::tell_of_no_memory() {
+  constexpr std::int64_t kToldAfterNs = 1'000'000'000;
+  if (no_memory_ns_ != 0 && now_ns_ - no_memory_ns_ < kToldAfterNs) return;
+  no_memory_ns_ = now_ns_;
+  log_line(lines::kInputsFailed, "no memory is left for a frame of a sensor, which is refused");
 }
 
 void SensorReader::log_news() {

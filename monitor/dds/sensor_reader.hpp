@@ -74,6 +74,7 @@ class SensorReader {
   void keep(BuiltFrame frame);
   [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
   void use(std::uint32_t sensor, SensorFrame frame);
+  void tell_of_no_memory();
   void log_news();
   void tell_of_silence();
   [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
@@ -98,6 +99,7 @@ class SensorReader {
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
   std::int64_t now_ns_ = 0, started_ns_ = 0;  // CLOCK_MONOTONIC
+  std::int64_t no_memory_ns_ = 0;             // when the log last told of it; 0: never
   std::string where_;
   std::vector<bool> silence_said_;  // by sensor
   // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.

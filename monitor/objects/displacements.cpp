@@ -36,9 +36,12 @@ std::int64_t in_time_until(const TrackedObject& state, const Object& object) noe
 Displacer::Displacer(const Scene& scene) : scene_(scene), is_lost_(scene.objects.size()) {
   displaced_.changed.reserve(scene.objects.size());
   visited_.reserve(scene.objects.size());
+  for (const Sensor& sensor : scene.sensors) seen_.push_back(sensor.object);
+  std::ranges::sort(seen_);
 }
 
-// Links come last, when the objects on which robots stand have been advanced.
+// Links come when the objects on which robots stand have been advanced. What sensors see comes
+// last, when all that carries them has been.
 void Displacer::displace(Inputs& inputs) noexcept {
   const std::int64_t now_ns = inputs.time.now_ns;
   const std::size_t count = inputs.objects.size(), first_link = inputs.robots.first_link();
@@ -51,20 +54,41 @@ void Displacer::displace(Inputs& inputs) noexcept {
   const auto visit_due = [&](std::size_t i) {
     visit(static_cast<std::uint32_t>(i), first, inputs);
   };
-  inputs.visits.each_due(0, first_link, now_ns, visit_due);
+  std::size_t next = 0;
+  for (const std::uint32_t seen : seen_) {
+    inputs.visits.each_due(next, seen, now_ns, visit_due);
+    next = seen + 1;
+  }
+  inputs.visits.each_due(next, first_link, now_ns, visit_due);
   if (first_link < count) inputs.robots.place(now_ns, inputs.objects);
   inputs.visits.each_due(first_link, count, now_ns, visit_due);
+  visit_seen(first, inputs);
   // A loop for each step, so that no object waits for the roots and quotients of the one before it.
   for (const std::uint32_t i : visited_)
     clearance::displace(inputs.objects[i].bounding_radius, inputs.objects[i]);
   summarise(inputs);
 }
 
-void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs) noexcept {
+// A frame is placed by what was heard of its carrier around its stamp, which a contradiction puts
+// in doubt. Later frames are trusted again.
+void Displacer::visit_seen(bool first, Inputs& inputs) noexcept {
+  for (const std::uint32_t i : seen_) {
+    auto& [carrier, lost_ns] = inputs.sensors[scene_.objects[i].sensor];
+    const bool is_lost =
+        carrier.kind == RobotBase::Kind::kObject
+            ? !inputs.objects[carrier.object].known()
+            : carrier.kind == RobotBase::Kind::kLink &&
+                  inputs.robots.is_lost(carrier.robot, carrier.link, inputs.objects);
+    if (is_lost) lost_ns = inputs.time.now_ns;
+    visit(i, first, inputs, inputs.objects[i].input.stamp_ns <= lost_ns);
+  }
+}
+
+void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs, bool is_lost) noexcept {
   TrackedObject& object = inputs.objects[i];
   const bool was_late = object.input.late;
   const double might_have_moved = object.may_have_moved;
-  advance(scene_.objects[i], inputs.time.now_ns, object);
+  advance(scene_.objects[i], inputs.time.now_ns, object, is_lost);
   const bool changes =
       object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
   if (changes && !first) displaced_.changed.push_back(i);

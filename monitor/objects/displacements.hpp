@@ -39,11 +39,13 @@ class Displacer {
   void add_changed(std::uint32_t object) noexcept { displaced_.changed.push_back(object); }
 
  private:
-  void visit(std::uint32_t i, bool first, Inputs& inputs) noexcept;
+  void visit(std::uint32_t i, bool first, Inputs& inputs, bool is_lost = false) noexcept;
+  void visit_seen(bool first, Inputs& inputs) noexcept;
   void summarise(Inputs& inputs) noexcept;
 
   const Scene& scene_;
   Displacements displaced_;
+  std::vector<std::uint32_t> seen_;     // objects of sensors, ascending
   std::vector<std::uint32_t> visited_;  // in this tick
   std::vector<bool> is_lost_;           // by object: not known, or discontinuous
   std::size_t lost_ = 0;                // number of such objects

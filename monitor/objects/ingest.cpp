@@ -109,6 +109,7 @@ void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& input
 // For a tick that does not know how much time has passed.
 void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
   for (SourceClock& source : inputs.sources) source.forget();
+  for (CarriedSensor& sensor : inputs.sensors) sensor.lost_ns = CarriedSensor{}.lost_ns;
   for (TrackedObject& object : inputs.objects) {
     if (object.input.has_value) forget_age(time.now_ns, object);
   }
@@ -124,6 +125,7 @@ Inputs initial_inputs(const Scene& scene) {
                 .visits = VisitTimes(scene.objects.size()),
                 .stamps = PoseStamps(scene.objects.size()),
                 .robots = RobotInputs(scene),
+                .sensors = std::vector<CarriedSensor>(scene.sensors.size()),
                 .sources = {}};
   inputs.objects.reserve(scene.objects.size());
   for (const Object& object : scene.objects) {

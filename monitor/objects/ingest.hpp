@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "config/scene/carrier.hpp"
 #include "monitor/inputs/source_clock.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/objects/large_column.hpp"
@@ -17,6 +18,13 @@
 
 namespace clearance {
 
+// What carries a sensor at the frame in use. Frames stamped up to `lost_ns`, in the tick's time,
+// have no place that is trusted: until then, an input of the carrier was unknown or contradicted.
+struct CarriedSensor {
+  Carrier carrier;
+  std::int64_t lost_ns = std::numeric_limits<std::int64_t>::min();
+};
+
 // The state of all inputs, from the samples of all ticks so far.
 struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
@@ -26,6 +34,7 @@ struct Inputs {
   VisitTimes visits;  // a sample makes its object due, unless the object is at rest
   PoseStamps stamps;  // of the objects that are not fixed
   RobotInputs robots;
+  std::vector<CarriedSensor> sensors;
   std::array<SourceClock, kMaxSources> sources;    // indexed by PoseSample::source
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
 };

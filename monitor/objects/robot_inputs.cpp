@@ -52,6 +52,25 @@ RobotInputs::RobotInputs(const Scene& scene)
   }
 }
 
+bool RobotInputs::is_lost(std::uint32_t robot, std::uint32_t link,
+                          std::span<const TrackedObject> objects) const noexcept {
+  for (;;) {
+    for (; link > 0; link = scene_.robots[robot].joints[link - 1].parent) {
+      const RobotJoint& joint = scene_.robots[robot].joints[link - 1];
+      for (std::uint32_t i = 0; i < variables_of(joint.type); ++i) {
+        const TrackedVariable& state = variables_[joint.variable + i];
+        const bool is_known = state.input.has_value && !state.input.contradicted;
+        if (!is_known || !(state.may_have_moved < kInfinity)) return true;
+      }
+    }
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind == RobotBase::Kind::kWorld) return false;
+    if (base.kind == RobotBase::Kind::kObject) return !objects[base.object].known();
+    robot = base.robot;
+    link = base.link;
+  }
+}
+
 void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
   for (TrackedVariable& variable : variables_) {
     if (variable.input.has_value) forget_age(now_ns, variable);

@@ -49,6 +49,11 @@ class RobotInputs {
     return object >= first_link_ && heard_[robot_of_[object - first_link_]];
   }
 
+  // After place(): a joint between the world, or the object on which the robot stands, and this
+  // link has no position, is contradicted, or may be anywhere. The same holds for that object.
+  [[nodiscard]] bool is_lost(std::uint32_t robot, std::uint32_t link,
+                             std::span<const TrackedObject> objects) const noexcept;
+
   void forget_ages(std::int64_t now_ns) noexcept;
 
   // Goes on with the positions of the scene before, where the robots are the same.

@@ -37,6 +37,7 @@ void save(const Inputs& inputs, StateWriter& out) {
   out.put(inputs.cycle);
   out.put(inputs.time);
   out.put(std::span(inputs.objects));
+  out.put(std::span(inputs.sensors));
   inputs.robots.save(out);
   out.put(inputs.sources);
   out.put(inputs.rejected);
@@ -46,6 +47,7 @@ void restore(StateReader& in, Inputs& inputs) noexcept {
   in.take(inputs.cycle);
   in.take(inputs.time);
   in.take(std::span(inputs.objects));
+  in.take(std::span(inputs.sensors));
   inputs.robots.restore(in);
   in.take(inputs.sources);
   in.take(inputs.rejected);

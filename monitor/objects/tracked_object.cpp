@@ -181,6 +181,13 @@ std::optional<Reject> see(const Pose& world_from_sensor, std::int64_t stamp_ns,
   return std::nullopt;
 }
 
+bool may_be_anywhere(const Object& object, std::int64_t now_ns,
+                     const TrackedObject& state) noexcept {
+  const std::int64_t age_ns = state.input.age_ns(now_ns);
+  return age_ns > object.age_limit_ns &&
+         rounded_up(object.max_speed * seconds(age_ns)) > state.bounding_radius;
+}
+
 void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
             TrackedObject& state) noexcept {
   const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
@@ -208,7 +215,8 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.repetition.add(false, now_ns);
 }
 
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept {
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
+             bool is_lost) noexcept {
   InputRecord& input = state.input;
   if (object.fixed || !input.has_value) return;
   const double unobserved_before = state.pose_last_tick_known ? state.may_have_moved : kInfinity;
@@ -224,13 +232,16 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) no
   state.pose_last_tick_known = true;
 
   input.advance(now_ns, object.age_limit_ns);
+  if (is_lost) input.contradicted = input.late = true;
   if (state.follows_joints) {
     input.contradicted = state.joints_contradicted;
     input.late = state.joints_late;
     state.may_have_moved = state.unobserved_by_joints;
   } else {
     const bool may_move = input.late || (object.is_seen() && object.max_speed < kInfinity);
-    state.may_have_moved = input.contradicted ? kInfinity
+    const bool is_anywhere =
+        input.contradicted || (object.is_seen() && may_be_anywhere(object, now_ns, state));
+    state.may_have_moved = is_anywhere ? kInfinity
                            : may_move ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
                                       : 0.0;
   }

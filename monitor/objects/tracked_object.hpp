@@ -123,6 +123,11 @@ struct alignas(64) TrackedObject {
 [[nodiscard]] std::optional<Reject> see(const Pose& world_from_sensor, std::int64_t stamp_ns,
                                         const SampleLimits& limits, TrackedObject& state) noexcept;
 
+// True if what a sensor has seen may be anywhere in the ball of its view by this time: its frame is
+// late, and the object's largest speed leads that far. Without such a speed, it always does.
+[[nodiscard]] bool may_be_anywhere(const Object& object, std::int64_t now_ns,
+                                   const TrackedObject& state) noexcept;
+
 // Takes the state of a robot's link from its joints, or from what carries it. A link that was known
 // and no longer is may be anywhere. The same applies if the rounding error of its pose exceeds
 // Object::pose_error. An object that states max_speed follows the pose of another object, without
@@ -133,8 +138,10 @@ void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Ends the tick's input: sets the motion since the last tick, the age and the lateness.
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state) noexcept;
+// Ends the tick's input: sets the motion since the last tick, the age and the lateness. `is_lost`:
+// what carries this sensor is not known, which counts as a contradiction.
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
+             bool is_lost = false) noexcept;
 
 // Accumulates this tick's motion. `bounding_radius` is that of the object around its
 // origin, m.

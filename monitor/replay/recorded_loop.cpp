@@ -191,9 +191,9 @@ void RecordedLoop::succeed() {
   if (cell_->scene.sensors.empty()) {
     sensors_ = nullptr;
   } else if (!sensors_) {
-    sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true});
+    sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true}, ids_->sources());
   } else if (!is_same) {
-    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_);
+    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_, ids_->sources());
   }
   ids_->change(cell_->scene.revision, next_->map);
   from_ = next_->from;

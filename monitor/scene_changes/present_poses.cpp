@@ -5,14 +5,14 @@
 
 namespace clearance {
 
-std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene) {
+std::optional<AttachedCarrier> carrier_of(const std::string& name, const Scene& scene) {
   for (const Robot& robot : scene.robots) {
     if (!robot.is_attached || robot.links.front().name != name) continue;
     const RobotBase& base = robot.base;
-    return Carrier{base.kind == RobotBase::Kind::kObject
-                       ? scene.objects[base.object].name
-                       : scene.robots[base.robot].links[base.link].name,
-                   base.base_from_root};
+    return AttachedCarrier{base.kind == RobotBase::Kind::kObject
+                               ? scene.objects[base.object].name
+                               : scene.robots[base.robot].links[base.link].name,
+                           base.base_from_root};
   }
   return std::nullopt;
 }

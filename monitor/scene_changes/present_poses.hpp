@@ -25,12 +25,13 @@ using PresentPoses = std::map<std::string, PresentPose>;
 [[nodiscard]] const Object* find_object(const Scene& scene, const std::string& name) noexcept;
 
 // What moves an attached object, and the object's pose in its frame.
-struct Carrier {
+struct AttachedCarrier {
   std::string name;
   Pose carrier_from_object;
 };
 // Returns nothing if nothing moves the object: it is not attached, or to what is fixed.
-[[nodiscard]] std::optional<Carrier> carrier_of(const std::string& name, const Scene& scene);
+[[nodiscard]] std::optional<AttachedCarrier> carrier_of(const std::string& name,
+                                                        const Scene& scene);
 
 // The names, and those of the objects and links that carry them in this scene.
 [[nodiscard]] std::vector<std::string> with_carriers(const std::vector<std::string>& names,

@@ -46,6 +46,10 @@ std::uint64_t of_itself(const BuiltFrame& frame) {
   sum.add(frame.sensor);
   sum.add(frame.stamp_ns);
   add(frame.place, sum);
+  sum.add(frame.carrier.kind);
+  sum.add(frame.carrier.object);
+  sum.add(frame.carrier.robot);
+  sum.add(frame.carrier.link);
   for (const PlacedPostures::Joint& joint : frame.postures.joints) {
     sum.add(joint.known);
     sum.add(joint.position);
@@ -119,6 +123,8 @@ Sample<clearance_msg_SensorFrame> to_wire(const BuiltFrame& frame, std::uint64_t
   out->cx = camera.cx;
   out->cy = camera.cy;
   out->kind = static_cast<std::uint8_t>(frame.message.type);
+  out->carrier = {static_cast<std::uint8_t>(frame.carrier.kind), frame.carrier.object,
+                  frame.carrier.robot, frame.carrier.link};
   if (!with_message) return out;
   const std::span<const std::byte> bytes = frame.message.cdr;
   reserve_sequence(out->message, bytes.size());
@@ -132,6 +138,8 @@ BuiltFrame from_wire(const clearance_msg_SensorFrame& message) {
                    .stamp_ns = message.stamp_ns,
                    .scene_revision = message.scene_revision,
                    .place = from_wire(message.place),
+                   .carrier = {static_cast<RobotBase::Kind>(message.carrier.kind),
+                               message.carrier.object, message.carrier.robot, message.carrier.link},
                    .postures = {},
                    .camera = {.width = message.width,
                               .height = message.height,

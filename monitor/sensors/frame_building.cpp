@@ -52,7 +52,9 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
-    fault = build_at(state, frame, place, cloud, use);
+    const Carrier carrier =
+        mounts_.carrier(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+    fault = build_at(state, frame, place, carrier, cloud, use);
   }
   if (fault != FrameFault::kNoFault) ++state.not_built[static_cast<std::size_t>(fault)];
 }
@@ -60,7 +62,7 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
 // The postures are placed. What a frame leaves behind for later ones is left by each frame that is
 // kept, even if it shows nothing.
 FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose& place,
-                             SeenCloud& cloud, const Use& use) {
+                             const Carrier& carrier, SeenCloud& cloud, const Use& use) {
   const auto began = std::chrono::steady_clock::now();
   if (const FrameFault fault = fill(state, frame, place, cloud); fault != FrameFault::kNoFault)
     return fault;
@@ -69,6 +71,7 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
                    .stamp_ns = frame.stamp_ns,
                    .scene_revision = cell_.scene.revision,
                    .place = place,
+                   .carrier = carrier,
                    .postures = postures_.placed(),
                    .camera = frame.camera,
                    .message = frame.message});
@@ -78,7 +81,8 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   const SensorFrame out{.cloud = &cloud,
                         .stamp_ns = frame.stamp_ns,
                         .world_from_sensor = place.world_from_body,
-                        .pose_error = place.error(state.sensor.extent())};
+                        .pose_error = place.error(state.sensor.extent()),
+                        .carrier = carrier};
   SensorStatus& status = state.status;
   ++status.frames;
   status.stamp_ns = frame.stamp_ns;
@@ -124,7 +128,10 @@ bool Sensors::has_room(std::uint32_t sensor, const IsUsed& is_used) const {
 }
 
 bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use& use) {
-  if (built.scene_revision != cell_.scene.revision || built.sensor >= states_.size()) return false;
+  if (built.scene_revision != cell_.scene.revision || built.sensor >= states_.size() ||
+      !has(cell_.scene, built.carrier)) {
+    return false;
+  }
   State& state = *states_[built.sensor];
   if (state.sensor.kind != kind_of(built.message.type)) return false;
   Waiting frame;
@@ -137,7 +144,7 @@ bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use&
       !postures_.place(built.postures)) {
     return false;
   }
-  const FrameFault fault = build_at(state, frame, built.place, **cloud, use);
+  const FrameFault fault = build_at(state, frame, built.place, built.carrier, **cloud, use);
   return fault == FrameFault::kNoFault || fault == FrameFault::kNothingSeen;
 }
 

@@ -135,6 +135,7 @@ std::optional<FrameHistory::Step> FrameHistory::place_of(const Frame& frame, std
   if (error.longest_ns > kLostNs) return std::nullopt;
   step.shift_error = error.shift;
   step.turn_error = error.turn;
+  step.longest_ns = error.longest_ns;
   return step;
 }
 

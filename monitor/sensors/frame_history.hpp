@@ -41,6 +41,7 @@ class FrameHistory {
     std::string parent;
     Pose parent_from_child;
     double shift_error = 0.0, turn_error = 0.0;  // m, rad
+    std::int64_t longest_ns = 0;                 // between two transforms around that time
   };
   // Returns nothing if the frame has no place at that time, which is known to `within_ns`: the
   // errors enclose its motion within.

@@ -1,6 +1,7 @@
 #include "monitor/sensors/mounts.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
@@ -10,6 +11,8 @@ namespace {
 
 // A path that stands still seems to move by less, m and rad.
 constexpr double kRounding = 1e-9;
+
+const PastPose kOrigin{.known = true, .world_from_body = {}};
 
 }  // namespace
 
@@ -26,15 +29,17 @@ Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_roo
   }
 }
 
-std::optional<PastPose> Mounts::known_place(const std::string& frame,
-                                            const PostureHistory& postures) const {
-  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame)
-    return PastPose{.known = true, .world_from_body = {}};
-  if (const auto link = links_.find(frame); link != links_.end())
-    return postures.link(link->second.first, link->second.second);
-  if (const auto object = objects_.find(frame); object != objects_.end())
-    return postures.object(object->second);
-  return std::nullopt;
+void Mounts::find_base(const std::string& frame, const PostureHistory& postures, Path& path) const {
+  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame) {
+    path.base = kOrigin;
+  } else if (const auto link = links_.find(frame); link != links_.end()) {
+    const auto [robot, number] = link->second;
+    path.base = postures.link(robot, number);
+    path.carrier = {.kind = RobotBase::Kind::kLink, .robot = robot, .link = number};
+  } else if (const auto object = objects_.find(frame); object != objects_.end()) {
+    path.base = postures.object(object->second);
+    path.carrier = {.kind = RobotBase::Kind::kObject, .object = object->second};
+  }
 }
 
 // A path that is longer than the number of frames contains a cycle.
@@ -42,17 +47,16 @@ Mounts::Path Mounts::path_of(const Sensor& sensor, const std::string& frame, std
                              const FrameHistory& frames, const PostureHistory& postures) const {
   Path path;
   std::string at = sensor.frames_by_message ? frame : sensor.mount.frame;
-  path.base = known_place(at, postures);
+  find_base(at, postures, path);
   while (!path.base && path.frames.size() <= FrameHistory::kMostFrames) {
     const auto parent = frames.parent(at, stamp_ns);
     if (!parent) {
-      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty())
-        path.base = PastPose{.known = true, .world_from_body = {}};
+      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty()) path.base = kOrigin;
       break;
     }
     path.known_until_ns = std::min(path.known_until_ns, parent->known_until_ns);
     path.frames.push_back(std::exchange(at, *parent->name));
-    path.base = known_place(at, postures);
+    find_base(at, postures, path);
   }
   return path;
 }
@@ -64,6 +68,65 @@ bool Mounts::awaits_transforms(const Sensor& sensor, const std::string& frame,
   const Path path = path_of(sensor, frame, stamp_ns, frames, postures);
   return path.base && path.known_until_ns < stamp_ns + sensor.stamp_error_ns &&
          elapsed(path.known_until_ns, stamp_ns) <= FrameHistory::kLostNs;
+}
+
+std::optional<Mounts::PathPlace> Mounts::along(const Path& path, PastPose place,
+                                               std::int64_t stamp_ns, std::int64_t within_ns,
+                                               const FrameHistory& frames) {
+  PathPlace found{.place = std::move(place)};
+  for (auto child = path.frames.rbegin(); child != path.frames.rend(); ++child) {
+    const auto step = frames.step(*child, stamp_ns, within_ns);
+    if (!step) return std::nullopt;
+    found.place =
+        carried(found.place, step->parent_from_child, step->shift_error, step->turn_error);
+    found.longest_ns = std::max(found.longest_ns, step->longest_ns);
+  }
+  return found;
+}
+
+// The speeds are those of the whole path, so the ends of the gap are times at which no frame of it
+// is within one, and both are off by their own errors. Other frames may not be heard yet at the
+// second end: then the first one alone counts.
+std::optional<Mounts::Excess> Mounts::deviation_in_gap(const MountSpeed& speed, const Path& path,
+                                                       std::int64_t stamp_ns,
+                                                       const FrameHistory& frames) {
+  std::int64_t before_ns = stamp_ns, after_ns = stamp_ns;
+  std::vector<std::int64_t> stamps;
+  for (const std::string& child : path.frames) {
+    stamps.clear();
+    frames.append_stamps(child, stamp_ns, stamp_ns, stamps);
+    const auto next = std::ranges::lower_bound(stamps, stamp_ns);
+    if (next == stamps.end() || *next == stamp_ns) continue;
+    after_ns = std::max(after_ns, *next);
+    if (next != stamps.begin()) before_ns = std::min(before_ns, *std::prev(next));
+  }
+  const auto at = along(path, kOrigin, stamp_ns, 0, frames);
+  const auto before = along(path, kOrigin, before_ns, 0, frames);
+  const auto after = along(path, kOrigin, after_ns, 0, frames);
+  if (!at || !before) return std::nullopt;
+  if (before_ns == after_ns) return Excess{};
+  const Pose& pose = at->place.world_from_body;
+  const double since = seconds(elapsed(before_ns, stamp_ns)),
+               until = seconds(elapsed(stamp_ns, after_ns));
+  const PastPose& a = before->place;
+  if (!after) {
+    return Excess{
+        .shift =
+            rounded_up(way_between(a.world_from_body, pose) + a.shift_error + speed.shift * since),
+        .turn =
+            rounded_up(angle_between(a.world_from_body, pose) + a.turn_error + speed.turn * since)};
+  }
+  const PastPose& b = after->place;
+  const Pose line = pose_between(a.world_from_body, b.world_from_body, since / (since + until));
+  const double ends_shift = std::max(a.shift_error, b.shift_error);
+  const double way = way_between(a.world_from_body, b.world_from_body);
+  const double angle = angle_between(a.world_from_body, b.world_from_body);
+  const double shift = deviation_in_space(since, until, speed.shift,
+                                          std::max(0.0, way - 2.0 * ends_shift) / (since + until));
+  const double turn = deviation_of_turn(since, until, speed.turn, angle / (since + until));
+  return Excess{
+      .shift = rounded_up(shift + 2.0 * ends_shift + way_between(line, pose)),
+      .turn = rounded_up(turn + std::max(a.turn_error, b.turn_error) + angle_between(line, pose))};
 }
 
 // Frames of a path may leap and correct each other, as those of a localisation and its odometry do.
@@ -82,15 +145,8 @@ std::optional<Mounts::Excess> Mounts::excess(const Sensor& sensor, const Path& p
   const MountSpeed& speed = sensor.mount_speed;
   for (const std::int64_t stamp_ns : stamps) {
     if (before && stamp_ns == before_ns) continue;
-    std::optional<Pose> pose = Pose{};
-    for (auto child = path.frames.rbegin(); pose && child != path.frames.rend(); ++child) {
-      const auto step = frames.step(*child, stamp_ns);
-      if (step) {
-        pose = compose(*pose, step->parent_from_child);
-      } else {
-        pose.reset();
-      }
-    }
+    const auto at = along(path, kOrigin, stamp_ns, 0, frames);
+    const std::optional<Pose> pose = at ? std::optional(at->place.world_from_body) : std::nullopt;
     if (pose && before) {
       const double time_s = seconds(elapsed(before_ns, stamp_ns));
       const double shift = way_between(*before, *pose) - speed.shift * time_s;
@@ -112,18 +168,24 @@ PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::i
                           const FrameHistory& frames, const PostureHistory& postures) const {
   const Path path = path_of(sensor, frame, stamp_ns, frames, postures);
   if (!path.base || !path.base->known) return {};
-  PastPose place = *path.base;
   const std::int64_t until_ns = path.known_until_ns, within_ns = sensor.stamp_error_ns;
   const bool is_late = until_ns < stamp_ns + within_ns;
   const std::int64_t late_ns = elapsed(until_ns, stamp_ns);
   if (is_late && (!sensor.mount_speed.is_stated() || late_ns > FrameHistory::kLostNs)) return {};
-  for (auto child = path.frames.rbegin(); child != path.frames.rend(); ++child) {
-    const auto step =
-        is_late ? frames.step(*child, until_ns) : frames.step(*child, stamp_ns, within_ns);
-    if (!step) return {};
-    place = carried(place, step->parent_from_child, step->shift_error, step->turn_error);
-  }
+  const std::int64_t at_ns = is_late ? until_ns : stamp_ns;
+  const auto found = along(path, *path.base, at_ns, is_late ? 0 : within_ns, frames);
+  if (!found) return {};
+  PastPose place = found->place;
   if (!sensor.mount_speed.is_stated()) return place;
+  if (found->longest_ns > kLongGapNs) {
+    const auto off = deviation_in_gap(sensor.mount_speed, path, at_ns, frames);
+    if (!off) return {};
+    const double within_s = is_late ? 0.0 : seconds(within_ns);
+    place.shift_error =
+        rounded_up(place.shift_error + off->shift + sensor.mount_speed.shift * within_s);
+    place.turn_error =
+        rounded_up(place.turn_error + off->turn + sensor.mount_speed.turn * within_s);
+  }
   const auto beyond = excess(sensor, path, is_late ? until_ns : stamp_ns + within_ns, frames);
   if (!beyond) return {};
   place.shift_error = rounded_up(place.shift_error + beyond->shift);
@@ -135,6 +197,13 @@ PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::i
     place.turn_error = rounded_up(place.turn_error + rounded_up(sensor.mount_speed.turn * late_s));
   }
   return place;
+}
+
+Carrier Mounts::carrier(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                        const FrameHistory& frames, const PostureHistory& postures) const {
+  const RobotBase& mount = sensor.mount;
+  return sensor.is_on_tf() ? path_of(sensor, frame, stamp_ns, frames, postures).carrier
+                           : Carrier{mount.kind, mount.object, mount.robot, mount.link};
 }
 
 PastPose Mounts::find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,

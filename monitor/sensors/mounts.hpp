@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "config/scene/carrier.hpp"
 #include "monitor/sensors/frame_history.hpp"
 #include "monitor/sensors/posture_history.hpp"
 
@@ -29,6 +30,10 @@ class Mounts {
   // jumped farther than that speed allows is not known for a second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
+  // What carries it then.
+  [[nodiscard]] Carrier carrier(const Sensor& sensor, const std::string& frame,
+                                std::int64_t stamp_ns, const FrameHistory& frames,
+                                const PostureHistory& postures) const;
   // True if the path leads to a place, and its last transforms are from before the stamp, but no
   // older than FrameHistory::kLostNs: later ones may still come.
   [[nodiscard]] bool awaits_transforms(const Sensor& sensor, const std::string& frame,
@@ -38,6 +43,7 @@ class Mounts {
  private:
   struct Path {
     std::optional<PastPose> base;     // what carries the frames; none: the path leads nowhere
+    Carrier carrier;                  // the same, for the tick
     std::vector<std::string> frames;  // from the sensor to the base
     // The first of the last transforms.
     std::int64_t known_until_ns = std::numeric_limits<std::int64_t>::max();
@@ -53,11 +59,25 @@ class Mounts {
   [[nodiscard]] std::optional<Excess> excess(const Sensor& sensor, const Path& path,
                                              std::int64_t last_ns,
                                              const FrameHistory& frames) const;
+  // The place at the end of the path, whose base is at `place`; nothing: a frame has none.
+  struct PathPlace {
+    PastPose place;
+    std::int64_t longest_ns = 0;  // between two transforms of a frame
+  };
+  [[nodiscard]] static std::optional<PathPlace> along(const Path& path, PastPose place,
+                                                      std::int64_t stamp_ns, std::int64_t within_ns,
+                                                      const FrameHistory& frames);
+  // The distance of the path at this time from where along() has it, by the stated speeds since
+  // the transforms before it and until those after it; nothing: not known.
+  [[nodiscard]] static std::optional<Excess> deviation_in_gap(const MountSpeed& speed,
+                                                              const Path& path,
+                                                              std::int64_t stamp_ns,
+                                                              const FrameHistory& frames);
   [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
                                   std::int64_t stamp_ns, const FrameHistory& frames,
                                   const PostureHistory& postures) const;
-  [[nodiscard]] std::optional<PastPose> known_place(const std::string& frame,
-                                                    const PostureHistory& postures) const;
+  // Writes the base and the carrier of the path, if the frame is one of the cell.
+  void find_base(const std::string& frame, const PostureHistory& postures, Path& path) const;
 
   const Cell& cell_;
   bool any_root_;

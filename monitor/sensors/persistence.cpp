@@ -69,7 +69,9 @@ bool Persistence::stays(const Cells& cells, double error, std::int64_t stamp_ns)
   const std::size_t kept = std::min<std::size_t>(count_, earlier_.size());
   for (std::size_t i = 0; i < kept && found < frames_; ++i) {
     const Marks& marks = earlier_[i];
-    const double seconds = 1e-9 * static_cast<double>(elapsed(marks.stamp_ns, stamp_ns));
+    // Clocks are set back: a mark may be stamped later than this frame.
+    const double seconds = 1e-9 * static_cast<double>(elapsed(marks.stamp_ns, stamp_ns) +
+                                                      elapsed(stamp_ns, marks.stamp_ns));
     const double apart =
         max_speed_ * std::max(0.0, seconds + stamp_errors_s_) + error + marks.error;
     // The cells of two points that are this far apart differ by no more along an axis.

@@ -10,6 +10,10 @@ namespace clearance {
 
 using PoseSeries = StampedSeries<Pose>;
 
+// Between two poses that are farther from each other in time, what has them may have moved and come
+// back, ns: ten poses a second are usual for mobile bases, and late now and then.
+inline constexpr std::int64_t kLongGapNs = 150'000'000;
+
 // Rounded up, m and rad.
 [[nodiscard]] double way_between(const Pose& a, const Pose& b) noexcept;
 [[nodiscard]] double angle_between(const Pose& a, const Pose& b) noexcept;

@@ -13,9 +13,6 @@ namespace {
 
 // A source that was silent for this long has lost its inputs, ns.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
-// Between two poses that are farther apart, an object may have moved and come back, ns: ten poses a
-// second are usual for mobile bases, and late now and then.
-constexpr std::int64_t kLongGapNs = 150'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
 // The rounding of a product of two poses, relative to the lengths that take part.
@@ -68,11 +65,15 @@ bool PostureHistory::Disputed::at(std::int64_t time_ns) const noexcept {
 }
 
 // Values that stay for long where the input cannot be are taken, as in the tick.
+// A source that the cell states is never replaced, and only a namesake may contradict it.
 template <class Metric>
-void PostureHistory::Input<Metric>::take(std::uint32_t from, std::int64_t stamp_ns,
+void PostureHistory::Input<Metric>::take(const SampleOrigin& from, std::uint32_t stated,
                                          const typename Metric::Value& value,
                                          const MotionLimits& limits, const Metric& metric) {
-  if (!is_of_source(from, stamp_ns, values, source)) {
+  const std::int64_t stamp_ns = from.stamp_ns;
+  const bool is_rival = stated != kNoSource && from.source != stated;
+  if (is_rival && (from.namesake != stated || values.empty())) return;
+  if (is_rival || !is_of_source(from.source, stamp_ns, values, source)) {
     const auto& last = values.last();
     const double within = limits.fastest * time_between(last.stamp_ns, stamp_ns) + kSameValue;
     if (!metric.stay_within(within, last.value, value)) disputed.add(stamp_ns, kSilentNs);
@@ -135,13 +136,36 @@ double deviation_of_turn(double before_s, double after_s, double speed, double m
                     excess(before_s + after_s, speed, mean));
 }
 
-PostureHistory::PostureHistory(const Scene& scene)
+PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
     : scene_(scene),
       joints_(scene.variables.size()),
+      judged_(scene.variables.size()),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
       objects_(scene.objects.size()),
-      kinematics_(scene.robots) {}
+      kinematics_(scene.robots) {
+  const auto number = [&numbers](const std::string& source) {
+    return source.empty() ? kNoSource : numbers.of(SourceName(source));
+  };
+  for (const JointVariable& variable : scene.variables)
+    joint_sources_.push_back(number(variable.source));
+  for (const Object& object : scene.objects) object_sources_.push_back(number(object.source));
+}
+
+// What the tick refuses only to say that another source is used is none of this.
+void PostureHistory::judge(const JointSample& sample) {
+  const JointVariable& of = scene_.variables[sample.variable];
+  TrackedVariable& state = judged_[sample.variable];
+  if (elapsed(sample.stamp_ns, state.input.stamp_ns) > kSetBackNs) state = {};
+  const std::uint32_t stated = joint_sources_[sample.variable];
+  if (stated != kNoSource && sample.source != stated) return;
+  const auto cause = clearance::take(of, sample, sample.stamp_ns, {sample.stamp_ns, 0}, state,
+                                     judged_[of.first_of_joint].repetition);
+  if (cause == Reject::kFrozen || cause == Reject::kOtherWay || cause == Reject::kOutsideLimits) {
+    const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
+    joints_[sample.variable].disputed.add(sample.stamp_ns, hold_ns);
+  }
+}
 
 void PostureHistory::add(const JointSample& sample) {
   if (sample.variable >= joints_.size() || !(std::abs(sample.position) <= kLargestJoint)) return;
@@ -151,8 +175,10 @@ void PostureHistory::add(const JointSample& sample) {
   const MotionLimits limits{
       .fastest = sent > fastest ? std::min(sent, of.speed_tolerance * fastest) : fastest,
       .age_limit_ns = of.age_limit_ns};
-  joints_[sample.variable].take(sample.source, sample.stamp_ns, sample.position, limits,
+  joints_[sample.variable].take({sample.source, sample.namesake, sample.stamp_ns},
+                                joint_sources_[sample.variable], sample.position, limits,
                                 JointMetric(of.wraps));
+  judge(sample);
 }
 
 void PostureHistory::add(const PoseSample& sample) {
@@ -167,13 +193,15 @@ void PostureHistory::add(const PoseSample& sample) {
                             .age_limit_ns = object.may_jump
                                                 ? std::numeric_limits<std::int64_t>::max()
                                                 : object.age_limit_ns};
-  bodies_[sample.object].take(sample.source, sample.stamp_ns,
+  bodies_[sample.object].take({sample.source, sample.namesake, sample.stamp_ns},
+                              object_sources_[sample.object],
                               {pose.position, pose.orientation.normalized()}, limits,
                               CarrierMetric{kFastestBaseTurn / fastest});
 }
 
 void PostureHistory::forget() {
   std::ranges::fill(joints_, Joint{});
+  std::ranges::fill(judged_, TrackedVariable{});
   bodies_.clear();
 }
 

@@ -6,7 +6,8 @@
 // the time since then. The speeds are those by which the tick bounds late inputs.
 //
 // A value that the one before cannot have become is refused by the tick's rule
-// (monitor/inputs/plausibility.hpp), and the input is unknown around it.
+// (monitor/inputs/plausibility.hpp), and the input is unknown around it. So is a joint whose
+// positions are frozen, are not where its velocities lead, or are outside of its limits.
 #pragma once
 
 #include <cstdint>
@@ -15,8 +16,10 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/inputs/input_record.hpp"
 #include "monitor/inputs/plausibility.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/joint_metric.hpp"
 #include "monitor/sensors/pose_series.hpp"
@@ -64,11 +67,15 @@ class PostureHistory {
   // At 1 kHz, two seconds.
   static constexpr std::size_t kKept = 2048;
 
-  // The scene must outlive this. Allocates all memory for joints.
-  explicit PostureHistory(const Scene& scene);
+  // The scene must outlive this. `numbers` are those of the samples' sources. Allocates all memory
+  // for joints.
+  PostureHistory(const Scene& scene, SourceNumbers numbers);
+  explicit PostureHistory(const Scene& scene) : PostureHistory(scene, SourceNumbers(scene)) {}
 
-  // Samples in the order in which they came. Those of a second source are left out while the first
-  // one sends. If either sends what the input cannot have reached, the input has no value then.
+  // Samples in the order in which they came. If the cell states the source of an input, those of
+  // others are left out. Else those of a second source are left out while the first one sends. If
+  // either sends what the input cannot have reached, the input has no value then. So it is if a
+  // second writer of the stated source does (SourceNumbers::append).
   void add(const JointSample& sample);
   void add(const PoseSample& sample);
   // This machine's clock was set back: what was heard says nothing about times that come again.
@@ -104,21 +111,25 @@ class PostureHistory {
     Disputed disputed;
     OtherPlace<Metric> elsewhere;
 
-    // Every sample of joints and objects goes through this.
-    void take(std::uint32_t from, std::int64_t stamp_ns, const typename Metric::Value& value,
+    // Every sample of joints and objects goes through this. `stated` is the source that the cell
+    // names, or kNoSource.
+    void take(const SampleOrigin& from, std::uint32_t stated, const typename Metric::Value& value,
               const MotionLimits& limits, const Metric& metric);
   };
   using Joint = Input<JointMetric>;
   using Body = Input<CarrierMetric>;
 
+  void judge(const JointSample& sample);
   void place_joint(std::size_t variable, std::int64_t stamp_ns, std::int64_t within_ns);
   void place_links();
   [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns,
                                  std::int64_t within_ns) const;
 
   const Scene& scene_;
-  std::vector<Joint> joints_;             // by variable
-  std::map<std::uint32_t, Body> bodies_;  // by object
+  std::vector<std::uint32_t> joint_sources_, object_sources_;  // that the cell states
+  std::vector<Joint> joints_;                                  // by variable
+  std::vector<TrackedVariable> judged_;                        // as the tick judges their positions
+  std::map<std::uint32_t, Body> bodies_;                       // by object
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;   // by robot
   std::vector<PastPose> objects_;  // at the last place()

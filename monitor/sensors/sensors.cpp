@@ -17,12 +17,18 @@ namespace {
 
 using Type = RawSensorMessage::Type;
 
+// This machine's clock was set back if messages come this much before the last one, ns. Batches
+// wait in a queue, so smaller steps are usual.
+constexpr std::int64_t kClockSetBackNs = 100'000'000;
+
 }  // namespace
 
 Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
+    : Sensors(cell, options, SourceNumbers(cell.scene)) {}
+Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNumbers& numbers)
     : cell_(cell),
       options_(options),
-      postures_(cell.scene),
+      postures_(cell.scene, numbers),
       mounts_(cell, options.is_log),
       own_image_(cell.scene) {
   const Scene& scene = cell.scene;
@@ -32,7 +38,8 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options)
     states_.back()->status.own.resize(own_image_.links());
   }
 }
-Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.options_) {
+Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)
+    : Sensors(cell, before.options_, numbers) {
   frames_ = std::move(before.frames_);
   last_came_ns_ = before.last_came_ns_;
   for (const std::unique_ptr<State>& state : states_) {
@@ -48,11 +55,13 @@ Sensors::Sensors(const Cell& cell, Sensors& before) : Sensors(cell, before.optio
 }
 Sensors::~Sensors() = default;
 
-// Samples from before this machine's clock was set back say nothing about later times.
+// Stamps come again after this machine's clock was set back. Samples from before say nothing about
+// frames from after it, and the other way round.
 void Sensors::note_time(std::int64_t came_ns) {
-  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kSetBackNs) return;
+  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kClockSetBackNs) return;
   postures_.forget();
   frames_.forget();
+  drop_waiting();
 }
 
 bool Sensors::is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept {

@@ -13,6 +13,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/camera_stream.hpp"
 #include "monitor/intake/sensor_messages.hpp"
 #include "monitor/monitor.hpp"
@@ -28,6 +29,7 @@ struct BuiltFrame {
   std::int64_t stamp_ns = 0;
   std::uint64_t scene_revision = 0;
   PastPose place;
+  Carrier carrier;
   PlacedPostures postures;
   PinholeCamera camera;  // of depth images
   RawSensorMessage message;
@@ -71,11 +73,13 @@ struct SensorStatus {
 
 class Sensors {
  public:
-  // Allocates the memory of all clouds. The cell must outlive this.
+  // Allocates the memory of all clouds. The cell must outlive this. `numbers` are those of the
+  // samples' sources, with the sources that the cell names; without them, those of a first cell.
+  Sensors(const Cell& cell, const SensorsOptions& options, const SourceNumbers& numbers);
   Sensors(const Cell& cell, const SensorsOptions& options);
   // For a changed cell: goes on with the transforms of `before` and the judged streams of sensors
   // that are the same. Joints and poses are heard anew.
-  Sensors(const Cell& cell, Sensors& before);
+  Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers);
   ~Sensors();
 
   // Samples as the tick gets them, and transforms. Those stamped farther ahead of the time at which
@@ -126,7 +130,7 @@ class Sensors {
   [[nodiscard]] bool is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const;
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
-                                    SeenCloud& cloud, const Use& use);
+                                    const Carrier& carrier, SeenCloud& cloud, const Use& use);
   [[nodiscard]] bool decode_again(const BuiltFrame& built, Waiting& frame);
   template <class Message, class View>
   [[nodiscard]] bool decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out);

@@ -26,8 +26,8 @@ SeenFrames::SeenFrames(const Cell& cell, bool is_log)
 SeenFrames::~SeenFrames() = default;
 
 void SeenFrames::change(const Cell& cell) {
-  sensors_ = std::make_unique<Sensors>(cell, *sensors_);
   numbers_ = SourceNumbers(cell.scene);
+  sensors_ = std::make_unique<Sensors>(cell, *sensors_, numbers_);
   shown_.assign(cell.scene.sensors.size(), {});
   cell_ = &cell;
 }

@@ -1,5 +1,7 @@
 // The clock of a sensor's frames, when one monitor takes over from another.
 //
+// Also how long a frame stays in use after its camera has died.
+//
 // Oracle: a camera on another machine, whose frames are 50 ms old, while this machine's clock is
 // stepped back.
 #include <gtest/gtest.h>
@@ -75,6 +77,14 @@ TEST_F(SensorClocks, AreThoseOfTheSameSensorInAChangedScene) {
   EXPECT_EQ(age(*next, 1, 3, kStep), kAge);
 }
 
+// As in a replay that begins again, when the clock was another one.
+TEST_F(SensorClocks, AreForgottenWhenTheTicksTimeGoesBackwards) {
+  constexpr std::int64_t kOffset = 20'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, kOffset), kAge) << "the clock is the one before";
+  now -= 5'000'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, kOffset), kAge + kOffset);
+}
+
 TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
   const auto before = test::taken_over(*monitor, scene, scene, numbers);
   std::vector<std::byte> bytes;
@@ -84,6 +94,69 @@ TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
   StateReader in(bytes);
   ASSERT_TRUE(joined.restore(in));
   EXPECT_EQ(age(joined, 0, 1, kStep), kAge);
+}
+
+// The camera has died. A partner that joins must not wait for a frame that nothing sends again.
+class DeadCamera : public SensorClocks {
+ protected:
+  void make(double max_speed) {
+    scene.objects[1].max_speed = max_speed;
+    monitor = std::make_unique<Monitor>(scene);
+    age(*monitor, 0, 1, 0);
+  }
+  void tick_at(double seconds_later) {
+    const std::int64_t at = now + static_cast<std::int64_t>(seconds_later * 1e9);
+    monitor->tick(std::vector{test::sample(0, test::at(1, 0, 0), at)}, {}, {at, 0});
+  }
+  [[nodiscard]] PairStatus status() const {
+    return test::report_between(scene, *monitor, "ball", "seen").status;
+  }
+  // The frame that a joining partner waits for; 0: none.
+  [[nodiscard]] std::uint64_t awaited() {
+    const auto before = test::taken_over(*monitor, scene, scene, numbers);
+    std::vector<std::byte> bytes;
+    StateWriter out(bytes);
+    before->save(out);
+    Monitor joined(scene);
+    StateReader in(bytes);
+    EXPECT_TRUE(joined.restore(in));
+    return joined.awaited_frame(0);
+  }
+};
+
+TEST_F(DeadCamera, LeavesItsFrameInUseForASecondAfterItIsUnknown) {
+  make(kInfinity);
+  EXPECT_EQ(awaited(), 1u);
+  tick_at(1.0);
+  EXPECT_EQ(status(), PairStatus::kUnknown);
+  EXPECT_TRUE(monitor->uses(&cloud));
+  tick_at(1.2);
+  EXPECT_EQ(status(), PairStatus::kUnknown);
+  EXPECT_FALSE(monitor->uses(&cloud));
+  EXPECT_EQ(awaited(), 0u);
+  now += 2'000'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, 0), kAge) << "it is back";
+  tick_at(0.001);
+  EXPECT_EQ(status(), PairStatus::kConverged);
+  EXPECT_TRUE(monitor->set_absent(1, true));
+  tick_at(0.002);
+  EXPECT_EQ(awaited(), 0u) << "what it sees is absent";
+}
+
+TEST_F(DeadCamera, WithAStatedSpeedIsUnknownOnceThatLeadsOutOfItsView) {
+  make(10.0);
+  tick_at(4.9);
+  EXPECT_EQ(status(), PairStatus::kStale) << "10 m/s for 4.95 s, in a view of 50 m";
+  EXPECT_EQ(awaited(), 1u);
+  tick_at(5.5);
+  EXPECT_EQ(status(), PairStatus::kUnknown);
+  EXPECT_EQ(awaited(), 1u);
+  tick_at(6.1);
+  EXPECT_EQ(status(), PairStatus::kUnknown);
+  EXPECT_EQ(awaited(), 0u);
+  make(0.0);
+  tick_at(100.0);
+  EXPECT_EQ(status(), PairStatus::kStale) << "nothing that it sees moves";
 }
 
 }  // namespace

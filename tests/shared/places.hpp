@@ -16,5 +16,6 @@ std::string view_pictures();  // the folder for the browser's pictures
 // sanitizers.
 std::string hanging_disk();
 std::string stepped_clock();
+std::string failing_memory();
 
 }  // namespace clearance::test::places

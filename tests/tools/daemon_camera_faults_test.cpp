@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "monitor/intake/camera_messages.hpp"
+#include "tests/shared/places.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/tools/camera_daemon.hpp"
 
@@ -162,6 +163,25 @@ TEST_F(CameraFaults, OfNoPublisherAndOfRefusedImagesAreNamedAfterAWhile) {
       kPeriodMs, [&] { camera.send_image(scene_of_wall); },
       told("frames-silent", {"eye", "refused"})))
       << daemon->output();
+}
+
+// The thread that builds frames gets no memory for some time.
+TEST_F(CameraFaults, AFrameThatFindsNoMemoryIsRefusedAndTheDaemonGoesOn) {
+  if (places::failing_memory().empty()) GTEST_SKIP() << "not with sanitizers";
+  const std::filesystem::path sign = folder / "memory_fails";
+  more_environment = {{"LD_PRELOAD", places::failing_memory()},
+                      {"CLEARANCE_MEMORY_FAILS_IF", sign.string()}};
+  start(kImage + kAbove);
+  RosCamera camera(client, {});
+  ASSERT_TRUE(camera.is_heard());
+  const auto send = [&] { camera.send_image(scene_of_wall); };
+  ASSERT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
+  write_text(sign, "");
+  EXPECT_TRUE(step_until(kPeriodMs, send, told("inputs-failed", {"memory"}))) << daemon->output();
+  EXPECT_TRUE(step_until(kPeriodMs, send, [&] { return is("ball", PairStatus::kUnknown); }))
+      << "the last frame grows old";
+  std::filesystem::remove(sign);
+  EXPECT_TRUE(step_until(kPeriodMs, send, [&] { return is_measured(); })) << daemon->output();
 }
 
 // At ten times the rate, some frames are skipped and the newest one counts.

@@ -23,7 +23,8 @@ class WatchedDaemon : public testing::Test {
     write_text(cell, text);
     read = std::get<Cell>(read_cell(cell));
     distances.emplace(client, read);
-    daemon.emplace(kDaemon, with(with({cell}, dds_arguments(dds)), more));
+    daemon.emplace(kDaemon, with(with({cell}, dds_arguments(dds)), more),
+                   ChildOptions{.environment = more_environment});
     distances->settle();
   }
 
@@ -65,6 +66,7 @@ class WatchedDaemon : public testing::Test {
   }
 
   ScratchFolder folder;
+  std::vector<std::pair<std::string, std::string>> more_environment;  // of the daemon
   std::filesystem::path cell;
   Cell read;
   Scene& scene = read.scene;

@@ -122,6 +122,28 @@ TEST(Shares, ARobotIsReadWithWhatItStandsOn) {
   }
 }
 
+// A sensor that is seen in this share only, on a frame of tf or in the world.
+TEST(Shares, AllThatMayCarryASensorOnTfIsRead) {
+  for (const bool is_on_tf : {false, true}) {
+    const std::string mount = is_on_tf ? "{frame: mast}" : "{pose: {xyz: [0, 0, 2]}}";
+    const Cell one = read(
+        cell_text("objects:\n"
+                  "  - {name: wagon, sphere: {radius: 0.1}}\n"
+                  "  - {name: box, sphere: {radius: 0.1}}\n"
+                  "sensors: [{name: eye, points: /points, depth_error: {constant: 0.01}, range: "
+                  "[0.3, 4], mount: " +
+                  mount +
+                  "}]\n"
+                  "pairs: [{between: [box, eye]}, {between: [wagon, box]}]\n"
+                  "shares:\n"
+                  "  - {name: one, pairs: [{between: [box, eye]}]}\n"
+                  "  - {name: two, pairs: [{between: [wagon, box]}]}\n"),
+        "one");
+    EXPECT_EQ(one.scene.objects[0].is_read, is_on_tf);
+    EXPECT_TRUE(one.scene.objects[1].is_read);
+  }
+}
+
 TEST(Shares, ThatOverlapAreRefusedWithThePairAndBothNames) {
   const std::string text =
       mistake(halls("shares:\n"

@@ -125,6 +125,24 @@ TEST_F(LeftOutTest, AnOrganisedPointBeyondTheThickestShellStaysHoweverFarItsBall
   EXPECT_LT(elements_at(32, 1.92F), 16u) << "some of it is less than 0.1 m from the arm";
 }
 
+// The clock of the camera was set back between two frames.
+TEST(Persistence, TheTimeBetweenTwoFramesCountsWhicheverIsStampedLater) {
+  Sensor sensor;
+  sensor.persist_frames = 2;
+  sensor.persist_of = 4;
+  sensor.greatest_depth = 4.0;
+  Persistence persistence(sensor, 1.5);
+  const auto hidden_at = [&](float x, std::int64_t stamp_ms) {
+    SeenCloud cloud = SeenCloud::of_points(1);
+    const std::vector<MeasuredPoint> point = {{x, 0.0F, 0.0F, 0.01F}};
+    EXPECT_EQ(cloud.points()->build(point, {Vec3::Zero(), 5.0}), CloudBuild::kBuilt);
+    return persistence.hide(cloud, {}, 0.001, stamp_ms * 1'000'000, nullptr) > 0;
+  };
+  EXPECT_TRUE(hidden_at(1.0F, 1050)) << "the first frame";
+  EXPECT_FALSE(hidden_at(1.07F, 1000)) << "1.5 m/s for 50 ms";
+  EXPECT_TRUE(hidden_at(2.0F, 1050));
+}
+
 TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
   Sensor sensor;
   sensor.persist_frames = 2;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "monitor/sensors/frame_history.hpp"
 #include "monitor/sensors/posture_history.hpp"
@@ -146,6 +147,53 @@ TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
   pose(0.0, 1, kStart);
   pose(50.0, 2, kStart + kMs);
   history.place(kStart + kMs);
+  EXPECT_FALSE(history.object(1).known);
+}
+
+// The cell names the source. Another one sends zeros, before it, beside it and after it has died.
+TEST(PastPlaces, AreThoseOfTheSourceThatTheCellStatesAndOfNoOther) {
+  Scene scene = test::scara_cell(", source: driver");
+  scene.objects[1].source = "tracker";
+  PostureHistory history(scene);
+  SourceNumbers numbers(scene);
+  const auto add = [&](const char* source, double value, std::int64_t stamp_ns) {
+    PoseBatch batch;
+    batch.source = SourceName(source);
+    for (const JointSample& sample : test::joints(value, 0.0, 0.0, stamp_ns))
+      batch.joints.push_back(sample);
+    batch.samples = {test::sample(1, test::at(value, 0, 0), stamp_ns)};
+    std::vector<PoseSample> poses;
+    std::vector<JointSample> joints;
+    numbers.append(batch, poses, joints);
+    for (const JointSample& sample : joints) history.add(sample);
+    for (const PoseSample& sample : poses) history.add(sample);
+  };
+  const auto expect_at = [&](double value, std::int64_t stamp_ns) {
+    history.place(stamp_ns);
+    ASSERT_TRUE(history.link(0, 1).known && history.object(1).known);
+    EXPECT_NEAR(history.link(0, 1).world_from_body.orientation.z(), std::sin(0.5 * value), 1e-9);
+    EXPECT_NEAR(history.object(1).world_from_body.position.x(), value, 1e-9);
+  };
+  add("other", 0.0, kStart - 10 * kMs);
+  history.place(kStart - 5 * kMs);
+  EXPECT_FALSE(history.link(0, 1).known || history.object(1).known);
+  for (int i = 0; i <= 100; ++i) {
+    add("driver", 1.0, kStart + i * 10 * kMs);
+    add("tracker", 1.0, kStart + i * 10 * kMs);
+    add("other", 0.0, kStart + i * 10 * kMs + kMs);
+  }
+  expect_at(1.0, kStart + 995 * kMs);
+  for (int i = 0; i <= 300; ++i) add("other", 0.0, kStart + 1000 * kMs + i * 10 * kMs);
+  expect_at(1.0, kStart + 3900 * kMs);
+  EXPECT_GT(history.link(0, 1).error(1.0), 1.9) << "it has been late for 2.9 s";
+  // Of two writers with this name, either may be the one that is meant.
+  add("driver", 1.0, kStart + 4100 * kMs);
+  add("driver#2", 0.0, kStart + 4101 * kMs);
+  history.place(kStart + 4101 * kMs);
+  EXPECT_FALSE(history.link(0, 1).known);
+  EXPECT_TRUE(history.object(1).known);
+  add("tracker#2", 99.0, kStart + 4102 * kMs);
+  history.place(kStart + 4102 * kMs);
   EXPECT_FALSE(history.object(1).known);
 }
 

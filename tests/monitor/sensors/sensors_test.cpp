@@ -193,7 +193,7 @@ TEST_F(SensorsTest, LeaveOutTheRobotWithinTheStatedErrorOfTheStamp) {
     add(Type::kCameraInfo, narrow.cdr(), kStart);
     for (int ms = -20; ms <= 120; ms += 10)
       add_joints(0.2 - 0.002 * ms, kStart + std::int64_t{ms} * 1'000'000);
-    add(flat(0, 1950));
+    add(Type::kImage, flat(0, 1950).cdr(), kStart + 120'000'000);
     const auto frames = settle(kStart + 200'000'000);
     EXPECT_EQ(frames.size(), is_stated ? 0u : 1u);
     EXPECT_EQ(count(FrameFault::kNothingSeen), is_stated ? 1u : 0u);
