@@ -301,6 +301,7 @@ void Monitor::State::drop_useless_frame(std::uint32_t sensor) noexcept {
   if (state.input.has_value && !may_be_anywhere(scene.objects[object], earlier_ns, state)) return;
   shown[sensor].in_use = {};
   clouds->set(sensor, {});
+  hidden.forget(sensor);
 }
 
 // The former frame is forgotten as an object that goes away. What is seen now may be elsewhere.

@@ -111,7 +111,7 @@ inline constexpr LogLine<Text, std::int64_t> kFramesLate{
 inline constexpr LogLine<Text> kFramesUnplaced{
     "frames-unplaced", kWarn,
     "the place of sensor {} is not known: an input of what carries it is contradicted, or so late "
-    "that it may be anywhere. Its pairs are unknown until a frame from after that"};
+    "that it may be anywhere. Its pairs are unknown until a frame comes that is stamped later"};
 inline constexpr LogLine<Text> kFramesBack{"frames-back", kInfo, "frames of sensor {} are back"};
 inline constexpr LogLine<Text, Text> kFramesSilent{"frames-silent", kWarn,
                                                    "no usable frame of sensor {} has come: {}"};

@@ -239,7 +239,7 @@ class Zones {
   explicit Zones(Connection& connection);
   void update();
   // The same, and the zones that this report lists are active, although their states may come
-  // later, or were lost. Of such a state the figures are not known.
+  // later, or were lost. Figures of such a state are not known.
   void update(const clearance_msg_Distances& report);
   // Forgets the states that other daemons have sent: after a restart, ids may mean other zones. It
   // is not for partners, either of whom may have written a state.

@@ -24,20 +24,22 @@ bool PartnerMerge::is_silent(std::int64_t heard_ns, std::int64_t now_ns) const n
   return now_ns - heard_ns > std::max(kSilentNs, 4 * step_ns_);
 }
 
-// Partners may change their scene one after the other, or one of them cannot: its distances would
-// leave out what the other one has added.
+bool PartnerMerge::changes_scene(const clearance_msg_Distances& report) const noexcept {
+  return report.scene_revision != revision_ &&
+         std::ranges::any_of(senders_, [&](const Sender& sender) {
+           return sender.revision == revision_ && sender.daemon == report.daemon;
+         });
+}
+
+// Partners may change their scene one after the other, or one of them cannot: distances of the
+// former scene would leave out what the other daemon has added.
 bool PartnerMerge::is_of_scene(const clearance_msg_Distances& report,
                                std::int64_t heard_ns) const noexcept {
-  if (cycle_ == 0 || report.scene_revision == revision_) return true;
-  const auto keeps_scene = [&](const Sender& sender) {
+  if (cycle_ == 0 || report.scene_revision == revision_ || changes_scene(report)) return true;
+  return std::ranges::none_of(senders_, [&](const Sender& sender) {
     return sender.revision == revision_ && sender.daemon != report.daemon &&
            !is_silent(sender.heard_ns, heard_ns);
-  };
-  const auto changes_scene = [&](const Sender& sender) {
-    return sender.revision == revision_ && sender.daemon == report.daemon;
-  };
-  return std::ranges::any_of(senders_, changes_scene) ||
-         std::ranges::none_of(senders_, keeps_scene);
+  });
 }
 
 // Cycles decide between partners that agree. Time decides where they do not count alike: the one
@@ -67,10 +69,13 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
     note(PartnerState::kCorrupt, report);
     return false;
   }
-  const bool is_of_one = is_of_scene(report, heard_ns);
-  note_sender(report, heard_ns);
+  // A change is handed out even if the other one was faster in this cycle: it may always be.
+  const bool is_changed_cycle = report.cycle == cycle_ && changes_scene(report);
+  const bool is_handed_out =
+      is_of_scene(report, heard_ns) && (is_changed_cycle || is_next(report, heard_ns));
+  note_sender(report, heard_ns, is_handed_out);
   if (contradicts(report)) note(PartnerState::kDifferent, report);
-  if (!is_of_one || !is_next(report, heard_ns)) {
+  if (!is_handed_out) {
     compare(report);
     return false;
   }
@@ -111,9 +116,13 @@ void PartnerMerge::note(PartnerState state, const clearance_msg_Distances& repor
   if (state >= found_.state) found_ = {state, report.cycle, report.partner};
 }
 
-void PartnerMerge::note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns) {
+// A change of the scene counts once it is handed out.
+void PartnerMerge::note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns,
+                               bool is_handed_out) {
   if (senders_[0].partner != report.partner) std::swap(senders_[0], senders_[1]);
-  senders_[0] = {report.partner, report.daemon, heard_ns, report.scene_revision};
+  const bool keeps_revision = senders_[0].daemon == report.daemon && !is_handed_out;
+  const std::uint64_t revision = keeps_revision ? senders_[0].revision : report.scene_revision;
+  senders_[0] = {report.partner, report.daemon, heard_ns, revision};
 }
 
 }  // namespace clearance::client

@@ -32,8 +32,8 @@ struct PartnerCheck {
 
 // The first good report of a cycle is handed out, and the other one is compared with it. A partner
 // that ticks apart, whose cycles may have other numbers, takes the place of one that has fallen
-// silent. The stream has one scene at a time: it changes when a daemon whose reports are of that
-// scene changes it, or when all of these have fallen silent.
+// silent. The stream has one scene at a time. It changes when a daemon of the stream changes its
+// scene, or when the daemons that have it have fallen silent.
 class PartnerMerge {
  public:
   // Takes a report of any partner, in the order of arrival. `heard_ns` is when, by a clock that is
@@ -46,7 +46,7 @@ class PartnerMerge {
     std::string partner;
     std::uint64_t daemon = 0;
     std::int64_t heard_ns = 0;
-    std::uint64_t revision = 0;  // of the scene
+    std::uint64_t revision = 0;  // of the scene of its last report, or of that handed out
   };
   [[nodiscard]] const std::array<Sender, 2>& senders() const noexcept { return senders_; }
 
@@ -60,12 +60,14 @@ class PartnerMerge {
   [[nodiscard]] bool is_next(const clearance_msg_Distances& report,
                              std::int64_t heard_ns) const noexcept;
   [[nodiscard]] bool is_silent(std::int64_t heard_ns, std::int64_t now_ns) const noexcept;
+  [[nodiscard]] bool changes_scene(const clearance_msg_Distances& report) const noexcept;
   [[nodiscard]] bool is_of_scene(const clearance_msg_Distances& report,
                                  std::int64_t heard_ns) const noexcept;
   [[nodiscard]] bool contradicts(const clearance_msg_Distances& report) const noexcept;
   void compare(const clearance_msg_Distances& report);
   void note(PartnerState state, const clearance_msg_Distances& report);
-  void note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns);
+  void note_sender(const clearance_msg_Distances& report, std::int64_t heard_ns,
+                   bool is_handed_out);
 
   std::array<Seen, kSeen> seen_{};  // those that were handed out, by cycle
   std::uint64_t cycle_ = 0, lineage_ = 0, revision_ = 0;

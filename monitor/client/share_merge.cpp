@@ -155,6 +155,7 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
   }
   begin(out.contacts, contacts);
   begin(out.hidden, hidden);
+  begin(out.active_zones, map.zones().size());  // which the caller fills
   join_sources(views, out);
   out.scene_revision = map.revision();
   out.now_ns = out.publish_ns = out.clock_offset_ns = 0;

@@ -113,9 +113,9 @@ class HealthCounts {
 };
 
 // The ages of inputs are the largest that any share has, times are the largest, and counts are the
-// sums of `counts`. One health a share; null: none has come, or the share is not whole. Of
-// partners, those of the share are told that are the worst off, with the counts of all. `shares` is
-// left to the caller.
+// sums of `counts`. One health a share; null: none has come, or the share is not whole. The
+// partners of the share that is the worst off are told, with the counts of all. `shares` is left to
+// the caller.
 void join_health(std::span<const clearance_msg_Health* const> of_shares,
                  std::span<const HealthCounts* const> counts, clearance_msg_Health& out);
 

@@ -293,7 +293,6 @@ void SharedCell::join_zones() {
   std::map<std::uint32_t, clearance_msg_ZoneState> joined;
   std::vector<const clearance_msg_ZoneState*> of_shares(shares_.size());
   std::vector<clearance_msg_ZoneState> raised(shares_.size());
-  reserve_sequence(message_->active_zones, names->zones._length);
   for (const clearance_msg_CatalogueZone& zone : list(names->zones)) {
     for (std::size_t i = 0; i < shares_.size(); ++i) {
       const bool is_used = checks_[i].state == ShareState::kWhole;

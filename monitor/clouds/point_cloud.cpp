@@ -194,7 +194,8 @@ void PointCloud::narrow(std::span<const MeasuredPoint> points) noexcept {
   for (std::size_t b = 0; b < blocks(); ++b) {
     Block& block = blocks_[b];
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
-      if (block.is_present(lane)) block.radius[lane] = points[block.source[lane]].radius;
+      const float radius = points[block.source[lane]].radius;
+      if (radius < block.radius[lane]) block.radius[lane] = radius;
     }
   }
 }

@@ -107,8 +107,8 @@ class PointCloud {
   // queries look into them in vain until refit(). Returns false for a lane that repeats another
   // one, or that was left out before.
   bool remove(std::size_t block, std::size_t lane) noexcept;
-  // Replaces the radius of each element by that of its point in the input of build(), which must
-  // not be larger than before. The boxes above stay as they are.
+  // Replaces the radius of each element by that of its point, in the order of build()'s input, if
+  // that is smaller. The boxes above stay as they are.
   void narrow(std::span<const MeasuredPoint> points) noexcept;
   // Fits all boxes to the points that are left. A box without points has low > high.
   void refit() noexcept;

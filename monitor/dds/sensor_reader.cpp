@@ -129,12 +129,12 @@ void SensorReader::run() {
       look();
       take_all();
       build();
+      log_news();
     } catch (const DdsError& error) {
       log_line(lines::kInputsFailed, error.what());
     } catch (const std::bad_alloc&) {
       tell_of_no_memory();
     }
-    log_news();
     const bool builds_own = !partner_ || partner_->builds_its_own(now_ns_);
     patience = builds_own && sensors_->any_waiting() ? kFrameWaitsNs : kIdleNs;
   }

@@ -33,4 +33,10 @@ void HiddenPlaces::take(std::uint32_t sensor, const SeenCloud& cloud) noexcept {
   }
 }
 
+void HiddenPlaces::forget(std::uint32_t sensor) noexcept {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (places_[i].sensor == sensor) reports_[i] = {.pair = reports_[i].pair};
+  }
+}
+
 }  // namespace clearance

@@ -18,6 +18,8 @@ class HiddenPlaces {
 
   // The frame of this sensor that is in use from now on. noexcept, no heap.
   void take(std::uint32_t sensor, const SeenCloud& cloud) noexcept;
+  // No frame of the sensor is in use.
+  void forget(std::uint32_t sensor) noexcept;
 
   // In the order of hidden_pairs().
   [[nodiscard]] std::span<const HiddenReport> reports() const noexcept { return reports_; }

@@ -84,8 +84,8 @@ std::optional<Mounts::PathPlace> Mounts::along(const Path& path, PastPose place,
   return found;
 }
 
-// The speeds are those of the whole path, so the ends of the gap are times at which no frame of it
-// is within one, and both are off by their own errors. Other frames may not be heard yet at the
+// The speeds are those of the whole path, so the ends of the gap must be times at which no frame of
+// it is within one, and both are off by their own errors. Other frames may not be heard yet at the
 // second end: then the first one alone counts.
 std::optional<Mounts::Excess> Mounts::deviation_in_gap(const MountSpeed& speed, const Path& path,
                                                        std::int64_t stamp_ns,
@@ -104,6 +104,9 @@ std::optional<Mounts::Excess> Mounts::deviation_in_gap(const MountSpeed& speed, 
   const auto before = along(path, kOrigin, before_ns, 0, frames);
   const auto after = along(path, kOrigin, after_ns, 0, frames);
   if (!at || !before) return std::nullopt;
+  // Another frame of the path may have such a gap around an end.
+  if (before->longest_ns > kLongGapNs || (after && after->longest_ns > kLongGapNs))
+    return std::nullopt;
   if (before_ns == after_ns) return Excess{};
   const Pose& pose = at->place.world_from_body;
   const double since = seconds(elapsed(before_ns, stamp_ns)),

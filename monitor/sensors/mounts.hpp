@@ -30,7 +30,7 @@ class Mounts {
   // jumped farther than that speed allows is not known for a second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
-  // What carries it then.
+  // The carrier of the sensor at that stamp.
   [[nodiscard]] Carrier carrier(const Sensor& sensor, const std::string& frame,
                                 std::int64_t stamp_ns, const FrameHistory& frames,
                                 const PostureHistory& postures) const;

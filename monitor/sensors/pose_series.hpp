@@ -10,8 +10,8 @@ namespace clearance {
 
 using PoseSeries = StampedSeries<Pose>;
 
-// Between two poses that are farther from each other in time, what has them may have moved and come
-// back, ns: ten poses a second are usual for mobile bases, and late now and then.
+// A body may move out and back between two poses that are farther apart in time than this, ns. Ten
+// poses a second are usual for mobile bases, and late now and then.
 inline constexpr std::int64_t kLongGapNs = 150'000'000;
 
 // Rounded up, m and rad.

@@ -152,7 +152,7 @@ PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
   for (const Object& object : scene.objects) object_sources_.push_back(number(object.source));
 }
 
-// What the tick refuses only to say that another source is used is none of this.
+// A refusal because another source is in use is no fault of the input.
 void PostureHistory::judge(const JointSample& sample) {
   const JointVariable& of = scene_.variables[sample.variable];
   TrackedVariable& state = judged_[sample.variable];
@@ -164,6 +164,19 @@ void PostureHistory::judge(const JointSample& sample) {
   if (cause == Reject::kFrozen || cause == Reject::kOtherWay || cause == Reject::kOutsideLimits) {
     const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
     joints_[sample.variable].disputed.add(sample.stamp_ns, hold_ns);
+  }
+}
+
+void PostureHistory::judge(const PoseSample& sample) {
+  const Object& of = scene_.objects[sample.object];
+  TrackedObject& state = judged_bodies_.try_emplace(sample.object, initial_state(of)).first->second;
+  if (elapsed(sample.stamp_ns, state.input.stamp_ns) > kSetBackNs) state = initial_state(of);
+  const std::uint32_t stated = object_sources_[sample.object];
+  if (stated != kNoSource && sample.source != stated) return;
+  const auto cause = clearance::take(of, sample, sample.stamp_ns, {sample.stamp_ns, 0}, state);
+  if (cause == Reject::kFrozen || cause == Reject::kOtherWay) {
+    const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
+    bodies_[sample.object].disputed.add(sample.stamp_ns, hold_ns);
   }
 }
 
@@ -197,12 +210,14 @@ void PostureHistory::add(const PoseSample& sample) {
                               object_sources_[sample.object],
                               {pose.position, pose.orientation.normalized()}, limits,
                               CarrierMetric{kFastestBaseTurn / fastest});
+  judge(sample);
 }
 
 void PostureHistory::forget() {
   std::ranges::fill(joints_, Joint{});
   std::ranges::fill(judged_, TrackedVariable{});
   bodies_.clear();
+  judged_bodies_.clear();
 }
 
 bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {

@@ -22,6 +22,7 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/kinematics/forward_kinematics.hpp"
 #include "monitor/kinematics/joint_metric.hpp"
+#include "monitor/objects/tracked_object.hpp"
 #include "monitor/sensors/pose_series.hpp"
 
 namespace clearance {
@@ -74,8 +75,8 @@ class PostureHistory {
 
   // Samples in the order in which they came. If the cell states the source of an input, those of
   // others are left out. Else those of a second source are left out while the first one sends. If
-  // either sends what the input cannot have reached, the input has no value then. So it is if a
-  // second writer of the stated source does (SourceNumbers::append).
+  // either sends what the input cannot have reached, the input has no value then. The same holds
+  // for a second writer of the stated source (SourceNumbers::append).
   void add(const JointSample& sample);
   void add(const PoseSample& sample);
   // This machine's clock was set back: what was heard says nothing about times that come again.
@@ -120,6 +121,7 @@ class PostureHistory {
   using Body = Input<CarrierMetric>;
 
   void judge(const JointSample& sample);
+  void judge(const PoseSample& sample);
   void place_joint(std::size_t variable, std::int64_t stamp_ns, std::int64_t within_ns);
   void place_links();
   [[nodiscard]] PastPose pose_at(std::uint32_t object, std::int64_t stamp_ns,
@@ -130,6 +132,7 @@ class PostureHistory {
   std::vector<Joint> joints_;                                  // by variable
   std::vector<TrackedVariable> judged_;                        // as the tick judges their positions
   std::map<std::uint32_t, Body> bodies_;                       // by object
+  std::map<std::uint32_t, TrackedObject> judged_bodies_;       // likewise
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;   // by robot
   std::vector<PastPose> objects_;  // at the last place()

@@ -80,6 +80,18 @@ TEST_F(Merge, HandsOutOneSceneAtATime) {
   EXPECT_FALSE(take(of_scene(kAfter, report("left", 1201))));
 }
 
+// The daemon that has changed is always the slower one.
+TEST_F(Merge, HandsOutAChangedSceneWhicheverReportComesFirst) {
+  take(of_scene(5, report("left", 1)));
+  take(of_scene(5, report("right", 1)));
+  EXPECT_TRUE(take(of_scene(5, report("right", 2))));
+  EXPECT_TRUE(take(of_scene(6, report("left", 2, 2))));
+  for (std::uint64_t cycle = 3; cycle < 20; ++cycle) {
+    EXPECT_FALSE(take(of_scene(5, report("right", cycle))));
+    EXPECT_TRUE(take(of_scene(6, report("left", cycle, 2))));
+  }
+}
+
 TEST_F(Merge, HandsOutTheFormerSceneOnceNoneIsHeardOfTheLaterOne) {
   take(of_scene(5, report("left", 1)));
   take(of_scene(5, report("right", 1)));

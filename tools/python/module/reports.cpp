@@ -221,10 +221,12 @@ class Reports : public Live<ReportParts> {
   py::dict zones() {
     const Use parts = use();
     const clearance_msg_Distances& last = *parts->stream;
-    last.cycle == 0 ? parts->zones.update() : parts->zones.update(last);
-    if (parts->stream->daemon != 0 && *parts->stream->partner == '\0')
-      parts->zones.keep_only(parts->stream->daemon);
-    return zones_of(parts->zones);
+    parts->zones.update();
+    if (last.daemon != 0 && *last.partner == '\0') parts->zones.keep_only(last.daemon);
+    if (last.cycle == 0) return zones_of(parts->zones, {});
+    parts->zones.update(last);
+    const auto names = names_of(*parts, last.scene_revision);
+    return zones_of(parts->zones, names ? names->zones : py::list());
   }
   py::object health() {
     const Use parts = use();

@@ -116,11 +116,12 @@ SeparationArrays separation_arrays(const clearance_msg_Separation& message) {
           records_of(pair_separation_dtype(), message.pairs._buffer, message.pairs._length)};
 }
 
-py::dict zones_of(const client::Zones& zones) {
+py::dict zones_of(const client::Zones& zones, const py::list& names) {
   py::dict all;
   for (const auto& [id, state] : zones.states()) {
     const py::array record = records_of(zone_dtype(), &state, 1);
-    all[py::str(state.name)] = record[py::int_(0)];
+    const bool is_named = *state.name != '\0' || id >= names.size();
+    all[is_named ? py::object(py::str(state.name)) : py::object(names[id])] = record[py::int_(0)];
   }
   return all;
 }

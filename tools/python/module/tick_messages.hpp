@@ -56,7 +56,8 @@ struct SeparationArrays {
 [[nodiscard]] SeparationArrays separation_arrays(const clearance_msg_Separation& message);
 
 // The state of every zone by its name, as records.
-[[nodiscard]] py::dict zones_of(const client::Zones& zones);
+// By name; `names` are those of zones by id, for a state that has none yet.
+[[nodiscard]] py::dict zones_of(const client::Zones& zones, const py::list& names);
 
 // A dict with the fields of the message; lists of dicts for its sequences.
 [[nodiscard]] py::dict health_of(const clearance_msg_Health& message);
