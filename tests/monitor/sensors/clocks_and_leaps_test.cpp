@@ -255,6 +255,21 @@ TEST_F(ClocksAndLeaps, ALinkWhoseJointIsFrozenHidesNothingAndPlacesNoCamera) {
   }
 }
 
+// The cart drives at 0.5 m/s, and its localisation is stuck.
+TEST_F(ClocksAndLeaps, AnObjectWhosePosesAreFrozenPlacesNoCamera) {
+  for (const bool is_stuck : {false, true}) {
+    make_with_info("on: cart");
+    for (int ms = 0; ms <= 5000; ms += 10) {
+      const std::int64_t at = kStart + ms * kMs;
+      PoseSample sample = test::sample(0, test::at(1, 0, 0), at);
+      sample.has_twist = true;
+      sample.twist.linear = {is_stuck ? 0.5 : 0.0, 0.0, 0.0};
+      sensors->add(std::vector{sample}, {}, at);
+    }
+    EXPECT_EQ(see(kStart + 4995 * kMs).size(), is_stuck ? 0u : 1u);
+  }
+}
+
 TEST_F(ClocksAndLeaps, AFrameNamesWhatCarriesItsCamera) {
   const auto carrier = [&](const std::string& mount, const char* parent) {
     make_with_info(mount);
