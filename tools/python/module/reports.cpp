@@ -223,7 +223,7 @@ class Reports : public Live<ReportParts> {
     const clearance_msg_Distances& last = *parts->stream;
     parts->zones.update();
     if (last.daemon != 0 && *last.partner == '\0') parts->zones.keep_only(last.daemon);
-    if (last.cycle == 0) return zones_of(parts->zones, {});
+    if (last.cycle == 0) return zones_of(parts->zones, py::list());
     parts->zones.update(last);
     const auto names = names_of(*parts, last.scene_revision);
     return zones_of(parts->zones, names ? names->zones : py::list());
