@@ -1,4 +1,4 @@
-// What carries a sensor: the world, an object, or a link of a robot, placed by joints.
+// The carrier of a sensor: the world, an object, or a link of a robot, placed by joints.
 #pragma once
 
 #include <cstdint>

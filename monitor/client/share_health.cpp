@@ -138,7 +138,7 @@ void join_partners(Views views, clearance_msg_PartnerHealth& out) {
   for (auto clearance_msg_PartnerHealth::*const sum : kPartnerSums) out.*sum = 0;
 }
 
-// What has been counted since the last time; another daemon has not counted since then.
+// The number that was counted since the last time; another daemon has not counted since then.
 std::uint64_t increase(std::uint64_t before, std::uint64_t now) {
   return now > before ? now - before : 0;
 }

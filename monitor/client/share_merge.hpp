@@ -93,7 +93,7 @@ void join_gradients(const ShareMap& map, std::span<const ShareView> views,
     const ShareMap& map, std::uint32_t zone,
     std::span<const clearance_msg_ZoneState* const> of_shares);
 
-// What the daemons of one share have counted since the first one was heard. It does not fall where
+// The counts of all daemons of one share since the first one was heard. They do not fall where
 // another daemon follows, as after a restart or a change of the leader: what that had counted
 // before is left out.
 class HealthCounts {

@@ -234,7 +234,7 @@ void SensorReader::build() {
   for (std::uint32_t i = 0; i < statuses_.size(); ++i) statuses_[i] = sensors_->status(i);
 }
 
-// What was being taken or built is gone.
+// The frame that was being taken or built is gone.
 void SensorReader::tell_of_no_memory() {
   constexpr std::int64_t kToldAfterNs = 1'000'000'000;
   if (no_memory_ns_ != 0 && now_ns_ - no_memory_ns_ < kToldAfterNs) return;

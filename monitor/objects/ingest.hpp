@@ -18,7 +18,7 @@
 
 namespace clearance {
 
-// What carries a sensor at the frame in use. Frames stamped up to `lost_ns`, in the tick's time,
+// The carrier of a sensor at the frame in use. Frames stamped up to `lost_ns`, in the tick's time,
 // have no place that is trusted: until then, an input of the carrier was unknown or contradicted.
 struct CarriedSensor {
   Carrier carrier;

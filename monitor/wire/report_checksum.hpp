@@ -87,8 +87,8 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
   return sum.value();
 }
 
-// Of the fields of a message that checksum_of() leaves out: who sent it, when, and on which inputs,
-// and the zones, whose whole states are in state_checksum.
+// Covers the fields of a message that checksum_of() leaves out: who sent it, when, and on which
+// inputs, and the zones, whose whole states are in state_checksum.
 [[nodiscard]] inline std::uint64_t delivery_checksum_of(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;

@@ -1,4 +1,4 @@
-// What a sensor sees while the tick does not know what carries it.
+// A sensor whose carrier the tick does not know shows nothing certain.
 //
 // Oracle: the joints of a robot that the test moves, while their encoder sends the same position.
 #include <gtest/gtest.h>
@@ -69,7 +69,7 @@ TEST_F(CarriedSensors, OnALinkWhoseJointIsContradictedAreUnknown) {
   EXPECT_TRUE(is_known("cart"));
   ASSERT_TRUE(get_stuck(kUpper));
   EXPECT_FALSE(is_known("cart")) << "in the same tick";
-  // From now on the encoder is right, and the joint stands still. Frames no longer come.
+  // The encoder is right after this, and the joint stands still. Frames no longer come.
   for (int i = 0; i < 1000 && !knows_upper(); ++i) {
     tick(0.0, 0.0, kUpper, i < 3);
     EXPECT_TRUE(knows_upper() || !is_known("cart"));
