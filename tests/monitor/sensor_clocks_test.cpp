@@ -77,7 +77,7 @@ TEST_F(SensorClocks, AreThoseOfTheSameSensorInAChangedScene) {
   EXPECT_EQ(age(*next, 1, 3, kStep), kAge);
 }
 
-// As in a replay that begins again, when the clock was another one.
+// A replay that begins again does the same, when the clock was another one.
 TEST_F(SensorClocks, AreForgottenWhenTheTicksTimeGoesBackwards) {
   constexpr std::int64_t kOffset = 20'000'000;
   EXPECT_EQ(age(*monitor, 0, 1, kOffset), kAge) << "the clock is the one before";

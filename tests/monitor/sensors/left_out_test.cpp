@@ -290,7 +290,7 @@ TEST_F(LeftOutTest, AFrameThatIsBeyondTheReachAsAWholeIsKept) {
   EXPECT_EQ(sensors->status(0).cropped, 40u);
 }
 
-// What is beyond the reach is 2 m beside the arm and 2 m below it.
+// The points beyond the reach are 2 m beside the arm and 2 m below it.
 TEST_F(LeftOutTest, PointsBeyondTheReachAreKeptIfOnlyTheRobotIsWithinIt) {
   make(kPoints + ", reach: 0" + kAbove);
   const auto elements_of = [&](int number, const std::vector<std::array<float, 3>>& points) {

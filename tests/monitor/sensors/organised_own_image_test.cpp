@@ -103,7 +103,7 @@ TEST_F(OrganisedOwnImage, IsLeftOutAsAWholeAndNothingThatIsSeenBesideItBeyondThe
                                      : 1.95 + beside * random.uniform(0.8, 1.0));
     }
     take(depths);
-    // What a pixel sees is half of a diagonal wide.
+    // A pixel sees what is half of a diagonal wide.
     const auto least = [&](std::size_t i) {
       const double range = measured[i].norm();
       return (kError / measured[i].z() + kRays * std::sqrt(0.5)) * range;

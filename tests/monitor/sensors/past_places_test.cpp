@@ -186,7 +186,7 @@ TEST(PastPlaces, AreThoseOfTheSourceThatTheCellStatesAndOfNoOther) {
   for (int i = 0; i <= 300; ++i) add("other", 0.0, kStart + 1000 * kMs + i * 10 * kMs);
   expect_at(1.0, kStart + 3900 * kMs);
   EXPECT_GT(history.link(0, 1).error(1.0), 1.9) << "it has been late for 2.9 s";
-  // Of two writers with this name, either may be the one that is meant.
+  // Either of two writers with this name may be the one that is meant.
   add("driver", 1.0, kStart + 4100 * kMs);
   add("driver#2", 0.0, kStart + 4101 * kMs);
   history.place(kStart + 4101 * kMs);
