@@ -113,7 +113,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   if (partner_) {
     partner_states_ = std::make_unique<PartnerStates>(
         partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
-        [this](QueuedCommand command) { return put(std::move(command)); }, revision);
+        recording_.get(), [this](QueuedCommand command) { return put(std::move(command)); },
+        revision);
     if (cell.ros.moveit.any()) share_moveit();
   }
   if (!cell.commands.from.empty()) {

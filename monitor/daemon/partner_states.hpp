@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "config/cell/cell.hpp"
+#include "monitor/daemon/recording.hpp"
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
@@ -24,16 +25,18 @@ namespace clearance {
 class PartnerStates {
  public:
   // `put`: the way in for changes of the cell. `revision` returns that of the scene in force.
+  // `recording` gets the states that the loop goes on from; null: there is none.
   using Put = std::function<bool(QueuedCommand)>;
   PartnerStates(PartnerPort& port, TickPartner& ticks, TickLoop& loop, SceneChanger& changer,
-                SceneThread& thread, const std::atomic<bool>& loop_ended, Put put_command,
-                std::function<std::uint64_t()> revision)
+                SceneThread& thread, const std::atomic<bool>& loop_ended, Recording* recording,
+                Put put_command, std::function<std::uint64_t()> revision)
       : port_(port),
         ticks_(ticks),
         loop_(loop),
         changer_(changer),
         thread_(thread),
         loop_ended_(loop_ended),
+        recording_(recording),
         put_command_(std::move(put_command)),
         revision_(std::move(revision)) {}
 
@@ -60,6 +63,7 @@ class PartnerStates {
   SceneChanger& changer_;
   SceneThread& thread_;
   const std::atomic<bool>& loop_ended_;
+  Recording* const recording_;
   const Put put_command_;
   const std::function<std::uint64_t()> revision_;
   std::uint64_t refused_ = 0;  // the last cell that was not taken over; for the scene thread

@@ -9,6 +9,7 @@
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/dds/health.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
@@ -166,6 +167,7 @@ void Recording::record_all(Part& part) {
       queue.inputs().pop();
       count(1);
     }
+    if (has_states_) record_state(queued->lineage);
     if (built_ != nullptr) record_frames(queued->report.cycle);
     if (command_came_.exchange(false))
       recorder_.ask_for_file({RecordedEvent::Cause::kCommand, "a command was answered"});
@@ -204,6 +206,31 @@ void Recording::record_frames(std::uint64_t cycle) {
     }
     count(1);
   }
+}
+
+void Recording::note_state(const PartnerStateView& state) {
+  CdrEncoder encoder;
+  const auto cdr = encoder.encode(*to_wire(state, kBuild));
+  const std::lock_guard lock(mutex_);
+  states_.emplace_back(state.lineage, std::vector(cdr.begin(), cdr.end()));
+  has_states_ = true;
+}
+
+void Recording::forget_state() {
+  const std::lock_guard lock(mutex_);
+  if (!states_.empty()) states_.pop_back();
+  has_states_ = !states_.empty();
+}
+
+// A lineage that is joined is new to this daemon. Its first report may be missing, if the disk is
+// too slow.
+void Recording::record_state(std::uint64_t lineage) {
+  const std::lock_guard lock(mutex_);
+  const auto state = std::ranges::find(states_, lineage, [](const auto& one) { return one.first; });
+  if (state == states_.end()) return;
+  recorder_.joined(0, state->second);
+  states_.erase(states_.begin(), state + 1);
+  has_states_ = !states_.empty();
 }
 
 void Recording::tell_of_missing_files() const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <filesystem>
@@ -11,6 +12,7 @@
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/daemon/frame_uses.hpp"
@@ -18,6 +20,7 @@
 #include "monitor/dds/recording_health.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/recording/recorder.hpp"
+#include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
 
@@ -53,6 +56,11 @@ class Recording {
   void follow(const SceneInForce& since);
   // It has not.
   void abandon() { prepared_ = nullptr; }
+  // The loop may go on from this state of a partner: it then stands in the file in front of the
+  // first report of its lineage. To be called before the loop has it, by any one thread.
+  void note_state(const PartnerStateView& state);
+  // The loop does not go on from the state that was noted last.
+  void forget_state();
   // A command was answered, which is an event for a recording by event. Any thread.
   void note_command() noexcept { command_came_ = true; }
   // Updates log and health with the faults since the last call. It is called regularly, by a thread
@@ -83,6 +91,7 @@ class Recording {
   void run();
   void record_all(Part& part);
   void record_frames(std::uint64_t cycle);
+  void record_state(std::uint64_t lineage);
   [[nodiscard]] bool next_part();
   void fail(const std::string& why);
   void tell_of_missing_files() const;
@@ -102,7 +111,10 @@ class Recording {
   BuiltFrames* built_;  // null: the cell has no sensors
   CdrEncoder encoder_;
   RecordingHealth& health_;
-  mutable std::mutex mutex_;  // guards the next two
+  // States that the loop went on from, or may go on from, by lineage.
+  std::deque<std::pair<std::uint64_t, std::vector<std::byte>>> states_;
+  std::atomic<bool> has_states_{false};
+  mutable std::mutex mutex_;  // guards the two above, and the next two
   // The first one is being recorded, and the loop writes to the last one.
   std::deque<std::unique_ptr<Part>> parts_;
   std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;  // by queues that are gone

@@ -40,12 +40,6 @@ bool take(dds_entity_t reader, Sample<T>& sample, dds_sample_info_t& info) {
   return false;
 }
 
-std::uint64_t checksum_of(std::span<const std::byte> bytes) {
-  Checksum sum;
-  sum.add_bytes(bytes);
-  return sum.value();
-}
-
 }  // namespace
 
 std::int64_t LeastDelay::add(std::int64_t delay_ns) noexcept {
@@ -200,9 +194,8 @@ void PartnerPort::hear_states() {
       if (is_answered) actions_.send_state();
       continue;
     }
-    const auto bytes = std::as_bytes(std::span(in.bytes._buffer, in.bytes._length));
-    if (checksum_of(bytes) != in.checksum || !actions_.take_state) continue;
-    actions_.take_state({in.scene_revision, in.lineage, in.cycle, bytes});
+    const auto state = from_wire(in, kBuild);
+    if (state && actions_.take_state) actions_.take_state(*state);
   }
 }
 
@@ -272,31 +265,20 @@ void PartnerPort::look() {
   if (actions_.wants_state) actions_.wants_state();
 }
 
-Sample<clearance_msg_PartnerState> PartnerPort::state_message() const {
-  Sample<clearance_msg_PartnerState> sample;
-  copy_text(identity_.partner, sample->partner);
-  sample->daemon = identity_.id;
-  sample->build = dds_string_dup(kBuild);
-  return sample;
+void PartnerPort::write(Sample<clearance_msg_PartnerState> message, const char* what) {
+  copy_text(identity_.partner, message->partner);
+  message->daemon = identity_.id;
+  write(states_writer_, &*message, what);
 }
 
 void PartnerPort::request_state(std::uint64_t revision) {
-  auto sample = state_message();
-  sample->scene_revision = revision;
-  sample->is_request = true;
-  write(states_writer_, &*sample, "a request to the partner");
+  auto request = to_wire(PartnerStateView{revision, 0, 0, {}}, kBuild);
+  request->is_request = true;
+  write(std::move(request), "a request to the partner");
 }
 
 void PartnerPort::send_state(const PartnerStateView& state) {
-  auto sample = state_message();
-  sample->scene_revision = state.revision;
-  sample->lineage = state.lineage;
-  sample->cycle = state.cycle;
-  sample->checksum = checksum_of(state.bytes);
-  reserve_sequence(sample->bytes, state.bytes.size());
-  std::memcpy(sample->bytes._buffer, state.bytes.data(), state.bytes.size());
-  sample->bytes._length = static_cast<std::uint32_t>(state.bytes.size());
-  write(states_writer_, &*sample, "the state for the partner");
+  write(to_wire(state, kBuild), "the state for the partner");
 }
 
 void PartnerPort::write(dds_entity_t writer, const void* sample, const char* what) {

@@ -18,17 +18,12 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/partners/tick_partner.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
 
 // The lease of what has one leader.
 inline constexpr std::int64_t kLeaderLeaseNs = 20'000'000;
-
-// A state that the partner has sent.
-struct PartnerStateView {
-  std::uint64_t revision = 0, lineage = 0, cycle = 0;
-  std::span<const std::byte> bytes;
-};
 
 // The least delay of the partner's notices: what remains of it is the error of the phase. It holds
 // for the last 512 to 1024 notices, so that it follows clocks that drift.
@@ -103,7 +98,7 @@ class PartnerPort {
   void look();
   [[nodiscard]] bool hears_leader() const;
   static void write(dds_entity_t writer, const void* sample, const char* what);
-  [[nodiscard]] Sample<clearance_msg_PartnerState> state_message() const;
+  void write(Sample<clearance_msg_PartnerState> message, const char* what);
 
   const DaemonIdentity& identity_;
   TickPartner& ticks_;

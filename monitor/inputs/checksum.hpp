@@ -50,4 +50,10 @@ class Checksum {
   std::uint64_t value_ = 0x243f6a8885a308d3U;
 };
 
+[[nodiscard]] inline std::uint64_t checksum_of(std::span<const std::byte> bytes) noexcept {
+  Checksum sum;
+  sum.add_bytes(bytes);
+  return sum.value();
+}
+
 }  // namespace clearance

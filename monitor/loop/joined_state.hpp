@@ -7,11 +7,11 @@
 #include <memory>
 #include <span>
 #include <utility>
-#include <vector>
 
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/loop/frame_exchange.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/saved_state.hpp"
 
 namespace clearance {
 
@@ -24,11 +24,8 @@ class JoinedState {
 
   // Takes the bytes of save_state(). False: they do not fit this scene.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes, std::uint64_t lineage) {
-    StateReader in(bytes);
-    in.take(ids_.sources());
-    ids_.restore_former(in);
     lineage_ = lineage;
-    return monitor_->restore(in);
+    return restore_state(bytes, ids_, *monitor_);
   }
 
   // Tick thread: the frames of sensors that this state has in use have come.
@@ -53,15 +50,5 @@ class JoinedState {
   std::uint64_t lineage_ = 0;
   bool has_joined_ = false;
 };
-
-// The bytes of a monitor that has taken over and not ticked yet, with the numbers of its sources at
-// that time. Former scenes are those of `ids`.
-inline void save_state(const SourceNumbers& numbers, const SceneIds& ids, const Monitor& monitor,
-                       std::vector<std::byte>& bytes) {
-  StateWriter out(bytes);
-  out.put(numbers);
-  ids.save_former(out);
-  monitor.save(out);
-}
 
 }  // namespace clearance

@@ -120,11 +120,11 @@ void EventFiles::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish
   if (writer_ && !repeated) writer_->write(kind, log_ns, publish_ns, cdr);
 }
 
-void EventFiles::write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
-                             std::span<const std::byte> cdr) {
+void EventFiles::write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+                       std::span<const std::byte> cdr) {
   if (!ok()) return;
-  keep({.is_frame = true, .log_ns = log_ns, .publish_ns = stamp_ns, .cdr = cdr});
-  if (writer_) writer_->write_frame(log_ns, stamp_ns, cdr);
+  keep({.side = topic, .log_ns = log_ns, .publish_ns = stamp_ns, .cdr = cdr});
+  if (writer_) writer_->write(topic, log_ns, stamp_ns, cdr);
 }
 
 void EventFiles::keep(RingMessage message) {
@@ -164,8 +164,8 @@ void EventFiles::begin(std::int64_t now_ns) {
   std::optional<std::int64_t> first_tick_ns;
   ring_.for_each([&](const RingMessage& message) {
     follow(message.scene, message.log_ns);
-    if (message.is_frame)
-      return writer_->write_frame(message.log_ns, message.publish_ns, message.cdr);
+    if (message.side)
+      return writer_->write(*message.side, message.log_ns, message.publish_ns, message.cdr);
     if (message.kind == TopicKind::kDistances && !first_tick_ns) first_tick_ns = message.log_ns;
     if (message.repeated && first_tick_ns && message.log_ns > *first_tick_ns) return;
     writer_->write(message.kind, message.log_ns, message.publish_ns, message.cdr);

@@ -30,8 +30,8 @@ class EventFiles final : public RecordingSink {
                           std::int64_t log_ns) override;
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
              std::span<const std::byte> cdr, bool repeated) override;
-  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
-                   std::span<const std::byte> cdr) override;
+  void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+             std::span<const std::byte> cdr) override;
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) override;
   bool check() override;
   bool close() override;

@@ -24,7 +24,7 @@ EventRing::Found EventRing::at(std::uint64_t place) const {
   std::uint64_t next = place + aligned(sizeof header + header.bytes);
   if (next == left_) next += to_the_end(next);
   return {{.kind = header.kind,
-           .is_frame = header.is_frame,
+           .side = header.side,
            .is_start = header.is_start,
            .repeated = header.repeated,
            .scene = header.scene,
@@ -45,7 +45,7 @@ void EventRing::put(const RingMessage& message) {
   if (waits_for_start_ && !message.is_start) return;
   waits_for_start_ = false;
   const Header header{message.log_ns, message.publish_ns, message.cdr.size(), message.scene,
-                      message.kind,   message.is_frame,   message.is_start,   message.repeated};
+                      message.kind,   message.side,       message.is_start,   message.repeated};
   const std::uint64_t need = aligned(sizeof header + message.cdr.size());
   const std::uint64_t gap = to_the_end(head_) < need ? to_the_end(head_) : 0;
   while (!empty() && head_ + gap + need - tail_ > memory_.size()) drop_front();

@@ -4,18 +4,20 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "monitor/recording/topic_schema.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance {
 
 struct RingMessage {
   TopicKind kind = TopicKind::kPoses;
-  bool is_frame = false;  // of a sensor, and of no kind
-  bool is_start = false;  // a file may begin here
-  bool repeated = false;  // a file needs this message only in its first tick
+  std::optional<SideTopic> side = {};  // then it is of no kind
+  bool is_start = false;          // a file may begin here
+  bool repeated = false;          // a file needs this message only in its first tick
   std::uint32_t scene = 0;
   std::int64_t log_ns = 0, publish_ns = 0;
   std::span<const std::byte> cdr;
@@ -53,7 +55,8 @@ class EventRing {
     std::uint64_t bytes;
     std::uint32_t scene;
     TopicKind kind;
-    bool is_frame, is_start, repeated;
+    std::optional<SideTopic> side;
+    bool is_start, repeated;
   };
   struct Found {
     RingMessage message;

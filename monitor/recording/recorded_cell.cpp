@@ -97,8 +97,10 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
 
 std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::path>& files) {
   std::vector<DescribedScene> all;
+  std::size_t joined = 0;
   for (const std::filesystem::path& file : files) {
     for (const McapMetadata& found : read_metadata(file)) {
+      if (found.name == kJoinedMetadata) ++joined;
       if (found.name != kRecordingMetadata) continue;
       const auto text = [&found](const std::string& key) {
         const auto value = found.values.find(key);
@@ -112,10 +114,13 @@ std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::
                            .cell_file = text("cell_file"),
                            .share = text("share"),
                            .recording = file,
-                           .place = found.offset};
+                           .place = found.offset,
+                           .joined = joined};
       std::erase_if(all, [&scene](const DescribedScene& before) {
-        return before.daemon == scene.daemon && before.revision == scene.revision &&
-               before.since == scene.since;
+        const bool is_same = before.daemon == scene.daemon && before.revision == scene.revision &&
+                             before.since == scene.since;
+        if (is_same) scene.joined = before.joined;
+        return is_same;
       });
       all.push_back(std::move(scene));
     }

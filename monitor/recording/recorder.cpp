@@ -59,9 +59,10 @@ Recorder::Recorder(const std::filesystem::path& file, const Cell& cell, std::int
 
 // The state of every zone follows with the next report, since its id may be another one.
 void Recorder::change(const Cell& cell, const SceneInForce& since) {
+  const bool is_other = cell.scene.revision != now_->scene.revision;
   begin_scene(cell, *make_catalogue(cell, since));
   watch_.change();
-  asked_ = {RecordedEvent::Cause::kCommand, "the cell has changed"};
+  if (is_other) asked_ = {RecordedEvent::Cause::kCommand, "the cell has changed"};
 }
 
 void Recorder::begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue) {
@@ -113,8 +114,8 @@ void Recorder::report(const Report& report, std::span<const SourceUse> sources,
 void Recorder::write_report(const Report& report, std::span<const SourceUse> sources,
                             std::int64_t publish_ns, std::uint64_t lineage) {
   write_used(sources, report.now_ns);
-  for (const WaitingFrame& frame : std::exchange(frames_, {}))
-    sink_->write_frame(report.now_ns, frame.stamp_ns, frame.cdr);
+  for (const WaitingSide& side : std::exchange(sides_, {}))
+    sink_->write(side.topic, report.now_ns, side.stamp_ns, side.cdr);
   if (!report.separated_zones.empty()) write_separation(report, publish_ns);
   if (holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *now_->distances);

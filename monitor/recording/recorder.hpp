@@ -32,8 +32,8 @@ class Recorder {
   Recorder(const std::filesystem::path& file, const Cell& cell, std::int64_t now_ns,
            const RecordingOptions& options = {.overwrite = false});
 
-  // Another cell is in force: everything after this call is of its scene. Writes its catalogue and
-  // the files that it needs.
+  // Another cell is in force, or a new monitor of the same one: everything after this call is of
+  // its scene. Writes its catalogue and the files that it needs.
   void change(const Cell& cell, const SceneInForce& since);
 
   // A batch that a tick used, of poses or of joints, in the order of use; written in front of that
@@ -43,7 +43,13 @@ class Recorder {
   // A frame of a sensor that the next report's tick was shown, or that no tick was; written in
   // front of that report.
   void frame(std::int64_t stamp_ns, std::span<const std::byte> cdr) {
-    frames_.push_back({stamp_ns, {cdr.begin(), cdr.end()}});
+    sides_.push_back({SideTopic::kFrames, stamp_ns, {cdr.begin(), cdr.end()}});
+  }
+
+  // The state of a partner (PartnerState) that the next report's tick goes on from; written
+  // in front of that report.
+  void joined(std::int64_t stamp_ns, std::span<const std::byte> cdr) {
+    sides_.push_back({SideTopic::kStates, stamp_ns, {cdr.begin(), cdr.end()}});
   }
 
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
@@ -89,7 +95,8 @@ class Recorder {
     std::uint64_t revision;
     std::vector<std::string> names;
   };
-  struct WaitingFrame {
+  struct WaitingSide {
+    SideTopic topic;
     std::int64_t stamp_ns;
     std::vector<std::byte> cdr;
   };
@@ -125,7 +132,7 @@ class Recorder {
   std::unique_ptr<RecordingSink> sink_;
   std::string without_files_;
   std::vector<Waiting> waiting_;
-  std::vector<WaitingFrame> frames_;
+  std::vector<WaitingSide> sides_;
   Sample<clearance_msg_PoseBatch> batch_;
   std::unique_ptr<OfScene> now_;
   std::deque<JointNamesOf> joint_names_;  // of the last scenes, the present one last

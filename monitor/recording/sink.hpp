@@ -28,9 +28,8 @@ class RecordingSink {
   // written.
   virtual void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,
                      std::span<const std::byte> cdr, bool repeated) = 0;
-  // A frame of a sensor.
-  virtual void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
-                           std::span<const std::byte> cdr) = 0;
+  virtual void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+                     std::span<const std::byte> cdr) = 0;
   // A tick ends, in which this happened. Returns true if a file may begin with the next tick, which
   // then states every zone.
   virtual bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) = 0;
@@ -60,9 +59,9 @@ class ContinuousFiles final : public RecordingSink {
              std::span<const std::byte> cdr, bool /*repeated*/) override {
     writer_.write(kind, log_ns, publish_ns, cdr);
   }
-  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns,
-                   std::span<const std::byte> cdr) override {
-    writer_.write_frame(log_ns, stamp_ns, cdr);
+  void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+             std::span<const std::byte> cdr) override {
+    writer_.write(topic, log_ns, stamp_ns, cdr);
   }
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& /*event*/) override {
     return writer_.roll(now_ns);

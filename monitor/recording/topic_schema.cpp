@@ -112,10 +112,16 @@ std::string_view type_of(TopicKind kind) noexcept {
   return std::string_view(topic(kind).type->m_typename).substr(kScope.size());
 }
 
-const McapSchema& frames_schema() {
-  static const McapSchema kSchema{"clearance::msg::SensorFrame", std::string(kIdlEncoding),
+const char* name(SideTopic topic) noexcept {
+  return topic == SideTopic::kFrames ? "clearance/frames" : "clearance/states";
+}
+
+const McapSchema& side_schema(SideTopic topic) {
+  static const McapSchema kFrames{"clearance::msg::SensorFrame", std::string(kIdlEncoding),
                                   self_contained_idl(kFramesIdlText, "SensorFrame")};
-  return kSchema;
+  static const McapSchema kStates{"clearance::msg::PartnerState", std::string(kIdlEncoding),
+                                  self_contained_idl(kPartnersIdlText, "PartnerState")};
+  return topic == SideTopic::kFrames ? kFrames : kStates;
 }
 
 // Made once, on first use; initialisation of statics is thread-safe.

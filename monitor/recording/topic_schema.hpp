@@ -1,6 +1,8 @@
 // The topics as a recording holds them: schema name and text, message encoding.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,13 +25,17 @@ inline constexpr std::string_view kIdlEncoding = "omgidl";
 // Name, encoding and self-contained IDL text of the topic's type.
 [[nodiscard]] const McapSchema& topic_schema(TopicKind kind);
 
-// The same of frames of sensors, which recordings alone have, on the topic kFramesTopic.
-[[nodiscard]] const McapSchema& frames_schema();
-inline constexpr const char* kFramesTopic = "clearance/frames";
+// What a recording holds beside the topics of a cell: frames of sensors (SensorFrame), and the
+// states of partners that the daemon took over (PartnerState). Each has a channel of its own.
+enum class SideTopic : std::uint8_t { kFrames, kStates };
+inline constexpr std::size_t kSideTopics = 2;
+[[nodiscard]] const char* name(SideTopic topic) noexcept;  // "clearance/frames"
+[[nodiscard]] const McapSchema& side_schema(SideTopic topic);
 
-// idl/clearance.idl and idl/frames.idl as they were when this was built.
+// The files of idl/ as they were when this was built.
 extern const char* const kIdlText;
 extern const char* const kFramesIdlText;
+extern const char* const kPartnersIdlText;
 
 // The part of `idl` that `type` (e.g. PoseBatch) needs. The text is written as clearance.idl is:
 // constants of one line and structs, inside modules, each used after its definition. Comments are

@@ -128,6 +128,14 @@ void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t pu
                static_cast<std::uint64_t>(publish_ns), cdr);
 }
 
+void RecordingWriter::write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+                            std::span<const std::byte> cdr) {
+  std::optional<std::uint16_t>& channel = side_channels_[static_cast<std::size_t>(topic)];
+  if (!channel) channel = add_channel(side_schema(topic), name(topic));
+  if (topic == SideTopic::kStates) note(kJoinedMetadata, {});
+  write(*channel, log_ns, stamp_ns, cdr);
+}
+
 bool RecordingWriter::is_due(std::int64_t log_ns) const noexcept {
   const bool more_than_a_catalogue = mcap_->messages() > 1;
   if (!ok() || !more_than_a_catalogue) return false;

@@ -35,6 +35,11 @@ inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 // may still use its ids. Its keys are scene_revision, and objects: their names by id, with commas.
 inline constexpr std::string_view kFormerMetadata = "clearance.former_scene";
 
+// Name of the empty metadata record in front of a state of a partner that the daemon took over: the
+// daemon counts its cycles from there on as its partner did. So cycles in descriptions behind it
+// cannot be compared with those in front of it.
+inline constexpr std::string_view kJoinedMetadata = "clearance.joined";
+
 // Errors are kept, as in McapWriter. Only one thread may use it at a time.
 class RecordingWriter {
  public:
@@ -91,11 +96,9 @@ class RecordingWriter {
                  static_cast<std::uint64_t>(publish_ns), cdr);
   }
 
-  // A frame of a sensor, on kFramesTopic.
-  void write_frame(std::int64_t log_ns, std::int64_t stamp_ns, std::span<const std::byte> cdr) {
-    if (!frames_) frames_ = add_channel(frames_schema(), kFramesTopic);
-    write(*frames_, log_ns, stamp_ns, cdr);
-  }
+  // `stamp_ns`: of the frame or the state. A state is noted as kJoinedMetadata, too.
+  void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
+             std::span<const std::byte> cdr);
 
   // Afterwards everything written so far survives a crash.
   void flush() { mcap_->flush(); }
@@ -127,7 +130,8 @@ class RecordingWriter {
   std::optional<McapWriter> mcap_;
   std::array<std::uint16_t, kRecordedTopics.size()> channels_{};
   std::vector<std::pair<McapSchema, std::string>> more_channels_;  // and their topics, in order
-  std::optional<std::uint16_t> frames_;  // the channel of frames, from the first one on
+  // The channels of side topics, each from its first message on.
+  std::array<std::optional<std::uint16_t>, kSideTopics> side_channels_;
   CdrEncoder encoder_;
   std::uint64_t part_ = 1;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file

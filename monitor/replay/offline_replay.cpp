@@ -75,7 +75,7 @@ class Replay {
   void begin_tick(const TickInput& input);
   void end_tick(const TickInput& input, const Report& report,
                 const std::function<void(const ReplayedTick&)>& on_tick);
-  void compare(const TickInput& input, const Report& report, bool complete);
+  void compare(const TickInput& input, const Report& report, const char* missing);
   void compare_zones();
   void finish_reference();
   [[nodiscard]] std::string nothing_in_window();
@@ -102,7 +102,7 @@ class Replay {
   std::uint64_t in_window_ = 0;  // ticks
   bool differs_ = false;
   bool gap_noted_ = false;
-  bool restarted_ = false;
+  bool restarted_ = false, has_joined_ = false, has_changed_ = false;
   std::uint64_t cycle_offset_ = 0;  // recorded less replayed
   std::uint64_t last_recorded_cycle_ = 0;
   // The share that was shown last.
@@ -163,6 +163,7 @@ void Replay::run_ticks(const std::function<void(const ReplayedTick&)>& on_tick) 
       result_.error = loop_.error();
       return;
     }
+    if (input.recorded != nullptr) cycle_offset_ = input.recorded->cycle - report->cycle;
     if (&loop_.cell().scene != scene_) change_scene(input, *report);
     end_tick(input, *report, on_tick);
     show_progress();
@@ -194,6 +195,7 @@ void Replay::follow(const Scene& scene) {
 
 // Everything that is judged by name goes on.
 void Replay::change_scene(const TickInput& input, const Report& report) {
+  has_changed_ = true;
   follow(loop_.cell().scene);
   expectations_.change(*scene_);
   if (reference_) reference_->change(*scene_);
@@ -218,8 +220,12 @@ void Replay::begin_tick(const TickInput& input) {
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;
   const bool first = result_.ticks == 1 || input.restart;
-  if (first) {
-    cycle_offset_ = cycle - 1;
+  if (input.joined != nullptr) {
+    has_joined_ = true;
+    result_.notes.push_back(
+        fmt::format("before tick {} ({:f} s), the daemon took over the state of its partner", cycle,
+                    seconds(input.time.now_ns)));
+  } else if (first) {
     if (cycle > 1) {
       result_.notes.push_back(
           fmt::format("the recording begins at tick {} of the daemon: what the monitor knew by "
@@ -232,7 +238,6 @@ void Replay::begin_tick(const TickInput& input) {
           fmt::format("reports are missing in the recording, the first between ticks {} and {}",
                       last_recorded_cycle_, cycle));
     }
-    cycle_offset_ += cycle - last_recorded_cycle_ - 1;
   }
   last_recorded_cycle_ = cycle;
 }
@@ -249,9 +254,9 @@ void Replay::end_tick(const TickInput& input, const Report& report,
   }
   if (options_.compare) {
     // Bounds for other poses say nothing about these.
-    const bool complete = input.complete && loop_.is_complete();
-    const bool comparable = complete || *options_.compare == Comparison::kBits;
-    if (in_window && comparable && !differs_) compare(input, report, complete);
+    const char* const missing = input.complete ? loop_.missing() : "poses";
+    const bool comparable = missing == nullptr || *options_.compare == Comparison::kBits;
+    if (in_window && comparable && !differs_) compare(input, report, missing);
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
@@ -273,7 +278,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
 }
 
 // Only the first difference is reported: later ones are its consequences.
-void Replay::compare(const TickInput& input, const Report& report, bool complete) {
+void Replay::compare(const TickInput& input, const Report& report, const char* missing) {
   const std::optional<std::string> found =
       difference_->first(input, report, cycle_offset_, feed_.not_recorded());
   ++result_.compared;
@@ -281,10 +286,10 @@ void Replay::compare(const TickInput& input, const Report& report, bool complete
   differs_ = true;
   const std::string what = fmt::format("the replay differs in {}", *found);
   fail(report.cycle, report.now_ns,
-       complete ? what + other_build_
-                : fmt::format("{} that this tick used are not in the recording: it cannot be "
-                              "compared ({})",
-                              input.complete ? "frames of sensors" : "poses", what));
+       missing == nullptr ? what + other_build_
+                          : fmt::format("{} that this tick rests on cannot be had from the "
+                                        "recording: it cannot be compared ({})",
+                                        missing, what));
 }
 
 // Zone changes come on a topic of their own and are compared when all are known. The recording must
@@ -292,6 +297,8 @@ void Replay::compare(const TickInput& input, const Report& report, bool complete
 void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
+  // Cycles do not tell the scene of a zone then. The reports list the active zones, too.
+  if (has_joined_ && has_changed_) return;
   if (const auto found = zones_.first(feed_.zones(), feed_.not_recorded())) {
     fail(found->cycle, found->now_ns,
          fmt::format("the replay differs in {}{}", found->what, other_build_));

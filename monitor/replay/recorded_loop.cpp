@@ -3,7 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <utility>
+
+#include "monitor/files/build_info.hpp"
+#include "monitor/saved_state.hpp"
+#include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
 
@@ -35,6 +40,7 @@ void RecordedLoop::start(const Cell& cell, bool followed) {
   since_ = {};
   next_ = nullptr;
   blind_.clear();
+  lacks_state_ = false;
   monitor_ = std::make_unique<Monitor>(cell.scene);
   ids_ = std::make_unique<SceneIds>(cell.scene, followed);
   sensors_ =
@@ -51,6 +57,7 @@ void RecordedLoop::restart(const clearance_msg_Distances& report) {
 
 const Report* RecordedLoop::tick(const TickInput& input) {
   if (input.restart) restart(*input.recorded);
+  if (input.joined != nullptr) join(*input.joined);
   if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
   if (moveit_ != nullptr && next_ && monitor_->cycle() > next_->began_after) succeed();
   poses_.clear();
@@ -66,6 +73,37 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   const bool goes_on =
       input.recorded == nullptr ? follow_moveit(input) : change_after(*input.recorded);
   return goes_on ? &report : nullptr;
+}
+
+const char* RecordedLoop::missing() const noexcept {
+  if (lacks_state_) return "the state of a partner";
+  if (!blind_.empty()) return "frames of sensors";
+  return unclear_.empty() ? nullptr : "poses";
+}
+
+// Makes the same calls as JoinedState and FrameExchange::show_awaited(): the frame of a sensor that
+// the state rests on is either in use already, or recorded with this tick.
+void RecordedLoop::join(const clearance_msg_PartnerState& state) {
+  ++joined_;
+  begun_ = true;
+  from_ = state.cycle;
+  next_ = nullptr;
+  const auto found = from_wire(state, kBuild);
+  auto monitor = std::make_unique<Monitor>(cell_->scene);
+  auto ids = std::make_unique<SceneIds>(cell_->scene);
+  lacks_state_ = !found || found->revision != cell_->scene.revision ||
+                 !restore_state(found->bytes, *ids, *monitor);
+  if (lacks_state_) return;
+  for (std::uint32_t sensor = 0; sensor < cell_->scene.sensors.size(); ++sensor) {
+    if (monitor->awaited_frame(sensor) == 0) {
+      blind_.erase(sensor);
+    } else if (!monitor->show(sensor, monitor_->frame_in_use(sensor))) {
+      blind_.insert(sensor);
+    }
+  }
+  unclear_.clear();
+  monitor_ = std::move(monitor);
+  ids_ = std::move(ids);
 }
 
 // The joints of this tick come first: they may be those at the stamp of a frame.
@@ -144,9 +182,9 @@ void RecordedLoop::begin_with(const clearance_msg_Distances& report) {
 // if the recording begins between the two steps.
 bool RecordedLoop::change_before(const clearance_msg_Distances& report) {
   if (!begun_) begin_with(report);
-  const DescribedScene* change = history_.next_change(report.daemon, from_);
+  const DescribedScene* change = history_.next_change(report.daemon, joined_, from_);
   for (; change != nullptr && change->since.from <= report.cycle;
-       change = history_.next_change(report.daemon, from_)) {
+       change = history_.next_change(report.daemon, joined_, from_)) {
     if (!next_ && !begin(*change)) return false;
     succeed();
   }
@@ -155,7 +193,7 @@ bool RecordedLoop::change_before(const clearance_msg_Distances& report) {
 
 bool RecordedLoop::change_after(const clearance_msg_Distances& report) {
   if (next_) return true;
-  const DescribedScene* const change = history_.next_change(report.daemon, from_);
+  const DescribedScene* const change = history_.next_change(report.daemon, joined_, from_);
   const bool due = change != nullptr && change->since.began_after <= report.cycle;
   return !due || begin(*change);
 }

@@ -40,10 +40,10 @@ class RecordedLoop {
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
-  // False: a batch may be missing that the daemon used, because it was made for a scene before the
-  // recording began.
-  // The same if it does not have the frame of a sensor in use.
-  [[nodiscard]] bool is_complete() const noexcept { return unclear_.empty() && blind_.empty(); }
+  // What the last tick of the daemon rested on and this one did not; null: nothing. A batch may be
+  // missing that was made for a scene before the recording began. The state of a partner cannot be
+  // used by another build, and in another cell.
+  [[nodiscard]] const char* missing() const noexcept;
   // The number of batches that were made for no scene that is known.
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
 
@@ -59,6 +59,7 @@ class RecordedLoop {
 
   void start(const Cell& cell, bool followed);
   void begin_with(const clearance_msg_Distances& report);
+  void join(const clearance_msg_PartnerState& state);
   void take(const PoseBatch& batch);
   void show_frames(const TickInput& input);
   void show_recorded(const TickInput& input);
@@ -86,6 +87,8 @@ class RecordedLoop {
   std::vector<JointSample> joints_;
   std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
   std::set<std::uint32_t> blind_;  // sensors whose frame in use is not in the recording
+  std::size_t joined_ = 0;         // states of partners so far
+  bool lacks_state_ = false;       // the last one of them could not be used
   std::uint64_t of_other_scenes_ = 0;
   std::string error_;
 };

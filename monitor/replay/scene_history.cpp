@@ -23,10 +23,11 @@ bool SceneHistory::has_changes() const noexcept {
   });
 }
 
-const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::uint64_t cycle) const {
+const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::size_t joined,
+                                                std::uint64_t cycle) const {
   const DescribedScene* next = nullptr;
   for (const DescribedScene& scene : described_) {
-    if (scene.daemon != daemon || scene.since.from <= cycle) continue;
+    if (scene.daemon != daemon || scene.joined != joined || scene.since.from <= cycle) continue;
     if (next == nullptr || scene.since.from < next->since.from) next = &scene;
   }
   return next;

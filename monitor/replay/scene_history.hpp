@@ -38,7 +38,9 @@ class SceneHistory {
   [[nodiscard]] const std::vector<FormerScene>& former() const noexcept { return former_; }
 
   // The next change of this run of the daemon whose first cycle is after `cycle`; null: none.
-  [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::uint64_t cycle) const;
+  // `joined`: of so many states of partners before it, since those change how cycles are counted.
+  [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::size_t joined,
+                                                  std::uint64_t cycle) const;
 
   // The cell of a revision, read when it is asked for first. Null: the recording does not describe
   // it, or it cannot be read, or is read as another one; then error() says why.

@@ -57,7 +57,9 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory
       tick_hz_(tick_hz),
       separations_(history.has_changes() || separated_count(history.first().scene).zones > 0),
       gradients_(history.has_changes() || history.first().scene.gradients) {
-  if (by_report_ && !history.first().scene.sensors.empty()) frames_.emplace(files);
+  if (!by_report_) return;
+  states_.emplace(files);
+  if (!history.first().scene.sensors.empty()) frames_.emplace(files);
 }
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
@@ -78,6 +80,7 @@ bool TickFeed::next(TickInput& tick) {
   tick.recorded = nullptr;
   tick.separation = nullptr;
   tick.gradients = nullptr;
+  tick.joined = nullptr;
   tick.restart = false;
   tick.complete = true;
   if (by_report_) return next_by_report(tick);
@@ -165,8 +168,9 @@ bool TickFeed::next_by_report(TickInput& tick) {
   const clearance_msg_Distances& report = *current_.report;
   tick.recorded = &report;
   tick.time = {report.now_ns, report.clock_offset_ns};
+  tick.joined = joined_before(report);
   // A daemon that was started again counts from 1.
-  tick.restart = last_cycle_ != 0 && report.cycle <= last_cycle_;
+  tick.restart = tick.joined == nullptr && last_cycle_ != 0 && report.cycle <= last_cycle_;
   last_cycle_ = report.cycle;
   if (tick.restart) {
     consumed_.clear();
@@ -242,11 +246,21 @@ void TickFeed::take_used(TickInput& tick) {
   });
 }
 
+// A state stands in front of the first report of its lineage.
+const clearance_msg_PartnerState* TickFeed::joined_before(const clearance_msg_Distances& report) {
+  if (report.lineage == 0) return nullptr;
+  const clearance_msg_PartnerState* const next = states_->front();
+  if (next == nullptr || next->lineage != report.lineage) return nullptr;
+  joined_ = states_->take();
+  return &*joined_;
+}
+
 // One that no tick was shown stands before another one that was.
 void TickFeed::take_frames(std::uint64_t cycle, TickInput& tick) {
   if (!frames_) return;
   for (; const clearance_msg_SensorFrame* const frame = frames_->front(); frames_->pop()) {
-    if (frame->cycle > cycle) return;
+    // Behind a state of a partner, cycles may have lower numbers.
+    if (frame->cycle > cycle || frames_->front_ns() > current_.log_ns) return;
     tick.frames.push_back({frame->cycle, from_wire(*frame)});
   }
 }

@@ -24,9 +24,9 @@
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/recording/reader.hpp"
-#include "monitor/replay/frame_feed.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/replay/scene_history.hpp"
+#include "monitor/replay/side_feed.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {
@@ -54,6 +54,9 @@ struct TickInput {
   // this tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
+  // The state of its partner that the daemon ticked from this tick on. Null: it went on with its
+  // own.
+  const clearance_msg_PartnerState* joined = nullptr;
   bool restart = false;  // the daemon had been started anew, so its monitor had no history
   bool complete = true;  // false: a source's last batch is not in the file, so older poses replace
                          // it
@@ -142,6 +145,8 @@ class TickFeed {
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
   void take_used(TickInput& tick);
+  [[nodiscard]] const clearance_msg_PartnerState* joined_before(
+      const clearance_msg_Distances& report);
   void take_frames(std::uint64_t cycle, TickInput& tick);
   void add(PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
@@ -149,7 +154,9 @@ class TickFeed {
   std::unique_ptr<InputLog> log_;          // or
   std::optional<RecordingReader> reader_;  // this
   std::optional<FrameFeed> frames_;        // and this, if the cell has sensors
-  SceneHistory* history_ = nullptr;        // null: a log of another program
+  std::optional<StateFeed> states_;        // and this
+  Sample<clearance_msg_PartnerState> joined_;
+  SceneHistory* history_ = nullptr;  // null: a log of another program
   ObjectMap objects_;
   std::unique_ptr<OwnBatches> own_;  // null: a log of another program
   std::uint64_t own_revision_ = 0;   // of the scene whose ids it gives to joints

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/replay/frame_feed.hpp"
+#include "monitor/replay/side_feed.hpp"
 #include "monitor/sensors/sensors.hpp"
 
 namespace clearance {

@@ -6,6 +6,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <map>
 #include <memory>
 #include <set>
@@ -15,6 +16,7 @@
 
 #include "monitor/client/client.hpp"
 #include "tests/shared/ros_camera.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {
@@ -83,10 +85,10 @@ class CameraPartners : public testing::Test {
   std::set<double> distances;
   bool is_known = false, is_clear = false, may_be_lost = false;
 
-  void start(const std::string& name) {
+  void start(const std::string& name, const std::vector<std::string>& more = {}) {
     daemons[name] = std::make_unique<ChildProcess>(
         kDaemon, test::with(test::with({file.path()}, test::dds_arguments(dds)),
-                            std::vector<std::string>{"--partner", name}));
+                            test::with({"--partner", name}, more)));
   }
   template <class IsSo>
   bool read_until(const IsSo& is_so, int seconds = 20) {
@@ -151,6 +153,33 @@ TEST_F(CameraPartners, AgreeOnEachFrameAndKeepTheCameraThroughKillsAndJoins) {
     expect_no_fault();
   }
   EXPECT_TRUE(is_clear) << "the zone was clear all the time, also while one joined";
+}
+
+// The state that one of them joins with rests on a frame: either it has shown that one already, or
+// its recording has it with the tick of the join.
+TEST_F(CameraPartners, HaveRecordingsThatReplayToTheSameBits) {
+  const test::ScratchFolder folder;
+  std::map<std::string, std::string> recordings;
+  for (const char* name : {"left", "right"})
+    recordings[name] = (folder / (std::string(name) + ".mcap")).string();
+  start("left", {"--record", recordings["left"]});
+  ASSERT_TRUE(read_until([this] { return is_known; })) << logs();
+  start("right", {"--record", recordings["right"]});
+  ASSERT_TRUE(agree()) << logs();
+  for (const char* name : {"right", "left"}) {
+    daemons[name]->signal(SIGSTOP);
+    states.clear();
+    EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 300; })) << logs();
+    daemons[name]->signal(SIGCONT);
+    ASSERT_TRUE(agree()) << logs();
+  }
+  for (const auto& [name, daemon] : daemons) daemon->signal(SIGTERM);
+  for (const auto& [name, recording] : recordings) {
+    SCOPED_TRACE(name);
+    EXPECT_EQ(daemons[name]->wait(), 0) << daemons[name]->output();
+    ChildProcess check(test::kReplay, {"check", recording, "--compare"});
+    EXPECT_EQ(check.wait(), 0) << check.output();
+  }
 }
 
 class DeadCameraPartners : public CameraPartners {

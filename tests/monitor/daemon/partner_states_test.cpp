@@ -129,6 +129,7 @@ class PartnerStatesTest : public testing::Test, private CellParts {
                        changer,
                        thread,
                        loop_ended,
+                       nullptr,
                        [this](QueuedCommand command) { return thread.put(std::move(command)); },
                        [this] { return changer.cell().scene.revision; }};
   std::thread ticking;

@@ -5,11 +5,16 @@
 
 #include <cmath>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
+#include "monitor/files/build_info.hpp"
 #include "monitor/loop/joined_state.hpp"
 #include "monitor/partners/tick_partner.hpp"
+#include "monitor/recording/recorder.hpp"
+#include "monitor/wire/partner_state.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -57,8 +62,11 @@ class Side {
     poses_.clear();
     joints_.clear();
     used.clear();
+    std::map<std::string, SourceUse> uses;
     while (const PoseBatch* batch = ticks.next()) {
       used.push_back(batch->sequence_number);
+      uses[batch->source.c_str()] = {batch->source, batch->sequence_number};
+      if (recorder_ != nullptr) recorder_->poses(*batch);
       EXPECT_TRUE(ids.append(*batch, poses_, joints_));
     }
     frames.show(scene_.revision, *monitor, {});
@@ -66,6 +74,11 @@ class Side {
     cycle = report.cycle;
     now_ns = report.now_ns;
     ticks.ticked(*monitor);
+    if (recorder_ != nullptr) {
+      std::vector<SourceUse> list;
+      for (const auto& [source, use] : uses) list.push_back(use);
+      recorder_->report(report, list, report.now_ns, ticks.lineage());
+    }
     tag = {};
     if (const TickTag* front = ticks.tags().front()) {
       tag = *front;
@@ -102,7 +115,18 @@ class Side {
     ASSERT_TRUE(joined.has_joined());
     other.frames.show_awaited(*other.monitor, {});
     other.ticks.joined(joined.lineage(), other.monitor->cycle());
+    if (other.recorder_ != nullptr) {
+      const PartnerStateView state{scene_.revision, joined.lineage(), monitor->cycle(), bytes};
+      other.recorder_->joined(0, CdrEncoder().encode(*to_wire(state, kBuild)));
+    }
     ticks.successor_followed();
+    if (recorder_ != nullptr)
+      recorder_->change(*cell_, {.began_after = monitor->cycle(), .from = monitor->cycle() + 1});
+  }
+  // What it ticks goes there from now on, as a daemon records it. `cell` is that of its scene.
+  void record(Recorder& recorder, const Cell& cell) {
+    recorder_ = &recorder;
+    cell_ = &cell;
   }
 
  private:
@@ -110,6 +134,8 @@ class Side {
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
   std::int64_t deadline_ = 0;
+  Recorder* recorder_ = nullptr;
+  const Cell* cell_ = nullptr;
 
  public:
   TurnedClock clock;

@@ -7,7 +7,7 @@
 #include "monitor/mcap/attachments.hpp"
 #include "monitor/recording/event_files.hpp"
 #include "monitor/recording/event_ring.hpp"
-#include "monitor/replay/frame_feed.hpp"
+#include "monitor/replay/side_feed.hpp"
 #include "tests/monitor/replay/offline_replay_run.hpp"
 
 namespace clearance::test {
