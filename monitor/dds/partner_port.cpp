@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
@@ -142,40 +143,50 @@ void PartnerPort::hear() {
   }
 }
 
+// After a time without any notice, clocks may have drifted apart. Of several that wait then, the
+// newest counts: this process may have been stopped, and how long the others waited says nothing of
+// the clocks.
 void PartnerPort::hear_notices() {
   dds_sample_info_t info;
+  const bool is_new = SystemClock().monotonic_ns() - leader_heard_ns_ > kDelayLastsNs;
+  if (is_new) delay_ = {};
+  std::optional<std::int64_t> newest;
   while (take(ticks_reader_, heard_, info)) {
-    const clearance_msg_PartnerTick& in = *heard_;
-    // Clocks may have drifted apart meanwhile.
-    if (SystemClock().monotonic_ns() - leader_heard_ns_ > kDelayLastsNs) delay_ = {};
-    const std::int64_t delay = delay_.add(dds_time() - info.source_timestamp);
-    if (delay_.is_settled() && std::abs(delay) > kClockErrorNs && !std::exchange(clock_told_, true))
-      log_line(lines::kPartnerClock, in.partner, delay / 1'000'000);
-    notice_.daemon = in.daemon;
-    notice_.start_ns = in.start_ns;
-    notice_.revision = in.scene_revision;
-    notice_.term = in.term;
-    notice_.lineage = in.lineage;
-    notice_.before = in.before;
-    notice_.since_cycle = in.since_cycle;
-    notice_.becoming = in.becoming;
-    notice_.cycle = in.cycle;
-    notice_.time = {in.now_ns, in.clock_offset_ns};
-    notice_.due_ns = in.due_ns + delay - realtime_less_monotonic();
-    notice_.told_late_ns = in.told_late_ns;
-    notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);
-    for (std::size_t i = 0; i < notice_.count; ++i) {
-      const clearance_msg_TickInput& input = in.inputs._buffer[i];
-      notice_.inputs[i] = {SourceName(input.source), input.sequence_number, input.content};
-    }
-    notice_.frame_count = std::min<std::size_t>(in.frames._length, kMaxSensors);
-    for (std::size_t i = 0; i < notice_.frame_count; ++i)
-      notice_.frames[i] = {in.frames._buffer[i].sensor, in.frames._buffer[i].content};
-    static_cast<void>(ticks_.hear(notice_));
-    leader_ = in.daemon;
-    leader_revision_ = in.scene_revision;
-    leader_heard_ns_ = SystemClock().monotonic_ns();
+    newest = delay_.add(dds_time() - info.source_timestamp);
+    if (!is_new) hear_notice(*newest);
   }
+  if (is_new && newest) hear_notice(*newest);
+}
+
+void PartnerPort::hear_notice(std::int64_t delay_ns) {
+  const clearance_msg_PartnerTick& in = *heard_;
+  if (delay_.is_settled() && std::abs(delay_ns) > kClockErrorNs &&
+      !std::exchange(clock_told_, true))
+    log_line(lines::kPartnerClock, in.partner, delay_ns / 1'000'000);
+  notice_.daemon = in.daemon;
+  notice_.start_ns = in.start_ns;
+  notice_.revision = in.scene_revision;
+  notice_.term = in.term;
+  notice_.lineage = in.lineage;
+  notice_.before = in.before;
+  notice_.since_cycle = in.since_cycle;
+  notice_.becoming = in.becoming;
+  notice_.cycle = in.cycle;
+  notice_.time = {in.now_ns, in.clock_offset_ns};
+  notice_.due_ns = in.due_ns + delay_ns - realtime_less_monotonic();
+  notice_.told_late_ns = in.told_late_ns;
+  notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);
+  for (std::size_t i = 0; i < notice_.count; ++i) {
+    const clearance_msg_TickInput& input = in.inputs._buffer[i];
+    notice_.inputs[i] = {SourceName(input.source), input.sequence_number, input.content};
+  }
+  notice_.frame_count = std::min<std::size_t>(in.frames._length, kMaxSensors);
+  for (std::size_t i = 0; i < notice_.frame_count; ++i)
+    notice_.frames[i] = {in.frames._buffer[i].sensor, in.frames._buffer[i].content};
+  static_cast<void>(ticks_.hear(notice_));
+  leader_ = in.daemon;
+  leader_revision_ = in.scene_revision;
+  leader_heard_ns_ = SystemClock().monotonic_ns();
 }
 
 // A state is for daemons of one build: its bytes have no other layout.

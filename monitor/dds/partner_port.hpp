@@ -90,6 +90,7 @@ class PartnerPort {
   void write_notices();
   void hear();
   void hear_notices();
+  void hear_notice(std::int64_t delay_ns);
   void hear_states();
   void hear_reports();
   void hear_catalogues();

@@ -45,6 +45,12 @@ void RecordedLoop::start(const Cell& cell, bool followed) {
   ids_ = std::make_unique<SceneIds>(cell.scene, followed);
   sensors_ =
       cell.scene.sensors.empty() ? nullptr : std::make_unique<Sensors>(cell, SensorsOptions{true});
+  look_with(cell);
+}
+
+void RecordedLoop::look_with(const Cell& cell) {
+  names_.emplace(cell.scene);
+  shown_.assign(cell.scene.sensors.size(), {});
 }
 
 // A daemon that was started anew has no history, and may have another cell. Where the recording
@@ -82,7 +88,7 @@ const char* RecordedLoop::missing() const noexcept {
 }
 
 // Makes the same calls as JoinedState and FrameExchange::show_awaited(): the frame of a sensor that
-// the state rests on is either in use already, or recorded with this tick.
+// the state rests on was shown already, or is recorded with this tick.
 void RecordedLoop::join(const clearance_msg_PartnerState& state) {
   ++joined_;
   begun_ = true;
@@ -95,9 +101,13 @@ void RecordedLoop::join(const clearance_msg_PartnerState& state) {
                  !restore_state(found->bytes, *ids, *monitor);
   if (lacks_state_) return;
   for (std::uint32_t sensor = 0; sensor < cell_->scene.sensors.size(); ++sensor) {
-    if (monitor->awaited_frame(sensor) == 0) {
+    const std::uint64_t awaited = monitor->awaited_frame(sensor);
+    bool is_there = awaited == 0;
+    for (const SensorFrame& frame : {monitor_->frame_in_use(sensor), shown_[sensor]})
+      is_there = is_there || (frame.content == awaited && monitor->show(sensor, frame));
+    if (is_there) {
       blind_.erase(sensor);
-    } else if (!monitor->show(sensor, monitor_->frame_in_use(sensor))) {
+    } else {
       blind_.insert(sensor);
     }
   }
@@ -120,17 +130,22 @@ void RecordedLoop::show_frames(const TickInput& input) {
 
 // A monitor that takes over for the same cell goes on with the frames in use.
 bool RecordedLoop::is_used(const SeenCloud* cloud) const noexcept {
-  return monitor_->uses(cloud) || (next_ && next_->monitor->uses(cloud));
+  return monitor_->uses(cloud) || (next_ && next_->monitor->uses(cloud)) ||
+         std::ranges::find(shown_, cloud, &SensorFrame::cloud) != shown_.end();
 }
 
 // Builds what the daemon built, in the same order: what a frame hides may depend on those before.
 void RecordedLoop::show_recorded(const TickInput& input) {
   for (const auto& [cycle, frame] : input.frames) {
     const bool is_shown = cycle == input.recorded->cycle;
+    const std::uint64_t content = frame.sensor < shown_.size() ? names_->name(frame) : 0;
     const bool is_built = sensors_->rebuild(
         frame, [this](const SeenCloud* cloud) { return is_used(cloud); },
-        [&](std::uint32_t sensor, const SensorFrame& built) {
-          if (is_shown) monitor_->show(sensor, built);
+        [&](std::uint32_t sensor, SensorFrame built) {
+          if (!is_shown) return;
+          built.content = content;
+          monitor_->show(sensor, built);
+          shown_[sensor] = built;
         });
     if (is_built && is_shown) blind_.erase(frame.sensor);
     if (!is_built) blind_.insert(frame.sensor);
@@ -233,6 +248,7 @@ void RecordedLoop::succeed() {
   } else if (!is_same) {
     sensors_ = std::make_unique<Sensors>(*cell_, *sensors_, ids_->sources());
   }
+  if (!is_same) look_with(*cell_);
   ids_->change(cell_->scene.revision, next_->map);
   from_ = next_->from;
   next_ = nullptr;

@@ -14,6 +14,7 @@
 #include "monitor/replay/moveit_changes.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/replay/tick_feed.hpp"
+#include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
 
 namespace clearance {
@@ -63,6 +64,7 @@ class RecordedLoop {
   void take(const PoseBatch& batch);
   void show_frames(const TickInput& input);
   void show_recorded(const TickInput& input);
+  void look_with(const Cell& cell);
   [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
@@ -79,6 +81,8 @@ class RecordedLoop {
   std::unique_ptr<Monitor> monitor_;
   std::unique_ptr<SceneIds> ids_;
   std::unique_ptr<Sensors> sensors_;
+  std::optional<FrameNames> names_;  // of recorded frames
+  std::vector<SensorFrame> shown_;   // by sensor: the last one
   std::unique_ptr<Next> next_;
   SceneInForce since_;
   bool begun_ = false;
