@@ -6,13 +6,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "config/cell/attachment_reader.hpp"
 #include "config/cell/command_reader.hpp"
 #include "config/cell/contact_reader.hpp"
+#include "config/cell/dds_reader.hpp"
 #include "config/cell/link_margins.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
@@ -30,7 +30,6 @@
 #include "config/scene/revision.hpp"
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
-#include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"
@@ -40,17 +39,12 @@
 namespace clearance {
 namespace {
 
-// Limits that keep every derived number (periods, counts) within its type.
+// This limit keeps every derived count within its type.
 constexpr std::int64_t kMaxBudget = 1'000'000'000;
-constexpr std::int64_t kMaxDomain = 232;  // the last whose ports fit into 16 bits
-// Discovery announces names in bounded strings (DDSI-RTPS: string<256>).
-constexpr std::size_t kMaxDdsName = 255;  // bytes
 // The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
 constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
 // The range is from one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
-// A reader that joins late waits this long.
-constexpr Range kFullReports{.least = 1e-3, .most = 60.0};  // s
 
 // The sections of a cell, one function each.
 class CellReader {
@@ -69,8 +63,6 @@ class CellReader {
  private:
   std::optional<Units> read_units(const YamlNode& node);
   void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
-  void read_dds(const YamlNode& node, Cell& cell);
-  void read_topics(const YamlNode& node, Topics& topics);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
   void select_share(const YamlNode& root, Cell& cell);
@@ -127,83 +119,6 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   if (const YamlNode* gradients = map.optional("gradients")) {
     scene.gradients = read_flag(*gradients, diagnostics_).value_or(false);
   }
-}
-
-// A DDS name has letters, digits, '_' and '/', and begins with no digit; two topics cannot share
-// one.
-void CellReader::read_topics(const YamlNode& node, Topics& topics) {
-  MapReader map(node, "the topics", diagnostics_);
-  std::map<std::string, std::string_view> taken;
-  for (const auto& [key, member] : kTopicKeys) {
-    std::string* const topic = &(topics.*member);
-    const YamlNode* name_node = map.optional(key);
-    const auto name = name_node == nullptr ? std::optional(*topic)
-                                           : read_text(*name_node, "a topic's name", diagnostics_);
-    if (!name) continue;
-    // The characters that every DDS implementation accepts.
-    const bool plain = std::all_of(name->begin(), name->end(), [](char c) {
-      return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-             c == '_' || c == '/';
-    });
-    if (name->empty() || !plain || name->size() > kMaxDdsName ||
-        (name->front() >= '0' && name->front() <= '9')) {
-      diagnostics_.add(
-          *name_node,
-          fmt::format(
-              "found {}; expected a topic's name: letters, digits, '_' and '/', no digit first",
-              describe(*name_node)));
-    } else if (const auto [same, is_new] = taken.emplace(*name, key); !is_new) {
-      diagnostics_.add(
-          name_node == nullptr ? node : *name_node,
-          fmt::format(
-              "found the topic '{}' for both '{}' and '{}'; expected a topic of its own for each",
-              *name, same->second, key));
-    }
-    *topic = *name;
-  }
-  map.refuse_unknown_keys();
-}
-
-// Reads the place of the daemon on DDS. The command line overrides the domain and the partition.
-void CellReader::read_dds(const YamlNode& node, Cell& cell) {
-  MapReader map(node, "the dds settings", diagnostics_);
-  if (const YamlNode* domain = map.optional("domain")) {
-    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics_);
-    cell.domain = static_cast<std::uint32_t>(id.value_or(0));
-  }
-  if (const YamlNode* partition = map.optional("partition")) {
-    cell.partition = read_text(*partition, "a DDS partition", diagnostics_).value_or("");
-    if (!is_partition(cell.partition)) {
-      diagnostics_.add(
-          *partition,
-          fmt::format(
-              "found {}; expected a partition of at most {} bytes without wildcards (* ? [)",
-              describe(*partition), kMaxDdsName));
-    }
-  }
-  if (const YamlNode* interface = map.optional("interface")) {
-    cell.interface =
-        read_text(*interface, "lo, default or the name of a network card", diagnostics_)
-            .value_or("lo");
-  }
-  if (const YamlNode* topics = map.optional("topics")) read_topics(*topics, cell.topics);
-  const YamlNode* publish = map.optional("publish");
-  const YamlNode* full = map.optional("full_every_s");
-  const auto what = publish == nullptr ? std::optional<std::string>("all")
-                                       : read_text(*publish, "'all' or 'changes'", diagnostics_);
-  if (what && *what != "all" && *what != "changes")
-    diagnostics_.add(*publish, fmt::format("found {}; expected 'all' or 'changes': the pairs that "
-                                           "a report carries",
-                                           describe(*publish)));
-  if (what == "changes") cell.full_every_s = 1.0;
-  if (full != nullptr) {
-    const auto every =
-        read_number(*full, kFullReports, "seconds between full reports", diagnostics_);
-    if (what == "all")
-      diagnostics_.add(*full, "found full_every_s without 'publish: changes'; expected both");
-    if (what == "changes") cell.full_every_s = every.value_or(1.0);
-  }
-  map.refuse_unknown_keys();
 }
 
 // Reads objects and robots, then pairs, then zones. Each list names entries of the one before, and
@@ -291,7 +206,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   // Without units, the rest is still read to find its mistakes.
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
   read_timing(map, quantities, cell.scene);
-  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell);
+  if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell, diagnostics_);
   ros_ = map.optional("ros2");
   if (ros_ != nullptr) read_ros(*ros_, quantities, cell.ros);
   if (const YamlNode* commands = map.optional("commands"))

@@ -52,6 +52,17 @@ class SensorClocks : public testing::Test {
     of.tick({}, {}, {now, offset_ns});
     return of.input_age(object).age_ns;
   }
+  // The monitor of a partner that joins now.
+  [[nodiscard]] std::unique_ptr<Monitor> joining() {
+    const auto before = test::taken_over(*monitor, scene, scene, numbers);
+    std::vector<std::byte> bytes;
+    StateWriter out(bytes);
+    before->save(out);
+    auto joined = std::make_unique<Monitor>(scene);
+    StateReader in(bytes);
+    EXPECT_TRUE(joined->restore(in));
+    return joined;
+  }
   void SetUp() override {
     const std::array<MeasuredPoint, 1> point = {{{2.0F, 0.0F, 0.0F, 0.0F}}};
     ASSERT_EQ(cloud.points()->build(point, {Vec3::Zero(), 100.0}), CloudBuild::kBuilt);
@@ -86,14 +97,8 @@ TEST_F(SensorClocks, AreForgottenWhenTheTicksTimeGoesBackwards) {
 }
 
 TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
-  const auto before = test::taken_over(*monitor, scene, scene, numbers);
-  std::vector<std::byte> bytes;
-  StateWriter out(bytes);
-  before->save(out);
-  Monitor joined(scene);
-  StateReader in(bytes);
-  ASSERT_TRUE(joined.restore(in));
-  EXPECT_EQ(age(joined, 0, 1, kStep), kAge);
+  const auto joined = joining();
+  EXPECT_EQ(age(*joined, 0, 1, kStep), kAge);
 }
 
 // The camera has died. A partner that joins must not wait for a frame that nothing sends again.
@@ -112,16 +117,7 @@ class DeadCamera : public SensorClocks {
     return test::report_between(scene, *monitor, "ball", "seen").status;
   }
   // The frame that a joining partner waits for; 0: none.
-  [[nodiscard]] std::uint64_t awaited() {
-    const auto before = test::taken_over(*monitor, scene, scene, numbers);
-    std::vector<std::byte> bytes;
-    StateWriter out(bytes);
-    before->save(out);
-    Monitor joined(scene);
-    StateReader in(bytes);
-    EXPECT_TRUE(joined.restore(in));
-    return joined.awaited_frame(0);
-  }
+  [[nodiscard]] std::uint64_t awaited() { return joining()->awaited_frame(0); }
 };
 
 TEST_F(DeadCamera, LeavesItsFrameInUseForASecondAfterItIsUnknown) {
