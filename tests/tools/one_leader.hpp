@@ -1,0 +1,92 @@
+// A plain reader of gradients, which holds against the times of writing that of two partners never
+// two write at once what has one leader.
+//
+// The oracle is a silence. A leader writes for at most 15 ms after its last notice was due. The
+// next one writes only when the lease of 20 ms is over, which it began a period and a half after
+// that. So between samples of two daemons lie 5 ms and a period at least.
+#pragma once
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "config/cell/cell.hpp"
+#include "monitor/dds/partner_port.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance::test {
+
+class OneLeader {
+ public:
+  OneLeader(Participant& participant, const Cell& cell)
+      : period_ns_(static_cast<std::int64_t>(1e9 / cell.scene.rate_hz)),
+        reader_(participant.reader(TopicKind::kGradients, cell.topics.gradients, 8192)) {}
+
+  // Often enough that no more than 8192 samples wait.
+  void take() {
+    void* pointer = &*sample_;
+    dds_sample_info_t info;
+    while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
+      if (info.valid_data)
+        written_.push_back({info.source_timestamp, sample_->now_ns, sample_->daemon});
+    }
+  }
+  // The other half of a cut network has a leader, too: what this daemon wrote from that time until
+  // this one is not looked at. The times are by dds_time().
+  void leave_out(std::uint64_t daemon, std::int64_t from_ns, std::int64_t until_ns) {
+    std::erase_if(written_, [=](const Written& one) {
+      return one.daemon == daemon && one.at_ns >= from_ns && one.at_ns <= until_ns;
+    });
+  }
+
+  struct Found {
+    std::size_t samples = 0;
+    int successions = 0;
+    // Old samples that a process wrote when it went on: it had been stopped, or was held up,
+    // between the check and the write.
+    int old = 0;
+    int faults = 0;  // successions that came too soon
+    std::string text = {};
+  };
+  [[nodiscard]] Found found() {
+    take();
+    std::ranges::stable_sort(written_, {}, &Written::at_ns);
+    Found found{.samples = written_.size()};
+    const std::int64_t least_ns = kLeaderLeaseNs / 4 + period_ns_;
+    const Written* before = nullptr;
+    for (std::size_t i = 0; i < written_.size(); ++i) {
+      const Written& one = written_[i];
+      const bool is_other = before != nullptr && one.daemon != before->daemon;
+      const bool ends = i + 1 < written_.size() && written_[i + 1].daemon != one.daemon;
+      if ((is_other || ends) && one.at_ns - one.ticked_ns > kLeaderLeaseNs * 3 / 4) {
+        ++found.old;
+        continue;
+      }
+      if (is_other) {
+        ++found.successions;
+        const std::int64_t silence_ns = one.at_ns - before->at_ns;
+        if (silence_ns < least_ns && ++found.faults <= 5)
+          found.text += fmt::format("{:x} wrote {:.1f} ms after {:x}\n", one.daemon,
+                                    1e-6 * static_cast<double>(silence_ns), before->daemon);
+      }
+      before = &one;
+    }
+    return found;
+  }
+
+ private:
+  struct Written {
+    std::int64_t at_ns, ticked_ns;
+    std::uint64_t daemon;
+  };
+  std::int64_t period_ns_;
+  dds_entity_t reader_;
+  Sample<clearance_msg_Gradients> sample_;
+  std::vector<Written> written_;
+};
+
+}  // namespace clearance::test
