@@ -202,18 +202,33 @@ TEST_F(Partners, AStoppedLeaderIsMissedAndAgreesAgain) {
   EXPECT_TRUE(daemons["right"]->told("partner-missing", {"left"})) << logs();
 }
 
-TEST_F(Partners, AThirdOneAndADaemonThatIsNoneAreExcluded) {
+// Each of them ends with status 4 and the cause, and the others go on as before.
+TEST_F(Partners, AThirdOneOneOfTheSameNameAndADaemonThatIsNoneAreExcluded) {
+  const auto is_excluded = [&](const std::vector<std::string>& more) {
+    ChildProcess extra(kDaemon,
+                       test::with(test::with({file.path()}, test::dds_arguments(dds)), more));
+    EXPECT_TRUE(read_until([&] { return !extra.running(); })) << extra.output() << logs();
+    EXPECT_EQ(extra.wait(), 4) << extra.output();
+    EXPECT_TRUE(extra.told("other-daemon-first")) << extra.output();
+    for (const auto& [name, daemon] : daemons) EXPECT_TRUE(daemon->running()) << logs();
+  };
   start("left");
   ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  {
+    SCOPED_TRACE("the only partner's name");
+    is_excluded({"--partner", "left"});
+  }
   start("right");
   ASSERT_TRUE(agree()) << logs();
-  ChildProcess& third = start("third");
-  EXPECT_TRUE(read_until([&] { return !third.running(); })) << logs();
-  EXPECT_EQ(third.wait(), 4) << logs();
-  ChildProcess single(kDaemon, test::with({file.path()}, test::dds_arguments(dds)));
-  EXPECT_TRUE(read_until([&] { return !single.running(); })) << single.output();
-  EXPECT_EQ(single.wait(), 4) << single.output();
+  for (const char* name : {"left", "right", "third"}) {
+    SCOPED_TRACE(name);
+    is_excluded({"--partner", name});
+    EXPECT_TRUE(agree()) << logs();
+  }
+  SCOPED_TRACE("no partner");
+  is_excluded({});
   EXPECT_TRUE(agree()) << logs();
+  EXPECT_TRUE(daemons["left"]->told("other-daemon-later")) << logs();
 }
 
 }  // namespace
