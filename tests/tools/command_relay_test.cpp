@@ -66,7 +66,6 @@ class RelayedCommands : public testing::Test {
   }
   static void refuse(CommandResult& result) {
     result.status = CommandStatus::kRefused;
-    result.scene_revision = 0;
     result.change = 3;
     result.reason = "it has no room";
   }

@@ -10,7 +10,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "config/cell/cell.hpp"
@@ -31,8 +33,7 @@ class OneLeader {
     void* pointer = &*sample_;
     dds_sample_info_t info;
     while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
-      if (info.valid_data)
-        written_.push_back({info.source_timestamp, sample_->now_ns, sample_->daemon});
+      if (info.valid_data) written_.push_back({info.source_timestamp, sample_->daemon});
     }
   }
   // The other half of a cut network has a leader, too: what this daemon wrote from that time until
@@ -46,8 +47,8 @@ class OneLeader {
   struct Found {
     std::size_t samples = 0;
     int successions = 0;
-    // Old samples that a process wrote when it went on: it had been stopped, or was held up,
-    // between the check and the write.
+    // Lone samples of a process that went on: it had been stopped, or was held up, between the
+    // check and the write.
     int old = 0;
     int faults = 0;  // successions that came too soon
     std::string text = {};
@@ -57,30 +58,35 @@ class OneLeader {
     std::ranges::stable_sort(written_, {}, &Written::at_ns);
     Found found{.samples = written_.size()};
     const std::int64_t least_ns = kLeaderLeaseNs / 4 + period_ns_;
+    std::map<std::uint64_t, std::int64_t> last_ns;  // by daemon
     const Written* before = nullptr;
     for (std::size_t i = 0; i < written_.size(); ++i) {
       const Written& one = written_[i];
+      const Written* const after = i + 1 < written_.size() ? &written_[i + 1] : nullptr;
       const bool is_other = before != nullptr && one.daemon != before->daemon;
-      const bool ends = i + 1 < written_.size() && written_[i + 1].daemon != one.daemon;
-      if ((is_other || ends) && one.at_ns - one.ticked_ns > kLeaderLeaseNs * 3 / 4) {
+      const bool is_last = after == nullptr || after->daemon != one.daemon;
+      const bool is_near = (is_other && one.at_ns - before->at_ns < least_ns) ||
+                           (after != nullptr && is_last && after->at_ns - one.at_ns < least_ns);
+      const auto [last, is_first] = last_ns.emplace(one.daemon, one.at_ns);
+      const bool was_held_up = one.at_ns - std::exchange(last->second, one.at_ns) > kHeldUpNs;
+      if (is_near && is_last && was_held_up) {
         ++found.old;
         continue;
       }
-      if (is_other) {
-        ++found.successions;
-        const std::int64_t silence_ns = one.at_ns - before->at_ns;
-        if (silence_ns < least_ns && ++found.faults <= 5)
-          found.text += fmt::format("{:x} wrote {:.1f} ms after {:x}\n", one.daemon,
-                                    1e-6 * static_cast<double>(silence_ns), before->daemon);
-      }
+      found.successions += is_other ? 1 : 0;
+      if (is_other && one.at_ns - before->at_ns < least_ns && ++found.faults <= 5)
+        found.text +=
+            fmt::format("{:x} wrote {:.1f} ms after {:x}\n", one.daemon,
+                        1e-6 * static_cast<double>(one.at_ns - before->at_ns), before->daemon);
       before = &one;
     }
     return found;
   }
 
  private:
+  static constexpr std::int64_t kHeldUpNs = kLeaderLeaseNs * 3 / 4;
   struct Written {
-    std::int64_t at_ns, ticked_ns;
+    std::int64_t at_ns;
     std::uint64_t daemon;
   };
   std::int64_t period_ns_;

@@ -207,7 +207,7 @@ TEST_F(Partners, AThirdOneOneOfTheSameNameAndADaemonThatIsNoneAreExcluded) {
   const auto is_excluded = [&](const std::vector<std::string>& more) {
     ChildProcess extra(kDaemon,
                        test::with(test::with({file.path()}, test::dds_arguments(dds)), more));
-    EXPECT_TRUE(read_until([&] { return !extra.running(); })) << extra.output() << logs();
+    ASSERT_TRUE(read_until([&] { return !extra.running(); })) << extra.output() << logs();
     EXPECT_EQ(extra.wait(), 4) << extra.output();
     EXPECT_TRUE(extra.told("other-daemon-first")) << extra.output();
     for (const auto& [name, daemon] : daemons) EXPECT_TRUE(daemon->running()) << logs();
