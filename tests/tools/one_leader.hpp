@@ -2,11 +2,13 @@
 // two write at once what has one leader.
 //
 // The oracle is a silence. A leader writes for at most 15 ms after its last notice was due. The
-// next one writes only when the lease of 20 ms is over, which it began a period and a half after
-// that. So between samples of two daemons lie 5 ms and a period at least.
+// next one writes only when it has led for 20 ms, from half a period after that notice or the next
+// one was due. So between samples of two daemons lie 5 ms and half a period at least, and 5 ms and
+// a period unless that notice came late.
 #pragma once
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -50,6 +52,7 @@ class OneLeader {
     // Lone samples of a process that went on: it had been stopped, or was held up, between the
     // check and the write.
     int old = 0;
+    int soon = 0;    // successions as after a late notice
     int faults = 0;  // successions that came too soon
     std::string text = {};
   };
@@ -68,13 +71,21 @@ class OneLeader {
       const bool is_near = (is_other && one.at_ns - before->at_ns < least_ns) ||
                            (after != nullptr && is_last && after->at_ns - one.at_ns < least_ns);
       const auto [last, is_first] = last_ns.emplace(one.daemon, one.at_ns);
-      const bool was_held_up = one.at_ns - std::exchange(last->second, one.at_ns) > kHeldUpNs;
+      const bool was_held_up =
+          one.at_ns - std::exchange(last->second, one.at_ns) > kLeaderLeaseNs * 3 / 4 + period_ns_;
       if (is_near && is_last && was_held_up) {
+        const auto apart_ms = [&](const Written* other) {
+          return other == nullptr ? kInfinity
+                                  : 1e-6 * static_cast<double>(other->at_ns - one.at_ns);
+        };
+        found.text += fmt::format("{:x} wrote one sample, at {:.1f} and {:.1f} ms of others\n",
+                                  one.daemon, apart_ms(before), apart_ms(after));
         ++found.old;
         continue;
       }
       found.successions += is_other ? 1 : 0;
-      if (is_other && one.at_ns - before->at_ns < least_ns && ++found.faults <= 5)
+      found.soon += is_other && one.at_ns - before->at_ns < least_ns ? 1 : 0;
+      if (is_other && one.at_ns - before->at_ns < least_ns - period_ns_ / 2 && ++found.faults <= 5)
         found.text +=
             fmt::format("{:x} wrote {:.1f} ms after {:x}\n", one.daemon,
                         1e-6 * static_cast<double>(one.at_ns - before->at_ns), before->daemon);
@@ -83,8 +94,14 @@ class OneLeader {
     return found;
   }
 
+  void check() {
+    const Found all = found();
+    EXPECT_EQ(all.faults, 0) << all.text << "two wrote at once what has one leader";
+    EXPECT_LE(all.soon, all.successions / 4) << all.text << "most notices come in time";
+    EXPECT_LE(all.old, 1 + all.successions / 20) << all.text << "such a moment is short";
+  }
+
  private:
-  static constexpr std::int64_t kHeldUpNs = kLeaderLeaseNs * 3 / 4;
   struct Written {
     std::int64_t at_ns;
     std::uint64_t daemon;

@@ -104,12 +104,13 @@ TEST_F(Partners, RandomKillsLoseNoCycleAndForgetNoZone) {
       "%llu kills and stops, %llu reports in one stream, %llu of them with a number that came "
       "before, at most %.1f ms apart, %llu periods lost between partners; %zu successions of the "
       "leader: p50 %.1f ms, p99.9 %.1f ms; reports of the two apart by p50 %.0f us; a plain reader "
-      "saw %zu gradients, %d changes of the leader, %d of them too soon, %d old samples\n",
+      "saw %zu gradients, %d changes of the leader, %d of them soon, %d too soon, %d old "
+      "samples\n%s",
       static_cast<unsigned long long>(kills), static_cast<unsigned long long>(came),
       static_cast<unsigned long long>(again), 1e-6 * static_cast<double>(longest_ns),
       static_cast<unsigned long long>(lost), takeovers_ms.size(), at(takeovers_ms, 0.5),
       at(takeovers_ms, 0.999), at(phases_us, 0.5), simple_reader.samples, simple_reader.successions,
-      simple_reader.faults, simple_reader.old);
+      simple_reader.soon, simple_reader.faults, simple_reader.old, simple_reader.text.c_str());
 }
 
 TEST_F(Partners, OneStreamGoesOnWhileOneOfThemIsKilledAndComesBack) {

@@ -57,11 +57,7 @@ class Partners : public ::testing::Test {
         kDaemon, with(with({file.path()}, dds_arguments(dds)), with({"--partner", name}, more)));
     return *daemons[name];
   }
-  void TearDown() override {
-    const OneLeader::Found found = leaders.found();
-    EXPECT_EQ(found.faults, 0) << found.text << "two wrote at once what has one leader";
-    EXPECT_LE(found.old, 1 + found.successions / 20) << "such a moment is short";
-  }
+  void TearDown() override { leaders.check(); }
   // Reads on until this is so. No cycle may be missing. One may come again only from a partner that
   // had other inputs when it was left alone.
   template <class IsSo>
