@@ -19,6 +19,9 @@ constexpr std::int64_t kHearNs = 20'000'000;
 // little. Clocks that disagree by more are no matter of delays.
 constexpr std::int64_t kApproach = 1000;
 constexpr std::int64_t kMostApproachedNs = 100'000'000;
+// A tick that begins later than this is told a later time. Its inputs are those that have come
+// until then, and stamps 5 ms ahead of the told time are refused (`future_limit_ms`).
+constexpr std::int64_t kMostLateNs = 2'500'000;
 
 }  // namespace
 
@@ -170,15 +173,16 @@ void TickPartner::yield() noexcept {
   stand(kApart);
 }
 
-// The time at which the tick is due, also if it begins up to half a period later: a follower that
-// had to wait for a notice tells the tick the time that its leader has told it. The time goes on
-// from that of the last leader, whatever this machine's clock says.
+// The time at which the tick is due, also if it begins up to half a period or 2.5 ms later: a
+// follower that had to wait for a notice tells the tick the time that its leader has told it. The
+// time goes on from that of the last leader, whatever this machine's clock says.
 TickTime TickPartner::own_time(std::int64_t due) noexcept {
   approach_own_clock();
   const TickTime read = steady_.read(clock_);
   const std::int64_t early = due - clock_.monotonic_ns();
   const std::int64_t at_due = read.now_ns + early + ahead_of_own_ns_;
-  const std::int64_t now = at_due + std::max<std::int64_t>(0, -options_.period_ns / 2 - early);
+  const std::int64_t most_late = std::min(options_.period_ns / 2, kMostLateNs);
+  const std::int64_t now = at_due + std::max<std::int64_t>(0, -most_late - early);
   const std::int64_t told = std::max(now, time_.now_ns + 1);
   told_late_ns_ = told - at_due;
   return {told, offset_ns_ + read.clock_offset_ns - own_offset_ns_};

@@ -34,14 +34,16 @@ class MadePartner {
     seal(message);
     dds_write(reports_, &message);
   }
-  // Leads a tick, by a clock that is behind by this time.
-  void lead(std::int64_t behind_ns = 0) {
+  // Leads a tick, by a clock that is behind by this time. A daemon that leads as well goes on
+  // leading unless it is outranked.
+  void lead(std::int64_t behind_ns = 0, bool outranks = true) {
     clearance_msg_PartnerTick tick{};
     copy(name_, tick.partner);
     tick.daemon = kDaemonId;
     tick.start_ns = 1;
     tick.scene_revision = revision_;
-    tick.term = tick.lineage = 1;
+    tick.term = outranks ? 1 : 0;
+    tick.lineage = 1;
     tick.cycle = ++cycle_;
     tick.now_ns = tick.due_ns = dds_time() - behind_ns;
     dds_write_ts(ticks_, &tick, dds_time() - behind_ns);

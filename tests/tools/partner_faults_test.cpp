@@ -22,8 +22,8 @@ class PartnerFaults : public testing::Test {
   CellFile file{small_cell("pair")};
   Cell cell = file.cell();
   MadePartner partner{dds, cell};
-  ChildProcess daemon{kDaemon,
-                      with(with({file.path()}, dds_arguments(dds)), {"--partner", "left"})};
+  ChildProcess daemon{
+      kDaemon, with(with({file.path()}, dds_arguments(dds)), {"--partner", "left", "--gradients"})};
 
   // Until the daemon tells of it, the partner does this again and again.
   template <class Do>
@@ -69,6 +69,35 @@ TEST_F(PartnerFaults, AStateWhoseBytesDoNotFitIsRefused) {
     partner.lead();
     partner.send({});
   })) << daemon.output();
+}
+
+// While the other one is heard, a simple reader gets nothing, although the daemon leads the ticks.
+// A test that was held up itself is no leader that was heard.
+TEST_F(PartnerFaults, ALeaderIsSilentForSimpleReadersWhileAnotherOneLeads) {
+  Participant client(dds);
+  const dds_entity_t reader = client.reader(TopicKind::kGradients, cell.topics.gradients, 1024);
+  // The number of samples that were written from this time on.
+  const auto written_since = [&](std::int64_t since_ns) {
+    Sample<clearance_msg_Gradients> sample;
+    void* pointer = &*sample;
+    dds_sample_info_t info;
+    int count = 0;
+    while (dds_take(reader, &pointer, &info, 1, 1) > 0)
+      count += info.valid_data && info.source_timestamp > since_ns;
+    return count;
+  };
+  ASSERT_TRUE(eventually([&] { return written_since(0) > 0; })) << daemon.output();
+  std::int64_t since_ns = dds_time(), last_ns = since_ns;
+  ASSERT_TRUE(eventually([&] {
+    const std::int64_t now_ns = dds_time();
+    if (now_ns - last_ns > kLeaderLeaseNs / 2) since_ns = now_ns;
+    last_ns = now_ns;
+    partner.lead(0, false);
+    EXPECT_EQ(written_since(since_ns + 100'000'000), 0);
+    return now_ns - since_ns > 500'000'000 || HasFailure();
+  })) << daemon.output();
+  EXPECT_TRUE(eventually([&] { return written_since(last_ns) > 0; })) << daemon.output();
+  EXPECT_FALSE(daemon.told("partner-stands", {"apart"})) << daemon.output();
 }
 
 // The partner says again what the daemon reports, then changes a number, then its lineage, and

@@ -16,6 +16,7 @@
 
 #include "monitor/client/client.hpp"
 #include "tests/tools/meeting_boxes.hpp"
+#include "tests/tools/one_leader.hpp"
 
 namespace clearance::test {
 
@@ -42,6 +43,7 @@ class Partners : public ::testing::Test {
   Cell cell = file.cell();
   SendingRobot robot{dds, cell};
   client::Connection connection{dds, cell.topics};
+  OneLeader leaders{connection.participant(), cell};  // of daemons with `--gradients`
   // Both partners at 1 kHz write two thousand reports a second, and the start of a process takes
   // this one some milliseconds.
   client::Reports reports{connection, {.depth = 1024}};
@@ -55,6 +57,7 @@ class Partners : public ::testing::Test {
         kDaemon, with(with({file.path()}, dds_arguments(dds)), with({"--partner", name}, more)));
     return *daemons[name];
   }
+  void TearDown() override { leaders.check(); }
   // Reads on until this is so. No cycle may be missing. One may come again only from a partner that
   // had other inputs when it was left alone.
   template <class IsSo>
@@ -62,6 +65,7 @@ class Partners : public ::testing::Test {
     const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(seconds);
     while (std::chrono::steady_clock::now() < end) {
       if (reports.next(std::chrono::milliseconds(100))) note();
+      leaders.take();
       if (is_so()) return true;
     }
     return false;

@@ -21,6 +21,16 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
+// What Foxglove's client has met at this address once it has these reports.
+nlohmann::json shown_at(const std::string& socket, int reports) {
+  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", socket, "reports",
+                                       std::to_string(reports)});
+  EXPECT_EQ(client.wait(), 0) << client.output();
+  const auto lines = lines_of(client);
+  EXPECT_EQ(lines.size(), 1u) << client.output();
+  return lines.empty() ? nlohmann::json() : lines.front();
+}
+
 class ViewOfPartners : public testing::Test {
  protected:
   CellFile file{small_cell("small")};
@@ -28,14 +38,8 @@ class ViewOfPartners : public testing::Test {
   DdsOptions dds = own_dds();
   std::vector<std::string> arguments = with({file.path()}, dds_arguments(dds));
 
-  // The topics that Foxglove's client has met once it has these reports.
   static nlohmann::json shown(const View& view, int reports) {
-    ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(),
-                                         "reports", std::to_string(reports)});
-    EXPECT_EQ(client.wait(), 0) << client.output();
-    const auto lines = lines_of(client);
-    EXPECT_EQ(lines.size(), 1u) << client.output();
-    return lines.empty() ? nlohmann::json() : lines.front();
+    return shown_at(view.socket(), reports);
   }
 };
 
@@ -105,6 +109,38 @@ TEST_F(ViewOfPartners, StillSaysThatFiguresOfDaemonsThatAreNoneAreMixed) {
   EXPECT_THAT(shown(view, 120)["statuses"].dump(), HasSubstr("2 daemons publish here"));
   ends = true;
   writes.join();
+}
+
+// `tools/demo --several --view`: three shares with two partners each, one of which is killed each
+// second. The page has a report all the time, and none twice.
+TEST(ViewOfSeveral, GoesOnWhileDaemonsAreKilled) {
+  const DdsOptions dds = own_dds();
+  ChildProcess several(places::sources() + "/tools/several",
+                       {places::programs(), "--seconds", "8", "--every", "1", "--rate", "50",
+                        "--late-ms", "1000", "--domain", std::to_string(dds.domain), "--view"});
+  const std::string says = "in a browser: http://";
+  ASSERT_TRUE(eventually([&] { return several.wrote(says); })) << several.output();
+  std::string address = several.output();
+  address = address.substr(address.find(says) + says.size());
+  const auto kills = [&] {
+    const std::string text = several.output(), killed = "killed the daemon";
+    int count = 0;
+    for (std::size_t at = 0; (at = text.find(killed, at)) != std::string::npos; ++at) ++count;
+    return count;
+  };
+  const int before = kills();
+  const nlohmann::json page = shown_at("ws://" + address.substr(0, address.find('\n')), 150);
+  ASSERT_TRUE(page.is_object()) << several.output();
+  EXPECT_GE(kills(), before + 2) << several.output();
+  const std::vector<std::int64_t> times = page["times"];
+  const std::vector<std::uint64_t> cycles = page["cycles"];
+  EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end())
+      << "it shows a report once, and none after a newer one";
+  for (std::size_t i = 1; i < times.size(); ++i) {
+    EXPECT_GE(times[i], times[i - 1]);
+    EXPECT_LT(times[i] - times[i - 1], 1'000'000'000) << "it stood still";
+  }
+  EXPECT_EQ(several.wait(), 0) << several.output();
 }
 
 }  // namespace

@@ -4,15 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
-#include <functional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
-#include "monitor/commands/command_message.hpp"
-#include "monitor/participant/participant.hpp"
+#include "tests/monitor/client/answering_daemon.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -20,47 +17,7 @@ namespace {
 
 using std::chrono::milliseconds;
 using std::chrono::seconds;
-
-// Answers commands in a thread of its own, from its construction on.
-class AnsweringDaemon {
- public:
-  using Answer = std::function<std::vector<CommandResult>(const Command&)>;
-  AnsweringDaemon(const DdsOptions& dds, Answer answer)
-      : participant_(dds),
-        commands_(participant_.reader(TopicKind::kCommands, Topics{}.commands)),
-        results_(participant_.writer(TopicKind::kCommandResults, Topics{}.command_results)),
-        answer_(std::move(answer)),
-        thread_([this] { run(); }) {}
-  ~AnsweringDaemon() {
-    ends_ = true;
-    thread_.join();
-  }
-
- private:
-  void run() {
-    Sample<clearance_msg_Command> message;
-    void* pointer = &*message;
-    dds_sample_info_t info;
-    while (!ends_) {
-      if (dds_take(commands_, &pointer, &info, 1, 1) < 1 || !info.valid_data) {
-        std::this_thread::sleep_for(milliseconds(2));
-        continue;
-      }
-      const auto command = from_wire(*message);
-      ASSERT_TRUE(std::holds_alternative<Command>(command));
-      for (const CommandResult& result : answer_(std::get<Command>(command))) {
-        const auto answer = to_wire(result, 7);
-        check_dds(dds_write(results_, &*answer), "writing");
-      }
-    }
-  }
-
-  Participant participant_;
-  dds_entity_t commands_, results_;
-  Answer answer_;
-  std::atomic<bool> ends_{false};
-  std::thread thread_;
-};
+using test::AnsweringDaemon;
 
 CommandResult done(const Command& command) {
   return {.client = command.client,

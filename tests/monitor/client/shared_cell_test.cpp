@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstring>
 #include <optional>
 #include <string>
@@ -55,7 +56,10 @@ class Daemon {
     check_dds(dds_write(catalogue_, &*catalogue), "writing");
   }
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
-  void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time(),
+  // The clock of its machine is ahead of this one's by this time from now on.
+  void set_clock_ahead(std::int64_t ns) { ahead_ns_ = ns; }
+  void report(std::uint64_t cycle) { report(cycle, dds_time() + ahead_ns_); }
+  void report(std::uint64_t cycle, std::int64_t publish_ns,
               std::vector<std::uint32_t> active = {}) {
     clearance_msg_Distances message{};
     message.active_zones._length = message.active_zones._maximum =
@@ -87,10 +91,11 @@ class Daemon {
 
  private:
   std::int64_t now_ns(std::uint64_t cycle) const {
-    return start_ns_ + static_cast<std::int64_t>(cycle) * 1'000'000;
+    return start_ns_ + ahead_ns_ + static_cast<std::int64_t>(cycle) * 1'000'000;
   }
 
   inline static const std::int64_t start_ns_ = dds_time();
+  std::int64_t ahead_ns_ = 0;
   Topics topics_;
   Participant participant_;
   std::uint64_t id_, revision_;
@@ -120,6 +125,37 @@ class ASharedCell : public testing::Test {
     EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
   }
   [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
+  // Both shares report until a report of the whole cell is so.
+  template <class IsSo>
+  bool report_until(Daemon& left, const IsSo& is_so) {
+    return eventually(
+        [&] {
+          left.report(cycle);
+          right.report(cycle++);
+          return whole->next(milliseconds(50)) && is_so();
+        },
+        std::chrono::seconds(20));
+  }
+  // The right share says that its zones are clear, but does not count.
+  void expect_right_is_unknown() {
+    ASSERT_EQ(whole->shares().size(), 2u);
+    EXPECT_EQ(whole->shares()[0].state, ShareState::kWhole);
+    EXPECT_EQ(whole->shares()[1].state, ShareState::kLate);
+    EXPECT_EQ(whole->what_is_missing(), "the share 'right' is late");
+    EXPECT_EQ((*whole)->unknown, cell.shares.all[1].pairs.size());
+    EXPECT_EQ((*whole)->lower_all, -kInfinity);
+    EXPECT_EQ((*whole)->swept_lower_all, -kInfinity);
+    EXPECT_FALSE((*whole)->minimum_certified);
+    EXPECT_EQ((*whole)->active_zones._length, 2u);
+    for (const std::uint32_t zone : {kWide, kFar}) {
+      EXPECT_TRUE(is_active(zone));
+      EXPECT_EQ(whole->zones().at(zone).cause, static_cast<std::uint8_t>(ZoneCause::kNoShare));
+    }
+    EXPECT_EQ(whole->separation()->zones._buffer[0].validity, 0);
+    EXPECT_EQ(whole->separation()->zones._buffer[0].scaling, 0.0);
+    EXPECT_LT(std::abs(dds_time() - (*whole)->publish_ns), 5'000'000'000)
+        << "it is as old as the share that counts";
+  }
 
   Cell cell = cell_in_shares();
   DdsOptions dds = test::own_dds();
@@ -221,6 +257,47 @@ TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
         return whole->next(milliseconds(50)) && (*whole)->publish_ns == before;
       },
       std::chrono::seconds(10)));
+}
+
+// Its clock is ahead, or was set back, by more than a report may be old: its reports come on time,
+// and say that the zones are clear.
+TEST_F(ASharedCell, HasAShareUnknownByNameWhoseTimesAreOfTheFutureOrOfThePast) {
+  Daemon left(dds, cell, "left", 1);
+  begin(left, {"left", "right"});
+  for (const std::int64_t ahead_ns : {8'000'000'000, -8'000'000'000}) {
+    SCOPED_TRACE(ahead_ns);
+    right.set_clock_ahead(ahead_ns);
+    right.zones(cycle, false);
+    ASSERT_TRUE(report_until(left, [&] { return !whole->is_whole(); }));
+    for (int report = 0; report < 20 && !HasFailure(); ++report) {
+      ASSERT_TRUE(report_until(left, [] { return true; }));
+      expect_right_is_unknown();
+      EXPECT_EQ(whole->shares()[1].age_ns<0, ahead_ns> 0);
+    }
+    right.set_clock_ahead(0);
+    right.zones(cycle, false);
+    EXPECT_TRUE(report_until(left, [&] {
+      return whole->is_whole() && !is_active(kWide) && !is_active(kFar);
+    })) << whole->what_is_missing();
+  }
+}
+
+// Its clock was set back, or ahead and back, by less. What it says then counts, although the state
+// that it wrote before has a later time.
+TEST_F(ASharedCell, HasTheZonesThatAShareWritesAfterItsClockWasSetBack) {
+  Daemon left(dds, cell, "left", 1);
+  begin(left, {"left", "right"});
+  for (const std::int64_t ahead_ns : {-2'000'000'000, 2'000'000'000, 0}) {
+    SCOPED_TRACE(ahead_ns);
+    right.set_clock_ahead(ahead_ns);
+    ASSERT_TRUE(report_until(left, [&] { return whole->is_whole() && !is_active(kFar); }));
+    for (const bool active : {true, false}) {
+      right.zones(cycle, active);
+      EXPECT_TRUE(report_until(left, [&] { return is_active(kFar) == active; }));
+      EXPECT_EQ(is_active(kWide), active);
+      EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
+    }
+  }
 }
 
 // The catalogue of one share names the separations of all.
