@@ -21,8 +21,6 @@ constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'00
 constexpr std::int64_t kLeaderHeardNs = 100'000'000;
 // The least delay of notices holds for as long without any.
 constexpr std::int64_t kDelayLastsNs = 1'000'000'000;
-// A leader stops writing somewhat before its lease ends.
-constexpr std::int64_t kOwnLeaseNs = kLeaderLeaseNs * 3 / 4;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
 constexpr std::int64_t kClockErrorNs = 5'000'000;
 
@@ -56,8 +54,9 @@ PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
                          const DaemonIdentity& identity, TickPartner& ticks)
     : identity_(identity),
       ticks_(ticks),
+      lease_ns_(leader_lease_ns(ticks.period_ns())),
       ticks_writer_(participant.writer(TopicKind::kPartnerTicks, topics.partner_ticks,
-                                       {.lease_ns = kLeaderLeaseNs})),
+                                       {.lease_ns = lease_ns_})),
       states_writer_(participant.writer(TopicKind::kPartnerStates, topics.partner_states)),
       ticks_reader_(participant.partner_reader(TopicKind::kPartnerTicks, topics.partner_ticks)),
       states_reader_(participant.partner_reader(TopicKind::kPartnerStates, topics.partner_states)),
@@ -323,10 +322,11 @@ void PartnerPort::send_scene(std::span<const clearance_msg_SceneChange> changes,
   write(scenes_writer_, &*sample, "a change of the scene for the partner");
 }
 
+// A leader stops writing somewhat before its lease ends.
 bool PartnerPort::leads() const {
   if (ticks_.standing() != PartnerStanding::kLeading) return false;
   const std::int64_t now = SystemClock().monotonic_ns();
-  return now - ticks_.leads_since_ns() > kLeaderLeaseNs && now - written_ns_ < kOwnLeaseNs &&
+  return now - ticks_.leads_since_ns() > lease_ns_ && now - written_ns_ < lease_ns_ * 3 / 4 &&
          writers_alive(ticks_reader_) == 0;
 }
 

@@ -2,6 +2,7 @@
 // cell, and the reports of the partner, which are compared with the daemon's own.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -22,8 +23,12 @@
 
 namespace clearance {
 
-// The lease of what has one leader.
-inline constexpr std::int64_t kLeaderLeaseNs = 20'000'000;
+// The lease of what has one leader, for cells with ticks of this period: two notices in a row would
+// have to be late.
+[[nodiscard]] constexpr std::int64_t leader_lease_ns(std::int64_t period_ns) noexcept {
+  constexpr std::int64_t kLeast = 20'000'000;
+  return std::max(kLeast, 2 * period_ns);
+}
 
 // The least delay of the partner's notices: what remains of it is the error of the phase. It holds
 // for the last 512 to 1024 notices, so that it follows clocks that drift.
@@ -103,6 +108,7 @@ class PartnerPort {
 
   const DaemonIdentity& identity_;
   TickPartner& ticks_;
+  const std::int64_t lease_ns_;
   Actions actions_;
   dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_,
       catalogues_reader_, scenes_writer_, scenes_reader_;

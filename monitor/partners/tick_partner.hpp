@@ -64,6 +64,7 @@ class TickPartner final : public PoseSource, public TickPace {
   [[nodiscard]] SpscRing<TickTag>& tags() noexcept { return tags_; }
 
   // Any thread.
+  [[nodiscard]] std::int64_t period_ns() const noexcept { return options_.period_ns; }
   [[nodiscard]] PartnerStanding standing() const noexcept { return shown_standing_.load(); }
   // This daemon does not follow a partner whose ticks of the same scene it hears.
   [[nodiscard]] bool wants_state() const noexcept { return wants_state_.load(); }

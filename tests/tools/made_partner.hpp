@@ -22,7 +22,7 @@ class MadePartner {
         participant_(dds),
         reports_(participant_.writer(TopicKind::kDistances, cell.topics.distances)),
         ticks_(participant_.writer(TopicKind::kPartnerTicks, cell.topics.partner_ticks,
-                                   {.lease_ns = kLeaderLeaseNs})),
+                                   {.lease_ns = leader_lease_ns(0)})),
         states_(participant_.writer(TopicKind::kPartnerStates, cell.topics.partner_states)) {}
 
   // Publishes another partner's report as its own, after a change that the checksums follow.

@@ -60,7 +60,7 @@ class OneLeader {
     take();
     std::ranges::stable_sort(written_, {}, &Written::at_ns);
     Found found{.samples = written_.size()};
-    const std::int64_t least_ns = kLeaderLeaseNs / 4 + period_ns_;
+    const std::int64_t least_ns = leader_lease_ns(period_ns_) / 4 + period_ns_;
     std::map<std::uint64_t, std::int64_t> last_ns;  // by daemon
     const Written* before = nullptr;
     for (std::size_t i = 0; i < written_.size(); ++i) {
@@ -71,8 +71,8 @@ class OneLeader {
       const bool is_near = (is_other && one.at_ns - before->at_ns < least_ns) ||
                            (after != nullptr && is_last && after->at_ns - one.at_ns < least_ns);
       const auto [last, is_first] = last_ns.emplace(one.daemon, one.at_ns);
-      const bool was_held_up =
-          one.at_ns - std::exchange(last->second, one.at_ns) > kLeaderLeaseNs * 3 / 4 + period_ns_;
+      const bool was_held_up = one.at_ns - std::exchange(last->second, one.at_ns) >
+                               leader_lease_ns(period_ns_) * 3 / 4 + period_ns_;
       if (is_near && is_last && was_held_up) {
         const auto apart_ms = [&](const Written* other) {
           return other == nullptr ? kInfinity

@@ -90,7 +90,7 @@ TEST_F(PartnerFaults, ALeaderIsSilentForSimpleReadersWhileAnotherOneLeads) {
   std::int64_t since_ns = dds_time(), last_ns = since_ns;
   ASSERT_TRUE(eventually([&] {
     const std::int64_t now_ns = dds_time();
-    if (now_ns - last_ns > kLeaderLeaseNs / 2) since_ns = now_ns;
+    if (now_ns - last_ns > leader_lease_ns(0) / 2) since_ns = now_ns;
     last_ns = now_ns;
     partner.lead(0, false);
     EXPECT_EQ(written_since(since_ns + 100'000'000), 0);

@@ -151,7 +151,7 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
       read_for(random.uniform(0.02, 0.6), [] { return false; });
       if (!read_for(5.0, zone_is_right)) ++zones_wrong;
       wire.lose(0.0);
-      halves_ns.emplace_back(cut_ns, dds_time() + kLeaderLeaseNs);
+      halves_ns.emplace_back(cut_ns, dds_time() + leader_lease_ns(0));
     }
     if (!agree()) --done;
     for (const auto& [from_ns, until_ns] : halves_ns)
