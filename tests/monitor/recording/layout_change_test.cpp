@@ -9,7 +9,9 @@
 #include "monitor/files/build_info.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/recorded_cell.hpp"
+#include "monitor/recording/topic_schema.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "monitor/sensors/built_frames.hpp"
 #include "monitor/wire/message_fields.hpp"
 #include "other_version.h"
 #include "tests/monitor/replay/offline_replay_run.hpp"
@@ -117,6 +119,36 @@ TEST(LayoutChange, GoesIntoListsAndFindsFieldsWhereverTheyStand) {
   EXPECT_TRUE(std::isnan(read->pairs._buffer[1].scaling));
   EXPECT_EQ(30, read->pairs._buffer[1].age_human_ns);
   EXPECT_EQ(40, read->pairs._buffer[1].age_robot_ns);
+}
+
+// Frames of builds that did not record what carries a sensor end before it. Such builds had the
+// frame's place known whatever the tick knew, as that of a sensor in the world.
+TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
+  std::string former = frames_schema().text;
+  const std::size_t carrier = former.find("FrameCarrier carrier;");
+  ASSERT_NE(carrier, std::string::npos);
+  former.erase(carrier, std::string_view("FrameCarrier carrier;").size());
+  BuiltFrame frame{.sensor = 3, .stamp_ns = 77, .scene_revision = 5};
+  frame.carrier = {.kind = RobotBase::Kind::kLink, .object = 0, .robot = 1, .link = 2};
+  frame.message.cdr.assign(7,
+                           std::byte{9});  // the carrier follows at once: it begins with an octet
+  CdrEncoder encoder;
+  const Sample<clearance_msg_SensorFrame> sample = to_wire(frame, 9, true);
+  const auto now = encoder.encode(*sample);
+  constexpr std::size_t kCarrier = 1 + 3 + 3 * 4;  // an octet, padding and three numbers
+  const std::vector<std::byte> then(now.begin(), now.end() - kCarrier);
+  CdrDecoder decoder;
+  Sample<clearance_msg_SensorFrame> read;
+  EXPECT_FALSE(decoder.decode(then, read)) << "it is not of this layout";
+  LayoutChange change(former, frames_schema().text, "SensorFrame");
+  ASSERT_EQ("", change.error());
+  EXPECT_THAT(change.not_recorded(), ElementsAre("SensorFrame.carrier"));
+  ASSERT_TRUE(decoder.decode(change.apply(then), read));
+  const BuiltFrame found = from_wire(*read);
+  EXPECT_EQ(found.sensor, 3u);
+  EXPECT_EQ(found.stamp_ns, 77);
+  EXPECT_EQ(found.message.cdr, frame.message.cdr);
+  EXPECT_EQ(found.carrier.kind, RobotBase::Kind::kWorld);
 }
 
 TEST(LayoutChange, RefusesBytesCutOffAnywhereAndLengthsBeyondTheEnd) {
