@@ -13,9 +13,9 @@ constexpr std::int64_t kFramesEveryNs = 10'000'000;
 
 template <class Header>
 void set_stamp(Header& header, std::int64_t stamp_ns) {
-  constexpr std::int64_t kSecondNs = 1'000'000'000;
-  header.stamp.sec = static_cast<std::int32_t>(stamp_ns / kSecondNs);
-  header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kSecondNs);
+  constexpr std::int64_t kNsInASecond = 1'000'000'000;
+  header.stamp.sec = static_cast<std::int32_t>(stamp_ns / kNsInASecond);
+  header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kNsInASecond);
 }
 
 }  // namespace

@@ -128,7 +128,9 @@ TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
   const std::size_t carrier = former.find("FrameCarrier carrier;");
   ASSERT_NE(carrier, std::string::npos);
   former.erase(carrier, std::string_view("FrameCarrier carrier;").size());
-  BuiltFrame frame{.sensor = 3, .stamp_ns = 77, .scene_revision = 5};
+  BuiltFrame frame;
+  frame.sensor = 3;
+  frame.stamp_ns = 77;
   frame.carrier = {.kind = RobotBase::Kind::kLink, .object = 0, .robot = 1, .link = 2};
   frame.message.cdr.assign(7,
                            std::byte{9});  // the carrier follows at once: it begins with an octet
