@@ -132,12 +132,11 @@ TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
   frame.sensor = 3;
   frame.stamp_ns = 77;
   frame.carrier = {.kind = RobotBase::Kind::kLink, .object = 0, .robot = 1, .link = 2};
-  frame.message.cdr.assign(7,
-                           std::byte{9});  // the carrier follows at once: it begins with an octet
+  frame.message.cdr.assign(7, std::byte{9});  // 7: an octet ends at a multiple of 4
   CdrEncoder encoder;
   const Sample<clearance_msg_SensorFrame> sample = to_wire(frame, 9, true);
   const auto now = encoder.encode(*sample);
-  constexpr std::size_t kCarrier = 1 + 3 + 3 * 4;  // an octet, padding and three numbers
+  constexpr std::size_t kCarrier = 1 + 3 * 4;  // an octet and three numbers, without a gap
   const std::vector<std::byte> then(now.begin(), now.end() - kCarrier);
   CdrDecoder decoder;
   Sample<clearance_msg_SensorFrame> read;
@@ -162,6 +161,17 @@ TEST(LayoutChange, RefusesBytesCutOffAnywhereAndLengthsBeyondTheEnd) {
   EXPECT_FALSE(change.apply(bytes).empty());
   bytes[4 + 16 + 3] = std::byte{0x7f};  // the name's length
   EXPECT_TRUE(change.apply(bytes).empty());
+}
+
+TEST(LayoutChange, RefusesAnArrayOfAnotherLength) {
+  const std::string ours = "@final struct A { double x[3]; octet y; };";
+  EXPECT_TRUE(LayoutChange(ours, ours, "A").is_none());
+  EXPECT_EQ("A.x is double[4] there and double[3] here",
+            LayoutChange("@final struct A { double x[4]; octet y; };", ours, "A").error());
+  for (const char* const length : {"0", "2000", "-1", "n", ""}) {
+    const std::string bad = "@final struct A { double x[" + std::string(length) + "]; };";
+    EXPECT_NE("", LayoutChange(bad, ours, "A").error()) << length;
+  }
 }
 
 TEST(LayoutChange, RefusesAFieldOfAnotherType) {
