@@ -227,9 +227,14 @@ Histogram send_all(SimulatedRobot& robot, const Arguments& arguments, Simulation
 
 // "3 poses and 7 joint states", and neither without any.
 std::string inputs_of(const SimulatedRobot& robot) {
-  const std::string poses = robot.objects() > 0 ? counted(robot.objects(), "pose") : "";
-  const std::string joints = robot.joints() > 0 ? counted(robot.joints(), "joint state") : "";
-  return poses + (poses.empty() || joints.empty() ? "" : " and ") + joints;
+  std::string all;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) all += (all.empty() ? "" : " and ") + counted(count, what);
+  };
+  add(robot.objects(), "pose");
+  add(robot.joints(), "joint state");
+  add(robot.frames(), "transform");
+  return all;
 }
 
 // Cameras that are simulated, or none.

@@ -241,19 +241,19 @@ void CellReader::select_share(const YamlNode& root, Cell& cell) {
 
 // The root frame cannot be guessed: while transforms are missing, any frame may be the root.
 void CellReader::refuse_frames_without_a_world(const YamlNode& root, const Cell& cell) {
-  const Scene& scene = cell.scene;
-  const auto object =
-      std::ranges::find_if(scene.objects, [](const Object& each) { return !each.frame.empty(); });
-  const auto robot = std::ranges::find_if(
-      scene.robots, [](const Robot& each) { return !each.base.frame.empty(); });
   if (!cell.ros.world_frame.empty()) return;
-  if (object == scene.objects.end() && robot == scene.robots.end()) return;
-  diagnostics_.add(root,
-                   fmt::format("found that '{}' follows the frame '{}', and no world_frame; "
-                               "expected the frame of tf that is the cell's world: ros2: "
-                               "{{world_frame: map}}",
-                               object == scene.objects.end() ? robot->name : object->name,
-                               object == scene.objects.end() ? robot->base.frame : object->frame));
+  std::vector<std::pair<std::string, std::string>> frames;  // by who follows them
+  for (const Object& each : cell.scene.objects) frames.emplace_back(each.name, each.frame);
+  for (const Robot& each : cell.scene.robots) frames.emplace_back(each.name, each.base.frame);
+  for (const SimulatedFrame& each : cell.simulation.frames)
+    frames.emplace_back("a mover", each.name);
+  const auto found =
+      std::ranges::find_if(frames, [](const auto& each) { return !each.second.empty(); });
+  if (found == frames.end()) return;
+  diagnostics_.add(root, fmt::format("found that '{}' follows the frame '{}', and no world_frame; "
+                                     "expected the frame of tf that is the cell's world: ros2: "
+                                     "{{world_frame: map}}",
+                                     found->first, found->second));
 }
 
 // A budget that cannot refresh every pair in time would silently break the promise of refresh_s.

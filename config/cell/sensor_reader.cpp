@@ -28,6 +28,18 @@ constexpr Range kFrameRates{.least = 0.01, .most = 10'000.0};  // Hz
 constexpr Range kStampErrors{.least = 0.0, .most = 1000.0};    // ms
 constexpr Range kSpacings{.least = 0.0, .most = 0.1};
 
+// A place is unseen if it is in the cone of a pixel. A cloud, organised or not, states no
+// intrinsics, so a point that is missing leaves its cone open.
+constexpr const char* why_not_unseen(SensorKind kind) noexcept {
+  return kind == SensorKind::kPoints
+             ? "found 'unseen' of points; expected it of a depth_image: messages of points have no "
+               "camera, so nothing says which places a missing point has not seen. State the "
+               "depth image of this camera instead"
+             : "found 'unseen' of an octomap; expected it of a depth_image: only the occupied "
+               "leaves of a map are read, not those that it has not seen. State the depth image "
+               "of a camera beside it";
+}
+
 class SensorReader {
  public:
   SensorReader(const ObjectDefaults& defaults, const Quantities& quantities)
@@ -303,7 +315,7 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   if (const YamlNode* unseen = map.optional("unseen")) {
     sensor.unseen = read_flag(*unseen, diagnostics_).value_or(false);
     if (sensor.unseen && sensor.kind != SensorKind::kDepthImage)
-      diagnostics_.add(*unseen, "found 'unseen'; expected it of depth images only");
+      diagnostics_.add(*unseen, why_not_unseen(sensor.kind));
   }
   if (const YamlNode* reach = map.optional("reach")) {
     sensor.reach = quantities_.length(*reach, "the reach of the links", kNotNegative).value_or(0.0);

@@ -78,4 +78,8 @@ void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& pos
   for (const SimulatedMover& mover : simulation.movers) poses.push_back(mover_at(mover, t_s));
 }
 
+Pose frame_at(const SimulatedFrame& frame, double t_s) {
+  return mover_at(frame.motion, t_s).world_from_object;
+}
+
 }  // namespace clearance

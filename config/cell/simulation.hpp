@@ -52,11 +52,20 @@ struct SimulatedMover {
   Vec3 spin = Vec3::Zero();  // rad/s, along world axes
 };
 
+// A frame of tf that moves as a mover does: a camera's, which is no object.
+struct SimulatedFrame {
+  std::string name;
+  SimulatedMover motion;  // its object is not used
+};
+
 // The whole section; empty when a cell has none.
 struct Simulation {
   std::vector<SimulatedChain> chains;
   std::vector<SimulatedMover> movers;
-  [[nodiscard]] bool empty() const noexcept { return chains.empty() && movers.empty(); }
+  std::vector<SimulatedFrame> frames;
+  [[nodiscard]] bool empty() const noexcept {
+    return chains.empty() && movers.empty() && frames.empty();
+  }
 };
 
 // One object at one instant. The twist is the exact derivative of the pose.
@@ -70,5 +79,8 @@ struct PoseAt {
 // start. Chains come in the order of the file, then movers. The result is deterministic. Allocates
 // only when `poses` has to grow.
 void poses_at(const Simulation& simulation, double t_s, std::vector<PoseAt>& poses);
+
+// World from the frame, `t_s` seconds after the start.
+[[nodiscard]] Pose frame_at(const SimulatedFrame& frame, double t_s);
 
 }  // namespace clearance

@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "config/cell/ros_reader.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
 
@@ -29,7 +30,7 @@ class SimulationReader {
       : list_(list), quantities_(quantities), diagnostics_(quantities.diagnostics()) {}
 
   SimulatedChain read_chain(const YamlNode& node);
-  SimulatedMover read_mover(const YamlNode& node);
+  void read_mover(const YamlNode& node, Simulation& simulation);
 
  private:
   SimulatedJoint read_joint(const YamlNode& node);
@@ -167,12 +168,17 @@ SimulatedChain SimulationReader::read_chain(const YamlNode& node) {
   return chain;
 }
 
-// Reads one object that swings about a centre and may spin.
-SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
+// Reads one object, or a frame of tf, that swings about a centre and may spin.
+void SimulationReader::read_mover(const YamlNode& node, Simulation& simulation) {
   SimulatedMover mover;
   MapReader map(node, "a mover", diagnostics_);
-  if (const YamlNode* object = map.required("object"))
+  const YamlNode* const frame = map.optional("frame");
+  if (const YamlNode* object = frame != nullptr ? map.optional("object") : map.required("object")) {
     mover.object = read_object(*object).value_or(0);
+    if (frame != nullptr)
+      diagnostics_.add(*object,
+                       "found 'object' beside 'frame' of a mover; expected one of the two");
+  }
   mover.centre = read_pose(map.optional("centre"));
   if (const YamlNode* amplitude = map.optional("amplitude")) {
     mover.amplitude =
@@ -187,7 +193,14 @@ SimulatedMover SimulationReader::read_mover(const YamlNode& node) {
     mover.spin = quantities_.angles(*spin, "the spin a second").value_or(Vec3::Zero());
   }
   map.refuse_unknown_keys();
-  return mover;
+  if (frame == nullptr) {
+    simulation.movers.push_back(mover);
+    return;
+  }
+  const std::string name = read_frame(*frame, diagnostics_).value_or("");
+  if (std::ranges::find(simulation.frames, name, &SimulatedFrame::name) != simulation.frames.end())
+    diagnostics_.add(*frame, fmt::format("found the frame '{}' again; expected it once", name));
+  simulation.frames.push_back({name, mover});
 }
 
 }  // namespace
@@ -206,7 +219,7 @@ Simulation read_simulation(const YamlNode& node, const ObjectList& objects,
   }
   if (const YamlNode* movers = map.optional("movers")) {
     for (const YamlNode& mover : read_list(*movers, "movers", diagnostics)) {
-      simulation.movers.push_back(reader.read_mover(mover));
+      reader.read_mover(mover, simulation);
     }
   }
   map.refuse_unknown_keys();

@@ -54,6 +54,10 @@ bool is_good(const PinholeCamera& c) noexcept {
   return narrow(left, 0.0) && narrow(right, 0.0) && narrow(top, 0.0) && narrow(bottom, 0.0);
 }
 
+bool is_lost(const DepthCloud::Block& block, std::size_t lane) noexcept {
+  return block.low[lane] > block.high[lane];
+}
+
 }  // namespace
 
 DepthCloud::DepthCloud(std::uint32_t most_columns, std::uint32_t most_rows)
@@ -177,13 +181,14 @@ bool DepthCloud::build_unseen(const DepthCloud& seen, const DepthRange& range) n
   return true;
 }
 
-void DepthCloud::leave_out_behind(const DepthCloud& seen) noexcept {
+void DepthCloud::leave_out_behind(const DepthCloud& seen, const DepthCloud* others) noexcept {
   for (std::size_t b = 0; b < tiling_.tiles(0); ++b) {
     const DepthTiling::Place& at = tiling_.place(0, b);
     if (at.column >= tiling_.camera().width || at.row >= tiling_.camera().height) continue;
     for (std::size_t lane = 0; lane < kFanOut; ++lane) {
       const bool was_seen = blocks_[b].low[lane] > near_;
-      if (was_seen && seen.blocks_[b].low[lane] > seen.blocks_[b].high[lane]) remove(b, lane);
+      const bool is_of_others = others != nullptr && is_lost(others->blocks_[b], lane);
+      if (was_seen && is_lost(seen.blocks_[b], lane) && !is_of_others) remove(b, lane);
     }
   }
   refit();

@@ -121,8 +121,9 @@ class DepthCloud {
   // its pixels, and the whole cone of a pixel that it does not have, both within the range. Returns
   // false, and changes nothing, if the picture is larger than the capacity, or the range is bad.
   [[nodiscard]] bool build_unseen(const DepthCloud& seen, const DepthRange& range) noexcept;
-  // After that: leaves out the places behind the pixels that `seen` has lost since.
-  void leave_out_behind(const DepthCloud& seen) noexcept;
+  // After that: leaves out the places behind the pixels that `seen` has lost since. Those that
+  // `others`, a copy of it from before, has lost as well stay; null: there are none.
+  void leave_out_behind(const DepthCloud& seen, const DepthCloud* others) noexcept;
   // After that: the whole cone of this pixel is unseen. Call refit() afterwards.
   void leave_open(std::size_t block, std::size_t lane) noexcept;
 

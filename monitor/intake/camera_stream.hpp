@@ -26,6 +26,7 @@ struct FrameOrigin {
   std::int64_t stamp_ns = 0;  // of the header
   std::int64_t sent_ns = 0;   // the sender's clock at sending; in a log, the time of recording
   std::uint64_t writer = 0;
+  bool is_stamped = true;  // false: the header has none, and `stamp_ns` is the time of sending
 };
 
 // To be used by one thread. Stamps increase, unless the clock was set back: after a silence, a
@@ -43,7 +44,8 @@ class CameraStream {
                                 const FrameOrigin& origin, DepthImage& out) noexcept;
   [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__PointCloud2_& message,
                                 const FrameOrigin& origin, PointsView& out) noexcept;
-  // A map that nothing has changed may come again as it was.
+  // A map that nothing has changed may come again as it was, if its stamp says so. Without a stamp,
+  // it may be an old one that was sent again.
   [[nodiscard]] FrameFault take(const octomap_msgs_msg_dds__Octomap_& message,
                                 const FrameOrigin& origin, OctomapView& out) noexcept;
   // Counts bytes that could not be decoded.

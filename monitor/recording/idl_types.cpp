@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <utility>
 
 namespace clearance {
@@ -23,6 +24,8 @@ constexpr std::array<std::pair<std::string_view, std::uint32_t>, 10> kNumbers = 
      {"long long", 8},
      {"unsigned long long", 8},
      {"double", 8}}};
+
+constexpr std::uint32_t kMostElements = 1024;
 
 bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; }
 
@@ -98,7 +101,9 @@ class Parser {
     while (ok() && !take_if("}")) {
       if (take_if("@")) expect("key");
       IdlType type = this->type();
-      made->fields.push_back({take(), std::move(type)});
+      std::string name = take();
+      if (take_if("[")) type = array_of(type);
+      made->fields.push_back({std::move(name), std::move(type)});
       expect(";");
     }
     expect(";");
@@ -129,6 +134,21 @@ class Parser {
       return {};
     }
     return {.kind = IdlType::Kind::kStruct, .name = name, .fields = known->second};
+  }
+
+  // "3]" behind an opening bracket. The elements stand in a row, as fields do.
+  IdlType array_of(const IdlType& element) {
+    const std::string length = take();
+    expect("]");
+    std::uint32_t count = 0;
+    const auto read = std::from_chars(length.data(), length.data() + length.size(), count);
+    if (read.ptr != length.data() + length.size() || count == 0 || count > kMostElements)
+      fail(fmt::format("'{}'; expected an array of 1 to {} elements", length, kMostElements));
+    auto made = std::make_shared<IdlStruct>();
+    made->name = fmt::format("{}[{}]", element.name, length);
+    for (std::uint32_t i = 0; ok() && i < count; ++i)
+      made->fields.push_back({std::to_string(i), element});
+    return {.kind = IdlType::Kind::kStruct, .name = made->name, .fields = made};
   }
 
   // "<32>", which the layout does not depend on.

@@ -19,7 +19,7 @@ struct IdlType {
   std::string name;
   std::uint32_t size = 0;                        // of a number, bytes; CDR aligns it to them
   std::shared_ptr<const IdlType> element = {};   // of a sequence
-  std::shared_ptr<const IdlStruct> fields = {};  // of a struct
+  std::shared_ptr<const IdlStruct> fields = {};  // of a struct; an array has them, named "0" ...
 };
 
 struct IdlField {
@@ -39,8 +39,8 @@ struct IdlTypes {
 };
 
 // Reads modules, constants of type unsigned long, and @final structs whose members are numbers,
-// strings, sequences and structs defined before. Anything else is an error: a layout that is not
-// understood must not be guessed.
+// strings, sequences and structs defined before, or arrays of one dimension of these. Anything else
+// is an error: a layout that is not understood must not be guessed.
 [[nodiscard]] IdlTypes parse_idl(std::string_view text);
 
 }  // namespace clearance

@@ -33,7 +33,10 @@ struct LayoutComparison {
   std::set<std::string> not_recorded;
 
   void compare(const IdlType& recorded, const IdlType& ours, const std::string& where) {
-    if (recorded.kind != ours.kind || (ours.kind == Kind::kNumber && recorded.name != ours.name)) {
+    // An array is named by its length.
+    const bool has_name =
+        ours.kind == Kind::kNumber || ours.name.ends_with(']') || recorded.name.ends_with(']');
+    if (recorded.kind != ours.kind || (has_name && recorded.name != ours.name)) {
       error = fmt::format("{} is {} there and {} here", where, recorded.name, ours.name);
     } else if (ours.kind == Kind::kSequence) {
       compare(*recorded.element, *ours.element, where);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
@@ -220,10 +221,10 @@ void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& plac
                         SeenCloud& cloud) {
   const Sensor& sensor = state.sensor;
   if (state.persistence) {
-    DepthCloud* const unseen = own_image_.unseen(sensor);
+    const std::span<DepthCloud> unseen = own_image_.unseen(sensor);
     state.status.hidden = state.persistence->hide(
         cloud, place.world_from_body, place.error(sensor.extent()), frame.stamp_ns, unseen);
-    if (unseen != nullptr) unseen->refit();
+    for (DepthCloud& each : unseen) each.refit();
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);
   if (DepthCloud* const depth = cloud.depth()) {

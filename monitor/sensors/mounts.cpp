@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
@@ -13,6 +14,9 @@ namespace {
 constexpr double kRounding = 1e-9;
 
 const PastPose kOrigin{.known = true, .world_from_body = {}};
+
+// A mount without stated speeds leaps if it is faster than this. It bounds nothing else.
+constexpr MountSpeed kUnstated{.shift = kFastestBase, .turn = kFastestBaseTurn};
 
 }  // namespace
 
@@ -145,19 +149,26 @@ std::optional<Mounts::Excess> Mounts::excess(const Sensor& sensor, const Path& p
   std::optional<Pose> before;
   std::int64_t before_ns = 0;
   const double age_s = seconds(cell_.scene.objects[sensor.object].age_limit_ns);
-  const MountSpeed& speed = sensor.mount_speed;
+  const bool is_stated = sensor.mount_speed.is_stated();
+  const MountSpeed& speed = is_stated ? sensor.mount_speed : kUnstated;
   for (const std::int64_t stamp_ns : stamps) {
     if (before && stamp_ns == before_ns) continue;
     const auto at = along(path, kOrigin, stamp_ns, 0, frames);
     const std::optional<Pose> pose = at ? std::optional(at->place.world_from_body) : std::nullopt;
     if (pose && before) {
       const double time_s = seconds(elapsed(before_ns, stamp_ns));
-      const double shift = way_between(*before, *pose) - speed.shift * time_s;
-      const double turn = angle_between(*before, *pose) - speed.turn * time_s;
+      const double way = way_between(*before, *pose), angle = angle_between(*before, *pose);
+      const double shift = way - speed.shift * time_s, turn = angle - speed.turn * time_s;
       if (shift > speed.shift * age_s + kRounding || turn > speed.turn * age_s + kRounding)
         return std::nullopt;
-      found.shift = std::max(found.shift, shift);
-      found.turn = std::max(found.turn, turn);
+      if (is_stated) {
+        found.shift = std::max(found.shift, shift);
+        found.turn = std::max(found.turn, turn);
+      } else {
+        // The frame may have moved the other way meanwhile.
+        if (shift > kRounding) found.shift = rounded_up(found.shift + way + speed.shift * time_s);
+        if (turn > kRounding) found.turn = rounded_up(found.turn + angle + speed.turn * time_s);
+      }
     }
     before = pose;
     before_ns = stamp_ns;
@@ -179,8 +190,7 @@ PastPose Mounts::of_frame(const Sensor& sensor, const std::string& frame, std::i
   const auto found = along(path, *path.base, at_ns, is_late ? 0 : within_ns, frames);
   if (!found) return {};
   PastPose place = found->place;
-  if (!sensor.mount_speed.is_stated()) return place;
-  if (found->longest_ns > kLongGapNs) {
+  if (sensor.mount_speed.is_stated() && found->longest_ns > kLongGapNs) {
     const auto off = deviation_in_gap(sensor.mount_speed, path, at_ns, frames);
     if (!off) return {};
     const double within_s = is_late ? 0.0 : seconds(within_ns);

@@ -27,7 +27,8 @@ class Mounts {
   // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
   // nowhere, or to what has no pose at that time, or its transforms end before the stamp. In the
   // last case, a stated speed of the mount gives a pose all the same. A path whose transforms have
-  // jumped farther than that speed allows is not known for a second.
+  // jumped farther than that speed allows, or than 5 m/s and 6.3 rad/s do, is not known for a
+  // second.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
   // The carrier of the sensor at that stamp.
@@ -52,7 +53,7 @@ class Mounts {
   [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                              const FrameHistory& frames, const PostureHistory& postures) const;
   // The way of the whole path between its transforms of the last second beyond the stated
-  // speeds; nothing: farther than wrong stamps explain.
+  // speeds, or those that no mount exceeds; nothing: farther than wrong stamps explain.
   struct Excess {
     double shift = 0.0, turn = 0.0;  // m, rad
   };

@@ -19,17 +19,30 @@ double radius_of(const Part& part) noexcept {
 OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
     if (!is_of_a_robot(scene.robots, scene.robots[robot])) continue;
+    const auto carrier = static_cast<std::uint32_t>(&carrier_of(scene.robots, scene.robots[robot]) -
+                                                    scene.robots.data());
+    const auto found = std::ranges::find(groups_, carrier);
+    const auto group = static_cast<std::uint32_t>(found - groups_.begin());
+    if (found == groups_.end()) groups_.push_back(carrier);
     const std::vector<RobotLink>& links = scene.robots[robot].links;
     for (std::uint32_t link = 0; link < links.size(); ++link) {
       if (links[link].object != RobotLink::kNoObject)
-        links_.push_back({links[link].object, robot, link});
+        links_.push_back({links[link].object, robot, link, group});
     }
   }
   std::ranges::sort(links_, {}, &Link::object);
   for (const Sensor& sensor : scene.sensors) {
-    unseen_.push_back(sensor.unseen ? std::make_unique<Unseen>(sensor.columns, sensor.rows)
-                                    : nullptr);
+    unseen_.push_back(sensor.unseen ? std::make_unique<Unseen>(sensor, groups_.size()) : nullptr);
   }
+}
+
+bool OwnImage::hang_together(std::uint32_t group, std::uint32_t other) const noexcept {
+  const auto stands_on = [&](std::uint32_t above, std::uint32_t below) {
+    while (above != below && scene_.robots[above].base.kind == RobotBase::Kind::kLink)
+      above = scene_.robots[above].base.robot;
+    return above == below;
+  };
+  return stands_on(groups_[group], groups_[other]) || stands_on(groups_[other], groups_[group]);
 }
 
 void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
@@ -38,10 +51,13 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
   CentreLimit limit{
       .error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
       .along_ray = sensor.along_ray};
-  Unseen* const unseen = of_sensor(sensor);
-  if (unseen != nullptr) {
-    unseen->is_built = unseen->cloud.build_unseen(
-        *cloud.depth(), {.least = sensor.least_depth, .greatest = sensor.greatest_depth});
+  Unseen* const places = of_sensor(sensor);
+  if (places != nullptr) {
+    places->is_built = std::ranges::all_of(places->clouds, [&](DepthCloud& each) {
+      return each.build_unseen(*cloud.depth(),
+                               {.least = sensor.least_depth, .greatest = sensor.greatest_depth});
+    });
+    std::ranges::fill(places->others, *cloud.depth());
   }
   cloud.hidden().clear();
   for (const Link& link : links_) {
@@ -55,24 +71,33 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
       const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
       // The way of an organised point to its neighbours says nothing about whose image it is.
       limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
-      const BlindShell blind = cloud.shelve(
-          part.shape, relative_pose(world_from_part, place.world_from_body), shell, limit, body);
+      const RelativePose part_from_cloud = relative_pose(world_from_part, place.world_from_body);
+      const BlindShell blind = cloud.shelve(part.shape, part_from_cloud, shell, limit, body);
+      for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
+        if (!hang_together(group, link.group))
+          static_cast<void>(
+              shelve_own_points(part.shape, part_from_cloud, shell, places->others[group], body));
+      }
       near.shell.elements += blind.elements;
       if (blind.elements > 0)
         near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));
     }
   }
-  if (unseen != nullptr && unseen->is_built) unseen->cloud.leave_out_behind(*cloud.depth());
+  for (std::size_t group = 0; group < unseen(sensor).size(); ++group) {
+    places->clouds[group].leave_out_behind(
+        *cloud.depth(), places->others.empty() ? nullptr : &places->others[group]);
+  }
 }
 
-DepthCloud* OwnImage::unseen(const Sensor& sensor) noexcept {
+std::span<DepthCloud> OwnImage::unseen(const Sensor& sensor) noexcept {
   Unseen* const unseen = of_sensor(sensor);
-  return unseen != nullptr && unseen->is_built ? &unseen->cloud : nullptr;
+  if (unseen == nullptr || !unseen->is_built) return {};
+  return unseen->clouds;
 }
 
 void OwnImage::find_unseen(const Sensor& sensor, const PastPose& place,
                            const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
-  if (unseen(sensor) == nullptr) return;
+  if (unseen(sensor).empty()) return;
   const double place_error = place.error(sensor.extent());
   for (std::size_t i = 0; i < links_.size(); ++i) {
     const PastPose past = postures.link(links_[i].robot, links_[i].link);
@@ -89,7 +114,7 @@ void OwnImage::find_unseen(const Link& of, const PastPose& past, const PastPose&
     const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
     unseen.tracking.forget();
     const NearestElement found =
-        nearest_element(part.shape, unseen.cloud, body,
+        nearest_element(part.shape, unseen.clouds[of.group], body,
                         relative_pose(world_from_part, place.world_from_body), unseen.tracking);
     if (found.answer == CloudAnswer::kEmpty) continue;
     const double lower = rounded_down(found.lower - place_error - past.error(radius_of(part)));

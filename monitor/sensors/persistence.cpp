@@ -87,7 +87,7 @@ bool Persistence::stays(const Cells& cells, double error, std::int64_t stamp_ns)
 }
 
 std::size_t Persistence::hide(SeenCloud& cloud, const Pose& world_from_sensor, double error,
-                              std::int64_t stamp_ns, DepthCloud* unseen) {
+                              std::int64_t stamp_ns, std::span<DepthCloud> unseen) {
   std::ranges::fill(newest_.bits, 0);
   newest_.stamp_ns = stamp_ns;
   newest_.error = error;
@@ -109,7 +109,7 @@ std::size_t Persistence::hide(SeenCloud& cloud, const Pose& world_from_sensor, d
     if (known.stays) return;
     ++hidden;
     cloud.remove(block, lane);
-    if (unseen != nullptr) unseen->leave_open(block, lane);
+    for (DepthCloud& each : unseen) each.leave_open(block, lane);
   });
   std::swap(earlier_[count_ % earlier_.size()], newest_);
   ++count_;

@@ -9,6 +9,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "config/scene/sensor.hpp"
@@ -22,11 +23,11 @@ class Persistence {
   Persistence(const Sensor& sensor, double max_speed);
 
   // Hides elements of the newest frame, and keeps its places for the next ones. The cloud's own
-  // image of the robot is left out before. `error`: m, of the place of any element. If `unseen` is
-  // not null, the cone of a hidden pixel becomes an unseen place. The caller calls refit() after
-  // it. Returns how many elements are hidden. Deterministic.
+  // image of the robot is left out before. `error`: m, of the place of any element. The cone of
+  // a hidden pixel becomes an unseen place of each of the other clouds. The caller calls refit()
+  // after it. Returns how many elements are hidden. Deterministic.
   std::size_t hide(SeenCloud& cloud, const Pose& world_from_sensor, double error,
-                   std::int64_t stamp_ns, DepthCloud* unseen);
+                   std::int64_t stamp_ns, std::span<DepthCloud> unseen);
 
  private:
   // The cells that the elements of a frame touch, as a set of hashes.

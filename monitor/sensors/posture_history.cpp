@@ -50,6 +50,37 @@ double excess(double time_s, double speed, double mean) noexcept {
   return (std::max(0.0, std::abs(mean) - speed) + 0x1p-48 * speed) * time_s;
 }
 
+// No position of a joint in this time is farther from `position`. Between two values, it is off the
+// line by no more than T (v^2 - u^2) / 2v, with T their time, u their mean speed and v the largest.
+// A point of the line is no farther than half of the way from `position` over it and back.
+double farthest_within(const StampedSeries<double>& values, const JointMetric& metric,
+                       double position, std::int64_t first_ns, std::int64_t last_ns,
+                       double speed) noexcept {
+  const auto distance = [&](double a, double b) {
+    return metric.distance(a, b) + kInterpolated * (std::abs(a) + std::abs(b));
+  };
+  const auto& first = values.at(0);
+  const auto& last = values.last();
+  double most = 0.0;
+  if (first.stamp_ns >= first_ns)
+    most = distance(position, first.value) + speed * seconds_between(first_ns, first.stamp_ns);
+  if (last.stamp_ns <= last_ns) {
+    most = std::max(
+        most, distance(position, last.value) + speed * seconds_between(last.stamp_ns, last_ns));
+  }
+  for (std::size_t i = std::max<std::size_t>(values.first_from(first_ns), 1); i < values.size();
+       ++i) {
+    const auto &a = values.at(i - 1), &b = values.at(i);
+    if (a.stamp_ns > last_ns) break;
+    const double time = seconds_between(a.stamp_ns, b.stamp_ns);
+    const double way = distance(a.value, b.value), mean = way / time, u = std::min(mean, speed);
+    const double off = 0.5 * time * (speed - u) * (1.0 + u / speed) + excess(time, speed, mean);
+    const double around = distance(position, a.value) + way + distance(position, b.value);
+    most = std::max(most, 0.5 * around + off);
+  }
+  return rounded_up(most);
+}
+
 }  // namespace
 
 void PostureHistory::Disputed::add(std::int64_t stamp_ns, std::int64_t hold_ns) noexcept {
@@ -243,17 +274,23 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   state.position = before->value;
   state.may_have_moved = way_within(speed, within_ns);
-  if (before == after) return;
   if (after == nullptr) {
     state.may_have_moved = rounded_up(speed * since + state.may_have_moved);
     return;
   }
-  const double until = seconds_between(stamp_ns, after->stamp_ns);
-  const double way = JointMetric(of.wraps).difference(before->value, after->value);
-  state.position += way * (since / (since + until));
-  const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
-  state.may_have_moved = rounded_up(deviation(since, until, speed, way / (since + until)) +
-                                    rounding + state.may_have_moved);
+  const JointMetric metric(of.wraps);
+  if (before != after) {
+    const double until = seconds_between(stamp_ns, after->stamp_ns);
+    const double way = metric.difference(before->value, after->value);
+    state.position += way * (since / (since + until));
+    const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
+    state.may_have_moved = rounded_up(deviation(since, until, speed, way / (since + until)) +
+                                      rounding + state.may_have_moved);
+  }
+  if (within_ns == 0) return;
+  const double by_values = farthest_within(joints_[variable].values, metric, state.position,
+                                           stamp_ns - within_ns, stamp_ns + within_ns, speed);
+  state.may_have_moved = std::min(state.may_have_moved, by_values);
 }
 
 // An object is nowhere faster than its largest speed, and neither is any point of it. What stands

@@ -118,7 +118,11 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
       ++state.not_built[static_cast<std::size_t>(FrameFault::kNoPlace)];
       return;
     }
-    fault = state.stream.take(map.octomap, {frame->stamp_ns, message.sent_ns, message.writer},
+    fault = state.stream.take(map.octomap,
+                              {.stamp_ns = frame->stamp_ns,
+                               .sent_ns = message.sent_ns,
+                               .writer = message.writer,
+                               .is_stamped = stamp != 0},
                               frame->map);
   } else {
     frame->stamp_ns = stamp_ns(sample->header);

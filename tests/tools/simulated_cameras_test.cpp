@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "monitor/wire/camera_types.hpp"
+#include "monitor/wire/ros_types.hpp"
 #include "tests/shared/ros_reader.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tools/rendering/person.hpp"
@@ -68,6 +69,8 @@ class SimulatedCamerasTest : public testing::Test {
     robot->signal(SIGTERM);
     return robot->wait();
   }
+  // Runs the daemon and the robot on a cell with the arm of camera.yaml and a person.
+  void judge(const std::string& file);
 
   DdsOptions dds = own_dds();
   Participant client{dds};
@@ -140,6 +143,50 @@ TEST_F(SimulatedCamerasTest, SendPointsAndWhatTheCellDoesNotKnow) {
   EXPECT_GT(of_person, 500u);
 }
 
+// The mast swings above the floor, and the camera hangs 0.5 m below its frame. No message names a
+// place: a picture agrees with the frame's transforms at its stamp only.
+TEST_F(SimulatedCamerasTest, HangOnAFrameOfTfThatTheSimulationSends) {
+  std::string text = kBoxBelow;
+  const std::string mount = "mount: {pose: {xyz: [0, 0, 2], rpy: [180, 0, 0]}}";
+  text.replace(text.find(mount), mount.size(),
+               "mount: {frame: mast, pose: {xyz: [0, 0, -0.5], rpy: [180, 0, 0]}}");
+  text.replace(text.find("rate_hz"), 0, "ros2: {world_frame: map}\n");
+  text +=
+      "    - {frame: mast, centre: {xyz: [0, 0, 2.5]}, amplitude: [0, 0, 0.3], frequency_hz: "
+      "0.5}\n";
+  RosReader<Image> images(client, kRosImage, "rt/eye/depth");
+  RosReader<tf2_msgs_msg_dds__TFMessage_> transforms(client, kRosTf, "rt/tf");
+  start(text, {"--camera-missing", "0", "--camera-noise", "0"});
+  std::map<std::int64_t, double> heights;
+  double least = 9.0, most = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    const Image* const image = images.next();
+    ASSERT_NE(image, nullptr) << robot->output();
+    const std::int64_t stamp = stamp_of(image->header);
+    while (heights.empty() || heights.rbegin()->first < stamp) {
+      const auto* const message = transforms.next();
+      ASSERT_NE(message, nullptr) << robot->output();
+      ASSERT_EQ(message->transforms._length, 1u);
+      const auto& mast = message->transforms._buffer[0];
+      EXPECT_STREQ(mast.header.frame_id, "map");
+      EXPECT_STREQ(mast.child_frame_id, "mast");
+      heights[stamp_of(mast.header)] = mast.transform.translation.z;
+    }
+    const auto after = heights.lower_bound(stamp);
+    if (after == heights.begin()) continue;
+    const auto before = std::prev(after);
+    std::uint16_t corner = 0;
+    std::memcpy(&corner, image->data._buffer, sizeof corner);
+    const double share = static_cast<double>(stamp - before->first) /
+                         static_cast<double>(after->first - before->first);
+    const double height = before->second + share * (after->second - before->second) - 0.5;
+    EXPECT_NEAR(0.001 * corner, height, 0.003) << "the floor, in the corner of the picture";
+    least = std::min(least, height);
+    most = std::max(most, height);
+  }
+  EXPECT_GT(most - least, 0.1) << "it has moved";
+}
+
 TEST_F(SimulatedCamerasTest, AreLeftOutWhereTheCellDoesNotStateTheirPlace) {
   std::string text = kBoxBelow;
   const std::string mount = "    mount: {pose: {xyz: [0, 0, 2], rpy: [180, 0, 0]}}\n";
@@ -154,10 +201,7 @@ TEST_F(SimulatedCamerasTest, AreLeftOutWhereTheCellDoesNotStateTheirPlace) {
   EXPECT_EQ(robot->wait(), 2);
 }
 
-// From a simulated person to the report: no bound is above the truth that the simulator knows. The
-// simulator says so at its end, for as many reports as a busy machine has let it compare.
-TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
-  const std::string file = places::sources() + "/config/cells/camera.yaml";
+void SimulatedCamerasTest::judge(const std::string& file) {
   ChildProcess daemon(kDaemon, with({file}, dds_arguments(dds)));
   std::size_t pairs = 0;
   for (int attempt = 0; attempt < 8 && pairs < 10; ++attempt) {
@@ -177,6 +221,29 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
   EXPECT_EQ(pairs, 10u);
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
+}
+
+// From a simulated person to the report: no bound is above the truth that the simulator knows. The
+// simulator says so at its end, for as many reports as a busy machine has let it compare.
+TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
+  judge(places::sources() + "/config/cells/camera.yaml");
+}
+
+// The same camera on a mast that sways, whose place comes by tf.
+TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasOnTfSaw) {
+  const std::string cells = places::sources() + "/config/cells/";
+  std::string text = read_text(cells + "camera.yaml");
+  const auto replace = [&](const std::string& before, const std::string& now) {
+    for (std::size_t at = 0; (at = text.find(before, at)) != text.npos; at += now.size())
+      text.replace(at, before.size(), now);
+  };
+  replace("seven_joint_arm/", cells + "seven_joint_arm/");
+  replace("mount: {pose:", "mount: {frame: mast, pose:");
+  text +=
+      "\nros2: {world_frame: map}\nsimulation: {movers: [{frame: mast, amplitude: [0.1, 0.1, "
+      "0], frequency_hz: 0.3}]}\n";
+  const CellFile moved(text);
+  judge(moved.path());
 }
 
 TEST(Person, MovesWithoutLeapsAndNoFasterThanItSays) {
@@ -213,6 +280,39 @@ TEST(Person, RefusesPathsThatLeadNowhere) {
   for (const char* const text :
        {"", "1,2", "1,2:1,2", "1:2", "1,2:x,3", "1,2:3,4,5,6", "1,2:1e9,0"})
     EXPECT_TRUE(std::holds_alternative<std::string>(read_walking_path(text))) << text;
+}
+
+// A frame of tf may be the world's, a link's or an object's: a daemon needs no transform then.
+TEST(SimulatedWorld, HasThePlacesOfCamerasInFramesOfTf) {
+  auto cell = std::get<Cell>(read_cell(places::sources() + "/config/cells/camera.yaml"));
+  cell.ros.world_frame = "map";
+  cell.simulation.frames = {{"mast", {.centre = {Vec3(1, 2, 3), Eigen::Quaterniond::Identity()}}}};
+  SimulatedWorld world(cell,
+                       [&cell](double, std::vector<JointSample>& joints) {
+                         joints.assign(cell.scene.variables.size(), {});
+                         for (std::uint32_t i = 0; i < joints.size(); ++i) joints[i].variable = i;
+                       },
+                       {});
+  world.place(0.0);
+  Sensor sensor = cell.scene.sensors[0];
+  sensor.mount = {};
+  sensor.mount.frame_from_root.position = {0, 0, 0.5};
+  const auto position_in = [&](const std::string& frame) {
+    sensor.mount.frame = frame;
+    const auto found = world.sensor(sensor);
+    EXPECT_EQ(found.has_value(), has_place(cell, sensor)) << frame;
+    return found ? found->position : Vec3(-9, -9, -9);
+  };
+  EXPECT_EQ(position_in("map"), Vec3(0, 0, 0.5));
+  EXPECT_EQ(position_in("mast"), Vec3(1, 2, 3.5));
+  EXPECT_LT((position_in("shelf") - Vec3(-1.0, -0.4, 0.95)).norm(), 1e-12);
+  EXPECT_LT((position_in("shoulder") - Vec3(0, 0, 0.5 + 0.14 + 0.5)).norm(), 1e-12);
+  EXPECT_EQ(position_in("elsewhere"), Vec3(-9, -9, -9));
+  sensor.mount = {};
+  sensor.frames_by_message = true;
+  EXPECT_FALSE(world.sensor(sensor).has_value());
+  cell.simulation.frames[0].name = sensor.name;
+  EXPECT_EQ(world.sensor(sensor)->position, Vec3(1, 2, 3));
 }
 
 // The bodies of a robot are where its joints put them, as the tick finds it.

@@ -1,8 +1,39 @@
 #include "tools/rendering/simulated_world.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace clearance {
+namespace {
+
+// The world, link or object that has this frame of tf, by the same rule as Mounts has.
+std::optional<RobotBase> body_of(const Cell& cell, const std::string& frame) {
+  const Scene& scene = cell.scene;
+  RobotBase body;
+  if (frame == cell.ros.world_frame) return body;
+  body.kind = RobotBase::Kind::kLink;
+  for (body.robot = 0; body.robot < scene.robots.size(); ++body.robot) {
+    const auto& links = scene.robots[body.robot].links;
+    for (body.link = 0; body.link < links.size(); ++body.link) {
+      if (links[body.link].name == frame) return body;
+    }
+  }
+  body.kind = RobotBase::Kind::kObject;
+  for (body.object = 0; body.object < scene.objects.size(); ++body.object) {
+    const Object& object = scene.objects[body.object];
+    if (!object.is_seen() && (object.frame.empty() ? object.name : object.frame) == frame)
+      return body;
+  }
+  return std::nullopt;
+}
+
+const SimulatedFrame* mover_of(const Cell& cell, const std::string& frame) {
+  const auto& frames = cell.simulation.frames;
+  const auto found = std::ranges::find(frames, frame, &SimulatedFrame::name);
+  return found == frames.end() ? nullptr : &*found;
+}
+
+}  // namespace
 
 SimulatedWorld::SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<Person> people)
     : cell_(cell),
@@ -20,7 +51,17 @@ SimulatedWorld::SimulatedWorld(const Cell& cell, JointMotion joints, std::vector
   }
 }
 
+std::string frame_of(const Sensor& sensor) {
+  return sensor.frames_by_message ? sensor.name : sensor.mount.frame;
+}
+
+bool has_place(const Cell& cell, const Sensor& sensor) {
+  const std::string frame = frame_of(sensor);
+  return frame.empty() || body_of(cell, frame) || mover_of(cell, frame) != nullptr;
+}
+
 void SimulatedWorld::place(double t_s) {
+  t_s_ = t_s;
   const std::vector<Object>& objects = cell_.scene.objects;
   for (std::size_t i = 0; i < objects.size(); ++i) {
     objects_[i].reset();
@@ -72,19 +113,30 @@ void SimulatedWorld::add_bodies() {
   }
 }
 
-std::optional<Pose> SimulatedWorld::sensor(const Sensor& sensor) const noexcept {
-  if (sensor.is_on_tf()) return std::nullopt;
-  const RobotBase& mount = sensor.mount;
-  switch (mount.kind) {
+std::optional<Pose> SimulatedWorld::sensor(const Sensor& sensor) const {
+  const std::string frame = frame_of(sensor);
+  if (frame.empty()) return place_of(sensor.mount);
+  std::optional<Pose> base;
+  if (const auto body = body_of(cell_, frame)) {
+    base = place_of(*body);
+  } else if (const SimulatedFrame* const mover = mover_of(cell_, frame)) {
+    base = frame_at(*mover, t_s_);
+  }
+  if (base) *base = compose(*base, sensor.mount.frame_from_root);
+  return base;
+}
+
+std::optional<Pose> SimulatedWorld::place_of(const RobotBase& base) const {
+  switch (base.kind) {
     case RobotBase::Kind::kWorld:
-      return mount.base_from_root;
+      return base.base_from_root;
     case RobotBase::Kind::kObject:
-      if (!objects_[mount.object]) return std::nullopt;
-      return compose(*objects_[mount.object], mount.base_from_root);
+      if (!objects_[base.object]) return std::nullopt;
+      return compose(*objects_[base.object], base.base_from_root);
     case RobotBase::Kind::kLink: {
-      const LinkState& link = kinematics_.links(mount.robot)[mount.link];
+      const LinkState& link = kinematics_.links(base.robot)[base.link];
       if (!link.known) return std::nullopt;
-      return compose(link.pose, mount.base_from_root);
+      return compose(link.pose, base.base_from_root);
     }
   }
   return std::nullopt;

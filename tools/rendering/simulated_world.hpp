@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "config/cell/cell.hpp"
@@ -14,6 +15,13 @@
 #include "tools/rendering/person.hpp"
 
 namespace clearance {
+
+// The frame of tf in which the sensor is mounted. The messages of a sensor without a mount have the
+// sensor's name there. Empty: it is in none.
+[[nodiscard]] std::string frame_of(const Sensor& sensor);
+// True if the simulation has a place for the sensor. It has places for the frames of tf that are
+// the world's, links, objects, or movers of the simulation.
+[[nodiscard]] bool has_place(const Cell& cell, const Sensor& sensor);
 
 // Returns the positions of all variables of a cell's robots at a time after the start, s.
 using JointMotion = std::function<void(double t_s, std::vector<JointSample>& joints)>;
@@ -35,8 +43,8 @@ class SimulatedWorld {
   [[nodiscard]] const std::optional<Pose>& object(std::uint32_t id) const noexcept {
     return objects_[id];
   }
-  // World from sensor, if the cell states the sensor's pose on what is placed.
-  [[nodiscard]] std::optional<Pose> sensor(const Sensor& sensor) const noexcept;
+  // World from sensor, if what it is mounted on has a place now.
+  [[nodiscard]] std::optional<Pose> sensor(const Sensor& sensor) const;
   // True for links, and for what is attached to them.
   [[nodiscard]] bool is_of_robot(std::uint32_t object) const noexcept {
     return object < of_robot_.size() && of_robot_[object];
@@ -45,6 +53,7 @@ class SimulatedWorld {
  private:
   void place_robots(double t_s);
   void add_bodies();
+  [[nodiscard]] std::optional<Pose> place_of(const RobotBase& base) const;
 
   const Cell& cell_;
   JointMotion joints_;
@@ -53,6 +62,7 @@ class SimulatedWorld {
   std::vector<JointSample> samples_;
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;  // by robot
+  double t_s_ = 0.0;
   ForwardKinematics kinematics_;
   std::vector<std::optional<Pose>> objects_;
   std::vector<bool> of_robot_;

@@ -57,12 +57,11 @@ std::string fault_of(const Cell& cell, const SimulatedCameraOptions& options) {
     const PinholeCamera camera = camera_of(sensor, options);
     const double wide = 0.5 * std::max(options.columns, options.rows) / camera.fx;
     const bool is_image = sensor.kind == SensorKind::kDepthImage;
-    if (sensor.is_on_tf()) {
+    if (!has_place(cell, sensor)) {
       return fmt::format(
           "the cell does not state where {} is; expected `mount` with a pose in the world, or on "
-          "an "
-          "object or link",
-          sensor.name);
+          "an object or link, or a mover of `simulation` with the frame {}",
+          sensor.name, frame_of(sensor));
     }
     if (is_image ? options.columns > sensor.columns || options.rows > sensor.rows
                  : pixels > sensor.most_points) {

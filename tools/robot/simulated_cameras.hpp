@@ -41,8 +41,8 @@ struct SentFrame {
   const std::vector<bool>& is_sent;  // by pixel: it is not missing
 };
 
-// Returns what is wrong with the options for this cell's sensors; empty: nothing. A sensor whose
-// pose the cell does not state cannot be simulated.
+// Returns what is wrong with the options for this cell's sensors; empty: nothing. A sensor
+// without a place (has_place) cannot be simulated.
 [[nodiscard]] std::string fault_of(const Cell& cell, const SimulatedCameraOptions& options);
 
 class SimulatedCameras {

@@ -3,7 +3,22 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/inputs/elapsed.hpp"
+
 namespace clearance {
+namespace {
+
+// Most programs send tf at this rate.
+constexpr std::int64_t kFramesEveryNs = 10'000'000;
+
+template <class Header>
+void set_stamp(Header& header, std::int64_t stamp_ns) {
+  constexpr std::int64_t kNsInASecond = 1'000'000'000;
+  header.stamp.sec = static_cast<std::int32_t>(stamp_ns / kNsInASecond);
+  header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kNsInASecond);
+}
+
+}  // namespace
 
 // A source name belongs to one writer. Beside poses, joints therefore have a name of their own.
 SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
@@ -15,6 +30,15 @@ SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
     catalogue_.emplace(connection);
     for (const PoseAt& pose : poses_)
       moving_.emplace_back(*catalogue_, cell.scene.objects[pose.object].name);
+  }
+  if (!simulation_.frames.empty()) {
+    frames_writer_ = connection.participant().ros_writer(kRosTf, ros_dds_name("/tf"));
+    reserve_sequence(frames_message_->transforms, simulation_.frames.size());
+    for (const SimulatedFrame& frame : simulation_.frames) {
+      auto& out = frames_message_->transforms._buffer[frames_message_->transforms._length++];
+      out.header.frame_id = dds_string_dup(cell.ros.world_frame.c_str());
+      out.child_frame_id = dds_string_dup(frame.name.c_str());
+    }
   }
   if (cell.scene.variables.empty()) return;
   positions_.resize(cell.scene.variables.size());
@@ -31,7 +55,9 @@ SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
 }
 
 SimulatedRobot::~SimulatedRobot() {
-  if (ros_writer_ != 0) dds_delete(ros_writer_);
+  for (const dds_entity_t writer : {ros_writer_, frames_writer_}) {
+    if (writer != 0) dds_delete(writer);
+  }
 }
 
 // The names never change, so they are written once.
@@ -51,6 +77,21 @@ void SimulatedRobot::send(double t_s, std::int64_t stamp_ns) {
   ++sent_;
   if (pose_writer_) send_poses(t_s, stamp_ns);
   if (!scene_.variables.empty()) send_joints(t_s, stamp_ns);
+  if (frames_writer_ != 0 && elapsed(frames_sent_ns_, stamp_ns) >= kFramesEveryNs)
+    send_frames(t_s, stamp_ns);
+}
+
+void SimulatedRobot::send_frames(double t_s, std::int64_t stamp_ns) {
+  frames_sent_ns_ = stamp_ns;
+  for (std::size_t i = 0; i < simulation_.frames.size(); ++i) {
+    const Pose pose = frame_at(simulation_.frames[i], t_s);
+    const Vec3& p = pose.position;
+    const Eigen::Quaterniond& q = pose.orientation;
+    auto& out = frames_message_->transforms._buffer[i];
+    set_stamp(out.header, stamp_ns);
+    out.transform = {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}};
+  }
+  failed_ += dds_write(frames_writer_, &*frames_message_) != DDS_RETCODE_OK;
 }
 
 // The cell of another daemon, which has another name, is not followed.
@@ -90,9 +131,7 @@ void SimulatedRobot::send_joints(double t_s, std::int64_t stamp_ns) {
 }
 
 void SimulatedRobot::send_joints_to_ros(std::int64_t stamp_ns) {
-  constexpr std::int64_t kSecondNs = 1'000'000'000;
-  ros_message_->header.stamp.sec = static_cast<std::int32_t>(stamp_ns / kSecondNs);
-  ros_message_->header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % kSecondNs);
+  set_stamp(ros_message_->header, stamp_ns);
   std::ranges::copy(positions_, ros_message_->position._buffer);
   std::ranges::copy(velocities_, ros_message_->velocity._buffer);
   ros_message_->position._length = ros_message_->velocity._length =

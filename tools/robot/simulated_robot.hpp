@@ -1,4 +1,5 @@
-// Sends the motion of a cell over DDS: the poses of its simulation, and the joints of its robots.
+// Sends the motion of a cell over DDS: the poses and frames of its simulation, and the joints of
+// its robots.
 #pragma once
 
 #include <cstdint>
@@ -34,6 +35,7 @@ class SimulatedRobot {
 
   [[nodiscard]] std::size_t objects() const noexcept { return poses_.size(); }
   [[nodiscard]] std::size_t joints() const noexcept { return scene_.variables.size(); }
+  [[nodiscard]] std::size_t frames() const noexcept { return simulation_.frames.size(); }
 
   // Sends the state `t_s` seconds after the start under this stamp.
   void send(double t_s, std::int64_t stamp_ns);
@@ -47,6 +49,7 @@ class SimulatedRobot {
   void send_poses(double t_s, std::int64_t stamp_ns);
   void send_joints(double t_s, std::int64_t stamp_ns);
   void send_joints_to_ros(std::int64_t stamp_ns);
+  void send_frames(double t_s, std::int64_t stamp_ns);
 
   const Scene& scene_;
   const Simulation& simulation_;
@@ -61,6 +64,9 @@ class SimulatedRobot {
   std::optional<client::JointWriter> joint_writer_;
   Sample<sensor_msgs_msg_dds__JointState_> ros_message_;
   dds_entity_t ros_writer_ = 0;  // 0: none
+  Sample<tf2_msgs_msg_dds__TFMessage_> frames_message_;
+  dds_entity_t frames_writer_ = 0;  // 0: none
+  std::int64_t frames_sent_ns_ = 0;
   std::uint64_t sent_ = 0, failed_ = 0;
 };
 

@@ -296,6 +296,14 @@ const Mistake kMistakes[] = {
      "found the object 'left' again"},
     {"SimulatedUnknown", kBoxes + "simulation: {movers: [{object: @lefd}]}\n",
      "found the unknown object 'lefd'; expected one of the cell's; did you mean 'left'?"},
+    {"SimulatedFrameTwice",
+     "ros2: {world_frame: map}\n" + kBoxes +
+         "simulation: {movers: [{frame: mast}, {frame: @mast}]}\n",
+     "found the frame 'mast' again"},
+    {"SimulatedFrameAndObject",
+     "ros2: {world_frame: map}\n" + kBoxes +
+         "simulation: {movers: [{frame: mast, object: @left}]}\n",
+     "found 'object' beside 'frame' of a mover"},
     {"JointType", kBoxes + "simulation: {chains: [{name: c, joints: [{type: @ball}]}]}\n",
      "found the text 'ball'; expected revolute or prismatic\n"},
     {"JointTypeMisspelt",

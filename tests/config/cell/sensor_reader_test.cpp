@@ -179,7 +179,9 @@ TEST(SensorsOfACell, AreRefusedWhereAKeyIsWrong) {
   refuses(kDepth + ", shell: 1", "'shell'");
   refuses(kDepth + ", own_shell: 0.2, most_shell: 0.1", "most_shell of 0.1 m");
   refuses(kDepth + ", most_hz: 0", "rate of frames");
-  refuses(kPoints + ", unseen: true", "'unseen'");
+  refuses(kPoints + ", unseen: true", "no camera");
+  refuses(kPoints + ", spacing: neighbours, unseen: true", "depth image of this camera");
+  refuses("octomap: /map, unseen: true", "'unseen' of an octomap");
   refuses(kDepth + ", persist: {frames: 2, of: 3}", "'max_speed'");
   refuses(kDepth + ", max_speed: 1, persist: {frames: 4, of: 3}", "4");
   refuses(kDepth + ", max_speed: 1, persist: {frames: 1, of: 17}", "17");

@@ -9,7 +9,9 @@
 #include "monitor/files/build_info.hpp"
 #include "monitor/mcap/writer.hpp"
 #include "monitor/recording/recorded_cell.hpp"
+#include "monitor/recording/topic_schema.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "monitor/sensors/built_frames.hpp"
 #include "monitor/wire/message_fields.hpp"
 #include "other_version.h"
 #include "tests/monitor/replay/offline_replay_run.hpp"
@@ -119,6 +121,37 @@ TEST(LayoutChange, GoesIntoListsAndFindsFieldsWhereverTheyStand) {
   EXPECT_EQ(40, read->pairs._buffer[1].age_robot_ns);
 }
 
+// Frames of builds that did not record what carries a sensor end before it. Such builds had the
+// frame's place known whatever the tick knew, as that of a sensor in the world.
+TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
+  std::string former = frames_schema().text;
+  const std::size_t carrier = former.find("FrameCarrier carrier;");
+  ASSERT_NE(carrier, std::string::npos);
+  former.erase(carrier, std::string_view("FrameCarrier carrier;").size());
+  BuiltFrame frame;
+  frame.sensor = 3;
+  frame.stamp_ns = 77;
+  frame.carrier = {.kind = RobotBase::Kind::kLink, .object = 0, .robot = 1, .link = 2};
+  frame.message.cdr.assign(7, std::byte{9});  // 7: an octet ends at a multiple of 4
+  CdrEncoder encoder;
+  const Sample<clearance_msg_SensorFrame> sample = to_wire(frame, 9, true);
+  const auto now = encoder.encode(*sample);
+  constexpr std::size_t kCarrier = 1 + 3 * 4;  // an octet and three numbers, without a gap
+  const std::vector<std::byte> then(now.begin(), now.end() - kCarrier);
+  CdrDecoder decoder;
+  Sample<clearance_msg_SensorFrame> read;
+  EXPECT_FALSE(decoder.decode(then, read)) << "it is not of this layout";
+  LayoutChange change(former, frames_schema().text, "SensorFrame");
+  ASSERT_EQ("", change.error());
+  EXPECT_THAT(change.not_recorded(), ElementsAre("SensorFrame.carrier"));
+  ASSERT_TRUE(decoder.decode(change.apply(then), read));
+  const BuiltFrame found = from_wire(*read);
+  EXPECT_EQ(found.sensor, 3u);
+  EXPECT_EQ(found.stamp_ns, 77);
+  EXPECT_EQ(found.message.cdr, frame.message.cdr);
+  EXPECT_EQ(found.carrier.kind, RobotBase::Kind::kWorld);
+}
+
 TEST(LayoutChange, RefusesBytesCutOffAnywhereAndLengthsBeyondTheEnd) {
   LayoutChange change(idl_of("Older"), kIdlText, "ZoneState");
   const other_msg_OlderZoneState older{2, 3, "stop", true, false, 4, 5, 6, 0.5};
@@ -128,6 +161,17 @@ TEST(LayoutChange, RefusesBytesCutOffAnywhereAndLengthsBeyondTheEnd) {
   EXPECT_FALSE(change.apply(bytes).empty());
   bytes[4 + 16 + 3] = std::byte{0x7f};  // the name's length
   EXPECT_TRUE(change.apply(bytes).empty());
+}
+
+TEST(LayoutChange, RefusesAnArrayOfAnotherLength) {
+  const std::string ours = "@final struct A { double x[3]; octet y; };";
+  EXPECT_TRUE(LayoutChange(ours, ours, "A").is_none());
+  EXPECT_EQ("A.x is double[4] there and double[3] here",
+            LayoutChange("@final struct A { double x[4]; octet y; };", ours, "A").error());
+  for (const char* const length : {"0", "2000", "-1", "n", ""}) {
+    const std::string bad = "@final struct A { double x[" + std::string(length) + "]; };";
+    EXPECT_NE("", LayoutChange(bad, ours, "A").error()) << length;
+  }
 }
 
 TEST(LayoutChange, RefusesAFieldOfAnotherType) {

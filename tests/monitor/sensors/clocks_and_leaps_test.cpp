@@ -124,6 +124,49 @@ TEST_F(ClocksAndLeaps, ATransformThatAStatedSpeedDoesNotAllowPlacesNoCamera) {
   EXPECT_EQ(see(kStart + 1450 * kMs).size(), 1u);
 }
 
+// A mast moves at up to 3 m/s, and no speed is stated. One transform is wrong, or all from then on.
+// For a second after that, a frame has no place, or its error contains the true one.
+TEST_F(ClocksAndLeaps, ATransformThatLeapsLeavesNoFrameSurerThanItIsAlthoughNoSpeedIsStated) {
+  Random random(5);
+  int refused = 0, placed = 0;
+  for (int run = 0; run < 60; ++run) {
+    make_with_info("frame: mast");
+    const double leap = random.uniform(0.18, 1.5), speed = random.uniform(-3.0, 3.0);
+    const bool stays = run % 2 == 0;
+    const int leap_ms = 20 * random.integer(20, 30);
+    const int image_ms = leap_ms + random.integer(-20, stays ? 960 : 30);
+    for (int ms = 0; ms <= image_ms + 40; ms += 20) {
+      const bool is_wrong = stays ? ms >= leap_ms : ms == leap_ms;
+      add_mast(0.001 * ms * speed + (is_wrong ? leap : 0.0), kStart + ms * kMs);
+    }
+    const auto frames = see(kStart + image_ms * kMs, 60 * kMs, 40 * kMs);
+    refused += frames.empty() ? 1 : 0;
+    if (frames.empty()) continue;
+    ++placed;
+    const double truth = 0.001 * image_ms * speed;
+    EXPECT_LE(std::abs(frames[0].world_from_sensor.position.x() - truth), frames[0].pose_error)
+        << "run " << run << ": a leap of " << leap << " m";
+  }
+  EXPECT_GT(refused, 15);
+  EXPECT_GT(placed, 10);
+}
+
+TEST_F(ClocksAndLeaps, AMastThatMovesFastIsNoLeapWithoutAStatedSpeed) {
+  make_with_info("frame: mast");
+  for (int ms = 0; ms <= 400; ms += 20) add_mast(0.004 * ms, kStart + ms * kMs);
+  const auto frames = see(kStart + 310 * kMs, kMs, 90 * kMs);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_LT(frames[0].pose_error, 0.041) << "half of the 80 mm between two transforms";
+  // A second after a leap that stayed, the later place is believed: it may be a correction.
+  for (int ms = 420; ms <= 1700; ms += 20) add_mast(1.6 + 0.3, kStart + ms * kMs);
+  const auto during = see(kStart + 1350 * kMs, kMs, 350 * kMs);
+  ASSERT_EQ(during.size(), 1u);
+  EXPECT_GT(during[0].pose_error, 0.3);
+  const auto later = see(kStart + 1450 * kMs, kMs, 250 * kMs);
+  ASSERT_EQ(later.size(), 1u);
+  EXPECT_LT(later[0].pose_error, 1e-9);
+}
+
 // A localisation corrects an odometry that was set to 0 at the same time.
 TEST_F(ClocksAndLeaps, FramesOfAPathMayLeapIfTheyCorrectEachOther) {
   make_with_info("frame: mast, max_speed: 0.5, max_turn_speed: 0.1");

@@ -136,7 +136,7 @@ TEST(Persistence, TheTimeBetweenTwoFramesCountsWhicheverIsStampedLater) {
     SeenCloud cloud = SeenCloud::of_points(1);
     const std::vector<MeasuredPoint> point = {{x, 0.0F, 0.0F, 0.01F}};
     EXPECT_EQ(cloud.points()->build(point, {Vec3::Zero(), 5.0}), CloudBuild::kBuilt);
-    return persistence.hide(cloud, {}, 0.001, stamp_ms * 1'000'000, nullptr) > 0;
+    return persistence.hide(cloud, {}, 0.001, stamp_ms * 1'000'000, {}) > 0;
   };
   EXPECT_TRUE(hidden_at(1.0F, 1050)) << "the first frame";
   EXPECT_FALSE(hidden_at(1.07F, 1000)) << "1.5 m/s for 50 ms";
@@ -172,7 +172,7 @@ TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {
       SeenCloud cloud = SeenCloud::of_points(1000);
       ASSERT_EQ(cloud.points()->build(points, {Vec3::Zero(), 5.0}), CloudBuild::kBuilt);
       std::vector<bool> stays(points.size());
-      hidden += persistence.hide(cloud, place, 0.005, stamp, nullptr);
+      hidden += persistence.hide(cloud, place, 0.005, stamp, {});
       for (std::size_t b = 0; b < cloud.points()->blocks(); ++b) {
         const PointCloud::Block& block = cloud.points()->block(b);
         for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {

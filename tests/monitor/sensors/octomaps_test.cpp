@@ -93,6 +93,34 @@ TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {
   EXPECT_NEAR(cart(frames, kStart + kFrame + 30'000'000).lower, 0.7 - 0.1, 1e-6);
 }
 
+// MoveIt sends the map that it has whenever it sends a whole scene, also after its camera died.
+TEST_F(OctomapsTest, WithoutAStampGrowOldThoughTheyAreSentAgain) {
+  make(kMap, "ros2: {world_frame: map}\n");
+  const auto send = [&](const std::string& tree, std::int64_t sent_ns) {
+    clearance::moveit::PlanningScene scene;
+    scene.is_diff = true;
+    scene.has_octomap = true;
+    test::RosCdr cdr;
+    clearance::moveit::put(cdr, scene, tree);
+    add_map(Type::kPlanningScene, cdr.bytes(), sent_ns);
+    return settle(sent_ns + 30'000'000);
+  };
+  const auto first = send(one_cube({0, 0, 7}), kStart);
+  ASSERT_EQ(first.size(), 1u);
+  for (int second = 1; second <= 3; ++second)
+    EXPECT_TRUE(send(one_cube({0, 0, 7}), kStart + second * 1'000'000'000LL).empty());
+  EXPECT_EQ(count(FrameFault::kFrozen), 3u);
+  EXPECT_EQ(cart(first, kStart + 1'000'000'000).status, PairStatus::kConverged);
+  EXPECT_EQ(cart(first, kStart + 3'000'000'000).status, PairStatus::kUnknown);
+  // A map that has changed is a new one, for ever.
+  for (unsigned second = 4; second < 8; ++second) {
+    const std::int64_t sent_ns = kStart + second * 1'000'000'000LL;
+    const auto next = send(one_cube({0, 0, 7 + second}), sent_ns);
+    ASSERT_EQ(next.size(), 1u);
+    EXPECT_EQ(next[0].stamp_ns, sent_ns);
+  }
+}
+
 TEST_F(OctomapsTest, AreRefusedByCauseIfTheyAreDamagedOrEmpty) {
   make(kMap + kAbove);
   std::int64_t stamp = kStart;

@@ -61,6 +61,58 @@ TEST(PastPlaces, OfLinksAreThoseOfTheirJointsAtTheStampAndNeverTheLatestOnes) {
   EXPECT_TRUE(history.link(0, 0).known) << "nothing moves the foot";
 }
 
+// Joints go to and fro at full speed, and turn round at any time. The elbow may turn on for ever,
+// so its positions are sent without full turns.
+TEST(PastPlaces, OfLinksContainTheMotionWithinTheErrorOfTheStamp) {
+  const Scene scene = test::scara_cell();
+  Random random(31);
+  for (int run = 0; run < 300; ++run) {
+    PostureHistory history(scene);
+    const double period = random.uniform(0.05, 1.0), drift = random.uniform(-1.0, 1.0),
+                 start = random.uniform(-2.0, 2.0);
+    const auto zigzag = [&](double s) {
+      return std::abs(std::remainder(s, 2.0 * period));  // 1 a second
+    };
+    const auto shoulder = [&](double s) { return 2.0 * zigzag(s) - 1.0; };  // at most 2 rad/s
+    const auto elbow = [&](double s) { return start + 40.0 * drift * s + 9.0 * zigzag(s); };
+    for (double s = 0.0; s < 1.0; s += random.uniform(0.002, 0.015)) {
+      const auto stamp = kStart + static_cast<std::int64_t>(s * 1e9);
+      for (const JointSample& sample :
+           test::joints(shoulder(s), std::remainder(elbow(s), 2.0 * M_PI), 0.0, stamp))
+        history.add(sample);
+    }
+    const double at = random.uniform(0.0, 0.95), within = random.uniform(0.001, 0.1);
+    const auto ns = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
+    history.place(kStart + ns(at), ns(within));
+    const PastPose upper = history.link(0, 1), lower = history.link(0, 2);
+    ASSERT_TRUE(upper.known && lower.known);
+    for (int i = -10; i <= 10; ++i) {
+      const double s = std::max(0.0, at + 0.1 * i * within * 0.999);
+      // |R - R_exact| of a rotation by the angle between them.
+      const auto off = [](const PastPose& link, double angle) {
+        const Eigen::Quaterniond truth(Eigen::AngleAxisd(angle, Vec3::UnitZ()));
+        return 2.0 * std::sin(0.5 * link.world_from_body.orientation.angularDistance(truth));
+      };
+      EXPECT_LE(off(upper, shoulder(s)), upper.turn_error + 1e-7) << run;
+      EXPECT_LE(off(lower, shoulder(s) + elbow(s)), lower.turn_error + 1e-7) << run;
+    }
+  }
+}
+
+// At 100 Hz, a joint with 2 rad/s may leave its place by 10 mrad and be back in time.
+TEST(PastPlaces, OfALinkAtRestHaveNoErrorOfTheStamp) {
+  const Scene scene = test::scara_cell();
+  PostureHistory history(scene);
+  for (int i = 0; i <= 100; ++i) {
+    for (const JointSample& sample : test::joints(0.5, 0.0, 0.0, kStart + i * 10 * kMs))
+      history.add(sample);
+  }
+  history.place(kStart + 500 * kMs, 100 * kMs);
+  EXPECT_LT(history.link(0, 1).turn_error, 0.0101);
+  history.place(kStart + 1000 * kMs, 100 * kMs);
+  EXPECT_NEAR(history.link(0, 1).turn_error, 0.2, 1e-6) << "nothing is known from then on";
+}
+
 TEST(PastPlaces, OfJointsAreNotMixedFromTwoSources) {
   const Scene scene = test::scara_cell();
   PostureHistory history(scene);
