@@ -124,6 +124,12 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
                                .writer = message.writer,
                                .is_stamped = stamp != 0},
                               frame->map);
+    // A changed cell has no frame yet: the map that is sent again has the time of the first one.
+    if (fault == FrameFault::kFrozen && state.status.frames == 0 && state.waiting.empty()) {
+      state.stream.take_back(fault);
+      frame->stamp_ns = state.stream.stamp_ns();
+      fault = clearance::view(map.octomap, frame->map);
+    }
   } else {
     frame->stamp_ns = stamp_ns(sample->header);
     frame->frame = frame_name(sample->header.frame_id);
