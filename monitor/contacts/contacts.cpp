@@ -65,9 +65,15 @@ void Contacts::save(StateWriter& out) const {
   out.put(std::span(reports_));
 }
 
+// What a contact is of stays that of this scene.
 void Contacts::restore(StateReader& in) noexcept {
+  const std::vector<ContactReport> own = reports_;
   in.take(std::span(entries_));
   in.take(std::span(reports_));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    reports_[i].contact = own[i].contact;
+    reports_[i].pair = own[i].pair;
+  }
 }
 
 void Contacts::begin_tick(std::uint64_t cycle, std::int64_t now_ns) noexcept {

@@ -102,9 +102,8 @@ void PartnerStates::join(const PartnerStateView& state) {
     return;
   }
   if (recording_ != nullptr) recording_->note_state(state);
-  const bool is_offered = loop_.offer(joined);
-  while (is_offered && !loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
-  if (recording_ != nullptr && !joined.has_joined()) recording_->forget_state();
+  if (!loop_.offer(joined)) return;
+  while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
 }
 
 // By its turn this daemon may lead, or have the cell.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <span>
 
 #include "monitor/app/log_lines.hpp"
 #include "monitor/dds/health.hpp"
@@ -167,7 +168,7 @@ void Recording::record_all(Part& part) {
       queue.inputs().pop();
       count(1);
     }
-    if (has_states_) record_state(queued->lineage);
+    if (queued->joined != 0) record_state(queued->joined);
     if (built_ != nullptr) record_frames(queued->report.cycle);
     if (command_came_.exchange(false))
       recorder_.ask_for_file({RecordedEvent::Cause::kCommand, "a command was answered"});
@@ -213,24 +214,18 @@ void Recording::note_state(const PartnerStateView& state) {
   const auto cdr = encoder.encode(*to_wire(state, kBuild));
   const std::lock_guard lock(mutex_);
   states_.emplace_back(state.lineage, std::vector(cdr.begin(), cdr.end()));
-  has_states_ = true;
+  if (states_.size() > kMostStates) states_.pop_front();
 }
 
-void Recording::forget_state() {
-  const std::lock_guard lock(mutex_);
-  if (!states_.empty()) states_.pop_back();
-  has_states_ = !states_.empty();
-}
-
-// A lineage that is joined is new to this daemon. Its first report may be missing, if the disk is
-// too slow.
+// Those before it were not taken over. One that is missing here, since the disk is too slow for the
+// reports between, is missing for a replay as well.
 void Recording::record_state(std::uint64_t lineage) {
   const std::lock_guard lock(mutex_);
   const auto state = std::ranges::find(states_, lineage, [](const auto& one) { return one.first; });
-  if (state == states_.end()) return;
-  recorder_.joined(0, state->second);
-  states_.erase(states_.begin(), state + 1);
-  has_states_ = !states_.empty();
+  const bool is_there = state != states_.end();
+  recorder_.joined(is_there ? std::span<const std::byte>(state->second)
+                            : std::span<const std::byte>());
+  if (is_there) states_.erase(states_.begin(), state + 1);
 }
 
 void Recording::tell_of_missing_files() const {

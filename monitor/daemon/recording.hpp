@@ -57,10 +57,8 @@ class Recording {
   // It has not.
   void abandon() { prepared_ = nullptr; }
   // The loop may go on from this state of a partner: it then stands in the file in front of the
-  // first report of its lineage. To be called before the loop has it, by any one thread.
+  // first report that does. To be called before the loop has it, by any one thread.
   void note_state(const PartnerStateView& state);
-  // The loop does not go on from the state that was noted last.
-  void forget_state();
   // A command was answered, which is an event for a recording by event. Any thread.
   void note_command() noexcept { command_came_ = true; }
   // Updates log and health with the faults since the last call. It is called regularly, by a thread
@@ -79,6 +77,7 @@ class Recording {
 
  private:
   static constexpr std::size_t kMostWaiting = 4;
+  static constexpr std::size_t kMostStates = 8;
 
   // The queue of one cell.
   struct Part {
@@ -111,10 +110,9 @@ class Recording {
   BuiltFrames* built_;  // null: the cell has no sensors
   CdrEncoder encoder_;
   RecordingHealth& health_;
-  // States that the loop went on from, or may go on from, by lineage.
+  // States that the loop went on from, or may go on from, by lineage: the last kMostStates.
   std::deque<std::pair<std::uint64_t, std::vector<std::byte>>> states_;
-  std::atomic<bool> has_states_{false};
-  mutable std::mutex mutex_;  // guards the two above, and the next two
+  mutable std::mutex mutex_;  // guards the one above, and the next two
   // The first one is being recorded, and the loop writes to the last one.
   std::deque<std::unique_ptr<Part>> parts_;
   std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;  // by queues that are gone

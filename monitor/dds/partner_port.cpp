@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <optional>
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
@@ -19,6 +18,8 @@ constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
 // A daemon whose notices were heard for the last time longer ago does not lead any more.
 constexpr std::int64_t kLeaderHeardNs = 100'000'000;
+// A thread that hears takes no longer from one look to the next, unless it is held up.
+constexpr std::int64_t kHeldUpNs = 50'000'000;
 // The least delay of notices holds for as long without any.
 constexpr std::int64_t kDelayLastsNs = 1'000'000'000;
 // Clocks of two machines that are in step (PTP, NTP) differ by less.
@@ -47,7 +48,7 @@ std::int64_t LeastDelay::add(std::int64_t delay_ns) noexcept {
     now_ = std::numeric_limits<std::int64_t>::max();
   }
   now_ = std::min(now_, delay_ns);
-  return std::min(now_, before_);
+  return least();
 }
 
 PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
@@ -142,19 +143,21 @@ void PartnerPort::hear() {
   }
 }
 
-// After a time without any notice, clocks may have drifted apart. Of several that wait then, the
-// newest counts: this process may have been stopped, and how long the others waited says nothing of
-// the clocks.
+// After a time without any notice, clocks may have drifted apart. If this process was stopped, how
+// long notices waited for it says nothing of the clocks: their delay is the one before, or none.
 void PartnerPort::hear_notices() {
   dds_sample_info_t info;
-  const bool is_new = SystemClock().monotonic_ns() - leader_heard_ns_ > kDelayLastsNs;
-  if (is_new) delay_ = {};
-  std::optional<std::int64_t> newest;
+  const std::int64_t now = SystemClock().monotonic_ns();
+  if (passed_ns_ != 0 && now - passed_ns_ > kHeldUpNs) went_on_ns_ = dds_time();
+  passed_ns_ = now;
+  is_delay_old_ = is_delay_old_ || now - leader_heard_ns_ > kDelayLastsNs;
   while (take(ticks_reader_, heard_, info)) {
-    newest = delay_.add(dds_time() - info.source_timestamp);
-    if (!is_new) hear_notice(*newest);
+    const std::int64_t sent = info.source_timestamp;
+    const std::int64_t before = delay_.is_known() ? delay_.least() : 0;
+    const bool waited = sent + before < went_on_ns_;
+    if (!waited && std::exchange(is_delay_old_, false)) delay_ = {};
+    hear_notice(waited ? before : delay_.add(dds_time() - sent));
   }
-  if (is_new && newest) hear_notice(*newest);
 }
 
 void PartnerPort::hear_notice(std::int64_t delay_ns) {

@@ -35,6 +35,8 @@ namespace clearance {
 class LeastDelay {
  public:
   std::int64_t add(std::int64_t delay_ns) noexcept;
+  [[nodiscard]] bool is_known() const noexcept { return count_ > 0; }
+  [[nodiscard]] std::int64_t least() const noexcept { return std::min(now_, before_); }
   // The first notices may have waited for this program.
   [[nodiscard]] bool is_settled() const noexcept { return count_ > kWindow; }
 
@@ -119,7 +121,10 @@ class PartnerPort {
   std::atomic<std::uint64_t> partner_revision_{0};
   std::uint64_t leader_ = 0, leader_revision_ = 0;  // of the last notice that was heard
   std::int64_t leader_heard_ns_ = 0;
-  std::uint64_t offered_ = 0;  // the revision that take_cell() got last
+  std::int64_t passed_ns_ = 0;   // when the last pass of hear_notices() began, CLOCK_MONOTONIC
+  std::int64_t went_on_ns_ = 0;  // when this process went on after a stop, CLOCK_REALTIME
+  bool is_delay_old_ = true;     // the next notice that did not wait begins a new one
+  std::uint64_t offered_ = 0;    // the revision that take_cell() got last
   std::int64_t offered_ns_ = 0;
   std::int64_t asked_ns_ = 0, told_ns_ = 0;
   bool clock_told_ = false, refusal_told_ = false;

@@ -34,6 +34,9 @@ class ReportSink {
   virtual void frame(std::uint32_t /*sensor*/, std::int64_t /*stamp_ns*/) noexcept {}
   // The report that follows is of this lineage (monitor/partners). Partners only.
   virtual void lineage(std::uint64_t /*lineage*/) noexcept {}
+  // The tick of the report that follows goes on from the state of a partner, which was taken for
+  // this lineage. Partners only.
+  virtual void joined(std::uint64_t /*lineage*/) noexcept {}
   // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Once a second, and after the last tick.

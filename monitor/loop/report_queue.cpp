@@ -3,6 +3,7 @@
 #include "monitor/loop/report_queue.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "monitor/gradients/gradient_rows.hpp"
 
@@ -73,6 +74,7 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   slot->source_count = sources.size();
   slot->handed_over_ns = SystemClock().realtime_ns();
   slot->lineage = lineage_;
+  slot->joined = std::exchange(joined_, 0);
   reports_.push();
   ready_.post();
 }

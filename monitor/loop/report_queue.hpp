@@ -22,6 +22,7 @@ struct QueuedReport {
   std::size_t source_count = 0;
   std::int64_t handed_over_ns = 0;  // time of the handing over, CLOCK_REALTIME
   std::uint64_t lineage = 0;        // of partners; 0: of a daemon on its own
+  std::uint64_t joined = 0;         // ReportSink::joined(); 0: it goes on from the tick before
 
   [[nodiscard]] std::span<const SourceUse> sources() const noexcept {
     return std::span(sources_used).first(source_count);
@@ -43,6 +44,7 @@ class ReportQueue final : public ReportSink {
   // Tick thread.
   void input(const PoseBatch& batch) noexcept override;
   void lineage(std::uint64_t lineage) noexcept override { lineage_ = lineage; }
+  void joined(std::uint64_t lineage) noexcept override { joined_ = lineage; }
   void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
   void statistics(const LoopStatistics& statistics) noexcept override;
 
@@ -68,7 +70,7 @@ class ReportQueue final : public ReportSink {
   SpscRing<PoseBatch> inputs_;
   SpscRing<LoopStatistics> statistics_;
   bool keeps_inputs_;
-  std::uint64_t lineage_ = 0;  // of the next report
+  std::uint64_t lineage_ = 0, joined_ = 0;  // of the next report
   Semaphore ready_;
   std::atomic<bool> closed_{false};
   std::atomic<std::uint64_t> dropped_reports_{0};

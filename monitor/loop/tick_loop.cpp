@@ -163,6 +163,7 @@ void TickLoop::join() noexcept {
   const bool may_join = options_.pace == nullptr || options_.pace->may_join();
   if (may_join && (frames == nullptr || joined->has_frames(*frames))) joined->join(monitor_, ids_);
   if (joined->has_joined()) {
+    for (ReportSink* sink : sinks_) sink->joined(joined->lineage());
     if (frames != nullptr) frames->show_awaited(*monitor_, sinks_);
     if (options_.pace != nullptr) options_.pace->joined(joined->lineage(), monitor_->cycle());
   }

@@ -3,6 +3,7 @@
 #include "monitor/partners/tick_partner.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <tuple>
 
 namespace clearance {
@@ -19,6 +20,8 @@ constexpr std::int64_t kHearNs = 20'000'000;
 // little. Clocks that disagree by more are no matter of delays.
 constexpr std::int64_t kApproach = 1000;
 constexpr std::int64_t kMostApproachedNs = 100'000'000;
+// Told times of the leaders of one lineage after another differ by less.
+constexpr std::int64_t kLargestStepNs = 100'000'000;
 // A tick that begins later than this is told a later time. Its inputs are those that have come
 // until then, and stamps 5 ms ahead of the told time are refused (`future_limit_ms`).
 constexpr std::int64_t kMostLateNs = 2'500'000;
@@ -300,9 +303,15 @@ std::int64_t TickPartner::follow(const TickNotice& notice) noexcept {
   for (const TickFrame& frame : notice.shown()) options_.frames->choose(frame.sensor);
   const TickTime own = steady_.read(clock_);
   const std::int64_t early = notice.due_ns - clock_.monotonic_ns();
-  ahead_of_own_ns_ = notice.time.now_ns - notice.told_late_ns - (own.now_ns + early);
-  offset_ns_ = notice.time.clock_offset_ns;
-  own_offset_ns_ = own.clock_offset_ns;
+  // Told times go on without a jump. A notice that seems to make one was heard late.
+  const std::int64_t ahead = notice.time.now_ns - notice.told_late_ns - (own.now_ns + early);
+  const bool jumps = std::abs(ahead - ahead_of_own_ns_) > kLargestStepNs;
+  if (!jumps || has_joined_) {
+    ahead_of_own_ns_ = ahead;
+    offset_ns_ = notice.time.clock_offset_ns;
+    own_offset_ns_ = own.clock_offset_ns;
+  }
+  has_joined_ = false;
   time_ = notice.time;
   clock_.sleep_until(notice.due_ns);
   return notice.due_ns;
@@ -371,6 +380,7 @@ void TickPartner::joined(std::uint64_t lineage, std::uint64_t cycle) noexcept {
   }
   lineage_ = lineage;
   before_ = 0;
+  has_joined_ = true;
   become(0);
   stand(PartnerStanding::kFollowing);
 }

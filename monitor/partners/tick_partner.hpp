@@ -135,6 +135,7 @@ class TickPartner final : public PoseSource, public TickPace {
   // What the leader's time is ahead of this daemon's own, and the offsets of both at that tick.
   std::int64_t ahead_of_own_ns_ = 0, offset_ns_ = 0, own_offset_ns_ = 0;
   std::int64_t told_late_ns_ = 0;  // see TickNotice
+  bool has_joined_ = false;        // and has followed no notice since
 
   std::array<TickFrame, kMaxSensors> frames_;      // that the next tick is shown
   std::array<std::int64_t, kMaxSensors> waits_{};  // by sensor: since when a frame waits; 0: none

@@ -16,8 +16,8 @@ namespace clearance {
 struct RingMessage {
   TopicKind kind = TopicKind::kPoses;
   std::optional<SideTopic> side = {};  // then it is of no kind
-  bool is_start = false;          // a file may begin here
-  bool repeated = false;          // a file needs this message only in its first tick
+  bool is_start = false;               // a file may begin here
+  bool repeated = false;               // a file needs this message only in its first tick
   std::uint32_t scene = 0;
   std::int64_t log_ns = 0, publish_ns = 0;
   std::span<const std::byte> cdr;

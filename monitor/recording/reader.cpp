@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <charconv>
 #include <utility>
 
 #include "monitor/files/build_info.hpp"
@@ -33,6 +34,14 @@ std::optional<bool> says_kind(const std::optional<McapSummary>& summary, TopicKi
 }
 
 }  // namespace
+
+std::uint64_t number_of(const McapMap& values, const std::string& key) {
+  const auto found = values.find(key);
+  std::uint64_t number = 0;
+  if (found != values.end())
+    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
+  return number;
+}
 
 RecordingReader::RecordingReader(const std::vector<std::filesystem::path>& files,
                                  const McapWindow& window)
@@ -97,6 +106,11 @@ std::string RecordingReader::about(const std::string& key) const {
   if (about == mcap.metadata().end()) return {};
   const auto value = about->second.find(key);
   return value == about->second.end() ? std::string() : value->second;
+}
+
+std::uint64_t RecordingReader::joined() const {
+  const auto joined = open_.back()->metadata().find(std::string(kJoinedMetadata));
+  return joined == open_.back()->metadata().end() ? 0 : number_of(joined->second, "number");
 }
 
 // A file with a summary tells at once whether it has reports; without one, every message may be

@@ -18,6 +18,9 @@
 
 namespace clearance {
 
+// The number that a key of metadata has; 0: there is none.
+[[nodiscard]] std::uint64_t number_of(const McapMap& values, const std::string& key);
+
 // One message of ours; not decoded yet, since most readers want some kinds only. Its bytes are of
 // this build's types, whichever build recorded it.
 struct RecordedMessage {
@@ -61,6 +64,9 @@ class RecordingReader {
   }
   // The value of a key in the metadata read so far; empty: there is none.
   [[nodiscard]] std::string about(const std::string& key) const;
+  // The number of the last state of a partner so far (kJoinedMetadata). 0: there is none in this
+  // file.
+  [[nodiscard]] std::uint64_t joined() const;
 
  private:
   // One channel as examined.

@@ -77,13 +77,6 @@ CellResult read_recorded(const std::filesystem::path& recording, const std::stri
 }
 
 // The number of a key; 0: there is none.
-std::uint64_t number_of(const McapMap& values, const std::string& key) {
-  const auto found = values.find(key);
-  std::uint64_t number = 0;
-  if (found != values.end())
-    std::from_chars(found->second.data(), found->second.data() + found->second.size(), number);
-  return number;
-}
 
 }  // namespace
 
@@ -97,10 +90,10 @@ std::optional<CellResult> recorded_cell(const std::filesystem::path& recording,
 
 std::vector<DescribedScene> described_scenes(const std::vector<std::filesystem::path>& files) {
   std::vector<DescribedScene> all;
-  std::size_t joined = 0;
+  std::uint64_t joined = 0;
   for (const std::filesystem::path& file : files) {
     for (const McapMetadata& found : read_metadata(file)) {
-      if (found.name == kJoinedMetadata) ++joined;
+      if (found.name == kJoinedMetadata) joined = number_of(found.values, "number");
       if (found.name != kRecordingMetadata) continue;
       const auto text = [&found](const std::string& key) {
         const auto value = found.values.find(key);

@@ -35,7 +35,7 @@ struct DescribedScene {
   std::string share;                // CellOptions::share
   std::filesystem::path recording;  // the file with the description
   std::uint64_t place = 0;          // its byte in that file
-  std::size_t joined = 0;           // states of partners in front of it (kJoinedMetadata)
+  std::uint64_t joined = 0;         // the number of the last state in front of it (kJoinedMetadata)
 };
 
 // All descriptions in the files of one recording, in their order. Where one is repeated, the last

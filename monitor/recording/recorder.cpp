@@ -61,8 +61,9 @@ Recorder::Recorder(const std::filesystem::path& file, const Cell& cell, std::int
 void Recorder::change(const Cell& cell, const SceneInForce& since) {
   const bool is_other = cell.scene.revision != now_->scene.revision;
   begin_scene(cell, *make_catalogue(cell, since));
+  if (!is_other) return;
   watch_.change();
-  if (is_other) asked_ = {RecordedEvent::Cause::kCommand, "the cell has changed"};
+  asked_ = {RecordedEvent::Cause::kCommand, "the cell has changed"};
 }
 
 void Recorder::begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue) {
@@ -96,6 +97,12 @@ void Recorder::poses(const PoseBatch& batch) {
                       batch.sequence_number, stamp_of(batch, last_ns_),
                       std::vector<std::byte>(cdr.begin(), cdr.end()),
                       options_.ticks_every > 1 ? content_of(batch) : 0});
+}
+
+// Of several in front of one report, the last one counts.
+void Recorder::joined(std::span<const std::byte> cdr) {
+  std::erase_if(sides_, [](const auto& side) { return side.topic == SideTopic::kStates; });
+  sides_.push_back({SideTopic::kStates, last_ns_, {cdr.begin(), cdr.end()}});
 }
 
 // Inputs stand in front of the report that they led to, in the order of use. A file ends behind the

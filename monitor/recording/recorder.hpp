@@ -46,11 +46,9 @@ class Recorder {
     sides_.push_back({SideTopic::kFrames, stamp_ns, {cdr.begin(), cdr.end()}});
   }
 
-  // The state of a partner (PartnerState) that the next report's tick goes on from; written
-  // in front of that report.
-  void joined(std::int64_t stamp_ns, std::span<const std::byte> cdr) {
-    sides_.push_back({SideTopic::kStates, stamp_ns, {cdr.begin(), cdr.end()}});
-  }
+  // The state of a partner (PartnerState) that the next report's tick goes on from; written in
+  // front of that report. Empty: it is lost.
+  void joined(std::span<const std::byte> cdr);
 
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
   // it was handed over; 0 where it was not published. `lineage`: of partners (monitor/partners); 0

@@ -130,9 +130,10 @@ void RecordingWriter::write(TopicKind kind, std::int64_t log_ns, std::int64_t pu
 
 void RecordingWriter::write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
                             std::span<const std::byte> cdr) {
-  std::optional<std::uint16_t>& channel = side_channels_[static_cast<std::size_t>(topic)];
+  auto& channel = side_channels_[static_cast<std::size_t>(topic)];
   if (!channel) channel = add_channel(side_schema(topic), name(topic));
-  if (topic == SideTopic::kStates) note(kJoinedMetadata, {});
+  if (topic == SideTopic::kStates) note(kJoinedMetadata, {{"number", std::to_string(++joined_)}});
+  if (cdr.empty()) return;
   write(*channel, log_ns, stamp_ns, cdr);
 }
 

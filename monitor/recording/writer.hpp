@@ -35,9 +35,9 @@ inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 // may still use its ids. Its keys are scene_revision, and objects: their names by id, with commas.
 inline constexpr std::string_view kFormerMetadata = "clearance.former_scene";
 
-// Name of the empty metadata record in front of a state of a partner that the daemon took over: the
-// daemon counts its cycles from there on as its partner did. So cycles in descriptions behind it
-// cannot be compared with those in front of it.
+// Name of the metadata record in front of a state of a partner that the daemon took over. Its key
+// `number` counts them, from 1. The daemon counts its cycles from there on as its partner did, so
+// cycles in descriptions after it cannot be compared with those before it.
 inline constexpr std::string_view kJoinedMetadata = "clearance.joined";
 
 // Errors are kept, as in McapWriter. Only one thread may use it at a time.
@@ -96,7 +96,7 @@ class RecordingWriter {
                  static_cast<std::uint64_t>(publish_ns), cdr);
   }
 
-  // `stamp_ns`: of the frame or the state. A state is noted as kJoinedMetadata, too.
+  // `stamp_ns`: of the frame. A state is noted as kJoinedMetadata, too; empty bytes: it is lost.
   void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
              std::span<const std::byte> cdr);
 
@@ -133,7 +133,7 @@ class RecordingWriter {
   // The channels of side topics, each from its first message on.
   std::array<std::optional<std::uint16_t>, kSideTopics> side_channels_;
   CdrEncoder encoder_;
-  std::uint64_t part_ = 1;
+  std::uint64_t part_ = 1, joined_ = 0;
   std::optional<std::int64_t> began_ns_;  // the first log time in this file
   std::uint64_t messages_before_ = 0, bytes_before_ = 0;
   AttachedFiles attached_;                           // the files of the last cell

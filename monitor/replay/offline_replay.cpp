@@ -99,10 +99,10 @@ class Replay {
   std::unique_ptr<ReportDifference> difference_;  // null: nothing is compared
 
   OfflineReplay result_;
-  std::uint64_t in_window_ = 0;  // ticks
+  std::uint64_t in_window_ = 0, not_comparable_ = 0;  // ticks
   bool differs_ = false;
   bool gap_noted_ = false;
-  bool restarted_ = false, has_joined_ = false, has_changed_ = false;
+  bool restarted_ = false, has_changed_ = false;
   std::uint64_t cycle_offset_ = 0;  // recorded less replayed
   std::uint64_t last_recorded_cycle_ = 0;
   // The share that was shown last.
@@ -220,11 +220,12 @@ void Replay::begin_tick(const TickInput& input) {
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;
   const bool first = result_.ticks == 1 || input.restart;
-  if (input.joined != nullptr) {
-    has_joined_ = true;
-    result_.notes.push_back(
-        fmt::format("before tick {} ({:f} s), the daemon took over the state of its partner", cycle,
-                    seconds(input.time.now_ns)));
+  if (input.joined != 0) {
+    if (result_.joins++ == 0) {
+      result_.notes.push_back(fmt::format(
+          "the daemon took over the state of its partner, first before tick {} ({:f} s)", cycle,
+          seconds(input.time.now_ns)));
+    }
   } else if (first) {
     if (cycle > 1) {
       result_.notes.push_back(
@@ -256,6 +257,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
     // Bounds for other poses say nothing about these.
     const char* const missing = input.complete ? loop_.missing() : "poses";
     const bool comparable = missing == nullptr || *options_.compare == Comparison::kBits;
+    if (in_window && !comparable) ++not_comparable_;
     if (in_window && comparable && !differs_) compare(input, report, missing);
     zones_.replayed(report, cycle_offset_);
   }
@@ -296,9 +298,9 @@ void Replay::compare(const TickInput& input, const Report& report, const char* m
 // be whole, since a change can depend on any tick before.
 void Replay::compare_zones() {
   if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
-  if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_) return;
+  if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_ || gap_noted_) return;
   // Cycles do not tell the scene of a zone then. The reports list the active zones, too.
-  if (has_joined_ && has_changed_) return;
+  if (result_.joins > 0 && has_changed_) return;
   if (const auto found = zones_.first(feed_.zones(), feed_.not_recorded())) {
     fail(found->cycle, found->now_ns,
          fmt::format("the replay differs in {}{}", found->what, other_build_));
@@ -339,6 +341,9 @@ void Replay::note_counts() {
     if (count > 0) result_.notes.push_back(fmt::format("{} {}", count, what));
   };
   note(loop_.of_other_scenes(), "batches were made for another scene and left out");
+  note(not_comparable_,
+       "ticks rest on poses, frames or a partner's state that this replay cannot have: they were "
+       "not compared");
   if (const Sensors* const sensors = loop_.sensors())
     std::ranges::copy(sensor_notes(*sensors, loop_.cell().scene),
                       std::back_inserter(result_.notes));

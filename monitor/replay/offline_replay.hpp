@@ -116,6 +116,7 @@ struct OfflineReplay {
   std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
 
   std::uint64_t ticks = 0, compared = 0, batches = 0;
+  std::uint64_t joins = 0;  // states of a partner that the daemon took over
   std::int64_t first_ns = 0, last_ns = 0;
   std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
   std::string closest_pair;           // its name

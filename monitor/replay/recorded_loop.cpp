@@ -63,7 +63,7 @@ void RecordedLoop::restart(const clearance_msg_Distances& report) {
 
 const Report* RecordedLoop::tick(const TickInput& input) {
   if (input.restart) restart(*input.recorded);
-  if (input.joined != nullptr) join(*input.joined);
+  if (input.joined != 0) join(input);
   if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
   if (moveit_ != nullptr && next_ && monitor_->cycle() > next_->began_after) succeed();
   poses_.clear();
@@ -89,12 +89,12 @@ const char* RecordedLoop::missing() const noexcept {
 
 // Makes the same calls as JoinedState and FrameExchange::show_awaited(): the frame of a sensor that
 // the state rests on was shown already, or is recorded with this tick.
-void RecordedLoop::join(const clearance_msg_PartnerState& state) {
-  ++joined_;
+void RecordedLoop::join(const TickInput& input) {
+  joined_ = input.joined;
   begun_ = true;
-  from_ = state.cycle;
+  from_ = input.recorded->cycle - 1;
   next_ = nullptr;
-  const auto found = from_wire(state, kBuild);
+  const auto found = input.state == nullptr ? std::nullopt : from_wire(*input.state, kBuild);
   auto monitor = std::make_unique<Monitor>(cell_->scene);
   auto ids = std::make_unique<SceneIds>(cell_->scene);
   lacks_state_ = !found || found->revision != cell_->scene.revision ||
@@ -138,7 +138,9 @@ bool RecordedLoop::is_used(const SeenCloud* cloud) const noexcept {
 void RecordedLoop::show_recorded(const TickInput& input) {
   for (const auto& [cycle, frame] : input.frames) {
     const bool is_shown = cycle == input.recorded->cycle;
-    const std::uint64_t content = frame.sensor < shown_.size() ? names_->name(frame) : 0;
+    const bool is_of_cell =
+        frame.sensor < shown_.size() && frame.scene_revision == cell_->scene.revision;
+    const std::uint64_t content = is_of_cell ? names_->name(frame) : 0;
     const bool is_built = sensors_->rebuild(
         frame, [this](const SeenCloud* cloud) { return is_used(cloud); },
         [&](std::uint32_t sensor, SensorFrame built) {

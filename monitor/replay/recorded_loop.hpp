@@ -42,8 +42,8 @@ class RecordedLoop {
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
   // What the last tick of the daemon rested on and this one did not; null: nothing. A batch may be
-  // missing that was made for a scene before the recording began. The state of a partner cannot be
-  // used by another build, and in another cell.
+  // missing that was made for a scene before the recording began. Another build cannot use the
+  // state of a partner, and a replay with another cell cannot either.
   [[nodiscard]] const char* missing() const noexcept;
   // The number of batches that were made for no scene that is known.
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
@@ -60,7 +60,7 @@ class RecordedLoop {
 
   void start(const Cell& cell, bool followed);
   void begin_with(const clearance_msg_Distances& report);
-  void join(const clearance_msg_PartnerState& state);
+  void join(const TickInput& input);
   void take(const PoseBatch& batch);
   void show_frames(const TickInput& input);
   void show_recorded(const TickInput& input);
@@ -91,7 +91,7 @@ class RecordedLoop {
   std::vector<JointSample> joints_;
   std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
   std::set<std::uint32_t> blind_;  // sensors whose frame in use is not in the recording
-  std::size_t joined_ = 0;         // states of partners so far
+  std::uint64_t joined_ = 0;       // TickInput::joined of the last one
   bool lacks_state_ = false;       // the last one of them could not be used
   std::uint64_t of_other_scenes_ = 0;
   std::string error_;

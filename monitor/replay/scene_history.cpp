@@ -23,7 +23,7 @@ bool SceneHistory::has_changes() const noexcept {
   });
 }
 
-const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::size_t joined,
+const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::uint64_t joined,
                                                 std::uint64_t cycle) const {
   const DescribedScene* next = nullptr;
   for (const DescribedScene& scene : described_) {

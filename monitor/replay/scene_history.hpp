@@ -38,8 +38,9 @@ class SceneHistory {
   [[nodiscard]] const std::vector<FormerScene>& former() const noexcept { return former_; }
 
   // The next change of this run of the daemon whose first cycle is after `cycle`; null: none.
-  // `joined`: of so many states of partners before it, since those change how cycles are counted.
-  [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::size_t joined,
+  // `joined`: the number of the last state of a partner in front of it, since each state changes
+  // how cycles are counted.
+  [[nodiscard]] const DescribedScene* next_change(std::uint64_t daemon, std::uint64_t joined,
                                                   std::uint64_t cycle) const;
 
   // The cell of a revision, read when it is asked for first. Null: the recording does not describe

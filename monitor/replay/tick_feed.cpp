@@ -80,7 +80,8 @@ bool TickFeed::next(TickInput& tick) {
   tick.recorded = nullptr;
   tick.separation = nullptr;
   tick.gradients = nullptr;
-  tick.joined = nullptr;
+  tick.joined = 0;
+  tick.state = nullptr;
   tick.restart = false;
   tick.complete = true;
   if (by_report_) return next_by_report(tick);
@@ -111,7 +112,7 @@ void TickFeed::read_message(const RecordedMessage& message) {
   }
   if (message.kind == TopicKind::kCatalogue) read_catalogue(message);
   if (message.kind == TopicKind::kDistances) {
-    WaitingReport waiting{.report = {}, .log_ns = message.log_ns};
+    WaitingReport waiting{.report = {}, .log_ns = message.log_ns, .joined = reader_->joined()};
     if (decoder_.decode(message.cdr, waiting.report)) {
       reports_waiting_.push_back(std::move(waiting));
     } else {
@@ -168,10 +169,11 @@ bool TickFeed::next_by_report(TickInput& tick) {
   const clearance_msg_Distances& report = *current_.report;
   tick.recorded = &report;
   tick.time = {report.now_ns, report.clock_offset_ns};
-  tick.joined = joined_before(report);
+  take_state(tick);
   // A daemon that was started again counts from 1.
-  tick.restart = tick.joined == nullptr && last_cycle_ != 0 && report.cycle <= last_cycle_;
+  tick.restart = tick.joined == 0 && last_cycle_ != 0 && report.cycle <= last_cycle_;
   last_cycle_ = report.cycle;
+  if (tick.joined != 0) missing_.clear();
   if (tick.restart) {
     consumed_.clear();
     missing_.clear();
@@ -246,13 +248,15 @@ void TickFeed::take_used(TickInput& tick) {
   });
 }
 
-// A state stands in front of the first report of its lineage.
-const clearance_msg_PartnerState* TickFeed::joined_before(const clearance_msg_Distances& report) {
-  if (report.lineage == 0) return nullptr;
-  const clearance_msg_PartnerState* const next = states_->front();
-  if (next == nullptr || next->lineage != report.lineage) return nullptr;
-  joined_ = states_->take();
-  return &*joined_;
+// A state has the log time of the report after it. The reports of those that are passed are
+// damaged.
+void TickFeed::take_state(TickInput& tick) {
+  if (current_.joined == 0 || current_.joined == joined_) return;
+  tick.joined = joined_ = current_.joined;
+  while (states_->front() != nullptr && states_->front_ns() < current_.log_ns) states_->pop();
+  if (states_->front() == nullptr || states_->front_ns() != current_.log_ns) return;
+  state_ = states_->take();
+  tick.state = &*state_;
 }
 
 // One that no tick was shown stands before another one that was.

@@ -54,9 +54,10 @@ struct TickInput {
   // this tick.
   const clearance_msg_Separation* separation = nullptr;
   const clearance_msg_Gradients* gradients = nullptr;
-  // The state of its partner that the daemon ticked from this tick on. Null: it went on with its
-  // own.
-  const clearance_msg_PartnerState* joined = nullptr;
+  // The daemon went on from a state of its partner, and this is the number of that state in the
+  // recording. 0: it went on from its own.
+  std::uint64_t joined = 0;
+  const clearance_msg_PartnerState* state = nullptr;  // that one; null: it cannot be read
   bool restart = false;  // the daemon had been started anew, so its monitor had no history
   bool complete = true;  // false: a source's last batch is not in the file, so older poses replace
                          // it
@@ -130,6 +131,7 @@ class TickFeed {
   struct WaitingReport {
     Sample<clearance_msg_Distances> report;
     std::int64_t log_ns = 0;
+    std::uint64_t joined = 0;  // RecordingReader::joined()
   };
 
   [[nodiscard]] bool read_one();
@@ -145,8 +147,7 @@ class TickFeed {
   [[nodiscard]] std::size_t place_of(const SourceUse& use) const;
   [[nodiscard]] bool consumed(const SourceUse& use) const;
   void take_used(TickInput& tick);
-  [[nodiscard]] const clearance_msg_PartnerState* joined_before(
-      const clearance_msg_Distances& report);
+  void take_state(TickInput& tick);
   void take_frames(std::uint64_t cycle, TickInput& tick);
   void add(PoseBatch& batch, TickInput& tick);
   void forget_unused(std::int64_t log_ns);
@@ -155,7 +156,8 @@ class TickFeed {
   std::optional<RecordingReader> reader_;  // this
   std::optional<FrameFeed> frames_;        // and this, if the cell has sensors
   std::optional<StateFeed> states_;        // and this
-  Sample<clearance_msg_PartnerState> joined_;
+  Sample<clearance_msg_PartnerState> state_;
+  std::uint64_t joined_ = 0;         // the number of the last state
   SceneHistory* history_ = nullptr;  // null: a log of another program
   ObjectMap objects_;
   std::unique_ptr<OwnBatches> own_;  // null: a log of another program

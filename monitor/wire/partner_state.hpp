@@ -19,7 +19,8 @@ struct PartnerStateView {
   std::span<const std::byte> bytes;
 };
 
-// `build`: of this program, since its bytes are meant for the same one. Who sends it stays open.
+// `build`: of this program, since its bytes are meant for the same one. `partner` and `daemon` are
+// left empty.
 [[nodiscard]] inline Sample<clearance_msg_PartnerState> to_wire(const PartnerStateView& state,
                                                                 const char* build) {
   Sample<clearance_msg_PartnerState> sample;

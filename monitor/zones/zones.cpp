@@ -65,8 +65,11 @@ void Zones::take_over(const Zones& before, const SceneMap& map) noexcept {
 
 void Zones::save(StateWriter& out) const { out.put(std::span(reports_)); }
 
+// Bytes that are not of this scene name no pair beyond it.
 void Zones::restore(StateReader& in) noexcept {
   in.take(std::span(reports_));
+  for (ZoneReport& report : reports_)
+    if (report.pair >= scene_.pairs.size()) report.pair = 0;
   begin_tick();
 }
 

@@ -153,6 +153,20 @@ TEST_F(JoinedRecordings, OfOneThatCountsFewerTicksThanBeforeReplayToTheSameBits)
   expect_the_same_bits();
 }
 
+// The leader ends right after it has sent its state: no report has the lineage of that state.
+TEST_F(JoinedRecordings, OfOneThatLeadsInTheTickAfterItJoinedReplayToTheSameBits) {
+  tick_alone(left, 30);
+  right.rest_for(30 * kTick);
+  tick_both(3);
+  ASSERT_TRUE(right.ticks.wants_state());
+  left.give_state(right);
+  tick_alone(right, 60);
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  tick_alone(left, 30);
+  close();
+  expect_the_same_bits();
+}
+
 // A state of another build has another layout: its bytes are not looked at.
 TEST_F(JoinedRecordings, WithAStateOfAnotherBuildAreComparedByTheirBounds) {
   tick_alone(left, 30);
@@ -183,6 +197,9 @@ TEST_F(JoinedRecordings, WithAStateOfAnotherBuildAreComparedByTheirBounds) {
   ASSERT_FALSE(bits.failures.empty());
   EXPECT_THAT(bits.failures.front().what, HasSubstr("the state of a partner"));
   EXPECT_TRUE(bounds.ok()) << failures(bounds);
+  EXPECT_GE(bounds.compared, 1u) << "what stands in front of it is compared";
+  EXPECT_LT(bounds.compared, bounds.ticks);
+  EXPECT_THAT(bounds.notes, ::testing::Contains(HasSubstr("they were not compared")));
 }
 
 }  // namespace

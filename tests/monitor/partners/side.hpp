@@ -117,7 +117,7 @@ class Side {
     other.ticks.joined(joined.lineage(), other.monitor->cycle());
     if (other.recorder_ != nullptr) {
       const PartnerStateView state{scene_.revision, joined.lineage(), monitor->cycle(), bytes};
-      other.recorder_->joined(0, CdrEncoder().encode(*to_wire(state, kBuild)));
+      other.recorder_->joined(CdrEncoder().encode(*to_wire(state, kBuild)));
     }
     ticks.successor_followed();
     if (recorder_ != nullptr)

@@ -232,6 +232,27 @@ TEST_F(TickPartners, ALeaderThatWasStoppedFollowsTheOneThatWentOn) {
 }
 
 // It ticked the cycle that the other one had announced otherwise.
+// A daemon was stopped, and the notice of its next tick was heard when it went on.
+TEST_F(TickPartners, ANoticeThatWasHeardLateDoesNotSetTheToldTimeBack) {
+  constexpr std::int64_t kStopped = 1'500'000'000;
+  join();
+  for (int i = 0; i < 5; ++i) tick_both();
+  const std::int64_t ahead = right.now_ns - right.clock.realtime_ns();
+  send();
+  left.tick();
+  TickNotice late = *left.ticks.notices().front();
+  left.drop_notices();
+  late.due_ns += kStopped;
+  right.rest_for(kStopped);
+  ASSERT_TRUE(right.ticks.hear(late));
+  for (int i = 0; i < 50; ++i) {
+    send();
+    right.tick();
+  }
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  EXPECT_LT(std::abs(right.now_ns - right.clock.realtime_ns() - ahead), 10 * kTick);
+}
+
 TEST_F(TickPartners, ADaemonThatTickedOtherInputsIsApartUntilItHasTheOthersState) {
   join();
   send();

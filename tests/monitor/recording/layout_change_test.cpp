@@ -124,7 +124,7 @@ TEST(LayoutChange, GoesIntoListsAndFindsFieldsWhereverTheyStand) {
 // Frames of builds that did not record what carries a sensor end before it. Such builds had the
 // frame's place known whatever the tick knew, as that of a sensor in the world.
 TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
-  std::string former = frames_schema().text;
+  std::string former = side_schema(SideTopic::kFrames).text;
   const std::size_t carrier = former.find("FrameCarrier carrier;");
   ASSERT_NE(carrier, std::string::npos);
   former.erase(carrier, std::string_view("FrameCarrier carrier;").size());
@@ -141,7 +141,7 @@ TEST(LayoutChange, GivesFramesWithoutACarrierThatOfTheWorld) {
   CdrDecoder decoder;
   Sample<clearance_msg_SensorFrame> read;
   EXPECT_FALSE(decoder.decode(then, read)) << "it is not of this layout";
-  LayoutChange change(former, frames_schema().text, "SensorFrame");
+  LayoutChange change(former, side_schema(SideTopic::kFrames).text, "SensorFrame");
   ASSERT_EQ("", change.error());
   EXPECT_THAT(change.not_recorded(), ElementsAre("SensorFrame.carrier"));
   ASSERT_TRUE(decoder.decode(change.apply(then), read));
