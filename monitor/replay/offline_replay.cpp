@@ -255,7 +255,7 @@ void Replay::end_tick(const TickInput& input, const Report& report,
   }
   if (options_.compare) {
     // Bounds for other poses say nothing about these.
-    const char* const missing = input.complete ? loop_.missing() : "poses";
+    const char* const missing = input.complete ? loop_.missing() : RecordedLoop::kPosesMissing;
     const bool comparable = missing == nullptr || *options_.compare == Comparison::kBits;
     if (in_window && !comparable) ++not_comparable_;
     if (in_window && comparable && !differs_) compare(input, report, missing);
@@ -289,9 +289,7 @@ void Replay::compare(const TickInput& input, const Report& report, const char* m
   const std::string what = fmt::format("the replay differs in {}", *found);
   fail(report.cycle, report.now_ns,
        missing == nullptr ? what + other_build_
-                          : fmt::format("{} that this tick rests on cannot be had from the "
-                                        "recording: it cannot be compared ({})",
-                                        missing, what));
+                          : fmt::format("{}: it cannot be compared ({})", missing, what));
 }
 
 // Zone changes come on a topic of their own and are compared when all are known. The recording must

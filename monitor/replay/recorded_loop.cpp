@@ -82,9 +82,11 @@ const Report* RecordedLoop::tick(const TickInput& input) {
 }
 
 const char* RecordedLoop::missing() const noexcept {
-  if (lacks_state_) return "the state of a partner";
-  if (!blind_.empty()) return "frames of sensors";
-  return unclear_.empty() ? nullptr : "poses";
+  if (lacks_state_)
+    return "the state of a partner that this tick goes on from is lost, or of another build or "
+           "cell";
+  if (!blind_.empty()) return "frames of sensors that this tick used are not in the recording";
+  return unclear_.empty() ? nullptr : kPosesMissing;
 }
 
 // Makes the same calls as JoinedState and FrameExchange::show_awaited(): the frame of a sensor that

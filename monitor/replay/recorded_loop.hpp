@@ -41,10 +41,11 @@ class RecordedLoop {
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
-  // What the last tick of the daemon rested on and this one did not; null: nothing. A batch may be
-  // missing that was made for a scene before the recording began. Another build cannot use the
-  // state of a partner, and a replay with another cell cannot either.
+  // What the last tick of the daemon rested on and this one did not, as a sentence; null: nothing.
+  // A batch may be missing that was made for a scene before the recording began. Another build
+  // cannot use the state of a partner, and a replay with another cell cannot either.
   [[nodiscard]] const char* missing() const noexcept;
+  static constexpr const char* kPosesMissing = "poses that this tick used are not in the recording";
   // The number of batches that were made for no scene that is known.
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
 

@@ -177,7 +177,7 @@ TEST_F(CameraPartners, HaveRecordingsThatReplayToTheSameBits) {
   for (const auto& [name, recording] : recordings) {
     SCOPED_TRACE(name);
     EXPECT_EQ(daemons[name]->wait(), 0) << daemons[name]->output();
-    EXPECT_FALSE(daemons[name]->told("refused", {"eye"}))
+    EXPECT_FALSE(daemons[name]->wrote(clearance::name(Reject::kFuture)))
         << "its time goes on from that of the leader" << logs();
     ChildProcess check(test::kReplay, {"check", recording, "--compare"});
     EXPECT_EQ(check.wait(), 0) << check.output();
