@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Of a monitor that has taken over and not ticked yet, with the numbers of its sources at that
+// Saves a monitor that has taken over and not ticked yet, with the numbers of its sources at that
 // time. Former scenes are those of `ids`.
 inline void save_state(const SourceNumbers& numbers, const SceneIds& ids, const Monitor& monitor,
                        std::vector<std::byte>& bytes) {

@@ -65,7 +65,7 @@ void Contacts::save(StateWriter& out) const {
   out.put(std::span(reports_));
 }
 
-// What a contact is of stays that of this scene.
+// Contacts keep their pairs of this scene.
 void Contacts::restore(StateReader& in) noexcept {
   const std::vector<ContactReport> own = reports_;
   in.take(std::span(entries_));

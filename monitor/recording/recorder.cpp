@@ -99,7 +99,7 @@ void Recorder::poses(const PoseBatch& batch) {
                       options_.ticks_every > 1 ? content_of(batch) : 0});
 }
 
-// Of several in front of one report, the last one counts.
+// The last one of several in front of one report counts.
 void Recorder::joined(std::span<const std::byte> cdr) {
   std::erase_if(sides_, [](const auto& side) { return side.topic == SideTopic::kStates; });
   sides_.push_back({SideTopic::kStates, last_ns_, {cdr.begin(), cdr.end()}});

@@ -25,7 +25,7 @@ inline constexpr std::string_view kIdlEncoding = "omgidl";
 // Name, encoding and self-contained IDL text of the topic's type.
 [[nodiscard]] const McapSchema& topic_schema(TopicKind kind);
 
-// What a recording holds beside the topics of a cell: frames of sensors (SensorFrame), and the
+// A recording holds more than the topics of a cell: frames of sensors (SensorFrame), and the
 // states of partners that the daemon took over (PartnerState). Each has a channel of its own.
 enum class SideTopic : std::uint8_t { kFrames, kStates };
 inline constexpr std::size_t kSideTopics = 2;

@@ -41,7 +41,7 @@ class RecordedLoop {
   [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
-  // What the last tick of the daemon rested on and this one did not, as a sentence; null: nothing.
+  // Says on what the daemon's last tick rested and this one did not; null: on nothing.
   // A batch may be missing that was made for a scene before the recording began. Another build
   // cannot use the state of a partner, and a replay with another cell cannot either.
   [[nodiscard]] const char* missing() const noexcept;

@@ -57,7 +57,7 @@ class RelayedCommands : public testing::Test {
       EXPECT_EQ(share.asked, 0) << name;
     }
   }
-  // Of a result that says that some shares have changed, and others not.
+  // The result says that some shares have changed, and others not.
   static void expect_part(const CommandResult& result, const std::string& cause) {
     EXPECT_EQ(result.status, CommandStatus::kFailed);
     EXPECT_THAT(result.reason, HasSubstr("'left floor': " + cause + ")"));

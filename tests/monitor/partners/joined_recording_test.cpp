@@ -139,7 +139,7 @@ TEST_F(JoinedRecordings, OfOneThatPartsAndJoinsAgainReplayToTheSameBits) {
   expect_the_same_bits();
 }
 
-// What counted higher takes over a state that counts lower.
+// The one that counted higher takes over a state that counts lower.
 TEST_F(JoinedRecordings, OfOneThatCountsFewerTicksThanBeforeReplayToTheSameBits) {
   tick_alone(right, 60);
   right_recorder.change(cell, {.began_after = 60, .from = 61});

@@ -123,7 +123,7 @@ class Side {
     if (recorder_ != nullptr)
       recorder_->change(*cell_, {.began_after = monitor->cycle(), .from = monitor->cycle() + 1});
   }
-  // What it ticks goes there from now on, as a daemon records it. `cell` is that of its scene.
+  // The recorder gets its ticks from now on, as that of a daemon. `cell` is that of its scene.
   void record(Recorder& recorder, const Cell& cell) {
     recorder_ = &recorder;
     cell_ = &cell;
