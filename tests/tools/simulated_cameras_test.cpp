@@ -223,7 +223,7 @@ void SimulatedCamerasTest::judge(const std::string& file) {
   EXPECT_EQ(daemon.wait(), 0);
 }
 
-// From a simulated person to the report: no bound is above the truth that the simulator knows. The
+// A simulated person reaches the report: no bound is above the truth that the simulator knows. The
 // simulator says so at its end, for as many reports as a busy machine has let it compare.
 TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
   judge(places::sources() + "/config/cells/camera.yaml");

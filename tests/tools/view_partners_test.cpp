@@ -21,7 +21,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// What Foxglove's client has met at this address once it has these reports.
+// Returns what Foxglove's client has met at this address once it has these reports.
 nlohmann::json shown_at(const std::string& socket, int reports) {
   ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", socket, "reports",
                                        std::to_string(reports)});
@@ -111,8 +111,8 @@ TEST_F(ViewOfPartners, StillSaysThatFiguresOfDaemonsThatAreNoneAreMixed) {
   writes.join();
 }
 
-// `tools/demo --several --view`: three shares with two partners each, one of which is killed each
-// second. The page has a report all the time, and none twice.
+// `tools/demo --several --view` runs three shares with two partners each, and one of the six is
+// killed each second. The page has a report all the time, and none twice.
 TEST(ViewOfSeveral, GoesOnWhileDaemonsAreKilled) {
   const DdsOptions dds = own_dds();
   ChildProcess several(places::sources() + "/tools/several",

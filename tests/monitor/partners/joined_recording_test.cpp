@@ -24,19 +24,10 @@ using test::Side;
 using ::testing::HasSubstr;
 using enum PartnerStanding;
 
-Cell cell_of_partners() {
-  std::vector<Object> objects;
-  for (const char* name : {"a", "b", "c", "d"}) {
-    objects.push_back(test::moving(name, {test::ball(0.1), test::capsule(0.4, 0.05)}));
-    objects.back().max_speed = 5.0;
-  }
+Cell recorded_cell_of_partners() {
   Cell cell;
-  cell.scene = test::cell_of(std::move(objects));
-  cell.scene.rate_hz = 1000;
+  cell.scene = test::cell_of_partners();
   cell.scene.revision = 41;
-  for (ObjectPair& pair : cell.scene.pairs) pair.publish = true;
-  cell.scene.zones.push_back(test::zone_over(cell.scene, 0.3, 0.4));
-  cell.scene.budget = 8;
   return cell;
 }
 
@@ -109,7 +100,7 @@ class JoinedRecordings : public testing::Test {
     }
   }
 
-  const Cell cell = cell_of_partners();
+  const Cell cell = recorded_cell_of_partners();
   test::ScratchFolder folder;
   Recorder left_recorder{folder / "left.mcap", cell, test::kStart};
   Recorder right_recorder{folder / "right.mcap", cell, test::kStart};

@@ -24,6 +24,21 @@ namespace clearance::test {
 
 inline constexpr std::int64_t kAloneAfter = 20 * kTick;
 
+// Four moving bodies, and a zone that they enter and leave. The budget does not cover all pairs.
+inline Scene cell_of_partners() {
+  std::vector<Object> objects;
+  for (const char* name : {"a", "b", "c", "d"}) {
+    objects.push_back(moving(name, {ball(0.1), capsule(0.4, 0.05)}));
+    objects.back().max_speed = 5.0;
+  }
+  Scene scene = cell_of(std::move(objects));
+  scene.rate_hz = 1000;
+  for (ObjectPair& pair : scene.pairs) pair.publish = true;
+  scene.zones.push_back(zone_over(scene, 0.3, 0.4));
+  scene.budget = 8;
+  return scene;
+}
+
 // One daemon, ticked as its loop does.
 class Side {
  public:

@@ -19,23 +19,9 @@ using test::kTick;
 using test::Side;
 using enum PartnerStanding;
 
-Scene cell() {
-  std::vector<Object> objects;
-  for (const char* name : {"a", "b", "c", "d"}) {
-    objects.push_back(test::moving(name, {test::ball(0.1), test::capsule(0.4, 0.05)}));
-    objects.back().max_speed = 5.0;
-  }
-  Scene scene = test::cell_of(std::move(objects));
-  scene.rate_hz = 1000;
-  for (ObjectPair& pair : scene.pairs) pair.publish = true;
-  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
-  scene.budget = 8;
-  return scene;
-}
-
 class TickPartners : public testing::Test {
  protected:
-  Scene scene = cell();
+  Scene scene = test::cell_of_partners();
   Side left{scene, 1}, right{scene, 2};
   std::uint64_t sent = 0;
 

@@ -119,7 +119,7 @@ TEST_F(OctomapsTest, WithoutAStampGrowOldThoughTheyAreSentAgain) {
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(again[0].stamp_ns, kStart);
   EXPECT_TRUE(send(one_cube({0, 0, 7}), kStart + 3'600'000'000LL).empty());
-  // A map that has changed is a new one, for ever.
+  // A map that has changed is always a new one.
   for (unsigned second = 4; second < 8; ++second) {
     const std::int64_t sent_ns = kStart + second * 1'000'000'000LL;
     const auto next = send(one_cube({0, 0, 7 + second}), sent_ns);

@@ -61,8 +61,8 @@ TEST(PastPlaces, OfLinksAreThoseOfTheirJointsAtTheStampAndNeverTheLatestOnes) {
   EXPECT_TRUE(history.link(0, 0).known) << "nothing moves the foot";
 }
 
-// Joints go to and fro at full speed, and turn round at any time. The elbow may turn on for ever,
-// so its positions are sent without full turns.
+// Joints go to and fro at full speed, and turn round at any time. The elbow may turn without a
+// limit, so its positions are sent without full turns.
 TEST(PastPlaces, OfLinksContainTheMotionWithinTheErrorOfTheStamp) {
   const Scene scene = test::scara_cell();
   Random random(31);
