@@ -60,6 +60,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   check_displaced(displaced.changed, s.first_part, tick);
 
   s.contacts.begin_tick(s.inputs.cycle, s.inputs.time.now_ns);
+  if (s.clouds != nullptr) s.clouds->begin_tick();
   Budget budget(s.scene.budget);
   s.culling.cull(displaced.changed, s.evaluated.smallest_upper, tick, budget);
   check_updated(s.culling, tick);

@@ -27,7 +27,7 @@ struct MotionQuestion {
 };
 
 // The values are on the wire: new ones are added at the end. Up to kBusy they are those of
-// CommandStatus. Of a motion with any value but the first, nothing is known.
+// CommandStatus. Any value but the first says nothing of the motion.
 enum class QuestionStatus : std::uint8_t {
   kDone = 0,           // answered
   kMalformed = 1,      // a field of the message has no valid value

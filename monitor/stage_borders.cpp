@@ -1,6 +1,7 @@
 #include "monitor/stage_borders.hpp"
 
 #include "monitor/invariant.hpp"
+#include "monitor/tight_bounds.hpp"
 
 namespace clearance {
 namespace {
@@ -70,6 +71,8 @@ void check_report(const Report& report) noexcept {
   CLEARANCE_INVARIANT(report.swept_lower_all <= report.lower_all);
   CLEARANCE_INVARIANT(!report.minimum_certified || report.minimum_known);
   CLEARANCE_INVARIANT(!report.minimum_known || report.lower_all <= report.minimum.lower);
+  CLEARANCE_INVARIANT(!report.minimum_certified ||
+                      report.lower_all >= report.minimum.lower - kTightGap);
   CLEARANCE_INVARIANT(report.oldest_evaluation_cycles <= report.cycle);
   if (!costly) return;
   check_zones(report.zones);

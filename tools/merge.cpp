@@ -94,6 +94,8 @@ class ShareLog {
         return log_line(lines::kShareLate, check.name, 1e-6 * static_cast<double>(check.age_ns));
       case client::ShareState::kOtherRevision:
         return log_line(lines::kShareOtherRevision, check.name, check.scene_revision, revision);
+      case client::ShareState::kOtherDivision:
+        return log_line(lines::kShareOtherDivision, check.name);
     }
   }
 

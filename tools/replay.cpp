@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "config/cell/shares.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -48,7 +49,8 @@ Examples:
   clearance-replay check rosbag2_2026_11_22/ --urdf R.urdf --srdf R.srdf --expect-min-distance 0.05
   clearance-replay check run.mcap --cell cell.yaml --plot run.svg --plot-pair hand table
   clearance-replay check run.mcap --cell cell.yaml --report run.html --expect-no-zone stop
-  clearance-replay check run.mcap --cell cell.yaml --reference distances.csv.gz --tolerance 1e-6)";
+  clearance-replay check run.mcap --cell cell.yaml --reference distances.csv.gz --tolerance 1e-6
+  clearance-replay check run.mcap --cell cell.yaml --balance 3)";
 
 constexpr const char* kCompareFooter = R"(Exit status:
   0  every cycle that both recordings have is the same, to the bit
@@ -152,10 +154,22 @@ void add_outputs(CLI::App& app, CheckArguments& arguments) {
   add_force(app, arguments.force);
 }
 
+void add_balance(CLI::App& app, CheckArguments& arguments) {
+  app.add_option("--balance", arguments.balance,
+                 "Print the key 'shares' that divides the cell among so many daemons of the same "
+                 "cost, by what this run has evaluated")
+      ->check(CLI::Range(std::size_t{1}, kMaxShares))
+      ->excludes("--evaluate-all")
+      ->excludes("--reference");
+}
+
 void add_expectations(CLI::App& app, CheckArguments& arguments) {
-  app.add_option("--expect-min-distance", arguments.expect_min_distance,
-                 "Every pair's distance is certified to be at least this, m, in every tick and at "
-                 "every instant since the tick before")
+  app.add_option(
+         "--expect-min-distance", arguments.expect_min_distance,
+         "Every pair's distance is certified to be at least this, m, in every tick and at "
+         "every instant since the tick before. At the end of the recording, an object may have "
+         "been late for up to 1 s, as after its driver's end: its pairs then count only "
+         "where they are certainly too near")
       ->check(finite_number());
   app.add_option("--expect-no-zone", arguments.expect_no_zone,
                  "This zone is never active; repeatable")
@@ -202,6 +216,7 @@ CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
   add_cell(*check, arguments);
   add_expectations(*check, arguments);
   add_outputs(*check, arguments);
+  add_balance(*check, arguments);
   add_inputs(*check, arguments);
   check->footer(kCheckFooter);
   return check;

@@ -100,12 +100,18 @@ CLI::App* add_allow(CLI::App& app, AllowArguments& arguments) {
   CLI::App* const allow = app.add_subcommand(
       "allow",
       "Propose which pairs of a robot's links need not be watched, by sampling its joints: pairs "
-      "that are adjacent, in contact with all joints at zero, always or never in contact. 'Never' "
-      "is what the samples show and no proof");
+      "that are adjacent, in contact with all joints at zero, always in contact, or never within "
+      "--never-margin. 'Never' is what the samples show and no proof");
   add_robot(*allow, arguments.robot, "Also print where this SRDF agrees with the proposal");
   allow->add_option("-o,--output", arguments.output, "Write the proposal here; default: stdout");
   allow->add_option("--samples", arguments.sampling.samples, "Number of joint positions to try")
       ->check(whole_number(1, 1'000'000'000))
+      ->capture_default_str();
+  allow
+      ->add_option("--never-margin", arguments.never_margin,
+                   "Propose 'Never' only for pairs that stay farther apart than this in all "
+                   "samples, m; nearer ones are listed on stderr and stay watched")
+      ->check(number_from_zero())
       ->capture_default_str();
   allow->add_option("--seed", arguments.sampling.seed, "Random seed of the positions")
       ->capture_default_str();

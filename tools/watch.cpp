@@ -66,11 +66,17 @@ class Display {
 
   void show(const watch::Feed& feed, std::int64_t now_ns) {
     measure_rate(feed, now_ns);
-    const watch::ViewContext context{.where = where_, .now_ns = now_ns, .reports_a_second = rate_};
+    if (!feed.any() || begun_ns_ == 0) begun_ns_ = now_ns;
+    watch::ViewContext context{.where = where_, .now_ns = now_ns, .reports_a_second = rate_};
     if (screen_) {
       screen_->draw(watch::screen_lines(feed, context, screen_->size()));
     } else if (now_ns - shown_ns_ >= kPlainNs) {
+      // Without a catalogue, objects have no names yet.
+      if (feed.any() && feed.catalogue() == nullptr && now_ns - begun_ns_ < kPlainNs) return;
       shown_ns_ = now_ns;
+      for (std::size_t i = 0; i < partners_.size(); ++i)
+        context.partner_counts[i] = feed.partner_counts()[i] - partners_[i];
+      partners_ = feed.partner_counts();
       print(stdout, "{}\n", watch::plain_line(feed, context));
       std::fflush(stdout);
     }
@@ -89,7 +95,8 @@ class Display {
 
   std::string where_;
   std::optional<watch::Screen> screen_;
-  std::int64_t shown_ns_ = 0, counted_ns_ = 0;
+  std::int64_t shown_ns_ = 0, counted_ns_ = 0, begun_ns_ = 0;
+  watch::PartnerCounts partners_{};  // up to the last plain line
   std::uint64_t counted_ = 0;
   double rate_ = 0.0;
 };

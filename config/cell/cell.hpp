@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,8 @@ namespace clearance {
 struct Cell {
   Scene scene = {};
 
-  std::uint32_t domain = 0;      // DDS
-  std::string partition = {};    // DDS; empty: the default partition
+  std::optional<std::uint32_t> domain = {};  // DDS; none: as DdsOptions
+  std::string partition = {};                // DDS; empty: the default partition
   std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
   Topics topics = {};
   // Reports carry the pairs that changed, and all pairs once in this time, s; 0: always all.

@@ -30,6 +30,7 @@
 #include "config/scene/revision.hpp"
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"

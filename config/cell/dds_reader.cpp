@@ -62,8 +62,8 @@ void read_topics(const YamlNode& node, Topics& topics, Diagnostics& diagnostics)
 void read_dds(const YamlNode& node, Cell& cell, Diagnostics& diagnostics) {
   MapReader map(node, "the dds settings", diagnostics);
   if (const YamlNode* domain = map.optional("domain")) {
-    const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics);
-    cell.domain = static_cast<std::uint32_t>(id.value_or(0));
+    if (const auto id = read_integer(*domain, 0, kMaxDomain, "a DDS domain", diagnostics))
+      cell.domain = static_cast<std::uint32_t>(*id);
   }
   if (const YamlNode* partition = map.optional("partition")) {
     cell.partition = read_text(*partition, "a DDS partition", diagnostics).value_or("");

@@ -4,6 +4,7 @@
 
 #include <string>
 #include <variant>
+#include <vector>
 
 #include "config/cell/robot_base_reader.hpp"
 #include "config/cell/ros_reader.hpp"
@@ -75,16 +76,17 @@ void crop_sensors(const SensorList& list, Diagnostics& diagnostics, Scene& scene
     if (list.reaches[i] == nullptr) continue;
     const auto reach = robots_reach(scene);
     if (const auto* const reason = std::get_if<std::string>(&reach)) {
-      diagnostics.add(*list.reaches[i],
-                      fmt::format("found 'reach', but {}; expected robots on one base", *reason));
+      diagnostics.add(
+          *list.reaches[i],
+          fmt::format("found 'reach', but {}; expected robots of limited reach", *reason));
       return;
     }
     const Object& object = scene.objects[sensor.object];
     const double moves = object.max_speed < kInfinity
                              ? object.max_speed * 1e-9 * static_cast<double>(object.age_limit_ns)
                              : 0.0;
-    sensor.crop = std::get<ReachBall>(reach);
-    sensor.crop.radius += sensor.reach + moves;
+    sensor.crop = std::get<std::vector<ReachBall>>(reach);
+    for (ReachBall& ball : sensor.crop) ball.radius += sensor.reach + moves;
   }
 }
 

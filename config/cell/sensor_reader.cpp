@@ -335,7 +335,7 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   sensor.object = static_cast<std::uint32_t>(objects.objects.size());
   object.sensor = static_cast<std::uint32_t>(list.sensors.size());
   // Any ball would do for a sensor with a mistake.
-  const double radius = std::max(sensor.extent(), 1.0);
+  const double radius = std::max(sensor.view_radius(), 1.0);
   object.parts.push_back({.name = "view",
                           .shape = std::get<ConvexBody>(point(Vec3::Zero(), radius)),
                           .object_from_part = {}});

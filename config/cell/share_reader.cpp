@@ -138,24 +138,93 @@ class ShareReader {
   bool is_complete_ = true;
 };
 
-std::vector<Share> read_balanced(const YamlNode& node, const std::vector<Object>& objects,
-                                 const std::vector<ObjectPair>& pairs, Diagnostics& diagnostics) {
-  MapReader map(node, "the shares", diagnostics);
-  const YamlNode* count_node = map.required("auto");
-  map.refuse_unknown_keys();
-  if (count_node == nullptr) return {};
-  const auto count =
-      read_integer(*count_node, 1, kMaxShares, "shares of about the same cost", diagnostics);
-  if (!count || pairs.empty()) return {};
-  std::vector<Share> shares = balanced_shares(objects, pairs, static_cast<std::uint32_t>(*count));
-  if (std::ranges::any_of(shares, [](const Share& share) { return share.pairs.empty(); })) {
-    diagnostics.add(*count_node, fmt::format("found {} shares for {} pairs of such different cost "
-                                             "that one would be empty; expected fewer",
-                                             *count, pairs.size()));
-    return {};
+// `shares: {auto: N}`, and with `begin:` where the runs begin.
+class BalancedReader {
+ public:
+  BalancedReader(const std::vector<Object>& objects, const std::vector<ObjectPair>& pairs,
+                 Diagnostics& diagnostics)
+      : objects_(objects), pairs_(pairs), diagnostics_(diagnostics) {}
+
+  std::vector<Share> read(const YamlNode& node) {
+    MapReader map(node, "the shares", diagnostics_);
+    const YamlNode* count_node = map.required("auto");
+    const YamlNode* begin_node = map.optional("begin");
+    map.refuse_unknown_keys();
+    if (count_node == nullptr) return {};
+    const auto count =
+        read_integer(*count_node, 1, kMaxShares, "shares of about the same cost", diagnostics_);
+    if (!count || pairs_.empty()) return {};
+    const auto begins =
+        begin_node == nullptr
+            ? balanced_begins(expected_costs(objects_, pairs_), static_cast<std::uint32_t>(*count))
+            : read_begins(*begin_node, static_cast<std::size_t>(*count) - 1);
+    if (!begins) return {};
+    std::vector<Share> shares = shares_of_runs(pairs_.size(), *begins);
+    if (std::ranges::any_of(shares, [](const Share& share) { return share.pairs.empty(); })) {
+      diagnostics_.add(*count_node, fmt::format("found {} shares for {} pairs: one would be empty; "
+                                                "expected fewer",
+                                                *count, pairs_.size()));
+      return {};
+    }
+    return shares;
   }
-  return shares;
-}
+
+ private:
+  // Two objects lead to their pair, or to the one that would follow it.
+  std::optional<std::vector<std::uint32_t>> read_begins(const YamlNode& node, std::size_t count) {
+    const std::vector<YamlNode>& items = read_list(node, "two objects [A, B]", diagnostics_);
+    if (items.size() != count) {
+      diagnostics_.add(node, fmt::format("found {} first pairs; expected {}, one for each share "
+                                         "after the first",
+                                         items.size(), count));
+      return std::nullopt;
+    }
+    std::vector<std::uint32_t> begins;
+    for (const YamlNode& item : items) {
+      const auto key = read_pair(item);
+      if (!key) return std::nullopt;
+      begins.push_back(first_from(*key));
+      if (begins.size() > 1 && begins.back() < begins[begins.size() - 2]) {
+        diagnostics_.add(item,
+                         "found a first pair that stands before that of the share before; "
+                         "expected them in the order of the cell's pairs, as 'clearance-replay "
+                         "check --balance' prints them");
+        return std::nullopt;
+      }
+    }
+    return begins;
+  }
+
+  std::optional<PairKey> read_pair(const YamlNode& node) {
+    const std::vector<YamlNode>& names = read_list(node, "two objects [A, B]", diagnostics_);
+    std::vector<std::uint32_t> found;
+    for (const YamlNode& name_node : names) {
+      const auto name = read_name(name_node, "an object's name", diagnostics_);
+      if (!name) return std::nullopt;
+      const auto object = std::ranges::find(objects_, *name, &Object::name);
+      if (object == objects_.end()) {
+        diagnostics_.add(name_node, fmt::format("found no object '{}'; expected one of the cell, "
+                                                "since a share begins at its pair",
+                                                *name));
+        return std::nullopt;
+      }
+      found.push_back(static_cast<std::uint32_t>(object - objects_.begin()));
+    }
+    if (found.size() == 2) return pair_key(found[0], found[1]);
+    diagnostics_.add(node, fmt::format("found {}; expected two objects [A, B]", describe(node)));
+    return std::nullopt;
+  }
+
+  [[nodiscard]] std::uint32_t first_from(PairKey key) const {
+    const auto first = std::ranges::lower_bound(
+        pairs_, key, {}, [](const ObjectPair& pair) { return pair_key(pair.first, pair.second); });
+    return static_cast<std::uint32_t>(first - pairs_.begin());
+  }
+
+  const std::vector<Object>& objects_;
+  const std::vector<ObjectPair>& pairs_;
+  Diagnostics& diagnostics_;
+};
 
 }  // namespace
 
@@ -164,7 +233,7 @@ std::vector<Share> read_shares(const YamlNode& node, const std::vector<Object>& 
                                GroupIndex& group_index, Diagnostics& diagnostics) {
   std::vector<Share> shares =
       node.kind == YamlNode::Kind::kMap
-          ? read_balanced(node, objects, pairs, diagnostics)
+          ? BalancedReader(objects, pairs, diagnostics).read(node)
           : ShareReader(objects, pairs, group_index, diagnostics).read(node);
   if (!shares.empty()) note_zones(zones, shares);
   return shares;

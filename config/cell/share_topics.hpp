@@ -21,6 +21,14 @@ namespace clearance {
   return name;
 }
 
+// The topic of another share, from that of one.
+[[nodiscard]] inline std::string topic_of_other_share(std::string_view topic,
+                                                      std::string_view share,
+                                                      std::string_view other) {
+  topic.remove_suffix(share_topic("", share).size());
+  return share_topic(topic, other);
+}
+
 // Inputs are those of the cell, which the daemons of all shares read.
 [[nodiscard]] inline Topics topics_of_share(const Topics& topics, std::string_view share) {
   constexpr std::array kInputs = {&Topics::poses, &Topics::joint_states};

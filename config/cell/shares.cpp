@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
+#include <string>
 #include <utility>
 
 #include "config/cell/cell.hpp"
@@ -25,8 +27,10 @@ void keep(const std::vector<std::uint32_t>& now, std::vector<std::uint32_t>& pai
 // whatever those stand on. The base of a robot comes before it.
 class Needs {
  public:
-  explicit Needs(Scene& scene)
+  // `all`: something may ask for any place.
+  Needs(Scene& scene, bool all)
       : scene_(scene), objects_(scene.objects.size()), robots_(scene.robots.size()) {
+    if (all) note_all();
     for (const ObjectPair& pair : scene.pairs) objects_[pair.first] = objects_[pair.second] = true;
     for (std::size_t i = scene.robots.size(); i-- > 0;) note(scene.robots[i], i);
     for (const Sensor& sensor : scene.sensors) {
@@ -92,21 +96,19 @@ void select_share(Cell& cell, std::uint32_t share) {
     if (zone.pairs.empty()) zone.separation.reset();
   }
   for (AllowedContact& contact : scene.contacts) keep(now, contact.pairs);
-  Needs(scene).mark();
+  Needs(scene, share == 0 && cell.ros.moveit.any()).mark();
   cell.topics = topics_of_share(cell.topics, shares.all[share].name);
   cell.questions.from.clear();
   cell.ros.outputs = {};
   cell.ros.trajectories.topics.clear();
 }
 
-// Costs as measured on one core (tools/bench/measured): a tracked query of two polyhedra takes 65
-// ns, one with a curved body about 200 ns, one of what a sensor sees about 1,300 ns. Keeping the
-// bound of a pair that is not evaluated costs about 0.6 ns a tick where all objects move (300 us
-// for 499,500 pairs), and some pairs in a hundred are evaluated.
-std::uint64_t pair_cost(const std::vector<Object>& objects, const ObjectPair& pair) noexcept {
+// The costs were measured on one core (tools/bench/measured). A tracked query takes 65 ns with two
+// polyhedra, about 200 ns with a curved body, and about 1,300 ns with the object of a sensor. A
+// pair that is not evaluated costs about 0.6 ns a tick, because its bounds are kept (300 us for
+// 499,500 pairs whose objects all move): kKeptCost.
+std::uint64_t evaluation_cost(const std::vector<Object>& objects, const ObjectPair& pair) noexcept {
   constexpr std::uint64_t kPolyhedra = 1000, kCurved = 3000, kSeen = 20'000;
-  constexpr std::uint64_t kKept = 10;          // every pair
-  constexpr std::uint64_t kEvaluatedOne = 50;  // of this many pairs that are not published
   const Object& a = objects[pair.first];
   const Object& b = objects[pair.second];
   const auto is_curved = [](const Part& part) { return part.shape.is_curved(); };
@@ -116,23 +118,45 @@ std::uint64_t pair_cost(const std::vector<Object>& objects, const ObjectPair& pa
   if (a.is_seen() || b.is_seen()) query = kSeen;
   // Bounds of parts leave most part pairs out.
   const std::uint64_t queries = std::max<std::uint64_t>({1, a.parts.size(), b.parts.size()});
-  const std::uint64_t evaluated = query * queries;
-  return kKept + (pair.publish ? evaluated : evaluated / kEvaluatedOne);
+  return query * queries;
 }
 
-std::vector<Share> balanced_shares(const std::vector<Object>& objects,
-                                   const std::vector<ObjectPair>& pairs, std::uint32_t count) {
-  std::uint64_t total = 0;
-  for (const ObjectPair& pair : pairs) total += pair_cost(objects, pair);
-  std::vector<Share> shares(count);
-  for (std::uint32_t i = 0; i < count; ++i) shares[i].name = std::to_string(i + 1);
+std::vector<std::uint64_t> expected_costs(const std::vector<Object>& objects,
+                                          const std::vector<ObjectPair>& pairs) {
+  constexpr std::uint64_t kTicksAnEvaluation = 50;  // assumed for a pair that is not published
+  std::vector<std::uint64_t> costs;
+  costs.reserve(pairs.size());
+  for (const ObjectPair& pair : pairs) {
+    const std::uint64_t evaluated = evaluation_cost(objects, pair);
+    costs.push_back(kKeptCost + (pair.publish ? evaluated : evaluated / kTicksAnEvaluation));
+  }
+  return costs;
+}
+
+std::vector<std::uint32_t> balanced_begins(const std::vector<std::uint64_t>& costs,
+                                           std::uint32_t count) {
+  const std::uint64_t total = std::accumulate(costs.begin(), costs.end(), std::uint64_t{0});
+  std::vector<std::uint32_t> begins;
   std::uint64_t before = 0;  // of all pairs so far
-  for (std::uint32_t pair = 0; pair < pairs.size(); ++pair) {
-    const std::uint64_t cost = pair_cost(objects, pairs[pair]);
+  for (std::uint32_t pair = 0; pair < costs.size(); ++pair) {
     // The share in which the middle of this pair's cost lies.
-    const std::uint64_t share = (2 * before + cost) * count / (2 * total);
-    shares[std::min<std::uint64_t>(share, count - 1)].pairs.push_back(pair);
-    before += cost;
+    const std::uint64_t share =
+        std::min<std::uint64_t>((2 * before + costs[pair]) * count / (2 * total), count - 1);
+    while (begins.size() < share) begins.push_back(pair);
+    before += costs[pair];
+  }
+  begins.resize(count - 1, static_cast<std::uint32_t>(costs.size()));
+  return begins;
+}
+
+std::vector<Share> shares_of_runs(std::size_t pairs, const std::vector<std::uint32_t>& begins) {
+  std::vector<Share> shares(begins.size() + 1);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    const std::size_t begin = i == 0 ? 0 : begins[i - 1];
+    const std::size_t end = i < begins.size() ? begins[i] : pairs;
+    shares[i].name = std::to_string(i + 1);
+    for (std::size_t pair = begin; pair < end; ++pair)
+      shares[i].pairs.push_back(static_cast<std::uint32_t>(pair));
   }
   return shares;
 }

@@ -48,22 +48,33 @@ struct Shares {
 // Reduces a whole cell to one of its shares:
 //  - the pairs of the scene, its zones and its contacts are those of the share; a zone without a
 //    pair stays, without separation, so that ids stay the same;
-//  - objects and joints on which no pair depends are not read (Object::is_read);
+//  - objects and joints on which no pair depends are not read (Object::is_read), but for the first
+//    share of a cell that takes MoveIt's messages: these may ask for any place;
 //  - all topics except inputs are the share's own (topics_of_share);
 //  - it answers no questions and writes nothing for ROS 2: both would leave out the pairs of other
 //    shares.
 void select_share(Cell& cell, std::uint32_t share);
 
-// The cost of a pair to its daemon, in thousandths of the tracked query of two polyhedra. It
-// depends on the cell alone, so all machines divide a cell alike.
-[[nodiscard]] std::uint64_t pair_cost(const std::vector<Object>& objects,
-                                      const ObjectPair& pair) noexcept;
+// Costs of a pair for its daemon. The unit is a thousandth of a tracked query of two polyhedra.
+// Every tick keeps the bounds of every pair at this cost:
+inline constexpr std::uint64_t kKeptCost = 10;
+// The cost of one evaluation of the pair. It follows from the cell alone and nothing is measured,
+// so all machines divide a cell alike.
+[[nodiscard]] std::uint64_t evaluation_cost(const std::vector<Object>& objects,
+                                            const ObjectPair& pair) noexcept;
+// The expected cost of each pair a tick. A published pair is evaluated in every tick, and any other
+// pair is assumed to be evaluated in one of 50.
+[[nodiscard]] std::vector<std::uint64_t> expected_costs(const std::vector<Object>& objects,
+                                                        const std::vector<ObjectPair>& pairs);
 
-// Divides all pairs into `count` shares "1", "2", ... of about the same cost: runs of the pairs'
-// order, so that a share has few of the first objects. Their zones are not filled.
-[[nodiscard]] std::vector<Share> balanced_shares(const std::vector<Object>& objects,
-                                                 const std::vector<ObjectPair>& pairs,
-                                                 std::uint32_t count);
+// The first pairs of the second and all further shares that divide pairs of these costs into
+// `count` runs of about the same cost, in the pairs' order, so that a share has few of the first
+// objects. Ascending; equal ones are a share without pairs. `count` is not 0.
+[[nodiscard]] std::vector<std::uint32_t> balanced_begins(const std::vector<std::uint64_t>& costs,
+                                                         std::uint32_t count);
+// Shares "1", "2", ... of `pairs` pairs that begin at 0 and there. Their zones are not filled.
+[[nodiscard]] std::vector<Share> shares_of_runs(std::size_t pairs,
+                                                const std::vector<std::uint32_t>& begins);
 
 // Fills Share::zones. Every pair is in one share.
 void note_zones(const std::vector<Zone>& zones, std::vector<Share>& shares);

@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "config/cell/separation_reader.hpp"
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {
@@ -36,10 +37,11 @@ void fill_zone(const YamlNode& node, const Between& between, const ObjectList& o
     const PairKey key = unwatched.front();
     diagnostics.add(
         node,
-        fmt::format("found a zone over {} pairs that are not watched, such as '{}' against '{}'; "
-                    "expected every pair of a zone under 'pairs' or 'allowed_collisions'",
-                    unwatched.size(), objects.objects[first_of(key)].name,
-                    objects.objects[second_of(key)].name));
+        fmt::format(
+            "found a zone over {} not watched, such as '{}' against '{}'; "
+            "expected every pair of a zone under 'pairs' or 'allowed_collisions'",
+            counted(unwatched.size(), "pair") + (unwatched.size() == 1 ? " that is" : " that are"),
+            objects.objects[first_of(key)].name, objects.objects[second_of(key)].name));
   } else if (zone.pairs.empty() && !between.may_be_empty) {
     diagnostics.add(node, fmt::format("found a zone over no pair: none between '{}' and '{}' is "
                                       "watched; expected at least one",

@@ -207,10 +207,10 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
           ? std::string("tolerance")
           : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts);
   say(fmt::format(
-      "warning: {}: its {} reach {:.1f} mm beyond it, more than the tolerance of {:g} "
+      "warning: {}: its {} reach{} {:.1f} mm beyond it, more than the tolerance of {:g} "
       "mm: raise {} in {}",
-      path_of(use).filename().string(), counted(parts.shapes.size(), "part"), 1e3 * parts.error,
-      1e3 * use.limits.tolerance, limits,
+      path_of(use).filename().string(), counted(parts.shapes.size(), "part"),
+      parts.shapes.size() == 1 ? "es" : "", 1e3 * parts.error, 1e3 * use.limits.tolerance, limits,
       advice_ == Advice::kCell
           ? "the cell"
           : "a cell: 'clearance-scene import URDF --joints -o CELL.yaml' writes the one of this "

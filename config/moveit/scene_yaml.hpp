@@ -14,8 +14,9 @@ struct SceneYamlFault {
   std::string reason;  // "found ...; expected ..."
 };
 
-// Reads one document; "---" behind it ends the text. Of the robot's state, only what is attached is
-// read. Colours, types, stamps, padding and scale are skipped. The first fault ends the reading.
+// Reads one document; "---" behind it ends the text. Only the attached objects are read of the
+// robot's state. Colours, types, stamps, padding and scale are skipped. The first fault ends the
+// reading.
 [[nodiscard]] std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text);
 
 }  // namespace clearance::moveit

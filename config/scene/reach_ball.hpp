@@ -1,4 +1,4 @@
-// A ball that the links of a cell's robots do not leave (robot_reach.hpp).
+// A ball that the links of robots on one base do not leave (robot_reach.hpp).
 #pragma once
 
 #include <cstdint>

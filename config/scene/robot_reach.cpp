@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace clearance {
@@ -44,72 +45,61 @@ bool follows_a_frame(const Robot& robot) { return !robot.base.frame.empty(); }
 // The ball without its radius: around the base of this robot.
 ReachBall ball_around(const Robot& robot, std::uint32_t index) {
   ReachBall ball;
-  ball.is_carried = robot.base.kind == RobotBase::Kind::kObject || follows_a_frame(robot);
+  ball.is_carried = robot.base.kind != RobotBase::Kind::kWorld || follows_a_frame(robot);
   ball.centre = robot.base.base_from_root.position;
   ball.robot = index;
   ball.link = follows_a_frame(robot) ? 1 : 0;
   return ball;
 }
 
-// The distance of the root of `robot` from the root of the first robot, m; infinite: it changes.
-double distance_of_roots(const Robot& first, const Robot& robot) {
-  if (follows_a_frame(first) || follows_a_frame(robot)) return kInfinity;
-  if (first.base.kind != robot.base.kind) return kInfinity;
-  if (robot.base.kind == RobotBase::Kind::kObject && first.base.object != robot.base.object)
-    return kInfinity;
-  return (robot.base.base_from_root.position - first.base.base_from_root.position).norm();
+// The distances of a robot's links from the centre of their ball, m.
+std::vector<double> distances(const Robot& robot, double root,
+                              const std::vector<JointVariable>& variables) {
+  std::vector<double> out(robot.links.size(), root);
+  for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
+    const RobotJoint& of = robot.joints[joint];
+    if (joint == 0 && follows_a_frame(robot)) continue;  // it leads to the base
+    out[joint + 1] = out[of.parent] + of.parent_from_joint.position.norm() + travel(of, variables);
+  }
+  return out;
 }
 
 }  // namespace
 
-std::variant<ReachBall, std::string> robots_reach(const Scene& scene) {
-  // By robot and link: the distance from the centre, which is the base of the first robot.
-  std::vector<std::vector<double>> reach(scene.robots.size());
-  const Robot* first = nullptr;
-  ReachBall ball;
+// Robots on a link are in the ball of the robot that carries them. What is attached to an object
+// that moves is carried by no robot.
+std::variant<std::vector<ReachBall>, std::string> robots_reach(const Scene& scene) {
+  constexpr std::size_t kNoBall = std::numeric_limits<std::size_t>::max();
+  std::vector<ReachBall> balls;
+  std::vector<std::vector<double>> reach;  // by robot and link: from the centre of its ball
+  std::vector<std::size_t> ball_of;        // by robot
   for (std::size_t i = 0; i < scene.robots.size(); ++i) {
     const Robot& robot = scene.robots[i];
     const RobotBase& base = robot.base;
-    const bool is_on_link = base.kind == RobotBase::Kind::kLink;
-    if (first == nullptr && !is_on_link && !robot.is_attached) {
-      first = &robot;
-      ball = ball_around(robot, static_cast<std::uint32_t>(i));
-    }
-    double root = kInfinity;
-    if (is_on_link) {
+    double root = 0.0;
+    if (base.kind == RobotBase::Kind::kLink && ball_of[base.robot] != kNoBall) {
       root = reach[base.robot][base.link] + base.base_from_root.position.norm();
-    } else if (first == &robot) {
-      root = 0.0;
-    } else if (first != nullptr) {
-      root = distance_of_roots(*first, robot);
+      ball_of.push_back(ball_of[base.robot]);
+    } else if (robot.is_attached) {
+      ball_of.push_back(kNoBall);
+    } else {
+      ball_of.push_back(balls.size());
+      balls.push_back(ball_around(robot, static_cast<std::uint32_t>(i)));
     }
-    reach[i].assign(robot.links.size(), kInfinity);
-    reach[i][0] = root;
-    for (std::size_t joint = 0; joint < robot.joints.size(); ++joint) {
-      const RobotJoint& of = robot.joints[joint];
-      const bool is_of_base = joint == 0 && follows_a_frame(robot);
-      reach[i][joint + 1] = is_of_base
-                                ? root
-                                : reach[i][of.parent] + of.parent_from_joint.position.norm() +
-                                      travel(of, scene.variables);
-    }
+    reach.push_back(distances(robot, root, scene.variables));
+    if (ball_of[i] == kNoBall) continue;
     for (std::size_t link = 0; link < robot.links.size(); ++link) {
       if (robot.links[link].object == RobotLink::kNoObject) continue;
       const double radius = reach[i][link] + radius_of(scene.objects[robot.links[link].object]);
-      if (std::isfinite(radius)) {
-        ball.radius = std::max(ball.radius, radius);
-        continue;
+      if (!std::isfinite(radius)) {
+        return fmt::format("'{}' of robot '{}' can go anywhere: a joint slides without limits",
+                           robot.links[link].name, robot.name);
       }
-      if (robot.is_attached) continue;  // to an object that moves: no robot carries it
-      return fmt::format(
-          "'{}' of robot '{}' can go anywhere: its base moves without that of another robot, or "
-          "a joint slides without limits",
-          robot.links[link].name, robot.name);
+      balls[ball_of[i]].radius = std::max(balls[ball_of[i]].radius, radius * (1.0 + 0x1p-40));
     }
   }
-  if (first == nullptr) return "the cell has no robot";
-  ball.radius *= 1.0 + 0x1p-40;
-  return ball;
+  if (balls.empty()) return "the cell has no robot";
+  return balls;
 }
 
 }  // namespace clearance

@@ -62,8 +62,8 @@ struct Sensor {
   // z, or for points with `along_ray` the distance from the sensor.
   double error_constant = 0.0, error_quadratic = 0.0;
   bool along_ray = false;
-  // m; others count as missing. Of a map, the greatest distance from the origin of its frame; what
-  // is beyond is only known to be there.
+  // The range of depths, m; other depths count as missing. For a map, the greatest one is a
+  // distance from the origin of its frame: cubes farther away are known to be there, and no more.
   double least_depth = 0.0, greatest_depth = 0.0;
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
@@ -80,8 +80,8 @@ struct Sensor {
   // m. The error of the part's pose is added.
   double own_shell = 0.0;
   // However uncertain a pose is, elements farther than this from where the part is believed to be
-  // are not taken for its image, m. Of a ball, the centre counts, to within its own error. At least
-  // own_shell.
+  // are not taken for its image, m. For a ball, the centre counts, to within its own error. At
+  // least own_shell.
   double most_shell = 0.3;
 
   // A frame whose stamp is less than this after that of the frame before is refused; 0: none is.
@@ -96,19 +96,25 @@ struct Sensor {
 
   // Elements beyond this from everywhere that links can come to are cropped, m; infinity: none are.
   double reach = std::numeric_limits<double>::infinity();
-  // The ball that contains all other elements, widened by the motion of what is seen within the age
-  // limit.
-  ReachBall crop{.radius = std::numeric_limits<double>::infinity()};
+  // The balls that contain all other elements, widened by the motion of what is seen within the age
+  // limit. Empty: no element is cropped.
+  std::vector<ReachBall> crop;
 
-  // Reports say how near each link is to a place in the picture that the frame has not seen. Of
-  // depth images only.
+  // Reports say how near each link is to a place in the picture that the frame has not seen. Only a
+  // depth image has such places.
   bool unseen = false;
 
   [[nodiscard]] bool is_on_tf() const noexcept { return frames_by_message || !mount.frame.empty(); }
   [[nodiscard]] double error_at(double depth) const noexcept {
     return error_constant + error_quadratic * depth * depth;
   }
-  // No element is farther from the sensor than this, m: the body of its object is that ball.
+  // The ball that is the body of its object, m. Whatever a frame shows or knows to be there is in
+  // it, wherever the sensor is within the error of its place: a frame with a larger one is refused.
+  // Beyond the range of a map, anything may be.
+  [[nodiscard]] double view_radius() const noexcept {
+    return kind == SensorKind::kOctomap ? kLargestCoordinate : 2.0 * extent() + 0.1;
+  }
+  // No element is farther from the sensor than this, m.
   [[nodiscard]] double extent() const noexcept {
     if (kind == SensorKind::kOctomap) return 2.0 * greatest_depth;
     const double error = error_at(greatest_depth);

@@ -13,14 +13,20 @@ namespace {
 
 const std::string kPackage = "package://", kFile = "file://";
 
-// Looks where an installation or a workspace of ROS 2 has packages: PREFIX/share/NAME.
-std::optional<std::filesystem::path> installed_package(const std::string& package) {
+// An installation or a workspace of ROS 2 has its packages in PREFIX/share.
+std::vector<std::filesystem::path> installed_shares() {
   const char* const prefixes = std::getenv("AMENT_PREFIX_PATH");
   std::istringstream list(prefixes == nullptr ? "" : prefixes);
-  for (std::string prefix; std::getline(list, prefix, ':');) {
-    const std::filesystem::path directory = std::filesystem::path(prefix) / "share" / package;
-    if (std::error_code fault; !prefix.empty() && std::filesystem::is_directory(directory, fault))
-      return directory;
+  std::vector<std::filesystem::path> shares;
+  for (std::string prefix; std::getline(list, prefix, ':');)
+    if (!prefix.empty()) shares.push_back(std::filesystem::path(prefix) / "share");
+  return shares;
+}
+
+std::optional<std::filesystem::path> installed_package(const std::string& package) {
+  for (const std::filesystem::path& share : installed_shares()) {
+    if (std::error_code fault; std::filesystem::is_directory(share / package, fault))
+      return share / package;
   }
   return std::nullopt;
 }
@@ -35,6 +41,22 @@ std::optional<std::filesystem::path> kept_package(const std::string& package,
   return std::nullopt;
 }
 
+// The folder from which the search goes upwards.
+std::filesystem::path first_folder(const RobotFiles& files) {
+  return std::filesystem::absolute(files.named_in).lexically_normal().parent_path();
+}
+
+// Names the folders that directory_of() looks in.
+std::string searched(const RobotFiles& files) {
+  if (!files.root.empty()) return fmt::format("{} and its folders", files.root.string());
+  std::string shares;
+  for (const std::filesystem::path& share : installed_shares())
+    shares += (shares.empty() ? "" : ", ") + share.string();
+  return fmt::format("{}, the folders above it, and {}", first_folder(files).string(),
+                     shares.empty() ? "AMENT_PREFIX_PATH, which names none"
+                                    : fmt::format("AMENT_PREFIX_PATH's {}", shares));
+}
+
 // A package that the cell names wins. Otherwise the search goes upwards, as packages usually
 // contain the description that refers to them. Installed packages of ROS 2 come last.
 std::optional<std::filesystem::path> directory_of(const std::string& package,
@@ -42,8 +64,7 @@ std::optional<std::filesystem::path> directory_of(const std::string& package,
   for (const auto& [name, directory] : files.packages) {
     if (name == package) return directory;
   }
-  std::filesystem::path at =
-      std::filesystem::absolute(files.named_in).lexically_normal().parent_path();
+  std::filesystem::path at = first_folder(files);
   for (; at.has_relative_path() && !leads_out_of(files.root, at); at = at.parent_path()) {
     if (at.filename() == package) return at;
     if (std::error_code fault; std::filesystem::is_directory(at / package, fault))
@@ -72,10 +93,14 @@ std::string RobotFiles::why_not_found(const std::string& name, PackagesFrom from
   }
   if (path_of(name)) return fmt::format("it {}; expected a path within them", kLeadsOut);
   const std::string package = package_of(name);
-  return fmt::format("no directory for the package '{}'; expected {}", package,
-                     from == PackagesFrom::kCell
-                         ? fmt::format("packages: {{{}: DIRECTORY}}", package)
-                         : fmt::format("--package {}=DIRECTORY", package));
+  return fmt::format(
+      "no directory for the package '{0}' in {1}; expected {2}{3}", package, searched(*this),
+      from == PackagesFrom::kCell ? fmt::format("packages: {{{}: DIRECTORY}}", package)
+                                  : fmt::format("--package {}=DIRECTORY", package),
+      root.empty() ? fmt::format(", or PREFIX/share/{} with PREFIX in "
+                                 "AMENT_PREFIX_PATH",
+                                 package)
+                   : "");
 }
 
 std::string package_of(const std::string& name) {

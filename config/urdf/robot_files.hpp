@@ -31,7 +31,7 @@ struct RobotFiles {
   [[nodiscard]] std::optional<std::filesystem::path> find(const std::string& name) const;
 
   // Says why find() returned nothing for this name, as the end of a sentence: "no directory for the
-  // package 'x'; expected ...".
+  // package 'x' in FOLDERS; expected ...".
   [[nodiscard]] std::string why_not_found(const std::string& name, PackagesFrom from) const;
 
  private:

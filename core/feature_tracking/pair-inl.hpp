@@ -290,6 +290,8 @@ struct TrackedPair {
   int parallel_transitions;  // those of the transitions that led to features parallel within
                              // tolerance
 
+  bool starts_in_contact = false;  // begin() has chosen features of bodies that seem to touch
+
   // For penetrating bodies (core/feature_tracking/penetrating_transitions-inl.hpp):
   bool penetrating = false;
   double inradius;     // m: from the crossing of the edges to their nearest end

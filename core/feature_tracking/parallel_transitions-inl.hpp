@@ -15,7 +15,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/feature_tracking/pair-inl.hpp"
+#include "core/feature_tracking/starts-inl.hpp"
 #include "core/model/edge_scan-inl.hpp"
 #include "core/numerics/error_constants.hpp"
 
@@ -231,6 +231,34 @@ HWY_INLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a, std::int32
   return true;
 }
 
+// Clamps a point of a box's facet, in the box's frame, along the two axes of the facet.
+HWY_INLINE Vec4 clamped_to_facet(const BoxFeatures& box, Vec4 n, Vec4 p) {
+  const Vec4 centre = load3_of_4(box.centre), half = load3_of_4(box.half);
+  const Vec4 low = centre - half, high = centre + half;
+  const Vec4 within = where_less(high, p, high, where_less(p, low, low, p));
+  return where_less(spread(0.5), n * n, p, within);
+}
+
+// Does what slide_back() does, by two clamps, for two boxes that share all axes. The first clamp is
+// onto the facet of A, the second one onto that of B. Returns false if the second one moves the
+// point out of A's facet: the facets then do not face each other there.
+inline HWY_NOINLINE bool slide_back_on_boxes(const TrackedPair& pair, const Facet& of_a,
+                                             const Facet& of_b, Vec4& local) {
+  const BoxFeatures &a = pair.a.box, &b = pair.b.box;
+  if (!a.exist() || !b.exist() || shared_axes(squares_of(pair.a_from_b.rotation)) != 7u) {
+    return false;
+  }
+  const Vec4 n = load3_of_4(of_a.normal);
+  const Vec4 on_a = clamped_to_facet(a, n, point_to_a(pair.a_from_b, local));
+  const Vec4 on_b =
+      clamped_to_facet(b, load3_of_4(of_b.normal), onto(of_b, point_to_b(pair.a_from_b, on_a)));
+  const Vec4 again = point_to_a(pair.a_from_b, on_b);
+  const Vec4 off = again - clamped_to_facet(a, n, again);
+  const double rounding = 0x1p-50 * (pair.a.bounding_radius + pair.b.bounding_radius);
+  local = on_b;
+  return dot(off, off) <= rounding * rounding;
+}
+
 // Moves to the vertex of the owner's facet that is the support point along g, in the owner's frame.
 template <bool kIsB>
 inline Transition to_support_vertex(const Owner<kIsB>& owner, const Vec3& g) {
@@ -279,7 +307,11 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   const std::int32_t crossed_a = crossed_side(pair.a, of_a, tip);
   const std::int32_t crossed_b = crossed_a == kNone ? crossed_side(pair.b, of_b, local) : kNone;
   if (HWY_UNLIKELY(crossed_a != kNone || crossed_b != kNone)) {
-    if (!slide_back(pair, crossed_a, crossed_b, local)) return Transition::kMoved;
+    const Vec4 before = local;
+    if (!slide_back_on_boxes(pair, of_a, of_b, local)) {
+      local = before;
+      if (!slide_back(pair, crossed_a, crossed_b, local)) return Transition::kMoved;
+    }
     tip = point_to_a(pair.a_from_b, local);
   }
   pair.distance = dot(n, tip) - of_a.offset;

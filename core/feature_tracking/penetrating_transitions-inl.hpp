@@ -164,10 +164,11 @@ HWY_INLINE bool is_contact(const TrackedPair& pair, const Precision& p) {
   return between <= p.error_bound && gap <= 0.5 * p.error_bound + 5.0 * p.gap_tolerance;
 }
 
+template <bool kBounded = false>
 HWY_INLINE bool certify_penetration(TrackedPair& pair) {
   const RelativePose4& pose = pair.a_from_b;
   const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.translation_length};
-  const Precision p = precision(pair.a, pair.b, place, std::abs(pair.distance));
+  const Precision p = precision<kBounded>(pair.a, pair.b, place, std::abs(pair.distance));
   pair.error_bound = p.error_bound;
   pair.touching = is_contact(pair, p);
   if (!pair.touching) {

@@ -38,13 +38,15 @@ HWY_INLINE void place_point_of_b(TrackedPair& pair) {
 }
 // Two points, after B's has been placed. The arithmetic is that of two vertices, so that a batch
 // gives the same bits.
-HWY_INLINE void meet_points(TrackedPair& pair) {
+HWY_INLINE Vec4 meet_points(TrackedPair& pair) {
   to_only_vertex(pair.on_a);
   to_only_vertex(pair.on_b);
   pair.point_a = load3_alone(pair.a.vertices[0].position);
-  const Vec4 g = pair.point_b - pair.point_a;
-  pair.distance = pair.certified = norm(g);
-  pair.normal = over(g, pair.distance);
+  return pair.point_b - pair.point_a;
+}
+HWY_INLINE void measure_points(TrackedPair& pair, Vec4 g, double length) {
+  pair.distance = pair.certified = length;
+  pair.normal = over(g, length);
 }
 
 // In the body's frame.

@@ -114,6 +114,8 @@ HWY_INLINE bool start_boxes(TrackedPair& pair) {
   // The same axes in B's frame. B's features face the other way.
   const auto chosen = [axes](unsigned axis) { return (axes & axis) != 0 ? 1.0 : 0.0; };
   const Vec4 in_b = direction_to_b(pair.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
+  const double size = pair.a.bounding_radius + pair.b.bounding_radius;
+  pair.starts_in_contact = (less(gaps, spread(kMayTouch * size)) & 7u) == 7u;
   to_farthest(a, axes, less(between, zero), pair.on_a);
   to_farthest(b, less(spread(0.25), in_b * in_b) & 7u, less(zero, in_b), pair.on_b);
   // The witness points of whole facets and edges will be halfway between these.

@@ -320,6 +320,7 @@ HWY_INLINE TrackingEnd continue_tracking(TrackedPair& pair) {
 HWY_INLINE TrackingEnd track(TrackedPair& pair) {
   if (!pair.a.bounded() && !pair.b.bounded()) return TrackingEnd::kUndecided;
   begin(pair);
+  if (pair.starts_in_contact) return TrackingEnd::kUndecided;
   return continue_tracking(pair);
 }
 

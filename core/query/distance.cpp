@@ -5,6 +5,8 @@
 //                             └─ moved ─┐
 //   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
 //                                                 └─ left open ─► penetrating features
+//   two facets that touched ► one transition ─► certified ──────────────────────────► result
+//                             └─ moved ─┐
 //   touched or penetrated in the last query ► penetrating features ─► certified ───► result
 //                                                 └─ left open ─► search.hpp
 //   two points ────────────────────────────► a closed form
@@ -43,6 +45,17 @@ DistanceResult points_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
   return between_points(a, b, GivenPose{a_from_b}, state);
 }
 
+DistanceResult touching_facets_by_poses(const ConvexBody& a, const ConvexBody& b,
+                                        const Pose& world_from_a, const Pose& world_from_b,
+                                        TrackingState& state) noexcept {
+  return from_touching_facets(a, b, WorldPoses{world_from_a, world_from_b}, state);
+}
+DistanceResult touching_facets_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
+                                                const RelativePose& a_from_b,
+                                                TrackingState& state) noexcept {
+  return from_touching_facets(a, b, GivenPose{a_from_b}, state);
+}
+
 DistanceResult any_by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                             const Pose& world_from_b, TrackingState& state) noexcept {
   return from_any_bodies(a, b, WorldPoses{world_from_a, world_from_b}, state, true);
@@ -72,7 +85,7 @@ constexpr QueryEntries kQueryEntries = {
      pair_by_poses<FeaturePair::kEdgeVertex>, pair_by_poses<FeaturePair::kEdgeEdge>, any_by_poses,
      any_by_poses, pair_by_poses<FeaturePair::kFacetVertex>, any_by_poses,
      pair_by_poses<FeaturePair::kFacetFacet>, any_by_poses, any_by_poses, any_by_poses,
-     any_by_poses, any_by_poses, points_by_poses, any_by_poses},
+     any_by_poses, any_by_poses, points_by_poses, touching_facets_by_poses, any_by_poses},
     {pair_by_relative_pose<FeaturePair::kVertexVertex>,
      pair_by_relative_pose<FeaturePair::kVertexEdge>,
      pair_by_relative_pose<FeaturePair::kVertexFacet>, any_by_relative_pose,
@@ -80,7 +93,7 @@ constexpr QueryEntries kQueryEntries = {
      any_by_relative_pose, any_by_relative_pose, pair_by_relative_pose<FeaturePair::kFacetVertex>,
      any_by_relative_pose, pair_by_relative_pose<FeaturePair::kFacetFacet>, any_by_relative_pose,
      any_by_relative_pose, any_by_relative_pose, any_by_relative_pose, any_by_relative_pose,
-     points_by_relative_pose, any_by_relative_pose},
+     points_by_relative_pose, touching_facets_by_relative_pose, any_by_relative_pose},
     without_depth,
     after_transitions};
 

@@ -13,9 +13,11 @@
 
 namespace clearance {
 
-// 4 * kind on A + kind on B: of disjoint bodies that are plain, or a point and a plain one. Behind
-// these are the entries of two points and of everything else.
-inline constexpr std::size_t kPointsEntry = 16, kAnyEntry = 17, kEntries = 18;
+// The first 16 entries are for disjoint bodies, both plain, or a point and a plain one. Their index
+// is 4 * (kind of the feature on A) + (kind of the feature on B). The further entries are for two
+// points, for plain bodies that touched at two facets, and for all other queries.
+inline constexpr std::size_t kPointsEntry = 16, kTouchingFacetsEntry = 17, kAnyEntry = 18,
+                             kEntries = 19;
 
 struct QueryEntries {
   using ByPoses = DistanceResult (*)(const ConvexBody& a, const ConvexBody& b,
@@ -44,6 +46,10 @@ struct QueryEntries {
   std::memcpy(&on_a, &state.a, sizeof on_a);
   const std::uint32_t on_b = static_cast<std::uint32_t>(state.b.kind), classes = query_class(a, b);
   if ((classes | on_a | on_b) < 4) return 4U * on_a + on_b;
+  if (state.a.penetrating && state.a.kind == FeatureKind::kFacet &&
+      state.b.kind == FeatureKind::kFacet && classes < kTwoPoints) {
+    return kTouchingFacetsEntry;
+  }
   return classes == kTwoPoints ? kPointsEntry : kAnyEntry;
 }
 

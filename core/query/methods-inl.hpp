@@ -100,7 +100,8 @@ HWY_INLINE DistanceResult from_pair(const ConvexBody& a, const ConvexBody& b, Pl
 // Two points need no features: their states are not read.
 HWY_INLINE bool are_disjoint_points(TrackedPair& pair) {
   ++pair.transitions;
-  meet_points(pair);
+  const Vec4 g = meet_points(pair);
+  measure_points(pair, g, norm(g));
   return HWY_LIKELY(certify<true>(pair) == TrackingEnd::kCertified);
 }
 template <class Place>
@@ -125,7 +126,11 @@ HWY_INLINE DistanceResult between_points(const ConvexBody& a, const ConvexBody& 
     TrackedPair pair(a, b, a_from_b, state);
     pair.local_b = spread(0.0);
     pair.point_b = a_from_b.translation;
-    if (are_disjoint_points(pair)) return rounded_result_of(pair);
+    ++pair.transitions;
+    const Vec4 g = meet_points(pair);
+    measure_points(pair, g,
+                   HWY_LIKELY(a.bounding_radius == 0.0) ? a_from_b.translation_length : norm(g));
+    if (HWY_LIKELY(certify<true>(pair) == TrackingEnd::kCertified)) return rounded_result_of(pair);
   }
   return between_any_points(a, b, place, state, true);
 }
@@ -211,6 +216,31 @@ HWY_INLINE DistanceResult penetrating_result_of(const TrackedPair& pair) {
   add_radii(result, pair.a, pair.b);
   assert(keeps_promises(result));
   return result;
+}
+
+// The entry for two bounded bodies that touched or penetrated each other at two facets in the last
+// query, as a body on a floor does. The pose and the pair stay in registers, as in from_features().
+template <class Place>
+HWY_INLINE DistanceResult from_touching_facets(const ConvexBody& a, const ConvexBody& b,
+                                               Place place, TrackingState& state) {
+  if (HWY_UNLIKELY(!has_feature(a, FeatureKind::kFacet, state.a) ||
+                   !has_feature(b, FeatureKind::kFacet, state.b))) {
+    return from_any_state(a, b, place, state, true);
+  }
+  const RelativePose4 a_from_b = place.relative();
+  const std::int32_t on_a = state.a.feature, on_b = state.b.feature;
+  TrackedPair pair(a, b, a_from_b, state);
+  pair.penetrating = true;
+  pair.inradius = pair.depth_error = 0.0;
+  ++pair.transitions;
+  if (HWY_LIKELY(facet_facet<Tracking::kFirstOfPlain>(pair) == Transition::kClosest &&
+                 certify_penetration<true>(pair))) {
+    return penetrating_result_of(pair);
+  }
+  to_facet(state.a, on_a);
+  to_facet(state.b, on_b);
+  const RelativePose4 in_memory = a_from_b;
+  return from_penetration(a, b, in_memory, state);
 }
 
 // Level boxes slide from one pair of features to another, and the last one may certify nothing.

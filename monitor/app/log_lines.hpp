@@ -1,11 +1,9 @@
 // The daemon's log lines: the only place where their wording stands. tests/monitor/messages.golden
 // shows each of them with sample arguments.
 //
-// A new line is one entry here and its name in kAll at the end. Codes do not change: they are what
-// tests, FAULTS.md and other programs look for. An argument "2 joints" comes from counted().
+// A new line is one entry here and its name in all_log_lines.hpp. Codes do not change: they are
+// what tests, FAULTS.md and other programs look for. An argument "2 joints" comes from counted().
 #pragma once
-
-#include <tuple>
 
 #include "monitor/app/log_line.hpp"
 
@@ -29,13 +27,11 @@ inline constexpr LogLine<Text> kPartitionWithoutRos{
 inline constexpr LogLine<Text> kNoSpeedScaling{
     "no-speed-scaling", kWarn,
     "{} is not published: no zone of the cell defines the scaling of speeds. Add a zone to the "
-    "cell "
-    "('zones:'), with 'separation:' for speeds between 0 and 1"};
+    "cell ('zones:'), with 'separation:' for speeds between 0 and 1"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
-inline constexpr LogLine<Text> kReading{
-    "cell-read-again", kInfo,
-    "SIGHUP came (from a person, or from a terminal that was closed): {} is read again; SIGTERM "
-    "ends the daemon"};
+inline constexpr LogLine<Text> kReading{"cell-read-again", kInfo,
+                                        "SIGHUP came (from a person, or from a terminal that was "
+                                        "closed): {} is read again; SIGTERM ends the daemon"};
 inline constexpr LogLine<Count, Count, Count> kSceneChanged{
     "scene-changed", kInfo,
     "the cell's revision {:016x} is in force from cycle {}, and {:016x} is not any more"};
@@ -250,8 +246,11 @@ inline constexpr LogLine<Text, Count> kPartnerOtherInputs{
 inline constexpr LogLine<Text, Count, Count> kPartnerDiffers{
     "partner-differs", kError,
     "partner '{}' reports other bits for cycle {} than this daemon, for the same inputs: one of "
-    "the "
-    "two machines is faulty ({} such reports so far)"};
+    "the two machines is faulty ({} such reports so far)"};
+inline constexpr LogLine<Text, Count, Count> kPartnerCorrupt{
+    "partner-corrupt", kError,
+    "a report of '{}', cycle {}, came without the checksum that it states: a bit has flipped at "
+    "the partner, on the way or here ({} faulty reports so far)"};
 inline constexpr LogLine<Text, Count> kPartnerMissing{
     "partner-missing", kWarn, "partner '{}' has not reported cycle {} in time"};
 inline constexpr LogLine<Text, std::int64_t> kPartnerClock{
@@ -267,6 +266,13 @@ inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWa
 inline constexpr LogLine<Text> kPartnerFileNotKept{
     "partner-file-not-kept", kWarn,
     "a file that was sent along with a command to the partner is not kept here: {}"};
+
+// ---- Shares
+
+inline constexpr LogLine<Text, Count, Text> kShareSceneRefused{
+    "share-scene-refused", kError,
+    "the scene of the share '{}', revision {:016x}, is not taken over, so that this share is not "
+    "whole: {}"};
 
 // ---- Shares, as clearance-merge joins them
 
@@ -284,114 +290,15 @@ inline constexpr LogLine<Text, double> kShareLate{
 inline constexpr LogLine<Count, Text> kCellNotRead{
     "cell-not-read", kError,
     "ROS 2 gets no markers, numbers and diagnostics: the shares have changed to revision {:016x} "
-    "of "
-    "the cell, which cannot be read here: {}"};
+    "of the cell, which cannot be read here: {}"};
 inline constexpr LogLine<Text, Count, Count> kShareOtherRevision{
     "share-other-revision", kError,
     "the share '{}' has revision {:016x} of the cell and most others have {:016x}: its pairs are "
     "unknown, and its zones active"};
 
-// A template, because a tuple of so many types is slow to compile: only those who use it pay for
-// it.
-template <class = void>
-inline constexpr std::tuple kAll{kStarted,
-                                 kHowToReach,
-                                 kSystemRefuses,
-                                 kPartitionWithoutRos,
-                                 kNoSpeedScaling,
-                                 kStopped,
-                                 kReading,
-                                 kSceneChanged,
-                                 kSceneUnchanged,
-                                 kSceneRefused,
-                                 kCommandRefused,
-                                 kCommandsLeftOut,
-                                 kQuestionRefused,
-                                 kQuestionsLeftOut,
-                                 kMoveItLeftOut,
-                                 kMoveItRefused,
-                                 kSceneResumed,
-                                 kWaitingForDescription,
-                                 kDescriptionKept,
-                                 kRobotNote,
-                                 kSensorNote,
-                                 kRecordingRenamed,
-                                 kRecordingWithoutFiles,
-                                 kRecordingContinues,
-                                 kEventRecorded,
-                                 kRecordingStopped,
-                                 kDiskTooSlow,
-                                 kDiskHangs,
-                                 kPosesLate,
-                                 kPosesContradict,
-                                 kPosesBack,
-                                 kTwoSources,
-                                 kSourceChanged,
-                                 kVelocitiesContradict,
-                                 kRefused,
-                                 kMoreLeftOut,
-                                 kFramesLate,
-                                 kFramesUnplaced,
-                                 kFramesBack,
-                                 kFramesSilent,
-                                 kJointsHeard,
-                                 kJointsBack,
-                                 kJointsLate,
-                                 kJointsContradict,
-                                 kTwoJointSources,
-                                 kJointsSilent,
-                                 kBatchesLost,
-                                 kUndecodable,
-                                 kOtherReports,
-                                 kOverruns,
-                                 kReportsDropped,
-                                 kClockStepped,
-                                 kZoneLeft,
-                                 kZoneNear,
-                                 kZoneLate,
-                                 kZoneUnknown,
-                                 kZoneContradicted,
-                                 kZoneDiscontinuous,
-                                 kZoneContactTooDeep,
-                                 kZoneContactTooLate,
-                                 kZoneFlickers,
-                                 kZonesLeftOut,
-                                 kContactAllowed,
-                                 kContactEnded,
-                                 kContactTooDeep,
-                                 kContactTooLate,
-                                 kContactsLeftOut,
-                                 kDdsWarning,
-                                 kDdsError,
-                                 kDdsLeftOut,
-                                 kOlderReader,
-                                 kIncompatibleReader,
-                                 kOtherTypeWriter,
-                                 kIncompatibleWriter,
-                                 kWriterAppeared,
-                                 kWriterLeft,
-                                 kInputsFailed,
-                                 kWriteFailed,
-                                 kRosWriteFailed,
-                                 kOtherDaemonFirst,
-                                 kOtherDaemonLater,
-                                 kOtherProgram,
-                                 kOtherWriterLeft,
-                                 kPartnerMet,
-                                 kPartnerStands,
-                                 kPartnerAgrees,
-                                 kPartnerOtherInputs,
-                                 kPartnerDiffers,
-                                 kPartnerMissing,
-                                 kPartnerClock,
-                                 kPartnerOtherBuild,
-                                 kPartnerStateRefused,
-                                 kPartnerFileNotKept,
-                                 kMergeStarted,
-                                 kShareHeard,
-                                 kShareMissing,
-                                 kShareLate,
-                                 kShareOtherRevision,
-                                 kCellNotRead};
+inline constexpr LogLine<Text> kShareOtherDivision{
+    "share-other-division", kError,
+    "the share '{}' divides the cell otherwise than the others, so that a pair may be in no share: "
+    "its pairs are unknown, and its zones active"};
 
 }  // namespace clearance::lines

@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
@@ -129,13 +130,23 @@ void BagLog::use(RawSensorMessage message) {
                            .sensor = std::make_shared<const RawSensorMessage>(std::move(message))});
 }
 
+template <class IsListed>
+std::vector<std::string> BagLog::topics(const IsListed& is_listed) const {
+  std::vector<std::string> there;
+  for (const auto& [name, topic] : topics_) {
+    if (is_listed(topic.type))
+      there.push_back(fmt::format("{} ({}, {} messages)", name, topic.type, topic.messages));
+  }
+  return there;
+}
+
+std::vector<std::string> BagLog::topics_of(SensorKind kind) const {
+  return topics([kind](const std::string& type) { return is_frame_type(kind, type); });
+}
+
 // Lists the topics that the bag has instead, so that a user can choose one.
 std::string BagLog::nothing_of_use() const {
-  std::string there;
-  for (const auto& [name, topic] : topics_) {
-    there += fmt::format("{}{} ({}, {} messages)", there.empty() ? "" : ", ", name, topic.type,
-                         topic.messages);
-  }
+  const std::vector<std::string> there = topics([](const std::string&) { return true; });
   const auto& joints = intake_.joint_states().unknown_names();
   if (!joints.empty()) {
     return fmt::format(
@@ -148,7 +159,8 @@ std::string BagLog::nothing_of_use() const {
       "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
       "objects. Expected a topic joint_states of type {} with its joints' names, or one that "
       "--joint-topic names; there are {}",
-      path_.string(), kJointStateType, there.empty() ? "no messages" : there);
+      path_.string(), kJointStateType,
+      there.empty() ? std::string("no messages") : fmt::format("{}", fmt::join(there, ", ")));
 }
 
 std::vector<std::string> BagLog::notes() const {
@@ -157,15 +169,15 @@ std::vector<std::string> BagLog::notes() const {
   for (const auto& [name, topic] : topics_) {
     if (!topic.number) continue;
     const auto note = [&, &topic_name = name](std::uint64_t count, const std::string& what) {
-      if (count > 0) notes.push_back(fmt::format("{} messages of {} {}", count, topic_name, what));
+      if (count > 0)
+        notes.push_back(fmt::format("{} of {} {}", counted(count, "message"), topic_name, what));
     };
     const TopicCounts& counts = intake_.counts(*topic.number);
-    note(counts.undecodable, "do not decode as " + topic.type + " and were left out");
-    note(topic.empty, "have no position of a joint of this cell");
-    note(counts.unstamped, "have no stamp: the time when they were recorded is used");
+    note(counts.undecodable, "did not decode as " + topic.type + ": left out");
+    note(topic.empty, "had no position of a joint of this cell");
+    note(counts.unstamped, "had no stamp: the time of recording is used");
     note(counts.of_another_clock,
-         fmt::format("have stamps of another clock ({:+.1f} s): the time when they were recorded "
-                     "is used",
+         fmt::format("had a stamp of another clock ({:+.1f} s): the time of recording is used",
                      static_cast<double>(counts.clock_difference_ns) * 1e-9));
   }
   notes.insert(notes.end(), told_.begin(), told_.end());

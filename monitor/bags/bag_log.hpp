@@ -34,6 +34,8 @@ class BagLog final : public InputLog {
   }
   [[nodiscard]] double progress() const noexcept override { return bag_->progress(); }
   [[nodiscard]] std::vector<std::string> notes() const override;
+  [[nodiscard]] bool has_topics() const noexcept override { return true; }
+  [[nodiscard]] std::vector<std::string> topics_of(SensorKind kind) const override;
 
  private:
   struct Topic {
@@ -48,6 +50,8 @@ class BagLog final : public InputLog {
   void use(PoseBatch batch);
   void use(moveit::RawScene message);
   void use(RawSensorMessage message);
+  template <class IsListed>
+  [[nodiscard]] std::vector<std::string> topics(const IsListed& is_listed) const;
   [[nodiscard]] std::string nothing_of_use() const;
 
   const Scene& scene_;

@@ -57,6 +57,11 @@ class InputLog {
   // Notes for a person about what was read so far: what was used, and what was left out and why.
   // Each note is one sentence.
   [[nodiscard]] virtual std::vector<std::string> notes() const = 0;
+  // True if it has topics, so that a sensor may have been recorded.
+  [[nodiscard]] virtual bool has_topics() const noexcept { return false; }
+  // The topics that were read so far and could be this sensor's, each with its type and its number
+  // of messages, whatever the cell says of them.
+  [[nodiscard]] virtual std::vector<std::string> topics_of(SensorKind) const { return {}; }
 };
 
 // True if the first bytes are those of such a log. It is a bag without our own topics, or a CSV

@@ -10,6 +10,7 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <list>
 #include <map>
 #include <memory>
@@ -37,7 +38,8 @@ namespace client {
 // The daemon's domain, partition and network, as in its first log lines.
 class Connection {
  public:
-  // Without options: this machine's loopback, domain 0, the default partition.
+  // Without options: this machine's loopback, the domain of ROS_DOMAIN_ID or 0, the default
+  // partition.
   explicit Connection(const DdsOptions& options = {}, const Topics& topics = {});
   // Uses a participant that the program already has and that outlives this.
   Connection(dds_entity_t participant, const std::string& partition, const Topics& topics = {});
@@ -67,7 +69,8 @@ class Stream {
 
   // Waits up to `timeout` for the next message in order. Returns false when none came.
   bool next(std::chrono::nanoseconds timeout = {});
-  // Does the same with the newest waiting message: for a controller.
+  // Does the same with the newest waiting message: for a controller. partner() is then the worst
+  // state of all that waited.
   bool newest(std::chrono::nanoseconds timeout = {});
 
   // The last message that came; all zero before the first one.
@@ -81,7 +84,7 @@ class Stream {
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
   // Says whether two partners agree, whose reports are merged into one stream. A change
   // from one to the other is no other daemon for check().
-  [[nodiscard]] const PartnerCheck& partner() const noexcept { return merge_.check(); }
+  [[nodiscard]] const PartnerCheck& partner() const noexcept { return partner_; }
   // See PartnerMerge::senders(). The times are by monotonic_ns().
   [[nodiscard]] const std::array<PartnerMerge::Sender, 2>& senders() const noexcept {
     return merge_.senders();
@@ -107,6 +110,7 @@ class Stream {
   ReportChecker checker_;
   ReportCheck check_;
   PartnerMerge merge_;  // of reports, here and below
+  PartnerCheck partner_;
   WholeReports whole_;
 };
 
@@ -128,7 +132,8 @@ class Catalogue {
   static constexpr std::size_t kKept = 9;
 
   explicit Catalogue(Connection& connection);
-  void update();
+  // `each` is called with every one that has come, also if a later one replaces it at once.
+  void update(const std::function<void(const clearance_msg_Catalogue&)>& each = {});
 
   // The latest one; null until one has come.
   [[nodiscard]] const clearance_msg_Catalogue* message() const noexcept {
@@ -207,8 +212,8 @@ class Pair {
   std::optional<std::uint32_t> id_;
 };
 
-// The daemon's health at the last update(); it comes once a second. Of partners, it is the
-// leader's.
+// The daemon's health at the last update(); it comes once a second. Two partners have one
+// health, that of the leader.
 class Health {
  public:
   explicit Health(Connection& connection);

@@ -63,9 +63,7 @@ bool PartnerMerge::contradicts(const clearance_msg_Distances& report) const noex
 }
 
 bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t heard_ns) {
-  const bool is_delivered_whole =
-      report.delivery_checksum == 0 || delivery_checksum_of(report) == report.delivery_checksum;
-  if (checksum_of(report) != report.checksum || !is_delivered_whole) {
+  if (!has_its_checksums(report)) {
     note(PartnerState::kCorrupt, report);
     return false;
   }

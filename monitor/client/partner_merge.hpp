@@ -30,6 +30,13 @@ struct PartnerCheck {
   std::string partner = {};  // who published that; of kMissing: who did not
 };
 
+// The worse one of two, or the later one of two that are alike: for a program that looks at some
+// reports only.
+[[nodiscard]] inline const PartnerCheck& worse(const PartnerCheck& before,
+                                               const PartnerCheck& after) noexcept {
+  return before.state > after.state ? before : after;
+}
+
 // The first good report of a cycle is handed out, and the other one is compared with it. A partner
 // that ticks apart, whose cycles may have other numbers, takes the place of one that has fallen
 // silent. The stream has one scene at a time. It changes when a daemon of the stream changes its

@@ -27,9 +27,10 @@ class Questions : public QuestionRequests {
   Questions(Connection& connection, std::string_view client);
 
   // Asks, and waits for the answer. The same request is sent again every second until the answer
-  // comes. `held` and `poses` have what shall count instead of the present positions and poses.
-  // Returns nothing when none came in time: then nothing is known of the motion. Throws
-  // std::invalid_argument when a part of the question cannot be sent.
+  // comes: of two partners, the one that leads answers. `held` and `poses` have what shall count
+  // instead of the present positions and poses. Returns nothing when none came in time: then
+  // nothing is known of the motion. Throws std::invalid_argument when a part of the question cannot
+  // be sent.
   [[nodiscard]] std::optional<QuestionResult> ask(
       const Question& question, const QuestionOptions& options = {},
       std::chrono::nanoseconds timeout = std::chrono::seconds(10));

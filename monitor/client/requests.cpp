@@ -106,8 +106,8 @@ std::uint64_t Requests<Request, Result, Message>::post(const Make& make) {
   return write(next(make)) ? request_ : 0;
 }
 
-// A volatile topic: what is written before a daemon is met does not arrive. Of two partners one
-// answers, and it may be the one that is met later.
+// The topic is volatile, so a request that is written before a daemon is met does not arrive. Only
+// one of two partners answers, and it may be the one that is met later.
 template <class Request, class Result, class Message>
 std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
                                                                std::function<bool()> ask,

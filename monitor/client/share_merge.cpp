@@ -4,10 +4,14 @@
 #include <array>
 #include <cstring>
 #include <limits>
+#include <span>
+#include <string_view>
 
+#include "config/text/fnv1a.hpp"
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/whole_reports.hpp"
 #include "monitor/report.hpp"
+#include "monitor/tight_bounds.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance::client {
@@ -102,24 +106,37 @@ void join_sources(std::span<const ShareView> views, clearance_msg_Distances& out
 }
 
 // No pair of a share is nearer than its lower_all. If its minimum is certified, none of its other
-// pairs is nearer than that. That pair itself may be, unless it was evaluated.
+// pairs is nearer than that. That pair itself may be, unless its bounds are tight.
 bool allows_minimum(const clearance_msg_Distances& report,
                     const clearance_msg_PairDistance& least) {
-  const auto evaluated = static_cast<std::uint8_t>(PairStatus::kOverlapping);
-  const bool is_tight = report.minimum.pair == least.pair || report.minimum.status <= evaluated;
+  const bool is_tight =
+      report.minimum.pair == least.pair || are_tight(report.minimum.lower, report.minimum.upper);
   return report.lower_all >= least.upper || (report.minimum_certified && is_tight);
 }
 
 }  // namespace
 
 const char* name(ShareState state) noexcept {
-  constexpr std::array kNames = {"whole", "missing", "late", "of another revision"};
+  constexpr std::array kNames = {"whole", "missing", "late", "of another revision",
+                                 "divided otherwise"};
   const auto index = static_cast<std::size_t>(state);
   return index < kNames.size() ? kNames[index] : "";
 }
 
+std::uint64_t division_of(const clearance_msg_Catalogue& catalogue) {
+  Fnv1a hash;
+  for (const clearance_msg_CatalogueShare& share : list(catalogue.shares)) {
+    hash.add(std::string_view(share.name));
+    hash.add(std::uint64_t{share.pairs_total});
+  }
+  hash.add(std::as_bytes(list(catalogue.pair_shares)));
+  return hash.value();
+}
+
 ShareMap::ShareMap(const clearance_msg_Catalogue& catalogue)
-    : revision_(catalogue.scene_revision), zones_(catalogue.zones._length) {
+    : revision_(catalogue.scene_revision),
+      division_(division_of(catalogue)),
+      zones_(catalogue.zones._length) {
   const auto shares = list(catalogue.shares);
   first_pairs_.assign(shares.size(), 0);
   std::vector<bool> has_first(shares.size());

@@ -19,6 +19,7 @@ enum class ShareState : std::uint8_t {
   kMissing = 1,        // none has come, or its daemon has died or hangs
   kLate = 2,           // its last report is too old, or its clock disagrees with ours
   kOtherRevision = 3,  // it has another scene than the others, or one that is not known yet
+  kOtherDivision = 4,  // it divides this scene otherwise: a pair may be in no share
 };
 // "whole", "missing", ...
 [[nodiscard]] const char* name(ShareState state) noexcept;
@@ -31,6 +32,9 @@ struct ShareView {
   const clearance_msg_Gradients* gradients = nullptr;    // likewise
 };
 
+// A hash of the division of a scene: the names of the shares, and the share of each pair.
+[[nodiscard]] std::uint64_t division_of(const clearance_msg_Catalogue& catalogue);
+
 // Which pairs and zones of a scene depend on which share.
 class ShareMap {
  public:
@@ -39,6 +43,7 @@ class ShareMap {
   explicit ShareMap(const clearance_msg_Catalogue& catalogue);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
+  [[nodiscard]] std::uint64_t division() const noexcept { return division_; }
   [[nodiscard]] const std::vector<std::string>& names() const noexcept { return names_; }
   [[nodiscard]] std::uint32_t pairs(std::size_t share) const { return pairs_[share]; }
   // Published pairs, ascending, and the share of each.
@@ -57,7 +62,7 @@ class ShareMap {
   [[nodiscard]] std::uint32_t first_pair(std::size_t share) const { return first_pairs_[share]; }
 
  private:
-  std::uint64_t revision_ = 0;
+  std::uint64_t revision_ = 0, division_ = 0;
   std::vector<std::string> names_;
   std::vector<std::uint32_t> pairs_, first_pairs_;
   std::vector<Published> published_;

@@ -69,6 +69,8 @@ struct SharedCell::OfShare {
     while (!has_ahead && reports.next()) {
       came_at = heard[reports->daemon] = monotonic_ns();
       missed += reports.check().missed;
+      const PartnerCheck& now = reports.partner();
+      partner = std::exchange(partner_is_old, false) ? now : worse(partner, now);
       if (!is_new) current.before_next(reports->scene_revision);
       reports.exchange(is_new ? ahead : current.latest);
       (is_new ? has_ahead : is_new) = true;
@@ -86,7 +88,7 @@ struct SharedCell::OfShare {
     std::erase_if(heard, [&](const auto& one) { return one.second + kHeardFor < taken_at; });
     separation.take_all(separations);
     if (gradients) gradient.take_all(*gradients);
-    catalogue.update();
+    look_for_names();
     clearance_msg_ZoneState state{};
     void* pointer = &state;
     dds_sample_info_t info;
@@ -96,8 +98,25 @@ struct SharedCell::OfShare {
       writer_of[state.daemon] = info.publication_handle;
     }
   }
+  void look_for_names() {
+    catalogue.update([this](const clearance_msg_Catalogue& names) {
+      divisions.push_front({names.daemon, names.scene_revision, division_of(names)});
+      if (divisions.size() > 2 * Catalogue::kKept) divisions.pop_back();
+    });
+  }
+  // The division of that scene by the daemon of its last report. Partners may be of two builds:
+  // that of the other one counts only until the daemon's own catalogue has come. 0: none has come.
+  [[nodiscard]] std::uint64_t division(std::uint64_t revision, std::uint64_t daemon) const {
+    std::uint64_t of_share = 0;
+    for (const Division& each : divisions) {
+      if (each.revision != revision) continue;
+      if (each.daemon == daemon) return each.hash;
+      if (of_share == 0) of_share = each.hash;
+    }
+    return of_share;
+  }
   // Keeps the state at the last report of the former scene, as long as that counts, and all later
-  // ones. Of a zone with more of them than kMost, that state is unknown.
+  // ones. If a zone has more of them than kMost, that state is unknown.
   void note(const clearance_msg_ZoneState& state, std::int64_t now_ns) {
     constexpr std::size_t kMost = 64;
     const bool counts = now_ns - current.former->publish_ns <= late_ns;
@@ -192,6 +211,10 @@ struct SharedCell::OfShare {
   client::Separation separations;
   std::optional<Gradients> gradients;  // none: they are not asked for
   Catalogue catalogue;
+  struct Division {
+    std::uint64_t daemon, revision, hash;
+  };
+  std::deque<Division> divisions;  // by the catalogues of this share, the latest one first
   client::Health health;
   HealthCounts counted;
   dds_entity_t zones;
@@ -202,6 +225,9 @@ struct SharedCell::OfShare {
   const clearance_msg_Distances* used = nullptr;  // in the joined report; one of `current`
   bool is_new = false, has_ahead = false;
   std::uint64_t missed = 0;
+  PartnerCheck partner;                         // the worst since the call of SharedCell before
+  bool partner_is_told = false;                 // the caller knows `partner`
+  bool partner_is_old = false;                  // the caller has called again since
   std::int64_t taken_at = 0, came_at = 0;       // the last take() and report, by monotonic_ns()
   std::map<std::uint64_t, std::int64_t> heard;  // daemons, and when their last report came
   std::map<std::uint64_t, std::int64_t> sender_heard_ns;     // of reports.senders(), by daemon

@@ -68,7 +68,7 @@ void SharedCell::look_for_names() {
   }
   if (names.size() != before) open(names);
   for (const auto& share : shares_) {
-    share->catalogue.update();
+    share->look_for_names();
     if (share->catalogue.message() == nullptr) continue;
     const ShareMap known(*share->catalogue.message());
     wait_.reset();
@@ -101,7 +101,19 @@ bool SharedCell::waits_for_first() const {
           !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); }));
 }
 
+// The caller is not told again what it was told of the partners of each share.
+void SharedCell::begin_call() {
+  for (const auto& share : shares_) {
+    if (std::exchange(share->partner_is_told, false)) share->partner_is_old = true;
+  }
+}
+
 bool SharedCell::next(std::chrono::nanoseconds timeout) {
+  begin_call();
+  return wait_for_next(timeout);
+}
+
+bool SharedCell::wait_for_next(std::chrono::nanoseconds timeout) {
   const std::int64_t end_ns = monotonic_ns() + timeout.count();
   for (;;) {
     if (discovery_) look_for_names();
@@ -118,8 +130,9 @@ bool SharedCell::next(std::chrono::nanoseconds timeout) {
 }
 
 bool SharedCell::newest(std::chrono::nanoseconds timeout) {
-  if (!next(timeout)) return false;
-  while (next()) {
+  begin_call();
+  if (!wait_for_next(timeout)) return false;
+  while (wait_for_next({})) {
   }
   return true;
 }
@@ -139,77 +152,10 @@ bool SharedCell::is_due(std::int64_t now_ns) const {
   return joined_ns_ != 0 && at - joined_at_ >= late_ns;
 }
 
-bool SharedCell::is_here(const OfShare& share) const {
-  const clearance_msg_Distances& report = *share.current.latest;
-  return report.scene_revision != 0 && joined_ns_ - report.publish_ns < options_.late_after.count();
-}
-
-// The scene that most shares have; among equally many, the one in use, or that of the first share.
-std::uint64_t SharedCell::scene_of_most() const {
-  std::map<std::uint64_t, int> counts;
-  for (const auto& share : shares_) {
-    const std::uint64_t revision = share->current.latest->scene_revision;
-    if (is_here(*share) && catalogue_of(revision) != nullptr) ++counts[revision];
-  }
-  std::uint64_t best = map_.revision();
-  for (const auto& share : shares_) {
-    const std::uint64_t revision = share->current.latest->scene_revision;
-    const bool is_first = best == 0 && catalogue_of(revision) != nullptr;
-    if (is_first || counts[revision] > counts[best]) best = revision;
-  }
-  return best;
-}
-
-// The shares change one after another. Until all have the next scene, with its names and zones,
-// each counts with its last report of this one. That is so only while none of these is late.
-bool SharedCell::can_stay(std::uint64_t next) const {
-  bool has_next = true, has_this = catalogue() != nullptr;
-  for (const auto& share : shares_) {
-    if (!is_here(*share)) continue;
-    has_next = has_next && share->is_heard_in(next);
-    has_this = has_this && share->report_of(map_.revision(), joined_ns_) != nullptr;
-  }
-  return has_this && !has_next;
-}
-
-// Returns false if the shares have other names in that scene: they are met anew.
-bool SharedCell::follow_revision() {
-  const std::uint64_t best = scene_of_most();
-  if (best == map_.revision() && catalogue() != nullptr) return true;
-  if (can_stay(best)) return true;
-  for (const auto& share : shares_) {
-    const clearance_msg_Catalogue* const found =
-        best == 0 ? share->catalogue.message() : share->catalogue.message(best);
-    if (found == nullptr) continue;
-    ShareMap map(*found);
-    std::vector<std::string> names;
-    for (const auto& each : shares_) names.push_back(each->name);
-    if (map.names() != names) {
-      if (map.names().empty()) return true;
-      open(map.names());
-      return false;
-    }
-    map_ = std::move(map);
-    return true;
-  }
-  return true;
-}
-
-const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
-  return catalogue_of(map_.revision());
-}
-
-const clearance_msg_Catalogue* SharedCell::catalogue_of(std::uint64_t revision) const noexcept {
-  for (const auto& share : shares_) {
-    const auto* const found = share->catalogue.message(revision);
-    if (found != nullptr) return found;
-  }
-  return nullptr;
-}
-
 void SharedCell::judge(std::int64_t now_ns) {
   checks_.clear();
-  for (const auto& share : shares_) {
+  for (std::size_t i = 0; i < shares_.size(); ++i) {
+    OfShare* const share = shares_[i].get();
     share->used = share->report_of(map_.revision(), now_ns);
     if (share->used == nullptr) share->used = &*share->current.latest;
     const clearance_msg_Distances& report = *share->used;
@@ -218,7 +164,8 @@ void SharedCell::judge(std::int64_t now_ns) {
     check.daemon = report.daemon;
     check.cycle = report.cycle;
     check.scene_revision = report.scene_revision;
-    check.partner = share->reports.partner();
+    check.partner = share->partner;
+    share->partner_is_told = true;
     if (report.cycle == 0) continue;
     check.age_ns = now_ns - report.publish_ns;
     // The times of two machines are compared, so that silence counts as well.
@@ -227,6 +174,7 @@ void SharedCell::judge(std::int64_t now_ns) {
     if (is_late && share->reports.daemons() == 0) continue;
     check.state = is_late || check.age_ns < -limit           ? ShareState::kLate
                   : report.scene_revision != map_.revision() ? ShareState::kOtherRevision
+                  : !is_divided_alike(i)                     ? ShareState::kOtherDivision
                                                              : ShareState::kWhole;
   }
 }

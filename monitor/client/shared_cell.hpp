@@ -33,6 +33,7 @@ struct ShareCheck {
   ShareState state = ShareState::kMissing;
   std::uint64_t daemon = 0, cycle = 0, scene_revision = 0;  // of its last report; 0: none
   std::int64_t age_ns = -1;                                 // since it was published; -1: none
+  // The worst of the reports since the call of next() or newest() before.
   PartnerCheck partner = {};
 };
 
@@ -91,6 +92,8 @@ class SharedCell {
   [[nodiscard]] const clearance_msg_Catalogue* catalogue_of(std::uint64_t revision) const noexcept;
   void look_for_names();
   void open(const std::vector<std::string>& names);
+  void begin_call();
+  bool wait_for_next(std::chrono::nanoseconds timeout);
   void take();
   // No joined report has been made, and either no scene is known, or a share that may still be
   // met has not been heard.
@@ -99,8 +102,11 @@ class SharedCell {
   // Its last report is not late.
   [[nodiscard]] bool is_here(const OfShare& share) const;
   [[nodiscard]] std::uint64_t scene_of_most() const;
+  [[nodiscard]] std::uint64_t division_of_most(std::uint64_t revision) const;
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
   [[nodiscard]] bool follow_revision();
+  // The pairs of its report are those that the map gives to it.
+  [[nodiscard]] bool is_divided_alike(std::size_t share) const;
   void judge(std::int64_t now_ns);
   // False: the shares are others than those that were read, and nothing is joined.
   [[nodiscard]] bool join(std::int64_t now_ns);

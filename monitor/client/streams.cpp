@@ -122,6 +122,7 @@ bool Stream<Message>::take() {
   }
   std::swap(*message_, *scratch_);
   check_ = checker_.check(*message_, now_ns());
+  partner_ = merge_.check();
   return true;
 }
 
@@ -141,8 +142,9 @@ bool Stream<Message>::next(std::chrono::nanoseconds timeout) {
 template <class Message>
 bool Stream<Message>::newest(std::chrono::nanoseconds timeout) {
   if (!next(timeout)) return false;
-  while (take()) {
-  }
+  PartnerCheck worst = partner_;
+  while (take()) worst = worse(worst, partner_);
+  partner_ = std::move(worst);
   return true;
 }
 
@@ -177,8 +179,9 @@ Catalogue::Catalogue(Connection& connection)
     : reader_(make_reader_of_all(connection, TopicKind::kCatalogue)) {}
 
 // A catalogue that comes again, from a daemon that was started again, replaces the one before.
-void Catalogue::update() {
+void Catalogue::update(const std::function<void(const clearance_msg_Catalogue&)>& each) {
   while (take_one(reader_, *scratch_)) {
+    if (each) each(*scratch_);
     std::erase_if(kept_, [this](const Sample<clearance_msg_Catalogue>& known) {
       return known->scene_revision == scratch_->scene_revision;
     });

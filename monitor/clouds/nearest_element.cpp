@@ -13,19 +13,13 @@ namespace {
 // An element is left out although its bound is below the least one by up to this, m. Otherwise, a
 // wall parallel to a face would need a query for each of its points.
 constexpr double kGap = 4e-10;
-// The sum of all roundings of a plane's bound, relative to the coordinates in it. The counts are
-// below 2^5 of 2^-53 each.
+// The roundings of a plane's bound, relative to the coordinates: below 2^5 of 2^-53 for each.
 constexpr double kPlaneError = 0x1p-46;
 // The origin of the part's frame is the pivot of its motion until it is this far away, m.
 constexpr double kPivotMoves = 0.25;
-// Groups are removed if more than this many are stored, and if a plane of their parent leaves them
-// out by this, m.
+// While more groups are stored, those are removed that their parent's plane leaves out by this, m.
 constexpr std::uint32_t kManyGroups = CloudCut::kSlots / 2;
 constexpr double kSpareToRemove = 2e-3;
-// A part that is deep in a cloud overlaps thousands of elements. Once an overlap is known and the
-// queries have cost this much, no further element is queried. A query of a polyhedron and a point
-// costs 1, some 0.4 us, and any other one in an overlap up to 30 to 60 us.
-constexpr std::uint32_t kMostInOverlap = 2048, kCostOfOthers = 32;
 // Planes towards more children of a group than this cost more queries than they save.
 constexpr int kAsksOfAGroup = 2;
 
@@ -33,14 +27,15 @@ template <class Elements>
 class Search {
  public:
   Search(const ConvexBody& part, const Elements& elements, const RelativePose& part_from_cloud,
-         CloudTracking& tracking) noexcept
+         CloudTracking& tracking, std::uint32_t most_overlap_work) noexcept
       : part_(part),
         elements_(elements),
         cloud_(elements.cloud()),
         pose_(part_from_cloud),
         tracking_(tracking),
         cut_(tracking.cut),
-        bounds_{part_from_cloud} {
+        bounds_{part_from_cloud},
+        most_overlap_work_(most_overlap_work) {
     const double coordinates = cloud_.extent() + pose_.translation.norm() + part.bounding_radius;
     moved_ = pose_.translation_error + pose_.rotation_error * cloud_.extent() +
              0x1p-49 * (cloud_.extent() + pose_.translation.norm());
@@ -80,8 +75,9 @@ class Search {
     at.translation = pose_.rotation * p + pose_.translation;
     at.translation_error = moved_;
     ++best_.queries;
-    cost_ += part_.is_curved() ? kCostOfOthers : 1;
     const DistanceResult r = distance(part_, elements_.origin(), at, tracking_.features, options);
+    if (!(r.lower > 0.0))
+      best_.overlap_work += options.depth && part_.is_curved() ? kCostOfCurved : 1;
     keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
   }
@@ -92,8 +88,8 @@ class Search {
     at.translation += pose_.rotation * p;
     at.translation_error = moved_;
     ++best_.queries;
-    cost_ += kCostOfOthers;
     const DistanceResult r = distance(part_, body, at, tracking_.body_features);
+    if (!(r.lower > 0.0)) best_.overlap_work += part_.is_curved() ? kCostOfCurved : kCostOfBodies;
     keep_plane(r, [&] {
       return element.least_along(in_cloud(r.normal)) + r.normal.dot(pose_.translation) + error_;
     });
@@ -107,8 +103,7 @@ class Search {
   [[nodiscard]] double bound_by_newest(double least) const noexcept {
     return least - (newest_.offset - newest_.normal.dot(pose_.translation)) - error_;
   }
-  // The last query proved a plane.
-  [[nodiscard]] bool has_plane() const noexcept { return has_newest_; }
+  [[nodiscard]] bool has_plane() const noexcept { return has_newest_; }  // of the last query
   [[nodiscard]] bool is_left_out(double lower) const noexcept {
     return lower >= best_.lower - kGap;
   }
@@ -118,10 +113,7 @@ class Search {
 
   [[nodiscard]] NearestElement unknown() noexcept {
     tracking_.part = nullptr;
-    NearestElement none;
-    none.answer = CloudAnswer::kBadPose;
-    none.lower = -kInfinity;
-    return none;
+    return {.answer = CloudAnswer::kBadPose, .lower = -kInfinity};
   }
 
   // Keeps the plane of a query. The normal proves `lower`, so the part's support value is at most
@@ -137,6 +129,13 @@ class Search {
     if (!has_newest_) return;
     newest_ = {r.normal, least() - r.lower + (r.upper - r.lower) + error_};
     witness_ = in_cloud(r.point_on_a - pose_.translation);
+  }
+
+  // A plane of the ball around the part, for a query that proves none.
+  [[nodiscard]] PartPlane plane_of_ball(const Vec3& normal) const noexcept {
+    const bool is_unit = std::abs(normal.norm() - 1.0) < 0x1p-20;
+    return {is_unit ? Vec3(normal.normalized()) : Vec3(Vec3::UnitX()),
+            part_.bounding_radius + part_.radius + part_.position_error + error_};
   }
 
   // Is every element with this lower bound left out? Then its bound counts for the result.
@@ -162,15 +161,13 @@ class Search {
       cut_.revision = cloud_.revision();
       cut_.travelled = cut_.turned = 0.0;
       cut_.pivot = origin;
-      for (std::uint32_t slot = 0; slot < cut_.count; ++slot) {
+      for (std::uint32_t slot = 0; slot < cut_.count; ++slot)
         if (cut_.groups[slot].stored) invalidate(slot);
-      }
     } else {
       const Mat3 turn = pose_.rotation - cut_.last.rotation;
       const Vec3 shift = turn * cut_.pivot + (pose_.translation - cut_.last.translation);
-      // The 2-norm of the difference of two rotations is its Frobenius norm over the root of two.
-      // The two computed ones are off by their errors, three of whose Frobenius norms are below
-      // this.
+      // The 2-norm of a difference of rotations is its Frobenius norm over the root of two. The
+      // errors of the two rotations add less than the second term.
       cut_.turned += turn.norm() * (0.70710678118654757 + 0x1p-40) +
                      3.0 * (pose_.rotation_error + cut_.last.rotation_error) + 0x1p-50;
       cut_.travelled += shift.norm() + moved_ + cut_.last_error + error_;
@@ -181,7 +178,7 @@ class Search {
 
   // The bounds of what is left then come from planes alone. They hold, but may be far apart.
   [[nodiscard]] bool is_exhausted() const noexcept {
-    return best_.upper < 0.0 && cost_ >= kMostInOverlap;
+    return best_.upper < 0.0 && best_.overlap_work >= most_overlap_work_;
   }
 
   void invalidate(std::uint32_t slot) noexcept {
@@ -220,7 +217,7 @@ class Search {
     }
   }
 
-  // Looks at the next group, and removes it if its parent's plane leaves it out well.
+  // Removes the next group if its parent's plane leaves it out well.
   void remove_a_group() noexcept {
     cut_.checked = cut_.checked + 1 < cut_.count ? cut_.checked + 1 : 1;
     const Group& group = cut_.groups[cut_.checked];
@@ -259,7 +256,7 @@ class Search {
     best_.lower = std::min(best_.lower, r.lower);
     if (!(r.upper < best_.upper)) return r.lower;
     best_.upper = r.upper;
-    best_plane_ = has_newest_ ? newest_ : PartPlane();
+    best_plane_ = has_newest_ ? newest_ : plane_of_ball(r.normal);
     best_.normal = r.normal;
     best_.point_on_part = r.point_on_a;
     best_.point_on_element = r.point_on_b;
@@ -271,9 +268,8 @@ class Search {
 
   void process(std::uint32_t slot) noexcept {
     Group& group = cut_.groups[slot];
-    if (cut_.farthest[slot] < 0.0) {
+    if (cut_.farthest[slot] < 0.0)
       cut_.farthest[slot] = elements_.farthest(group.level, group.index, cut_.pivot);
-    }
     cut_.carried[slot] = carried(least_of(group, cut_.planes[slot], slot), slot);
   }
 
@@ -282,9 +278,8 @@ class Search {
   double least_of(Group& group, PlaneLanes& planes, std::uint32_t slot) noexcept {
     BoundLanes lower;
     elements_.bound(group.level, group.index, planes, bounds_, lower);
-    for (std::size_t k = 0; k < kCloudLanes; ++k) {
+    for (std::size_t k = 0; k < kCloudLanes; ++k)
       if ((group.expanded >> k & 1U) != 0) lower[k] = kInfinity;
-    }
     unsigned done = 0, asked = 0;  // a bit a lane
     if (has_hint_ && group.level == 0 && group.index == hint_block_) {
       lower[hint_lane_] = hint_lower_;
@@ -293,9 +288,8 @@ class Search {
     }
     for (;;) {
       std::size_t k = kCloudLanes;
-      for (std::size_t i = 0; i < kCloudLanes; ++i) {
+      for (std::size_t i = 0; i < kCloudLanes; ++i)
         if ((done >> i & 1U) == 0 && (k == kCloudLanes || lower[i] < lower[k])) k = i;
-      }
       if (k == kCloudLanes || is_left_out(lower[k])) break;
       if (is_exhausted()) {
         best_.within_work_limit = false;
@@ -375,33 +369,31 @@ class Search {
   double moved_ = 0.0;  // an element's place in the part's frame is at most this far off, m
   double error_ = 0.0;  // of a plane's bound, m
   Vec3 witness_ = Vec3::Zero();  // the part's point in the last answer, in the cloud's frame
-  // The planes of the last query, of the hint, and of the element with the least upper bound; in
-  // the part's frame.
+  // In the part's frame: planes of the last query, the hint, and the element of least upper bound.
   PartPlane newest_, hint_plane_, best_plane_;
   bool has_newest_ = false, has_hint_ = false, has_hint_plane_ = false, bad_pose_ = false;
   std::size_t hint_block_ = 0, hint_lane_ = 0;
-  double hint_lower_ = 0.0;
-  double left_out_ = kInfinity;
-  std::uint32_t cost_ = 0;
+  double hint_lower_ = 0.0, left_out_ = kInfinity;
+  std::uint32_t most_overlap_work_;
   NearestElement best_;
 };
 
 }  // namespace
 
 NearestElement nearest_element(const ConvexBody& part, const PointCloud& cloud,
-                               const RelativePose& part_from_cloud,
-                               CloudTracking& tracking) noexcept {
+                               const RelativePose& part_from_cloud, CloudTracking& tracking,
+                               std::uint32_t most_overlap_work) noexcept {
   if (cloud.size() == 0) return {};
   if (cloud.shape() == ElementShape::kCube)
-    return Search(part, Cubes(cloud), part_from_cloud, tracking).run();
-  return Search(part, Balls(cloud), part_from_cloud, tracking).run();
+    return Search(part, Cubes(cloud), part_from_cloud, tracking, most_overlap_work).run();
+  return Search(part, Balls(cloud), part_from_cloud, tracking, most_overlap_work).run();
 }
 
 NearestElement nearest_element(const ConvexBody& part, const DepthCloud& cloud, SlabBody& body,
-                               const RelativePose& part_from_cloud,
-                               CloudTracking& tracking) noexcept {
+                               const RelativePose& part_from_cloud, CloudTracking& tracking,
+                               std::uint32_t most_overlap_work) noexcept {
   if (cloud.size() == 0) return {};
-  return Search(part, Slabs(cloud, body), part_from_cloud, tracking).run();
+  return Search(part, Slabs(cloud, body), part_from_cloud, tracking, most_overlap_work).run();
 }
 
 }  // namespace clearance

@@ -17,6 +17,13 @@ enum class CloudAnswer : std::uint8_t {
   kBadPose,  // as DistanceStatus::kBadPose: nothing is known
 };
 
+// The work limit: a part that is deep in a cloud overlaps thousands of elements, and a query of the
+// core takes up to a hundred times as long in an overlap. Once an overlap is certified and the
+// queries in overlaps have cost this much, no further element is queried. A query of a polyhedron
+// and a point costs 1, some 0.7 us. One of a curved part takes 80 us, and one of a polyhedron and a
+// slab or cube 14 us.
+inline constexpr std::uint32_t kMostOverlapWork = 8192, kCostOfCurved = 128, kCostOfBodies = 32;
+
 // lower <= signed distance of the part and the nearest element <= upper, rounding included, as in
 // DistanceResult. If the core's queries converge and all coordinates are below 100 m, upper - lower
 // is at most 1e-9 m within the work limit, which only an overlap with many elements exceeds. Both
@@ -29,18 +36,20 @@ struct NearestElement {
   Vec3 point_on_part = Vec3::Zero(), point_on_element = Vec3::Zero();
   // Index of the point in the input of PointCloud::build(), or DepthCloud::source() of the pixel.
   std::uint32_t source = 0;
-  std::uint32_t queries = 0;  // of the core
+  std::uint32_t queries = 0;       // of the core
+  std::uint32_t overlap_work = 0;  // the cost of those in overlaps
   bool within_work_limit = true;
 };
 
 // noexcept, no heap, deterministic. Any hint is accepted. The body at the address `tracking.part`
 // must be the one that it was.
-[[nodiscard]] NearestElement nearest_element(const ConvexBody& part, const PointCloud& cloud,
-                                             const RelativePose& part_from_cloud,
-                                             CloudTracking& tracking) noexcept;
+[[nodiscard]] NearestElement nearest_element(
+    const ConvexBody& part, const PointCloud& cloud, const RelativePose& part_from_cloud,
+    CloudTracking& tracking, std::uint32_t most_overlap_work = kMostOverlapWork) noexcept;
 // The same for the slabs of a depth image. `body` is scratch memory.
-[[nodiscard]] NearestElement nearest_element(const ConvexBody& part, const DepthCloud& cloud,
-                                             SlabBody& body, const RelativePose& part_from_cloud,
-                                             CloudTracking& tracking) noexcept;
+[[nodiscard]] NearestElement nearest_element(
+    const ConvexBody& part, const DepthCloud& cloud, SlabBody& body,
+    const RelativePose& part_from_cloud, CloudTracking& tracking,
+    std::uint32_t most_overlap_work = kMostOverlapWork) noexcept;
 
 }  // namespace clearance

@@ -50,11 +50,13 @@ class SeenCloud {
 
   // `body` is scratch memory of the caller. Elements that were cropped count: `lower` is a bound of
   // their distance, too.
-  [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,
-                                       SlabBody& body, CloudTracking& tracking) const noexcept {
-    NearestElement found = depth() != nullptr
-                               ? nearest_element(part, *depth(), body, part_from_cloud, tracking)
-                               : nearest_element(part, *points(), part_from_cloud, tracking);
+  [[nodiscard]] NearestElement nearest(
+      const ConvexBody& part, const RelativePose& part_from_cloud, SlabBody& body,
+      CloudTracking& tracking, std::uint32_t most_overlap_work = kMostOverlapWork) const noexcept {
+    NearestElement found =
+        depth() != nullptr
+            ? nearest_element(part, *depth(), body, part_from_cloud, tracking, most_overlap_work)
+            : nearest_element(part, *points(), part_from_cloud, tracking, most_overlap_work);
     if (crop_.radius < kInfinity && found.answer == CloudAnswer::kNearest)
       found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
     return found;

@@ -50,6 +50,7 @@ Vec3 across_ray(int axis, double x, double y) noexcept {
 SlabBody::SlabBody()
     : origin_(std::get<ConvexBody>(point(Vec3::Zero(), 0.0))),
       body_(std::get<ConvexBody>(box({1.0, 1.0, 1.0}))) {
+  body_.box = {};  // slabs have its features, but are no boxes
   for (std::size_t f = 0; f < sides_.size(); ++f) {
     for (int axis = 0; axis < 3; ++axis) {
       const double n = body_.facets[f].normal[axis];

@@ -99,6 +99,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       .max_ticks = options.max_ticks,
       .max_samples = kLargestBatchesATick *
                      (PoseReader::samples_a_batch(cell) + PoseReader::joints_a_batch(cell)),
+      .ahead_ns = ahead_ns(),
       .pace = partner_ ? &partner_->ticks : nullptr,
       .frames = poses_.frames()};
   std::vector<ReportSink*> sinks{now_.queue.get()};
@@ -115,8 +116,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
         partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
         recording_.get(), [this](QueuedCommand command) { return put(std::move(command)); },
         revision);
-    if (cell.ros.moveit.any()) share_moveit();
   }
+  if (cell.ros.moveit.any()) share_moveit();
   if (!cell.commands.from.empty()) {
     commands_ = std::make_unique<CommandPort>(
         cell, cell.commands.from, participant_, reports_.daemon(),
@@ -135,8 +136,11 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
         [this](std::uint64_t of_scene) { return poses_.seen(of_scene); });
   }
   if (!cell.questions.from.empty()) {
-    questions_ = std::make_unique<QuestionPort>(cell, cell.questions.from, participant_,
-                                                reports_.daemon(), put_question, revision);
+    QuestionPort::Sharing sharing;
+    if (partner_) sharing.takes = [this] { return partner_states_->takes_requests(); };
+    questions_ =
+        std::make_unique<QuestionPort>(cell, cell.questions.from, participant_, reports_.daemon(),
+                                       put_question, revision, std::move(sharing));
   }
   if (!trajectories.topics.empty()) {
     trajectories_ = std::make_unique<TrajectoryPort>(cell.scene.name, trajectories, participant_,
@@ -145,53 +149,14 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
 }
 
 Daemon::~Daemon() {
-  if (partner_) partner_->port.stop();
+  stop_sharing();
   end_requests();
-}
-
-Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseReader& poses,
-                             Clock& clock, const DaemonIdentity& identity)
-    : ticks(poses, clock,
-            {.period_ns = std::llround(1e9 / cell.scene.rate_hz),
-             .daemon = identity.id,
-             .start_ns = identity.start_ns,
-             .batch = {.samples = PoseReader::samples_a_batch(cell),
-                       .joints = PoseReader::joints_a_batch(cell)},
-             .frames = poses.frames()}),
-      port(participant, cell.topics, identity, ticks),
-      poses_(poses) {
-  poses.share_frames(cell.topics, identity, ticks);
-}
-
-CommandPort::Sharing Daemon::share_commands() {
-  return {.takes = [this] { return partner_states_->takes_commands(); },
-          .overhear = [this](Command command) { partner_states_->keep_files(std::move(command)); }};
-}
-
-void Daemon::share_moveit() {
-  PartnerPort* const port = &partner_->port;
-  moveit_.share({.leads = leads(),
-                 .revision = [this] { return revision_.load(); },
-                 .tell = [port](auto changes, auto bytes) { port->send_scene(changes, bytes); }});
-}
-
-PartnerPort::Actions Daemon::partner_actions() {
-  PartnerPort::Actions actions = partner_states_->actions();
-  if (!now_.cell->ros.moveit.any()) return actions;
-  actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
-  actions.look = [this] { moveit_.look(); };
-  return actions;
-}
-
-RosWrites::Leads Daemon::leads() {
-  if (!partner_) return {};
-  return [port = &partner_->port] { return port->leads(); };
 }
 
 Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   OfCell parts{std::move(cell), nullptr, nullptr};
-  parts.queue = std::make_unique<ReportQueue>(parts.cell->scene,
-                                              ReportQueueOptions{.reports = kQueuedReports});
+  parts.queue = std::make_unique<ReportQueue>(
+      parts.cell->scene, ReportQueueOptions{.reports = kQueuedReports, .awaits = ahead_ns() > 0});
   if (writes_ros(*parts.cell)) {
     const auto health = [this, &scene = parts.cell->scene,
                          queue = parts.queue.get()](const LoopStatistics& statistics) {
@@ -222,6 +187,7 @@ void Daemon::run(StopSignal& signal) {
   const std::int64_t started = clock_.monotonic_ns();
   poses_.start();
   if (partner_) partner_->port.start(partner_actions());
+  if (shares_) shares_->start();
   raise_priorities();
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
@@ -239,7 +205,7 @@ void Daemon::run(StopSignal& signal) {
   service_.stopping();
   stop_ = true;
   ticking.join();
-  if (partner_) partner_->port.stop();
+  stop_sharing();
   end_requests();
   seconds_ = 1e-9 * static_cast<double>(clock_.monotonic_ns() - started);
 
@@ -292,8 +258,10 @@ bool Daemon::put(QueuedCommand command) {
 // Returns false if nothing has changed.
 bool Daemon::note_change(const CommandResult& result) {
   if (!result.done() || result.in_force_from == 0) return false;
-  const std::uint64_t before = revision_.exchange(result.scene_revision);
+  const std::uint64_t before = revision_;
   if (before == result.scene_revision) return false;
+  if (shares_) shares_->note_change();
+  revision_ = result.scene_revision;
   log_line(lines::kSceneChanged, result.scene_revision, result.in_force_from, before);
   return true;
 }
@@ -316,16 +284,21 @@ bool Daemon::files_changed() {
   return options_.reload && files_.changed();
 }
 
-// The leading one of two partners reads it, and the other one gets it from there.
+// Only the daemon that others follow reads the file. The others get the cell from it.
 void Daemon::read_again() {
   const auto standing = partner_ ? partner_->ticks.standing() : PartnerStanding::kLeading;
   wants_to_read_ = standing == PartnerStanding::kStarting;
   if (wants_to_read_) return;
   log_line(lines::kReading, cell_file_);
   service_.reloading();
-  if (standing != PartnerStanding::kLeading) {
-    log_line(lines::kSceneRefused, "the cell of the leading partner counts: have that one read it");
-    return service_.reloaded("the cell of the leading partner counts");
+  const std::string followed = standing != PartnerStanding::kLeading ? "the leading partner"
+                               : shares_ && !shares_->is_first()
+                                   ? fmt::format("the share '{}'", shares_->first())
+                                   : "";
+  if (!followed.empty()) {
+    const std::string counts = fmt::format("the cell of {} counts", followed);
+    log_line(lines::kSceneRefused, counts + ": have that one read it");
+    return service_.reloaded(counts);
   }
   const auto answer = [this](const CommandResult& result) {
     if (result.done()) {
@@ -373,6 +346,12 @@ void Daemon::follow(const SceneInForce& since) noexcept {
   if (desk_) desk_->follow(now_.cell);
 }
 
+void Daemon::end(const LoopStatistics& figures) noexcept {
+  if (!is_less(figures.minimum, least_before_)) return;
+  least_before_ = figures.minimum;
+  least_cell_ = now_.cell;
+}
+
 void Daemon::abandon() {
   if (recording_) recording_->abandon();
   next_ = {};
@@ -382,7 +361,11 @@ void Daemon::abandon() {
 std::string Daemon::summary() const {
   const std::uint64_t dropped =
       dropped_before_ + now_.queue->dropped_reports() + reports_.failed_writes();
-  return run_summary(now_.cell->scene, loop_->statistics(), seconds_, dropped) +
+  const LoopStatistics& figures = loop_->statistics();
+  const bool is_before = is_less(least_before_, figures.minimum);
+  return run_summary(figures, seconds_, dropped) +
+         minimum_text(is_before ? least_before_ : figures.minimum,
+                      is_before ? least_cell_->scene : now_.cell->scene) +
          (recording_ ? recording_->summary() : "");
 }
 

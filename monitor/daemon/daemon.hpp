@@ -18,6 +18,7 @@
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/partner_states.hpp"
 #include "monitor/daemon/recording.hpp"
+#include "monitor/daemon/share_scenes.hpp"
 #include "monitor/daemon/trajectory_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
@@ -41,6 +42,7 @@ struct DaemonOptions {
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
   std::optional<int> cpu;            // processor that the tick thread is pinned to
+  std::int64_t ahead_ns = 0;         // TickLoopOptions::ahead_ns; no effect with a partner
   CommanderOptions commander;        // how commands and SIGHUP change the cell
   std::string partner;               // this daemon's name among partners; empty: it has none
   bool reload = false;               // read the cell again when its files have changed
@@ -87,6 +89,7 @@ class Daemon : private CellParts {
     std::unique_ptr<ReportQueue> queue;
     std::unique_ptr<RosWriter> ros;
   };
+  [[nodiscard]] std::int64_t ahead_ns() const noexcept { return partner_ ? 0 : options_.ahead_ns; }
   // The parts of a daemon that has a partner.
   struct OfPartner {
     TickPartner ticks;
@@ -104,6 +107,7 @@ class Daemon : private CellParts {
   [[nodiscard]] CommandPort::Sharing share_commands();
   [[nodiscard]] PartnerPort::Actions partner_actions();
   void share_moveit();
+  void stop_sharing();
   [[nodiscard]] RosWrites::Leads leads();
   void tick_thread(std::atomic<bool>& done);
   void raise_priorities();
@@ -114,6 +118,7 @@ class Daemon : private CellParts {
   bool note_change(const CommandResult& result);
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
   void follow(const SceneInForce& since) noexcept override;
+  void end(const LoopStatistics& figures) noexcept override;
   void abandon() override;
 
   DaemonOptions options_;
@@ -132,6 +137,8 @@ class Daemon : private CellParts {
   RecordingHealth recording_health_;
   OfCell now_, next_;
   std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
+  MinimumSeen least_before_;          // of all former cells, and the cell that it is of
+  std::shared_ptr<const Cell> least_cell_;
   RosMessages messages_;
   ReportWriter reports_;
   std::unique_ptr<Recording> recording_;
@@ -141,6 +148,7 @@ class Daemon : private CellParts {
   std::atomic<std::uint64_t> revision_;  // in force
   std::unique_ptr<SceneThread> scene_thread_;
   std::unique_ptr<PartnerStates> partner_states_;
+  std::unique_ptr<ShareScenes> shares_;    // null: the cell has none, or no messages of MoveIt
   std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
   std::unique_ptr<QuestionDesk> desk_;     // likewise, here and below
   std::unique_ptr<QuestionPort> questions_;

@@ -133,9 +133,17 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Answer GET /metrics on this Unix socket, in the text format of Prometheus");
   app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
       ->check(whole_number(0, 1'000'000'000'000));
-  app.add_option("--priority", arguments.daemon.fifo_priority,
-                 "Run the tick thread under SCHED_FIFO with this priority, and lock memory")
-      ->check(CLI::Range(1, 99));
+  CLI::Option* const priority =
+      app.add_option("--priority", arguments.daemon.fifo_priority,
+                     "Run the tick thread under SCHED_FIFO with this priority, and lock memory")
+          ->check(CLI::Range(1, 99));
+  app.add_option_function<std::int64_t>(
+         "--ahead", [&arguments](std::int64_t us) { arguments.daemon.ahead_ns = 1000 * us; },
+         "Wake this many us (1 to 500) before each tick and stay awake until it, and so does the "
+         "thread that publishes: reports come earlier, for the processor time "
+         "(monitor/loop/README.md)")
+      ->check(whole_number(1, 500))
+      ->needs(priority);
   app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
       ->check(whole_number(0, 1023));
   add_log_level(app, arguments.log_level);

@@ -16,7 +16,7 @@ void MoveItPort::take(moveit::RawScene message) {
   const std::lock_guard lock(mutex_);
   if (!put_) return;
   const auto shared = std::make_shared<const moveit::RawScene>(std::move(message));
-  if (!partner_) {
+  if (!sharing_) {
     if (!put_(command(shared, 0)))
       log_line(lines::kMoveItRefused, shared->topic, "",
                "too many commands wait, so that it is lost");
@@ -25,7 +25,7 @@ void MoveItPort::take(moveit::RawScene message) {
   if (const std::size_t lost = turns_.add(shared, shared->identity()); lost > 0)
     log_line(lines::kMoveItRefused, shared->topic, "",
              fmt::format("too many messages wait, so that the first {} of them are lost", lost));
-  if (partner_->leads()) {
+  if (leads()) {
     put_waiting();
   } else {
     keep_files();
@@ -37,7 +37,7 @@ void MoveItPort::close() {
   put_ = nullptr;
 }
 
-// `identity`: 0 without a partner.
+// `identity`: 0 if the messages are not shared.
 QueuedCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
   QueuedCommand queued;
   queued.is_own = true;
@@ -55,7 +55,7 @@ QueuedCommand MoveItPort::command(const SceneTurns::Message& message, std::uint6
       log_line(lines::kMoveItRefused, message->topic, result.path.empty() ? "" : result.path + ": ",
                result.reason);
     }
-    if (identity != 0) ended(identity, partner_->revision());
+    if (identity != 0) ended(identity, sharing_->revision());
   };
   return queued;
 }
@@ -72,7 +72,7 @@ Command MoveItPort::translated(const moveit::RawScene& message, const Cell& cell
 }
 
 void MoveItPort::coming(std::uint64_t revision) {
-  if (partner_) note(current_, revision);
+  if (sharing_) note(current_, revision);
 }
 
 void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
@@ -84,17 +84,17 @@ void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
 
 void MoveItPort::look() {
   const std::lock_guard lock(mutex_);
-  if (!partner_ || !put_) return;
-  const bool led = std::exchange(leads_, partner_->leads());
+  if (!sharing_ || !put_) return;
+  const bool led = std::exchange(leads_, leads());
   if (!leads_) {
-    turns_.drop_done(heard_.changes, partner_->revision());
+    turns_.drop_done(heard_.changes, sharing_->revision());
     return keep_files();
   }
   if (!led) {
     QueuedCommand queued;
     queued.task = [this] {
-      go_on_from_heard(partner_->revision());
-      note(0, partner_->revision());
+      go_on_from_heard(sharing_->revision());
+      note(0, sharing_->revision());
     };
     leads_ = put_(std::move(queued));
   }
@@ -109,7 +109,7 @@ void MoveItPort::put_waiting() {
   }
 }
 
-// The leader names them in the changed cell.
+// The leader names them in the changed cell. A daemon that never leads needs no more of a message.
 void MoveItPort::keep_files() {
   if (keeps_ || !turns_.has_to_keep()) return;
   QueuedCommand queued;
@@ -120,6 +120,7 @@ void MoveItPort::keep_files() {
     {
       const std::lock_guard lock(mutex_);
       messages = turns_.to_keep();
+      if (!sharing_->leads) turns_ = {};
       keeps_ = false;
     }
     for (const SceneTurns::Message& message : messages) {
@@ -139,9 +140,9 @@ bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
   {
     const std::lock_guard lock(mutex_);
     turns_.drop_done(heard_.changes, revision);
-    const bool leads = partner_->leads();
-    if (!leads) turns_.put_back(identity);
-    if (!leads || !turns_.begins(identity)) return false;
+    const bool does_it = leads();
+    if (!does_it) turns_.put_back(identity);
+    if (!does_it || !turns_.begins(identity)) return false;
   }
   go_on_from_heard(revision);
   current_ = identity;
@@ -173,10 +174,10 @@ void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
                         changes_.back().scene_revision == revision;
   if (!is_known) changes_.push_back({identity, revision});
   if (changes_.size() > kMostChanges) changes_.erase(changes_.begin());
-  if (!partner_->leads()) return;
+  if (!sharing_->tell || !leads()) return;
   std::vector<std::byte> bytes;
   keeper_.save(bytes);
-  partner_->tell(changes_, bytes);
+  sharing_->tell(changes_, bytes);
 }
 
 }  // namespace clearance

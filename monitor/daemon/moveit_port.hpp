@@ -1,5 +1,6 @@
-// Takes MoveIt's messages to the queue of commands, one after another. Of two partners the leading
-// one does so; the other one gets the changed cell from it, as after commands of clients.
+// Puts MoveIt's messages into the queue of commands, one after another. Only the leading partner of
+// the first share does so. Other daemons get the changed cell from it, and keep the files that it
+// names.
 #pragma once
 
 #include <cstddef>
@@ -20,24 +21,25 @@ class MoveItPort {
  public:
   // Puts a command into the queue; returns false if too much waits.
   using Put = std::function<bool(QueuedCommand)>;
-  // A daemon needs this if it shares the messages with a partner.
-  struct Partner {
-    std::function<bool()> leads;              // this daemon, at the moment
+  // A daemon needs this if other daemons hear the messages, too.
+  struct Sharing {
+    std::function<bool()> leads;              // this daemon, at the moment; empty: it never does
     std::function<std::uint64_t()> revision;  // of the scene in force
-    // Tells the partner of the last changes, and of what is kept between messages.
-    std::function<void(std::span<const DoneSceneChange>, std::span<const std::byte>)> tell;
+    // Tells the partner of the last changes, and of what is kept between messages. Empty: there is
+    // none.
+    std::function<void(std::span<const DoneSceneChange>, std::span<const std::byte>)> tell = {};
   };
   explicit MoveItPort(Put put) : put_(std::move(put)) {}
 
   // Before the first message.
-  void share(Partner partner) { partner_ = std::move(partner); }
+  void share(Sharing sharing) { sharing_ = std::move(sharing); }
 
   // Any thread but that of the tick. Nothing is put after close().
   void take(moveit::RawScene message);
   void close();
 
-  // All of these do nothing without a partner. The scene thread: a scene of this revision comes
-  // into force.
+  // All of these do nothing unless the messages are shared. The scene thread: a scene of this
+  // revision comes into force.
   void coming(std::uint64_t revision);
   // The leading partner tells of this. Any thread but that of the tick.
   void hear(const clearance_msg_PartnerScene& scene);
@@ -57,6 +59,7 @@ class MoveItPort {
   [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
                                    const AskPose& pose);
   // With the mutex held.
+  [[nodiscard]] bool leads() const { return sharing_->leads && sharing_->leads(); }
   void put_waiting();
   void keep_files();
   // In the scene thread.
@@ -65,7 +68,7 @@ class MoveItPort {
   void ended(std::uint64_t identity, std::uint64_t revision);
   void note(std::uint64_t identity, std::uint64_t revision);
 
-  std::optional<Partner> partner_;  // none: this daemon does all messages at once
+  std::optional<Sharing> sharing_;  // none: this daemon does all messages at once
   std::mutex mutex_;                // guards what follows
   Put put_;                         // empty: closed
   SceneTurns turns_;

@@ -70,10 +70,12 @@ void PartnerStates::send() {
   // The loop holds the successor meanwhile, so that nothing may leave this early.
   const auto outcome = changer_.renew(loop_ended_, [this](const Successor& successor) noexcept {
     try {
+      const std::uint64_t lineage = ticks_.becoming();
+      if (lineage == 0) return;  // it was given up: the partner asks again
       std::vector<std::byte> bytes;
       save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
       port_.send_state({.revision = successor.scene().revision,
-                        .lineage = ticks_.becoming(),
+                        .lineage = lineage,
                         .cycle = successor.began_after(),
                         .bytes = bytes});
     } catch (const std::exception& error) {
@@ -126,8 +128,9 @@ void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
   static_cast<void>(put_command_(std::move(queued)));
 }
 
-// Two daemons that both lead the ticks for a moment do not both take a command.
-bool PartnerStates::takes_commands() const {
+// Two daemons that both lead the ticks for a moment do not both take a command, and a daemon with
+// the cell from before a change answers no question.
+bool PartnerStates::takes_requests() const {
   const auto end = std::chrono::steady_clock::now() + kLeadsAgain;
   while (ticks_.standing() == PartnerStanding::kLeading && !loop_ended_) {
     if (port_.leads()) return true;

@@ -42,8 +42,9 @@ class PartnerStates {
 
   [[nodiscard]] PartnerPort::Actions actions();
 
-  // Any thread but that of the tick. False: the partner takes them, or neither does for a moment.
-  [[nodiscard]] bool takes_commands() const;
+  // Any thread but that of the tick. False: the partner takes commands and questions, or neither
+  // does for a moment.
+  [[nodiscard]] bool takes_requests() const;
   // Keeps the files of a command that the partner takes.
   void keep_files(Command command);
   // The command of a client. Its answer waits until the partner has the changed cell, too.

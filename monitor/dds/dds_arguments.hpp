@@ -17,7 +17,8 @@
 
 namespace clearance {
 
-// The four options of every DDS program. Without an option, the cell decides.
+// The four options of every DDS program. Without an option, the cell decides. ROS_DOMAIN_ID decides
+// where neither states a domain.
 struct DdsArguments {
   std::optional<std::uint32_t> domain;   // not given: the cell's
   std::optional<std::string> partition;  // not given: the cell's
@@ -27,7 +28,8 @@ struct DdsArguments {
   // `has_cell` means that the program takes a cell, whose settings are the defaults.
   void add_to(CLI::App& app, bool has_cell = true) {
     app.add_option("--domain", domain,
-                   has_cell ? "DDS domain; otherwise the cell's, or 0" : "DDS domain; otherwise 0")
+                   fmt::format("DDS domain; otherwise {}that of ROS_DOMAIN_ID, or 0",
+                               has_cell ? "the cell's, " : ""))
         ->check(CLI::Range(0, 232));
     app.add_option("--partition", partition,
                    has_cell ? "DDS partition; otherwise the cell's, or the default one"
@@ -55,7 +57,7 @@ struct DdsArguments {
 
   // The options: the command line first, then the cell if there is one.
   [[nodiscard]] DdsOptions resolve(const Cell& cell) const {
-    return {.domain = domain.value_or(cell.domain),
+    return {.domain = domain ? domain : cell.domain,
             .partition = partition.value_or(cell.partition),
             .interface = interface.value_or(cell.interface),
             .peers = peers};

@@ -9,6 +9,7 @@
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
 namespace {
@@ -215,6 +216,11 @@ void PartnerPort::hear_states() {
 void PartnerPort::hear_reports() {
   dds_sample_info_t info;
   while (take(reports_reader_, report_, info)) {
+    const bool is_of_one = *report_->partner == '\0' && report_->checksum == 0;
+    if (!is_of_one && !has_its_checksums(*report_)) {
+      reports_.note_corrupt(*report_);
+      continue;
+    }
     if (*report_->partner == '\0' || identity_.partner == report_->partner) continue;
     partner_revision_ = report_->scene_revision;
     reports_.note_other(*report_);

@@ -73,7 +73,16 @@ void PartnerReports::compare(const Kept& own, const Kept& other) {
   if (may_tell(kAgrees)) log_line(lines::kPartnerAgrees, name_, own.cycle);
 }
 
-// Only a partner that was there is missing.
+// Any field of a corrupt report may be wrong, even the name, so none is kept.
+void PartnerReports::note_corrupt(const clearance_msg_Distances& report) {
+  const std::lock_guard lock(mutex_);
+  ++different_;
+  agrees_from_ = 0;
+  if (may_tell(kCorrupt))
+    log_line(lines::kPartnerCorrupt, report.partner, report.cycle, different_);
+}
+
+// A partner counts as missing only if it has been heard before.
 void PartnerReports::look_for_missing(std::uint64_t cycle) {
   if (heard_ns_ == 0 || other_[cycle % kKept].cycle == cycle) return;
   if (own_[cycle % kKept].cycle != cycle) return;

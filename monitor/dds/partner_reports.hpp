@@ -17,6 +17,8 @@ class PartnerReports {
   // A report that this daemon published, or that its partner did.
   void note_own(const clearance_msg_Distances& report) { note(report, false); }
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
+  // One of the partner's without the checksum that it states: it counts as different.
+  void note_corrupt(const clearance_msg_Distances& report);
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();
   // It has published once, and since then the two have not agreed, or do so no longer.
@@ -35,7 +37,7 @@ class PartnerReports {
     std::int64_t publish_ns = 0;
   };
   using Cycles = std::array<Kept, kKept>;
-  enum Kind : std::uint8_t { kAgrees, kOtherInputs, kDifferent, kMissing, kKinds };
+  enum Kind : std::uint8_t { kAgrees, kOtherInputs, kDifferent, kMissing, kCorrupt, kKinds };
 
   void note(const clearance_msg_Distances& report, bool is_other);
   void compare(const Kept& own, const Kept& other);

@@ -52,7 +52,7 @@ void log_matched(dds_entity_t reader, const dds_subscription_matched_status_t st
 // The domain that a ROS 2 node started from the same shell would join.
 std::string ros_domain() {
   const char* const id = std::getenv("ROS_DOMAIN_ID");
-  return id == nullptr ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
+  return id == nullptr || *id == '\0' ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
 }
 
 }  // namespace
@@ -179,7 +179,8 @@ std::string PoseReader::senders_of_joints() const {
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
       "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
       "(rmw_zenoh)",
-      topics_->joint_states, where_, ros_.present().listed(), ros_domain());
+      topics_->joint_states, where_, ros_.present().listed(),
+      where_.find("ROS_DOMAIN_ID") == std::string::npos ? ros_domain() : "");
 }
 
 // Waits for data, for the time at which the intake wants to settle, or for the destructor.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
 namespace {
 
@@ -21,7 +23,7 @@ Result refusal(const typename RequestLedger<Result>::Request& request,
 
 template <class Result>
 RequestLedger<Result>::RequestLedger(const std::vector<std::string>& clients, std::string key)
-    : key_(std::move(key)) {
+    : key_(std::move(key)), expected_(one_of(clients)) {
   for (const std::string& name : clients) clients_.emplace(name, Client{});
 }
 
@@ -33,9 +35,10 @@ std::optional<Result> RequestLedger<Result>::refuse_sender(const Request& reques
   const auto client = clients_.find(request.client);
   if (client == clients_.end()) {
     return refusal<Result>(request, Status::kNotNamed,
-                           fmt::format("found a request of '{0}'; expected a client that the cell "
-                                       "names under '{1}: from', or --{1}",
-                                       request.client, key_));
+                           fmt::format("found a request of '{}'; expected {}. Send it under such "
+                                       "a name, or name this client under '{}: from' in the "
+                                       "cell or with --{}",
+                                       request.client, expected_, key_, key_));
   }
   std::vector<std::uint64_t>& writers = client->second.writers;
   if (std::ranges::find(writers, writer) == writers.end() && writers.size() < kWriters)

@@ -70,7 +70,7 @@ class RequestLedger {
     std::uint64_t writer = 0;      // the last that sent alone: a program that runs
     std::uint64_t last = 0;        // the largest number of this writer
   };
-  const std::string key_;
+  const std::string key_, expected_;  // expected: "'planner' or 'operator'"
   std::mutex mutex_;
   std::map<std::string, Client> clients_;
 };

@@ -264,7 +264,10 @@ void SensorReader::tell_of_silence() {
 std::string SensorReader::why_silent(const Sensor& sensor, const SensorStatus& status) const {
   std::uint64_t refused = 0;
   for (std::size_t fault = 1; fault < kFrameFaults; ++fault) refused += status.counts[fault];
-  if (refused > 0) return fmt::format("{} of its messages were refused, as health lists", refused);
+  if (refused > 0) {
+    return fmt::format("{} of its messages were refused, as health lists{}{}", refused,
+                       status.robot_elsewhere.empty() ? "" : "; ", status.robot_elsewhere);
+  }
   for (const std::string& topic : {sensor.topic, sensor.camera_info}) {
     if (topic.empty()) continue;
     const std::string name = ros_dds_name(topic);

@@ -83,6 +83,8 @@ const char* text(FrameFault fault) noexcept {
       return "the CameraInfo differs from the first one";
     case FrameFault::kSizeChanged:
       return "its size is not that of the CameraInfo";
+    case FrameFault::kOtherCamera:
+      return "its frame_id is not that of the CameraInfo";
     case FrameFault::kNoStamp:
       return "its stamp is 0";
     case FrameFault::kOtherClock:
@@ -114,6 +116,8 @@ const char* text(FrameFault fault) noexcept {
              "a number";
     case FrameFault::kUnknownRays:
       return "no two points in one row, or none in one column, show how far apart its rays are";
+    case FrameFault::kRobotElsewhere:
+      return "tf has the base of a robot elsewhere than the cell, so the sensor may be misplaced";
   }
   return "";
 }
@@ -148,6 +152,8 @@ const char* name(FrameFault fault) noexcept {
       return "another CameraInfo than the first";
     case FrameFault::kSizeChanged:
       return "another size than its CameraInfo";
+    case FrameFault::kOtherCamera:
+      return "a CameraInfo of another frame";
     case FrameFault::kNoStamp:
       return "no stamp";
     case FrameFault::kOtherClock:
@@ -178,6 +184,8 @@ const char* name(FrameFault fault) noexcept {
       return "rays too far apart";
     case FrameFault::kUnknownRays:
       return "rays unknown";
+    case FrameFault::kRobotElsewhere:
+      return "tf has a robot elsewhere";
   }
   return "";
 }

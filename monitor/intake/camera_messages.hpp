@@ -34,10 +34,11 @@ enum class FrameFault : std::uint8_t {
   kNoCameraInfo,       // no image can be used before the first CameraInfo
   kCameraInfoChanged,  // images are refused until the first CameraInfo comes again
   kSizeChanged,        // the image has another size than its CameraInfo
+  kOtherCamera,        // the image and its CameraInfo name different frames
   kNoStamp,            // a stamp of 0
   kOtherClock,         // the stamp is far from the time of sending
   kOldStamp,           // not newer than the frame before
-  kFrozen,             // bit for bit the depth of the frame before, under a newer stamp
+  kFrozen,             // bit for bit the depth of one of the last frames, under a newer stamp
   kSecondPublisher,    // the writer of the frames in use is still heard
   kTooOften,           // more frames than the cell states
   // Faults that show when a frame is built.
@@ -51,8 +52,9 @@ enum class FrameFault : std::uint8_t {
   kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
   kWideRays,     // of organised points: no ball may span the way from one ray to the next
   kUnknownRays,  // of organised points: too few show how far apart the rays are
+  kRobotElsewhere,  // tf places the camera, and a robot elsewhere than the cell does
 };
-inline constexpr std::size_t kFrameFaults = 29;
+inline constexpr std::size_t kFrameFaults = 31;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

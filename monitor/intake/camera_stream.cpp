@@ -1,6 +1,9 @@
 #include "monitor/intake/camera_stream.hpp"
 
+#include <algorithm>
 #include <cstring>
+#include <span>
+#include <string_view>
 
 namespace clearance {
 namespace {
@@ -49,6 +52,19 @@ std::uint64_t digest_of(const PointsView& points) noexcept {
   return digest.value();
 }
 
+// 0: it has no name.
+std::uint64_t digest_of(const std_msgs_msg_dds__Header_& header) noexcept {
+  const std::string_view name = header.frame_id == nullptr ? "" : header.frame_id;
+  if (name.empty()) return 0;
+  Digest digest;
+  digest.add(std::as_bytes(std::span(name)));
+  return digest.value();
+}
+
+bool are_named_unlike(std::uint64_t frame, std::uint64_t other) noexcept {
+  return frame != 0 && other != 0 && frame != other;
+}
+
 // |a - b| as an unsigned number: stamps of a message may be any.
 std::uint64_t time_between(std::int64_t a, std::int64_t b) noexcept {
   return a > b ? static_cast<std::uint64_t>(a) - static_cast<std::uint64_t>(b)
@@ -70,8 +86,12 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__CameraInfo_& message) n
     camera_.reset();
     return counted(fault);
   }
-  if (!first_) first_ = camera;
-  if (camera != *first_) {
+  const std::uint64_t frame = digest_of(message.header);
+  if (!first_) {
+    first_ = camera;
+    frame_ = frame;
+  }
+  if (camera != *first_ || are_named_unlike(frame, frame_)) {
     camera_.reset();
     return counted(FrameFault::kCameraInfoChanged);
   }
@@ -90,10 +110,14 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__Image_& message, const 
   if (image.width != camera_->width || image.height != camera_->height) {
     return counted(FrameFault::kSizeChanged);
   }
+  if (are_named_unlike(digest_of(message.header), frame_)) {
+    return counted(FrameFault::kOtherCamera);
+  }
   fault = judge(origin);
   if (fault != FrameFault::kNoFault) return counted(fault);
   const std::size_t pixel = image.format == DepthImage::Format::kMillimetres16 ? 2 : 4;
-  fault = accept(origin, digest_of(image.bytes, image.width * pixel, image.step, image.height));
+  fault =
+      accept(origin, digest_of(image.bytes, image.width * pixel, image.step, image.height), kRing);
   if (fault == FrameFault::kNoFault) out = image;
   return counted(fault);
 }
@@ -104,7 +128,7 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__PointCloud2_& message,
   FrameFault fault = view(message, options_.most_pixels, points);
   if (fault == FrameFault::kNoFault) fault = judge(origin);
   if (fault != FrameFault::kNoFault) return counted(fault);
-  fault = accept(origin, digest_of(points));
+  fault = accept(origin, digest_of(points), kRing);
   if (fault == FrameFault::kNoFault) out = points;
   return counted(fault);
 }
@@ -115,7 +139,7 @@ FrameFault CameraStream::take(const octomap_msgs_msg_dds__Octomap_& message,
   FrameFault fault = view(message, map);
   if (fault == FrameFault::kNoFault) fault = judge(origin);
   if (fault == FrameFault::kNoFault && !origin.is_stamped) {
-    fault = accept(origin, digest_of(map.bytes, map.bytes.size(), 0, 1));
+    fault = accept(origin, digest_of(map.bytes, map.bytes.size(), 0, 1), 1);
   }
   if (fault != FrameFault::kNoFault) return counted(fault);
   last_ = origin;
@@ -145,11 +169,15 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
   return FrameFault::kNoFault;
 }
 
-// A frozen frame is refused, so the stamp in use stays the one of the first such frame.
-FrameFault CameraStream::accept(const FrameOrigin& origin, std::uint64_t digest) noexcept {
-  if (!options_.may_repeat && has_digest_ && digest == digest_) return FrameFault::kFrozen;
-  has_digest_ = true;
-  digest_ = digest;
+// Refuses a frame that repeats one of the last `ring` frames bit for bit: a driver that hangs may
+// send the buffers of its ring again and again, under fresh stamps. The stamp in use stays that of
+// the first of them. A map is compared with the last one only, since it may change back.
+FrameFault CameraStream::accept(const FrameOrigin& origin, std::uint64_t digest,
+                                std::uint64_t ring) noexcept {
+  const std::uint64_t kept = std::min({digests_, ring, std::uint64_t{kRing}});
+  for (std::uint64_t i = 1; i <= kept && !options_.may_repeat; ++i)
+    if (digest_[(digests_ - i) % kRing] == digest) return FrameFault::kFrozen;
+  digest_[digests_++ % kRing] = digest;
   last_ = origin;
   return FrameFault::kNoFault;
 }

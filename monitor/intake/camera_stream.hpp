@@ -65,13 +65,17 @@ class CameraStream {
  private:
   FrameFault counted(FrameFault fault) noexcept;
   [[nodiscard]] FrameFault judge(const FrameOrigin& origin) const noexcept;
-  [[nodiscard]] FrameFault accept(const FrameOrigin& origin, std::uint64_t digest) noexcept;
+  // `ring`: of so many of the last frames, none may have the same content.
+  [[nodiscard]] FrameFault accept(const FrameOrigin& origin, std::uint64_t digest,
+                                  std::uint64_t ring) noexcept;
 
   CameraStreamOptions options_;
   std::optional<PinholeCamera> first_, camera_;
-  FrameOrigin last_;  // of the last frame that was used
-  bool has_digest_ = false;
-  std::uint64_t digest_ = 0;  // of its depth
+  std::uint64_t frame_ = 0;  // of the first CameraInfo: a digest of its name; 0: it has none
+  FrameOrigin last_;         // of the last frame that was used
+  static constexpr std::size_t kRing = 8;
+  std::array<std::uint64_t, kRing> digest_{};  // of the depth of the last frames that were used
+  std::uint64_t digests_ = 0;                  // so far
   std::array<std::uint64_t, kFrameFaults> counts_{};
 };
 

@@ -58,7 +58,7 @@ class FrameClaims {
 
   // The claims that are used, at the last settle() or set().
   [[nodiscard]] const TfTree& tree() const noexcept { return tree_; }
-  // The claims of a frame; the one that is used comes first. Empty: nobody sends the frame.
+  // The claims of a frame; the one that is used comes first. Empty: no program sends the frame.
   [[nodiscard]] std::span<const Claim> claims(const std::string& child) const;
   // The frames on the path from this one to the root of its tree that several publishers claim, or
   // whose only claim has a suffix.

@@ -36,6 +36,12 @@ constexpr std::array<Input, 5> kInputs = {{
 
 }  // namespace
 
+bool is_frame_type(SensorKind kind, std::string_view type) noexcept {
+  return std::ranges::any_of(kInputs, [&](const Input& input) {
+    return input.of == kind && input.topic == &Sensor::topic && input.type == type;
+  });
+}
+
 bool needs_transforms(const Scene& scene) noexcept {
   return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) { return sensor.is_on_tf(); });
 }

@@ -36,6 +36,9 @@ using UseSensorMessage = std::function<void(RawSensorMessage message)>;
 // The type of /tf and /tf_static. Where an intake has ros_transforms, these come through it.
 inline constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 
+// True if messages of this type are frames of such a sensor.
+[[nodiscard]] bool is_frame_type(SensorKind kind, std::string_view type) noexcept;
+
 // True if a sensor of the cell stands in a frame of tf.
 [[nodiscard]] bool needs_transforms(const Scene& scene) noexcept;
 

@@ -30,4 +30,9 @@ void SystemClock::sleep_until(std::int64_t monotonic_ns) noexcept {
   }
 }
 
+void SystemClock::stay_awake_until(std::int64_t monotonic_ns) noexcept {
+  while (this->monotonic_ns() < monotonic_ns) {
+  }
+}
+
 }  // namespace clearance

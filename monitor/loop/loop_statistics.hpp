@@ -21,6 +21,10 @@ struct MinimumSeen {
   std::int64_t now_ns = 0;
 };
 
+[[nodiscard]] inline bool is_less(const MinimumSeen& a, const MinimumSeen& b) noexcept {
+  return a.known && (!b.known || a.pair.distance < b.pair.distance);
+}
+
 // The figures that a change of the scene leaves as they are. All are since the start unless they
 // say otherwise.
 struct RunStatistics {

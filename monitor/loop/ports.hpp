@@ -28,6 +28,8 @@ class PoseSource {
 class ReportSink {
  public:
   virtual ~ReportSink() = default;
+  // The coming tick is due at this time, CLOCK_MONOTONIC; only with TickLoopOptions::ahead_ns.
+  virtual void expect(std::int64_t /*deadline_ns*/) noexcept {}
   // A batch that the coming tick uses; calls come in the order of use.
   virtual void input(const PoseBatch& batch) noexcept = 0;
   // The coming tick is shown the frame of this sensor with this stamp.
@@ -63,13 +65,15 @@ class TickPace {
   // The tick that follows is due already: no deadline is to be skipped.
   [[nodiscard]] virtual bool is_behind() noexcept = 0;
 
-  // A successor has begun with the state after the last tick; it was given up; the loop ticks it.
-  virtual void successor_began(bool same_scene) noexcept = 0;
+  // The scene changes in steps: a successor begins with the state after the last tick. Later it was
+  // either given up, or it caught up and the loop ticks it from now on.
+  virtual void successor_begins(bool same_scene) noexcept = 0;
   virtual void successor_gave_up() noexcept = 0;
   virtual void successor_followed() noexcept = 0;
-  // The loop may tick the partner's state from now on: it does not tick what both agree on.
+  // Returns true while the two do not tick the same state: the loop may then take over the
+  // partner's.
   [[nodiscard]] virtual bool may_join() const noexcept = 0;
-  // It does so, with the state behind this cycle.
+  // The loop has taken over the partner's state, as it was after this cycle.
   virtual void joined(std::uint64_t lineage, std::uint64_t cycle) noexcept = 0;
 };
 
@@ -82,6 +86,8 @@ class Clock {
   virtual std::int64_t monotonic_ns() noexcept = 0;  // deadlines: CLOCK_MONOTONIC
   virtual std::int64_t steady_ns() noexcept = 0;     // ages: CLOCK_BOOTTIME
   virtual void sleep_until(std::int64_t monotonic_ns) noexcept = 0;
+  // The same without leaving the processor to others.
+  virtual void stay_awake_until(std::int64_t monotonic_ns) noexcept { sleep_until(monotonic_ns); }
 };
 
 // The kernel's clocks.
@@ -91,6 +97,7 @@ class SystemClock final : public Clock {
   std::int64_t monotonic_ns() noexcept override;
   std::int64_t steady_ns() noexcept override;
   void sleep_until(std::int64_t monotonic_ns) noexcept override;
+  void stay_awake_until(std::int64_t monotonic_ns) noexcept override;
 };
 
 }  // namespace clearance

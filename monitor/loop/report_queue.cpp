@@ -3,6 +3,7 @@
 #include "monitor/loop/report_queue.hpp"
 
 #include <algorithm>
+#include <thread>
 #include <utility>
 
 #include "monitor/gradients/gradient_rows.hpp"
@@ -17,6 +18,15 @@ void count(std::atomic<std::uint64_t>& counter) noexcept {
   counter.fetch_add(1, std::memory_order_relaxed);
 }
 
+// Brings memory that is written soon into the caches of this processor, up to a bound.
+template <class T>
+void fetch(const T* first, std::size_t count) noexcept {
+  constexpr std::size_t kLine = 64, kMost = 1 << 15;
+  const auto* const bytes = reinterpret_cast<const char*>(first);
+  const std::size_t size = std::min(count * sizeof(T), kMost);
+  for (std::size_t i = 0; i < size; i += kLine) __builtin_prefetch(bytes + i, 1);
+}
+
 }  // namespace
 
 // The sizes are those of the largest report, health and batch of this scene.
@@ -24,7 +34,8 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     : reports_(options.reports),
       inputs_(std::max<std::size_t>(options.inputs, 1)),
       statistics_(kStatisticsSlots),
-      keeps_inputs_(options.inputs > 0) {
+      keeps_inputs_(options.inputs > 0),
+      awaits_(options.awaits) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
   const SeparatedCount separated = separated_count(scene);
@@ -47,6 +58,30 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
       slot.joints.resize(options.joints_a_batch);
     });
   }
+}
+
+void ReportQueue::expect(std::int64_t deadline_ns) noexcept {
+  if (const QueuedReport* const slot = reports_.back()) {
+    fetch(slot, 1);
+    fetch(slot->report.pairs.data(), slot->report.pairs.size());
+    fetch(slot->report.zones.data(), slot->report.zones.size());
+  }
+  if (!awaits_) return;
+  awake_until_ns_.store(2 * deadline_ns - SystemClock().monotonic_ns(), std::memory_order_relaxed);
+  ready_.post();
+}
+
+// A consumer who is awake is not woken, since that takes a system call. It yields to threads of its
+// own priority: they may be reading inputs. Both sides exchange `awake_`. If the consumer is first,
+// the tick thread wakes it; otherwise it sees the report that was pushed before the exchange.
+void ReportQueue::wait() noexcept {
+  ready_.wait();
+  const std::int64_t until = awake_until_ns_.exchange(0, std::memory_order_relaxed);
+  if (until == 0) return;
+  awake_.store(true, std::memory_order_release);
+  while (reports_.front() == nullptr && !closed() && SystemClock().monotonic_ns() < until)
+    std::this_thread::yield();
+  awake_.exchange(false, std::memory_order_acq_rel);
 }
 
 // Does not wake the consumer; the report that follows does.
@@ -76,7 +111,7 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   slot->lineage = lineage_;
   slot->joined = std::exchange(joined_, 0);
   reports_.push();
-  ready_.post();
+  if (!awake_.exchange(false, std::memory_order_acq_rel)) ready_.post();
 }
 
 // A loss is harmless, since all figures are totals.

@@ -34,6 +34,7 @@ struct ReportQueueOptions {
   std::size_t inputs = 0;           // slots for batches; 0: batches are not kept
   std::size_t samples_a_batch = 0;  // a larger batch is dropped and counted
   std::size_t joints_a_batch = 0;   // the same for a batch of joint states
+  bool awaits = false;              // after expect(), the consumer stays awake for the report
 };
 
 // One producer, the tick thread, and one consumer. Each of the three rings is lock-free.
@@ -41,7 +42,10 @@ class ReportQueue final : public ReportSink {
  public:
   ReportQueue(const Scene& scene, const ReportQueueOptions& options);
 
-  // Tick thread.
+  // Tick thread. Prefetches the memory of the next report. If the queue `awaits`, this call also
+  // wakes the consumer, which then stays awake until the report comes. It gives up when the
+  // deadline is as long ago as it was ahead at this call.
+  void expect(std::int64_t deadline_ns) noexcept override;
   void input(const PoseBatch& batch) noexcept override;
   void lineage(std::uint64_t lineage) noexcept override { lineage_ = lineage; }
   void joined(std::uint64_t lineage) noexcept override { joined_ = lineage; }
@@ -55,7 +59,7 @@ class ReportQueue final : public ReportSink {
   void wake() noexcept { ready_.post(); }
 
   // For the one consuming thread. The inputs of a report are in the queue before the report.
-  void wait() noexcept { ready_.wait(); }
+  void wait() noexcept;
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
   SpscRing<QueuedReport>& reports() noexcept { return reports_; }
   SpscRing<PoseBatch>& inputs() noexcept { return inputs_; }
@@ -69,10 +73,12 @@ class ReportQueue final : public ReportSink {
   SpscRing<QueuedReport> reports_;
   SpscRing<PoseBatch> inputs_;
   SpscRing<LoopStatistics> statistics_;
-  bool keeps_inputs_;
+  bool keeps_inputs_, awaits_;
   std::uint64_t lineage_ = 0, joined_ = 0;  // of the next report
   Semaphore ready_;
   std::atomic<bool> closed_{false};
+  std::atomic<std::int64_t> awake_until_ns_{0};  // CLOCK_MONOTONIC; 0: no report is expected
+  std::atomic<bool> awake_{false};               // the consumer looks for a report all the time
   std::atomic<std::uint64_t> dropped_reports_{0};
   std::atomic<std::uint64_t> dropped_inputs_{0};
 };

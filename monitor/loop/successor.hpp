@@ -79,11 +79,13 @@ class Successor {
   [[nodiscard]] bool has_caught_up(std::uint64_t cycle) const noexcept {
     return caught_up_at_.load(std::memory_order_acquire) == cycle;
   }
-  // What the loop ticks and gives away from now on, exchanged for what it did so before.
+  // Exchanges the monitor, statistics, sinks and ids of the loop for those of the successor.
   void succeed(std::unique_ptr<Monitor>& monitor, LoopStatistics& statistics,
                std::vector<ReportSink*>& sinks, SceneIds& ids) noexcept;
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
+  // The preparing thread, after succeed(): the figures of the scene before.
+  [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:
   template <class Sample>

@@ -15,21 +15,23 @@ std::string percentiles(const Histogram& histogram) {
                      kUsPerNs * static_cast<double>(histogram.max_ns()));
 }
 
-// Says "none" when no pair was ever evaluated, so that no number stands for nothing.
-std::string run_summary(const Scene& scene, const LoopStatistics& statistics, double seconds,
+std::string run_summary(const RunStatistics& statistics, double seconds,
                         std::uint64_t dropped_reports) {
-  std::string text = fmt::format(
+  return fmt::format(
       "{} in {:.2f} s, {}, {}, {} dropped\n"
       "tick     {}\n"
       "wake-up  {}\n",
       counted(statistics.cycle, "tick"), seconds, counted(statistics.overruns, "overrun"),
       counted(statistics.skipped_cycles, "skipped cycle"), counted(dropped_reports, "report"),
       percentiles(statistics.tick), percentiles(statistics.wakeup));
-  const MinimumSeen& minimum = statistics.minimum;
-  if (!minimum.known) return fmt::format("{}minimum  none: no pair was ever evaluated\n", text);
-  return text + fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n",
-                            minimum.pair.distance, minimum.pair.lower, minimum.pair.upper,
-                            pair_name(scene, minimum.pair), minimum.cycle);
+}
+
+// Says "none" when no pair was ever evaluated, so that no number stands for nothing.
+std::string minimum_text(const MinimumSeen& minimum, const Scene& scene) {
+  if (!minimum.known) return "minimum  none: no pair was ever evaluated\n";
+  return fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n",
+                     minimum.pair.distance, minimum.pair.lower, minimum.pair.upper,
+                     pair_name(scene, minimum.pair), minimum.cycle);
 }
 
 }  // namespace clearance

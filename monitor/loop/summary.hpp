@@ -11,8 +11,11 @@ namespace clearance {
 // "p50 12.3 us  p99.9 45.6 us  max 78.9 us"
 [[nodiscard]] std::string percentiles(const Histogram& histogram);
 
-// Ticks, overruns, tick and wake-up times, the smallest distance. Ends with a newline.
-[[nodiscard]] std::string run_summary(const Scene& scene, const LoopStatistics& statistics,
-                                      double seconds, std::uint64_t dropped_reports);
+// Ticks, overruns, tick and wake-up times. Ends with a newline.
+[[nodiscard]] std::string run_summary(const RunStatistics& statistics, double seconds,
+                                      std::uint64_t dropped_reports);
+
+// The smallest distance, which is of this scene. Ends with a newline.
+[[nodiscard]] std::string minimum_text(const MinimumSeen& minimum, const Scene& scene);
 
 }  // namespace clearance

@@ -32,6 +32,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       period_ns_(std::llround(1e9 / scene.rate_hz)),
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))),
       statistics_(scene) {
+  options_.ahead_ns = std::min(options_.ahead_ns, period_ns_ / 2);
   samples_.reserve(options_.max_samples);
   joints_.reserve(options_.max_samples);
 }
@@ -55,7 +56,7 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
     deadline = options_.pace != nullptr && options_.pace->is_behind()
                    ? deadline + period_ns_
                    : next_deadline(deadline, ended);
-    if (deadline > ended) slept = ended;
+    if (deadline - options_.ahead_ns > ended) slept = ended;
     if (ended - slept > kLongestWithoutSleep) {
       clock_.sleep_until(ended + kShortSleep);
       slept = ended;
@@ -71,12 +72,21 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
 // decided on.
 std::int64_t TickLoop::wait(std::int64_t deadline) noexcept {
   if (options_.pace == nullptr) {
-    clock_.sleep_until(deadline);
+    clock_.sleep_until(deadline - options_.ahead_ns);
+    if (options_.ahead_ns > 0) get_ready(deadline);
     return deadline;
   }
   clock_.sleep_until(deadline - options_.pace->ahead_ns());
   between_ticks();
   return options_.pace->decide(deadline, monitor_->cycle() + 1, scene_->revision);
+}
+
+// Waits for the deadline without sleeping, because a sleeping thread wakes some time after it.
+// Tells the sinks first that a report is due.
+void TickLoop::get_ready(std::int64_t deadline) noexcept {
+  if (clock_.monotonic_ns() >= deadline) return;
+  for (ReportSink* sink : sinks_) sink->expect(deadline);
+  clock_.stay_awake_until(deadline);
 }
 
 // Deadlines stay on the grid of the first one. Missed ones are counted and skipped: a loop that
@@ -175,9 +185,10 @@ void TickLoop::follow_offer() noexcept {
   Successor* const next = offered_.load(std::memory_order_acquire);
   if (next == nullptr) return;
   if (next->state() == Successor::State::kOffered) {
-    next->begin(*monitor_, ids_.sources());
+    // Once it has begun, another thread reads what the pace says of it.
     if (options_.pace != nullptr)
-      options_.pace->successor_began(next->scene().revision == scene_->revision);
+      options_.pace->successor_begins(next->scene().revision == scene_->revision);
+    next->begin(*monitor_, ids_.sources());
   } else if (next->has_caught_up(monitor_->cycle())) {
     change_scene(*next);
   }
@@ -227,10 +238,11 @@ void TickLoop::note_source(const PoseBatch& batch) noexcept {
 
 // The smallest distance of the run, for the summary at its end.
 void TickLoop::note_minimum(const Report& report) noexcept {
-  MinimumSeen& seen = statistics_.minimum;
-  if (!report.minimum_known) return;
-  if (seen.known && !(report.minimum.distance < seen.pair.distance)) return;
-  seen = {.known = true, .pair = report.minimum, .cycle = report.cycle, .now_ns = report.now_ns};
+  const MinimumSeen found{.known = report.minimum_known,
+                          .pair = report.minimum,
+                          .cycle = report.cycle,
+                          .now_ns = report.now_ns};
+  if (is_less(found, statistics_.minimum)) statistics_.minimum = found;
 }
 
 // Called once a second. Figures that cover one second are reset afterwards.

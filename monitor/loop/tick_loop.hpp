@@ -23,8 +23,11 @@ namespace clearance {
 struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
-      4096;                  // samples that one tick can use; the rest waits for the next tick
-  TickPace* pace = nullptr;  // null: the loop alone decides when it ticks
+      4096;  // samples that one tick can use; the rest waits for the next tick
+  // The loop wakes this long before each deadline and stays awake until the deadline. At most half
+  // a period. Not used with a pace.
+  std::int64_t ahead_ns = 0;
+  TickPace* pace = nullptr;         // null: the loop alone decides when it ticks
   FrameExchange* frames = nullptr;  // of sensors; null: there are none
 };
 
@@ -78,6 +81,7 @@ class TickLoop {
   void follow_offer() noexcept;
   void join() noexcept;
   [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
+  void get_ready(std::int64_t deadline) noexcept;
   void answer_question() noexcept;
   void change_scene(Successor& successor) noexcept;
   void take_in() noexcept;

@@ -8,7 +8,7 @@
 namespace clearance {
 
 // A thread of its own serves the last text that was published. A client that is slow or does not
-// read delays nobody else, and is dropped after a second.
+// read delays no other client, and is dropped after a second.
 class MetricsServer {
  public:
   // Listens at once; only the owner and the group of the process may connect. A socket that a

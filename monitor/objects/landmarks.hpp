@@ -17,7 +17,7 @@ namespace clearance {
 inline constexpr double kTwistTolerance = 1.5;
 
 // Up to four points of an object's bodies, far from each other. Their displacement stands for that
-// of the object. As the metric of Plausibility, distances are in m.
+// of the object. As a metric of Plausibility (see there), its distances are in m.
 class Landmarks {
  public:
   using Value = Pose;

@@ -1,20 +1,20 @@
 #include "monitor/pairs/cloud_pairs.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
+#include "monitor/tight_bounds.hpp"
 
 namespace clearance {
 namespace {
 
-// Bounds this close differ by rounding only (nearest_element.hpp), m.
-constexpr double kCloudGap = 2e-9;
-
 DistanceStatus status_of(const NearestElement& found) noexcept {
+  if (!found.within_work_limit) return DistanceStatus::kIterationLimit;
   if (found.upper < 0.0) return DistanceStatus::kOverlapping;
   if (found.lower <= 0.0) return DistanceStatus::kTouching;
-  return found.upper - found.lower <= kCloudGap ? DistanceStatus::kConverged
-                                                : DistanceStatus::kIterationLimit;
+  return are_tight(found.lower, found.upper) ? DistanceStatus::kConverged
+                                             : DistanceStatus::kIterationLimit;
 }
 
 }  // namespace
@@ -37,7 +37,8 @@ CloudPairs::Answer CloudPairs::query(std::uint32_t part_pair, const PosedPart& a
   const bool a_is_cloud = sensor_of_[a.object] != Object::kNoSensor;
   const PosedPart& seen = a_is_cloud ? a : b;
   Answer answer = query(content_[sensor_of_[seen.object]], seen, a_is_cloud ? b : a, body_,
-                        tracking_[slot_[part_pair]]);
+                        tracking_[slot_[part_pair]], work_left_ / kShareOfAQuery);
+  work_left_ -= std::min(work_left_, answer.overlap_work);
   if (a_is_cloud) return answer;
   std::swap(answer.witness_a, answer.witness_b);
   answer.normal = -answer.normal;
@@ -45,13 +46,15 @@ CloudPairs::Answer CloudPairs::query(std::uint32_t part_pair, const PosedPart& a
 }
 
 CloudPairs::Answer CloudPairs::query(const Content& content, const PosedPart& seen,
-                                     const PosedPart& part, SlabBody& body,
-                                     CloudTracking& tracking) noexcept {
+                                     const PosedPart& part, SlabBody& body, CloudTracking& tracking,
+                                     std::uint32_t most_overlap_work) noexcept {
   Answer answer;
   answer.witness_a = answer.witness_b = answer.normal = Vec3::Constant(kNan);
   if (content.cloud == nullptr) return answer;
-  const NearestElement found = content.cloud->nearest(
-      *part.shape, relative_pose(part.world_from_part, seen.world_from_part), body, tracking);
+  const NearestElement found =
+      content.cloud->nearest(*part.shape, relative_pose(part.world_from_part, seen.world_from_part),
+                             body, tracking, most_overlap_work);
+  answer.overlap_work = found.overlap_work;
   if (found.answer != CloudAnswer::kNearest) return answer;
   const double error = rounded_up(placing_error(seen, part) + content.pose_error);
   answer.bounds = {rounded_down(found.lower - error), rounded_up(found.upper + error)};

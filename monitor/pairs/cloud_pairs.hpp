@@ -1,8 +1,8 @@
-// Part pairs with one part that is what a sensor sees: a union of many convex elements.
+// Part pairs in which one part is the cloud of a sensor: a union of many convex elements.
 //
-// The signed distance is the least one over all elements. As that of two convex parts, it changes
-// by at most the motion of the two. But no direction separates a whole cloud from a part, so only
-// displacement carries these bounds.
+// The signed distance is the least one over all elements. It changes by at most the motion of the
+// two, as the distance of two convex parts does. But no direction separates a whole cloud from a
+// part, so only displacement carries these bounds.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,16 @@ namespace clearance {
 
 class CloudPairs {
  public:
+  // All queries of a tick together may spend this much work on overlaps (nearest_element.hpp). One
+  // query may spend a quarter of what is left, so that some is left for every part. Each query
+  // may exceed this by one overlapping element.
+  static constexpr std::uint32_t kOverlapWorkOfATick = 2048, kShareOfAQuery = 4;
+
   CloudPairs(const Scene& scene, const std::vector<PosedPart>& parts, const PairTable& table);
+
+  // Call this before the queries of a tick.
+  void begin_tick() noexcept { work_left_ = kOverlapWorkOfATick; }
+  [[nodiscard]] std::uint32_t overlap_work_left() const noexcept { return work_left_; }
 
   // The content of a sensor's object from now on; null: none. It must not change while it is here.
   // No element is farther than `pose_error` from its exact place, m.
@@ -39,14 +48,16 @@ class CloudPairs {
     DistanceBounds bounds;
     DistanceStatus status = DistanceStatus::kBadPose;
     Vec3 witness_a, witness_b, normal;
+    std::uint32_t overlap_work = 0;  // of NearestElement
   };
-  // Requires has(). The parts are those of the part pair, placed at any poses. noexcept, no heap.
+  // Requires has(). The parts are those of the part pair, placed at any poses. If the work that is
+  // left does not suffice, the bounds hold, and the status is kIterationLimit. noexcept, no heap.
   [[nodiscard]] Answer query(std::uint32_t part_pair, const PosedPart& a,
                              const PosedPart& b) noexcept;
   // The same for any two parts; `seen` is what a sensor sees, in this frame.
   [[nodiscard]] static Answer query(const Content& content, const PosedPart& seen,
-                                    const PosedPart& part, SlabBody& body,
-                                    CloudTracking& tracking) noexcept;
+                                    const PosedPart& part, SlabBody& body, CloudTracking& tracking,
+                                    std::uint32_t most_overlap_work = kMostOverlapWork) noexcept;
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -55,7 +66,8 @@ class CloudPairs {
   std::vector<std::uint32_t> sensor_of_;  // by object
   std::vector<std::uint32_t> slot_;       // by part pair: index into tracking_
   std::vector<CloudTracking> tracking_;
-  SlabBody body_;  // scratch
+  SlabBody body_;                // scratch
+  std::uint32_t work_left_ = 0;  // in this tick
 };
 
 }  // namespace clearance

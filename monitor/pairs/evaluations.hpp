@@ -34,8 +34,8 @@ struct Evaluation {
   TrackingState tracking;
   ClosestPoints closest;
   double gap = -kInfinity;  // kept_gap() of the last evaluation along closest.normal, m
-  // Of the first part pair of a pair, m: a lower bound of the pair's distance from the tick before
-  // its last evaluation up to that evaluation. The directions of two evaluations prove it.
+  // The first part pair of a pair has this lower bound of the pair's distance, m, from the tick
+  // before its last evaluation up to that evaluation. The directions of two evaluations prove it.
   // -infinity: they prove none.
   double lower_between = -kInfinity;
   DistanceStatus status = DistanceStatus::kIterationLimit;

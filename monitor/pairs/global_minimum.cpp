@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "monitor/tight_bounds.hpp"
+
 namespace clearance {
 
 void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
@@ -9,7 +11,7 @@ void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   swept_lower_ = std::min(swept_lower_, bounds.swept_lower);
   if (!is_known(bounds.status)) return;
 
-  const bool tight = is_evaluated(bounds.status) && bounds.status != PairStatus::kIterationLimit;
+  const bool tight = is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper);
   if (!tight && bounds.lower < loose_lower_) {
     if (pair != loose_pair_) next_loose_lower_ = loose_lower_;
     loose_lower_ = bounds.lower;

@@ -1,4 +1,4 @@
-// What the frames in use cannot show near links: the reports of pairs of a sensor and a link.
+// Reports, for each pair of a sensor and a link, what the frame in use cannot show near the link.
 #pragma once
 
 #include <cstdint>

@@ -4,6 +4,7 @@
 #include <dds/dds.h>
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -12,7 +13,8 @@ namespace clearance {
 
 // Only programs of the same domain, partition and network find each other.
 struct DdsOptions {
-  std::uint32_t domain = 0;    // 0 to 232
+  // 0 to 232; without one, that of the variable ROS_DOMAIN_ID, as for ROS 2 nodes, or 0.
+  std::optional<std::uint32_t> domain = {};
   std::string partition = "";  // empty: the default one
   // The network interface. "lo": this machine only; "default": the one that Cyclone chooses for
   // programs without a configuration.
@@ -20,9 +22,17 @@ struct DdsOptions {
   std::vector<std::string> peers = {};  // addresses of other machines; not needed for lo
 };
 
-// Says what was attempted, where, and Cyclone's reason.
+struct Domain {
+  std::uint32_t id = 0;
+  bool is_of_ros = false;  // ROS_DOMAIN_ID states it
+};
+// The domain that these options mean. Throws DdsError if it is not from 0 to 232.
+[[nodiscard]] Domain domain_of(const DdsOptions& options);
+
+// Says what was attempted, where, and Cyclone's reason; or what was found and expected.
 class DdsError : public std::runtime_error {
  public:
+  explicit DdsError(const std::string& text);
   DdsError(const std::string& attempted, dds_return_t code);
 };
 

@@ -27,8 +27,6 @@ namespace {
 // full send buffer could still delay it; this limit ends that wait.
 constexpr dds_duration_t kMaxBlocking = DDS_MSECS(10);
 
-constexpr std::uint32_t kMaxDomain = 232;  // ports: 7400 + 250 * domain
-
 // Frees a QoS object, which only Cyclone can do.
 struct QosDeleter {
   void operator()(dds_qos_t* qos) const noexcept { dds_delete_qos(qos); }
@@ -109,9 +107,9 @@ std::string element(const char* name, const std::string& content) {
 
 // Says how other programs reach this one, for the log. The proposed settings leave out datagram
 // sizes, which clients need not share.
-std::string reach(const DdsOptions& options) {
+std::string reach(const DdsOptions& options, std::uint32_t domain) {
   const std::string on = fmt::format(
-      "in domain {} (ROS_DOMAIN_ID){}", options.domain,
+      "in domain {} (ROS_DOMAIN_ID){}", domain,
       options.partition.empty()
           ? ""
           : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
@@ -132,20 +130,20 @@ DatagramSizes datagram_sizes(const DdsOptions& options) {
 
 // A process can configure a domain once: its participants share the domain, with the options of the
 // first one.
-std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options) {
+std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options, std::uint32_t id) {
   static std::mutex mutex;
   static std::map<std::uint32_t, std::weak_ptr<const dds_entity_t>> domains;
   const std::lock_guard lock(mutex);
-  if (auto open = domains[options.domain].lock()) return open;
+  if (auto open = domains[id].lock()) return open;
   const dds_entity_t handle =
-      check_dds(dds_create_domain(options.domain, domain_configuration(options).c_str()),
-                fmt::format("configuring DDS domain {}", options.domain));
+      check_dds(dds_create_domain(id, domain_configuration(options).c_str()),
+                fmt::format("configuring DDS domain {}", id));
   std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
                                              [](const dds_entity_t* entity) {
                                                dds_delete(*entity);
                                                delete entity;
                                              });
-  domains[options.domain] = domain;
+  domains[id] = domain;
   return domain;
 }
 
@@ -153,8 +151,9 @@ std::string describe_partition(const std::string& partition) {
   return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
 }
 
-std::string describe(const DdsOptions& options) {
-  return fmt::format("domain {}, {}, interface {}, datagrams of up to {} B{}", options.domain,
+std::string describe(const DdsOptions& options, const Domain& domain) {
+  return fmt::format("domain {}{}, {}, interface {}, datagrams of up to {} B{}", domain.id,
+                     domain.is_of_ros ? " (of ROS_DOMAIN_ID)" : "",
                      describe_partition(options.partition),
                      is_default(options) ? "as Cyclone chooses" : options.interface,
                      datagram_sizes(options).message,
@@ -248,23 +247,18 @@ bool can_be_looked_up(const std::string& peer) {
   return true;
 }
 
-DdsError::DdsError(const std::string& attempted, dds_return_t code)
-    : std::runtime_error(fmt::format("DDS: {} failed: {}", attempted, dds_strretcode(code))) {}
-
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
   if (code < 0) throw DdsError(attempted, code);
   return code;
 }
 
 // Publisher and subscriber have the partition: endpoints of other partitions never match.
-Participant::Participant(const DdsOptions& options)
-    : where_(describe(options)), how_to_reach_(reach(options)) {
-  if (options.domain > kMaxDomain) {
-    throw DdsError(fmt::format("joining domain {} (0 to 232 exist)", options.domain),
-                   DDS_RETCODE_BAD_PARAMETER);
-  }
-  domain_ = open_domain(options);
-  participant_ = check_dds(dds_create_participant(options.domain, nullptr, nullptr),
+Participant::Participant(const DdsOptions& options) {
+  const Domain domain = domain_of(options);
+  where_ = describe(options, domain);
+  how_to_reach_ = reach(options, domain.id);
+  domain_ = open_domain(options, domain.id);
+  participant_ = check_dds(dds_create_participant(domain.id, nullptr, nullptr),
                            fmt::format("joining {}", where_));
   make_publisher_and_subscriber(options.partition);
 }

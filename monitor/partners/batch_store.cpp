@@ -1,6 +1,7 @@
 #include "monitor/partners/batch_store.hpp"
 
 #include <algorithm>
+#include <ranges>
 
 #include "monitor/inputs/checksum.hpp"
 
@@ -115,15 +116,20 @@ bool BatchStore::choose(std::span<const TickInput> inputs) noexcept {
 }
 
 void BatchStore::begin_again() noexcept {
+  forgotten_count_ = 0;
   for (std::uint64_t place = head_; place < tail_; ++place) at(place).given = false;
 }
 
 void BatchStore::forget(std::span<const TickInput> inputs) noexcept {
-  for (const TickInput& input : inputs) {
+  for (const TickInput& input : std::views::reverse(inputs)) {
+    const auto done = std::span(forgotten_).first(forgotten_count_);
+    if (std::ranges::find(done, input.source) != done.end()) continue;
     const std::uint64_t place = find(input);
-    for (std::uint64_t each = head_; place != tail_ && each <= place; ++each) {
+    if (place == tail_) continue;
+    for (std::uint64_t each = head_; each <= place; ++each) {
       if (at(each).batch.source == input.source) at(each).waits = false;
     }
+    if (forgotten_count_ < forgotten_.size()) forgotten_[forgotten_count_++] = input.source;
   }
 }
 

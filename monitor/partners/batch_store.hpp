@@ -32,8 +32,10 @@ class BatchStore {
   void choose_all(bool keep) noexcept;
   // Chooses these. Returns false, and chooses none, if one has not come.
   [[nodiscard]] bool choose(std::span<const TickInput> inputs) noexcept;
-  // The state that this daemon joins rests on no batch that waits here, but for those that a notice
-  // of an earlier tick names: forget() takes them out, with those before them of the same source.
+  // When this daemon joins the partner's state: begin_again(), then forget() with the inputs of
+  // each notice up to that state, the newest notice first. The state rests on the batches that
+  // these notices name, and on no other batch that waits here. For each source, forget() removes
+  // the first batch that it finds with all earlier ones, and ignores the source in older notices.
   void begin_again() noexcept;
   void forget(std::span<const TickInput> inputs) noexcept;
   // The last choice.
@@ -60,6 +62,8 @@ class BatchStore {
   std::array<std::uint64_t, kMostTickInputs> places_{};
   std::array<TickInput, kMostTickInputs> inputs_;
   std::size_t count_ = 0, given_ = 0;
+  std::array<SourceName, kMaxSources> forgotten_;  // since begin_again()
+  std::size_t forgotten_count_ = 0;
 };
 
 }  // namespace clearance

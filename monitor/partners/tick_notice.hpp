@@ -1,4 +1,4 @@
-// What the leading one of two partners says about a tick before it.
+// The notice that the leading one of two partners sends before each tick.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct TickFrame {
   std::uint64_t content = 0;  // SensorFrame::content
 };
 
-// How a daemon stands to its partner. The values are those of PartnerHealth on the wire.
+// The role of a daemon among the two partners. The values are those of PartnerHealth on the wire.
 enum class PartnerStanding : std::uint8_t {
   kAlone = 0,     // it has no partner
   kStarting = 1,  // it publishes nothing until it has the partner's state, or hears no partner

@@ -111,7 +111,7 @@ bool TickPartner::outranks_this(const TickNotice& notice) const noexcept {
 // The leader's ticks before this one are those of this daemon.
 bool TickPartner::continues_here(const TickNotice& notice) const noexcept {
   if (notice.revision != revision_) return false;
-  return notice.lineage == lineage_ || notice.becoming == lineage_ ||
+  return notice.lineage == lineage_ || (notice.becoming != 0 && notice.becoming == lineage_) ||
          (notice.before == lineage_ && notice.since_cycle == cycle_);
 }
 
@@ -363,7 +363,7 @@ bool TickPartner::is_behind() noexcept {
 }
 
 // A partner that gets this state follows the present lineage until this daemon ticks it, too.
-void TickPartner::successor_began(bool same_scene) noexcept { become(same_scene ? fresh() : 0); }
+void TickPartner::successor_begins(bool same_scene) noexcept { become(same_scene ? fresh() : 0); }
 
 void TickPartner::successor_followed() noexcept {
   lineage_ = becoming_ != 0 ? becoming_ : fresh();
@@ -375,8 +375,8 @@ void TickPartner::successor_followed() noexcept {
 // before it names them, this one uses them again.
 void TickPartner::joined(std::uint64_t lineage, std::uint64_t cycle) noexcept {
   store_.begin_again();
-  for (const TickNotice& notice : known_) {
-    if (notice.daemon == newest_daemon_ && notice.cycle <= cycle) store_.forget(notice.used());
+  for (std::uint64_t back = 0; back < std::min<std::uint64_t>(kKnown, cycle); ++back) {
+    if (const TickNotice* const notice = known(cycle - back)) store_.forget(notice->used());
   }
   lineage_ = lineage;
   before_ = 0;

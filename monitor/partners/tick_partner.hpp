@@ -35,7 +35,7 @@ struct TickPartnerOptions {
   std::int64_t frame_patience_ns = 20'000'000;
 };
 
-// What belongs to a report beside its content.
+// The marks of a report for its partner, beside its content.
 struct TickTag {
   std::uint64_t cycle = 0, lineage = 0, state_checksum = 0;
   PartnerStanding standing = PartnerStanding::kStarting;
@@ -68,7 +68,7 @@ class TickPartner final : public PoseSource, public TickPace {
   [[nodiscard]] PartnerStanding standing() const noexcept { return shown_standing_.load(); }
   // This daemon does not follow a partner whose ticks of the same scene it hears.
   [[nodiscard]] bool wants_state() const noexcept { return wants_state_.load(); }
-  // Between Successor::begin() and its end: the lineage of the state that it took over.
+  // The lineage that a successor takes over, from Successor::begin() to its end; otherwise 0.
   [[nodiscard]] std::uint64_t becoming() const noexcept { return shown_becoming_.load(); }
   // When this daemon took the lead the last time, CLOCK_MONOTONIC.
   [[nodiscard]] std::int64_t leads_since_ns() const noexcept { return leads_since_ns_.load(); }
@@ -82,7 +82,7 @@ class TickPartner final : public PoseSource, public TickPace {
   void ticked(const Monitor& monitor) noexcept override;
   [[nodiscard]] std::uint64_t lineage() const noexcept override { return lineage_; }
   [[nodiscard]] bool is_behind() noexcept override;
-  void successor_began(bool same_scene) noexcept override;
+  void successor_begins(bool same_scene) noexcept override;
   void successor_gave_up() noexcept override { become(0); }
   void successor_followed() noexcept override;
   [[nodiscard]] bool may_join() const noexcept override {
@@ -132,7 +132,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::uint64_t lineage_, before_ = 0, since_cycle_ = 0, becoming_ = 0;
   std::uint64_t seed_;
   TickTime time_;
-  // What the leader's time is ahead of this daemon's own, and the offsets of both at that tick.
+  // The lead of the leader's time over this daemon's own, and the offsets of both at that tick.
   std::int64_t ahead_of_own_ns_ = 0, offset_ns_ = 0, own_offset_ns_ = 0;
   std::int64_t told_late_ns_ = 0;  // see TickNotice
   bool has_joined_ = false;        // and has followed no notice since

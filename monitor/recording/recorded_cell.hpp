@@ -38,7 +38,7 @@ struct DescribedScene {
   std::uint64_t joined = 0;         // the number of the last state in front of it (kJoinedMetadata)
 };
 
-// All descriptions in the files of one recording, in their order. Where one is repeated, the last
+// All descriptions in the files of one recording, in their order. If one is repeated, the last
 // one replaces those before it.
 [[nodiscard]] std::vector<DescribedScene> described_scenes(
     const std::vector<std::filesystem::path>& files);

@@ -1,4 +1,4 @@
-// Where a recorder puts its messages: into one file after the other, or into files by event.
+// A recorder puts its messages into a sink: one file after the other, or files by event.
 #pragma once
 
 #include <cstddef>

@@ -5,9 +5,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
+#include <limits>
+#include <numeric>
+#include <utility>
 
 #include "config/text/sentences.hpp"
 #include "monitor/pair_name.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
 #include "monitor/replay/metres.hpp"
 
 namespace clearance {
@@ -19,6 +24,9 @@ std::string zone_names(const Scene& scene) {
   for (const Zone& zone : scene.zones) names.push_back(zone.name);
   return names.empty() ? "it has none" : fmt::format("its zones are {}", one_of(names));
 }
+
+// ns. So much later than the driver of a robot ends a recording, at most.
+constexpr std::int64_t kMostLateEnd = 1'000'000'000;
 
 bool may_touch(const Report& report, std::uint32_t pair) {
   const auto found = std::ranges::lower_bound(report.contacts, pair, {}, &ContactReport::pair);
@@ -45,9 +53,10 @@ std::string entered(const Scene& scene, std::uint32_t id, const ZoneReport& repo
 Expectations::Expectations(const Scene& scene, std::optional<double> min_distance,
                            const std::vector<std::string>& no_zone)
     : scene_(&scene), min_distance_(min_distance) {
+  if (min_distance) expectations_.push_back({});
   for (const std::string& name : no_zone) {
-    no_zone_.push_back({.name = name, .zone = zone(name)});
-    if (no_zone_.back().zone) continue;
+    expectations_.push_back({.zone = name, .index = zone(name)});
+    if (expectations_.back().index) continue;
     error_ = fmt::format("the cell has no zone '{}'; {}", name, zone_names(scene));
     return;
   }
@@ -62,7 +71,8 @@ std::optional<std::uint32_t> Expectations::zone(const std::string& name) const {
 void Expectations::change(const Scene& scene) {
   scene_ = &scene;
   all_known_ = false;
-  for (NoZone& expected : no_zone_) expected.zone = zone(expected.name);
+  if (late_since_ns_) late_since_ns_ = std::numeric_limits<std::int64_t>::min() / 2;
+  for (Expectation& expected : expectations_) expected.index = zone(expected.zone);
 }
 
 // Before every moving object is known, distances are unknown and zones active by definition.
@@ -73,35 +83,132 @@ bool Expectations::all_seen(const Monitor& monitor) {
   return all_known_ = true;
 }
 
-// Each expectation is reported once, at the first tick that breaks it.
-std::vector<std::string> Expectations::check(const Report& report, const Monitor& monitor,
-                                             bool judge) {
-  std::vector<std::string> broken;
-  if (!judge) return broken;
-  if (!all_seen(monitor)) {
-    if (const auto what = certainly_near(report, monitor)) broken.push_back(*what);
-    return broken;
+// An object that is contradicted is not late: something of it was heard.
+void Expectations::note_late(const Report& report, const Monitor& monitor) {
+  any_late_ = false;
+  late_.assign(scene_->objects.size(), false);
+  refused_ = std::accumulate(report.rejected.begin(), report.rejected.end(), std::uint64_t{0});
+  for (std::uint32_t i = 0; i < scene_->objects.size(); ++i) {
+    const InputAge input = monitor.input_age(i);
+    if (scene_->objects[i].fixed || !input.stale || input.contradicted) continue;
+    late_[i] = true;
+    if (!std::exchange(any_late_, true) && !late_since_ns_) {
+      late_since_ns_ = report.now_ns;
+      late_name_ = scene_->objects[i].name;
+      refused_then_ = refused_;
+    }
   }
-  judged_ = true;
-  if (const auto what = check_distance(report, monitor)) broken.push_back(*what);
-  for (NoZone& expected : no_zone_) {
-    if (expected.broken || !expected.zone) continue;
-    const ZoneReport& zone = report.zones[*expected.zone];
-    if (!zone.active) continue;
-    expected.broken = true;
-    broken.push_back(entered(*scene_, *expected.zone, zone));
+  if (!any_late_) late_since_ns_.reset();
+}
+
+bool Expectations::has_late_object(std::uint32_t pair) const {
+  const ObjectPair& objects = scene_->pairs[pair];
+  return late_[objects.first] || late_[objects.second];
+}
+
+std::vector<Expectations::Broken> Expectations::check(const Report& report, const Monitor& monitor,
+                                                      bool judge) {
+  const bool known = all_seen(monitor);
+  if (known) note_late(report, monitor);
+  const bool late = known && any_late_;
+  judged_ |= judge && known;
+  judged_on_time_ |= judge && known && !late;
+  std::vector<Broken> broken;
+  for (Expectation& expected : expectations_) {
+    if (expected.broken) continue;
+    const auto tell = [&](Broken what) {
+      expected.broken = true;
+      broken.push_back(std::move(what));
+    };
+    const auto found = [&](Sentence& what) {
+      return Broken{report.cycle, report.now_ns, std::move(*what)};
+    };
+    if (known && !late && expected.while_late) {
+      tell(std::move(*expected.while_late));
+    } else if (!judge) {
+      continue;
+    } else if (!known) {
+      if (Sentence near = certainly_near(report, monitor); near && expected.zone.empty())
+        tell(found(near));
+    } else if (!late) {
+      if (Sentence what = broken_by(expected, report, monitor)) tell(found(what));
+    } else if (Sentence surely = surely_broken_by(expected, report, monitor)) {
+      tell(found(surely));
+    } else if (!expected.while_late) {
+      if (Sentence what = broken_by(expected, report, monitor)) expected.while_late = found(what);
+    }
   }
   return broken;
 }
 
-// Judges the pairs that are known.
-std::optional<std::string> Expectations::certainly_near(const Report& report,
-                                                        const Monitor& monitor) {
-  if (!min_distance_ || distance_broken_) return std::nullopt;
+// A driver that still sends has not ended, though its samples are refused.
+std::vector<Expectations::Broken> Expectations::finish(std::int64_t last_ns, std::string& note) {
+  std::vector<Broken> broken;
+  for (Expectation& expected : expectations_) {
+    if (!expected.broken && expected.while_late) broken.push_back(std::move(*expected.while_late));
+  }
+  if (broken.empty() || !late_since_ns_) return broken;
+  const std::int64_t late_ns = last_ns - *late_since_ns_;
+  const std::string silence = fmt::format("'{}' was late for the last {:.3f} s of the recording",
+                                          late_name_, static_cast<double>(late_ns) * 1e-9);
+  if (late_ns <= kMostLateEnd && judged_on_time_ && refused_ == refused_then_) {
+    note = silence + ", in which its pairs were not judged unless they were certainly too near";
+    return {};
+  }
+  for (Broken& each : broken)
+    each.what += fmt::format(" ({}; --end judges what is before)", silence);
+  return broken;
+}
+
+Expectations::Sentence Expectations::broken_by(const Expectation& expected, const Report& report,
+                                               const Monitor& monitor) const {
+  if (expected.zone.empty()) return check_distance(report, monitor, true);
+  if (!expected.index || !report.zones[*expected.index].active) return std::nullopt;
+  return entered(*scene_, *expected.index, report.zones[*expected.index]);
+}
+
+Expectations::Sentence Expectations::surely_broken_by(const Expectation& expected,
+                                                      const Report& report,
+                                                      const Monitor& monitor) const {
+  if (!expected.zone.empty())
+    return expected.index ? entered_surely(*expected.index, report, monitor) : std::nullopt;
+  if (Sentence near = certainly_near(report, monitor)) return near;
+  return check_distance(report, monitor, false);
+}
+
+// The threshold of a zone with `separation` is the tick's: there, the pair that it names decides.
+Expectations::Sentence Expectations::entered_surely(std::uint32_t id, const Report& report,
+                                                    const Monitor& monitor) const {
+  const Zone& zone = scene_->zones[id];
+  const ZoneReport& in_tick = report.zones[id];
+  if (zone.separation) {
+    if (!in_tick.active || has_late_object(in_tick.pair)) return std::nullopt;
+    return entered(*scene_, id, in_tick);
+  }
+  for (const std::uint32_t p : zone.pairs) {
+    const PairReport pair = monitor.pair(p);
+    const ObjectPair& objects = scene_->pairs[p];
+    const double margins =
+        scene_->objects[objects.first].margin + scene_->objects[objects.second].margin;
+    const bool late = has_late_object(p);
+    const double decides = late ? pair.upper : std::min(pair.lower, pair.swept_lower);
+    if (may_touch(report, p) || (late && !is_known(pair.status)) ||
+        !(decides - margins < zone.enter_below))
+      continue;
+    return fmt::format(
+        "zone '{}' is active: {} has a clearance of {} (its {} bound less both "
+        "margins)",
+        zone.name, pair_name(*scene_, p), metres(decides - margins), late ? "upper" : "lower");
+  }
+  return std::nullopt;
+}
+
+Expectations::Sentence Expectations::certainly_near(const Report& report,
+                                                    const Monitor& monitor) const {
+  if (!min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
     const PairReport pair = monitor.pair(p);
-    if (!(pair.upper < *min_distance_) || may_touch(report, p)) continue;
-    distance_broken_ = true;
+    if (!is_known(pair.status) || !(pair.upper < *min_distance_) || may_touch(report, p)) continue;
     return fmt::format("{} is {} apart, at least {} expected", pair_name(*scene_, p),
                        metres(pair.distance), metres(*min_distance_));
   }
@@ -109,18 +216,16 @@ std::optional<std::string> Expectations::certainly_near(const Report& report,
 }
 
 // The bound over all pairs decides; only where it fails is a pair looked for to name it.
-std::optional<std::string> Expectations::check_distance(const Report& report,
-                                                        const Monitor& monitor) {
-  if (!min_distance_ || distance_broken_) return std::nullopt;
-  if (report.lower_all >= *min_distance_) return check_sweep(report, monitor);
+Expectations::Sentence Expectations::check_distance(const Report& report, const Monitor& monitor,
+                                                    bool late_too) const {
+  if (report.lower_all >= *min_distance_) return check_sweep(report, monitor, late_too);
   std::optional<std::uint32_t> nearest;
   for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
-    if (may_touch(report, p)) continue;
+    if (may_touch(report, p) || (!late_too && has_late_object(p))) continue;
     if (!nearest || monitor.pair(p).lower < monitor.pair(*nearest).lower) nearest = p;
   }
   if (!nearest || monitor.pair(*nearest).lower >= *min_distance_)
-    return check_sweep(report, monitor);
-  distance_broken_ = true;
+    return check_sweep(report, monitor, late_too);
   const PairReport pair = monitor.pair(*nearest);
   const std::string who = pair_name(*scene_, *nearest);
   const std::string expected = fmt::format("{} expected", metres(*min_distance_));
@@ -132,14 +237,14 @@ std::optional<std::string> Expectations::check_distance(const Report& report,
 }
 
 // No pair is too near now, but one may have been since the last tick.
-std::optional<std::string> Expectations::check_sweep(const Report& report, const Monitor& monitor) {
+Expectations::Sentence Expectations::check_sweep(const Report& report, const Monitor& monitor,
+                                                 bool late_too) const {
   if (report.swept_lower_all >= *min_distance_) return std::nullopt;
   for (std::uint32_t p = 0; p < scene_->pairs.size(); ++p) {
-    if (may_touch(report, p)) continue;
+    if (may_touch(report, p) || (!late_too && has_late_object(p))) continue;
     // More expensive than the tick's own bound, hence only where that one does not suffice.
     const SweptBounds found = monitor.sweep(p, *min_distance_);
     if (found.lower >= *min_distance_) continue;
-    distance_broken_ = true;
     const std::string who = pair_name(*scene_, p);
     const std::string expected = fmt::format(", at least {} expected", metres(*min_distance_));
     if (found.upper < *min_distance_) {
@@ -156,7 +261,7 @@ std::optional<std::string> Expectations::check_sweep(const Report& report, const
 
 // A replay that judged nothing must not pass for one that found nothing wrong.
 std::optional<std::string> Expectations::never_judged(const Monitor& monitor) const {
-  if (judged_ || (!min_distance_ && no_zone_.empty())) return std::nullopt;
+  if (judged_ || expectations_.empty()) return std::nullopt;
   if (all_known_) return "no tick could be judged";
   std::vector<std::string> unknown;
   for (std::uint32_t i = 0; i < scene_->objects.size(); ++i) {

@@ -23,44 +23,76 @@ class Expectations {
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
+  // One sentence about the tick that broke an expectation.
+  struct Broken {
+    std::uint64_t cycle = 0;
+    std::int64_t now_ns = 0;
+    std::string what;
+  };
+
   // To be called for every tick; judges only if told. Until all moving objects have been known
   // once, only a pair that is certainly too near counts. A pair whose contact is as allowed may be
-  // nearer. Returns one sentence for each expectation
-  // that is broken for the first time.
-  [[nodiscard]] std::vector<std::string> check(const Report& report, const Monitor& monitor,
-                                               bool judge);
+  // nearer. Returns each expectation that is broken for the first time.
+  //
+  // While an object is late, pairs of two other objects are judged as ever, and its own pairs count
+  // at once where they are known and certainly too near. What its own pairs break otherwise is
+  // returned once it is on time again, or by finish().
+  [[nodiscard]] std::vector<Broken> check(const Report& report, const Monitor& monitor, bool judge);
 
   // Ticks are of another scene from now on, which outlives this. Expectations begin again once all
   // of its moving objects are known. A zone that it lacks is not active.
   void change(const Scene& scene);
 
+  // After the recording's last tick: returns what a late object has broken that stayed late. If it
+  // was late for 1 s at most, its driver has ended and the recording soon after: then returns
+  // nothing, and says so in `note`.
+  [[nodiscard]] std::vector<Broken> finish(std::int64_t last_ns, std::string& note);
+
   // After the last tick: the reason why no tick could be judged, if none was.
   [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
 
  private:
-  struct NoZone {
-    std::string name;
-    std::optional<std::uint32_t> zone;  // none: the scene has no such zone
-    bool broken = false;
+  // Every tick must meet it: the minimum distance, or that a zone is not active.
+  struct Expectation {
+    std::string zone;                       // empty: the minimum distance
+    std::optional<std::uint32_t> index;     // of the zone; none: the scene has no such zone
+    bool broken = false;                    // and returned
+    std::optional<Broken> while_late = {};  // first broken while an object was late
   };
 
+  using Sentence = std::optional<std::string>;  // about an expectation that the tick breaks
+
   [[nodiscard]] bool all_seen(const Monitor& monitor);
-  [[nodiscard]] std::optional<std::string> check_distance(const Report& report,
-                                                          const Monitor& monitor);
-  [[nodiscard]] std::optional<std::string> certainly_near(const Report& report,
-                                                          const Monitor& monitor);
-  [[nodiscard]] std::optional<std::string> check_sweep(const Report& report,
-                                                       const Monitor& monitor);
+  void note_late(const Report& report, const Monitor& monitor);
+  [[nodiscard]] bool has_late_object(std::uint32_t pair) const;
+  [[nodiscard]] Sentence broken_by(const Expectation& expectation, const Report& report,
+                                   const Monitor& monitor) const;
+  // While an object is late: by another pair, or by a pair that is certainly too near.
+  [[nodiscard]] Sentence surely_broken_by(const Expectation& expectation, const Report& report,
+                                          const Monitor& monitor) const;
+  [[nodiscard]] Sentence entered_surely(std::uint32_t zone, const Report& report,
+                                        const Monitor& monitor) const;
+  [[nodiscard]] Sentence certainly_near(const Report& report, const Monitor& monitor) const;
+  // `late_too`: of pairs with a late object, too.
+  [[nodiscard]] Sentence check_distance(const Report& report, const Monitor& monitor,
+                                        bool late_too) const;
+  [[nodiscard]] Sentence check_sweep(const Report& report, const Monitor& monitor,
+                                     bool late_too) const;
 
   [[nodiscard]] std::optional<std::uint32_t> zone(const std::string& name) const;
 
   const Scene* scene_;
   std::optional<double> min_distance_;
-  bool distance_broken_ = false;
-  std::vector<NoZone> no_zone_;
+  std::vector<Expectation> expectations_;
   bool all_known_ = false;
-  bool judged_ = false;  // some tick
+  bool judged_ = false, judged_on_time_ = false;  // some tick; one in which no object was late
   std::string error_;
+  std::vector<bool> late_;  // by object, in this tick
+  bool any_late_ = false;
+  // Since when some object has been late, its name, and the refused samples until then and now.
+  std::optional<std::int64_t> late_since_ns_;
+  std::string late_name_;
+  std::uint64_t refused_then_ = 0, refused_ = 0;
 };
 
 }  // namespace clearance

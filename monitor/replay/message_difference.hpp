@@ -17,7 +17,7 @@ struct DifferenceOptions {
   std::uint64_t cycle_offset = 0;  // recorded cycle numbers are ahead of replayed ones by this
   // Fields that the recording's build did not have, "Distances.queries": they are not compared.
   const std::set<std::string>* not_recorded = nullptr;
-  // What the text calls the two messages.
+  // The names of the two messages in the text.
   std::string_view first = "recorded", second = "replayed";
 };
 

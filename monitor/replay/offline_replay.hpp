@@ -55,7 +55,9 @@ struct OfflineReplayOptions {
   // Positions of joints that a bag or joint log does not have, by name, rad or m.
   std::map<std::string, double> joints = {};
 
-  // Expectations begin when every moving object of the cell has been known once.
+  // Expectations begin when every moving object of the cell has been known once. While an
+  // object is late, its pairs count at once only where they are certainly too near; if it was late
+  // for at most 1 s when the recording ended, nothing else of that time counts (Expectations).
   // Every pair's distance is certified to be at least this, m.
   std::optional<double> expect_min_distance = {};
   // Names of zones that are never active.

@@ -1,6 +1,7 @@
 // The result of a replay as text for a person.
 #include <fmt/format.h>
 
+#include "config/text/sentences.hpp"
 #include "monitor/replay/offline_replay.hpp"
 
 namespace clearance {
@@ -26,8 +27,8 @@ std::string OfflineReplay::text() const {
   }
   if (!damage.empty()) line(damage);
   if (stopped) {
-    line(fmt::format("stopped after {} ticks: nothing is known of the rest of the recording",
-                     ticks));
+    line(fmt::format("stopped after {}: nothing is known of the rest of the recording",
+                     counted(ticks, "tick")));
   }
   for (const std::string& note : notes) line(note);
   return out;

@@ -53,8 +53,8 @@ void RecordedLoop::look_with(const Cell& cell) {
   shown_.assign(cell.scene.sensors.size(), {});
 }
 
-// A daemon that was started anew has no history, and may have another cell. Where the recording
-// does not describe that one, the cell stays.
+// A daemon that was started anew has no history, and may have another cell. If the recording does
+// not describe that one, the cell stays.
 void RecordedLoop::restart(const clearance_msg_Distances& report) {
   const Cell* const cell = history_.cell(report.scene_revision);
   start(cell != nullptr ? *cell : *cell_, false);

@@ -1,31 +1,65 @@
 #include "monitor/replay/sensor_notes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 
+#include "config/text/sentences.hpp"
+
 namespace clearance {
+
+namespace {
+
+bool is_unheard(const SensorStatus& status) {
+  return status.frames == 0 &&
+         std::ranges::all_of(status.counts, [](auto count) { return count == 0; });
+}
+
+}  // namespace
+
+std::vector<std::string> unheard_sensors(const Sensors* sensors, const Scene& scene,
+                                         const InputLog* log) {
+  std::vector<std::string> texts;
+  for (std::uint32_t i = 0; sensors != nullptr && i < scene.sensors.size(); ++i) {
+    if (!is_unheard(sensors->status(i))) continue;
+    const Sensor& sensor = scene.sensors[i];
+    if (log == nullptr || !log->has_topics()) {
+      texts.push_back(
+          fmt::format("sensor '{}': no frame of it was found for the cell that was in force last",
+                      sensor.name));
+      continue;
+    }
+    const std::vector<std::string> topics = log->topics_of(sensor.kind);
+    texts.push_back(fmt::format(
+        "sensor '{}': no message was found on its topic '{}', so nothing is known of what it sees; "
+        "{}",
+        sensor.name, sensor.topic,
+        topics.empty() ? std::string("the log has no topic of such a sensor")
+                       : fmt::format("topics of such sensors are {}", fmt::join(topics, ", "))));
+  }
+  return texts;
+}
 
 std::vector<std::string> sensor_notes(const Sensors& sensors, const Scene& scene) {
   std::vector<std::string> notes;
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
     const SensorStatus status = sensors.status(i);
     const std::string& name = scene.sensors[i].name;
-    const bool any_came = std::ranges::any_of(status.counts, [](auto count) { return count > 0; });
-    if (!any_came) {
-      notes.push_back(fmt::format(
-          "sensor '{}': no message of it was found: the cell says that it publishes on '{}'", name,
-          scene.sensors[i].topic));
-      continue;
-    }
+    if (is_unheard(status)) continue;
     notes.push_back(fmt::format(
         "sensor '{}': {} frames used, the last one with {} elements; its place was known to {:.2g} "
         "m at worst",
         name, status.frames, status.elements, status.largest_pose_error));
     for (std::size_t fault = 1; fault < kFrameFaults; ++fault) {
       if (status.counts[fault] == 0) continue;
-      notes.push_back(fmt::format("sensor '{}': {} messages were refused: {}", name,
-                                  status.counts[fault], text(static_cast<FrameFault>(fault))));
+      notes.push_back(fmt::format("sensor '{}': refused {}: {}", name,
+                                  counted(status.counts[fault], "message"),
+                                  text(static_cast<FrameFault>(fault))));
+      if (static_cast<FrameFault>(fault) == FrameFault::kRobotElsewhere &&
+          !status.robot_elsewhere.empty()) {
+        notes.back() += ": " + status.robot_elsewhere;
+      }
     }
     if (status.hidden + status.cropped > 0) {
       notes.push_back(fmt::format(

@@ -14,7 +14,8 @@ namespace clearance {
 
 class RosWrites {
  public:
-  // Of partners, only the leader writes. Empty: this daemon always does.
+  // Returns whether this daemon leads: only the leader of two partners writes. Empty: it always
+  // does.
   using Leads = std::function<bool()>;
   explicit RosWrites(Leads leads = {}) : leads_(std::move(leads)) {}
 

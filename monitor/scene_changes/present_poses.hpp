@@ -24,7 +24,7 @@ using PresentPoses = std::map<std::string, PresentPose>;
 // Null: the scene has no such object.
 [[nodiscard]] const Object* find_object(const Scene& scene, const std::string& name) noexcept;
 
-// What moves an attached object, and the object's pose in its frame.
+// The carrier of an attached object, and the object's pose in the carrier's frame.
 struct AttachedCarrier {
   std::string name;
   Pose carrier_from_object;

@@ -59,6 +59,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
     state = run(successor, loop_ended, began);
     if (state != Successor::State::kSucceeded) continue;
     std::swap(cell_, cell);
+    parts_.end(successor.statistics());
     parts_.follow(successor.in_force());
     return {.in_force_from = successor.in_force_from()};
   }

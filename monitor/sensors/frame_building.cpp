@@ -4,6 +4,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "monitor/motion/directed_rounding.hpp"
@@ -17,23 +18,36 @@ using Type = RawSensorMessage::Type;
 
 const CloudCrop kNoCrop{.centre = Vec3::Zero(), .radius = kInfinity};
 
-// The crop is the ball of the cell's robots, in the frame of the sensor. The ball's
+// The least ball around two.
+CloudCrop ball_around(const CloudCrop& a, const CloudCrop& b) noexcept {
+  const Vec3 between = b.centre - a.centre;
+  const double distance = between.norm();
+  if (distance + b.radius <= a.radius) return a;
+  if (distance + a.radius <= b.radius) return b;
+  const double radius = 0.5 * (distance + a.radius + b.radius);
+  return {.centre = a.centre + (radius - a.radius) / distance * between, .radius = radius};
+}
+
+// The crop is a ball around those of the cell's robots, in the frame of the sensor. The ball's
 // place is off by the errors of both, which costs only some of the elements that it was to keep.
-// Without a place of the base, nothing is cropped.
+// Without a place of each base, nothing is cropped.
 std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
                                  const PostureHistory& postures) noexcept {
-  const ReachBall& ball = sensor.crop;
-  if (!(ball.radius < kInfinity)) return std::nullopt;
-  Vec3 centre = ball.centre;
-  if (ball.is_carried) {
-    const PastPose base = postures.link(ball.robot, ball.link);
-    if (!base.known) return std::nullopt;
-    centre = base.world_from_body.position;
+  std::optional<CloudCrop> crop;
+  for (const ReachBall& ball : sensor.crop) {
+    CloudCrop next{.centre = ball.centre, .radius = ball.radius};
+    if (ball.is_carried) {
+      const PastPose base = postures.link(ball.robot, ball.link);
+      if (!base.known) return std::nullopt;
+      next.centre = base.world_from_body.position;
+    }
+    crop = crop ? ball_around(*crop, next) : next;
   }
+  if (!crop) return std::nullopt;
   const Pose& world_from_sensor = place.world_from_body;
-  return CloudCrop{
-      .centre = world_from_sensor.orientation.conjugate() * (centre - world_from_sensor.position),
-      .radius = ball.radius};
+  crop->centre =
+      world_from_sensor.orientation.conjugate() * (crop->centre - world_from_sensor.position);
+  return crop;
 }
 
 }  // namespace
@@ -46,10 +60,15 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
   if (state.sensor.kind == SensorKind::kOctomap)
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
   FrameFault fault = FrameFault::kNoFault;
+  std::string elsewhere;
   if (!place.known) {
     fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_)
                 ? FrameFault::kLateTransforms
                 : FrameFault::kNoPlace;
+  } else if (elsewhere = mounts_.robot_elsewhere(state.sensor, frame.frame, frame.stamp_ns, frames_,
+                                                 postures_, place);
+             !elsewhere.empty()) {
+    fault = FrameFault::kRobotElsewhere;
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
@@ -57,6 +76,7 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
         mounts_.carrier(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
     fault = build_at(state, frame, place, carrier, cloud, use);
   }
+  state.status.robot_elsewhere = std::move(elsewhere);
   if (fault != FrameFault::kNoFault) ++state.not_built[static_cast<std::size_t>(fault)];
 }
 
@@ -65,6 +85,13 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
 FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose& place,
                              const Carrier& carrier, SeenCloud& cloud, const Use& use) {
   const auto began = std::chrono::steady_clock::now();
+  const SensorFrame out{.cloud = &cloud,
+                        .stamp_ns = frame.stamp_ns,
+                        .world_from_sensor = place.world_from_body,
+                        .pose_error = place.error(state.sensor.extent()),
+                        .carrier = carrier};
+  if (!(rounded_up(state.sensor.extent() + out.pose_error) <= state.sensor.view_radius()))
+    return FrameFault::kNoPlace;
   if (const FrameFault fault = fill(state, frame, place, cloud); fault != FrameFault::kNoFault)
     return fault;
   if (options_.keep) {
@@ -79,11 +106,6 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   }
   leave_out(state, frame, place, cloud);
   if (cloud.size() == 0) return FrameFault::kNothingSeen;
-  const SensorFrame out{.cloud = &cloud,
-                        .stamp_ns = frame.stamp_ns,
-                        .world_from_sensor = place.world_from_body,
-                        .pose_error = place.error(state.sensor.extent()),
-                        .carrier = carrier};
   SensorStatus& status = state.status;
   ++status.frames;
   status.stamp_ns = frame.stamp_ns;

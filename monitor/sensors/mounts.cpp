@@ -1,5 +1,7 @@
 #include "monitor/sensors/mounts.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <iterator>
 
@@ -18,23 +20,29 @@ const PastPose kOrigin{.known = true, .world_from_body = {}};
 // A mount without stated speeds leaps if it is faster than this. It bounds nothing else.
 constexpr MountSpeed kUnstated{.shift = kFastestBase, .turn = kFastestBaseTurn};
 
+// Calibrations and rounded numbers of a robot's base differ by less, m and rad. What differs by
+// more is another base, or another world.
+constexpr double kSameBase = 0.01;
+
 }  // namespace
 
-Mounts::Mounts(const Cell& cell, bool any_root) : cell_(cell), any_root_(any_root) {
+Mounts::Mounts(const Cell& cell) : cell_(cell), world_(cell.ros.world()) {
   const Scene& scene = cell.scene;
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
-    for (std::uint32_t link = 0; link < scene.robots[robot].links.size(); ++link)
-      links_.emplace(scene.robots[robot].links[link].name, std::pair(robot, link));
+    const Robot& of = scene.robots[robot];
+    for (std::uint32_t link = 0; link < of.links.size(); ++link)
+      links_.emplace(of.links[link].name, std::pair(robot, link));
+    if (of.base.kind == RobotBase::Kind::kWorld && of.base.frame.empty() && !of.is_attached)
+      fixed_roots_.push_back({of.links[0].name, of.base.base_from_root});
   }
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    if (object.is_seen() || links_.contains(object.name)) continue;
-    objects_.emplace(object.frame.empty() ? object.name : object.frame, i);
+    if (!object.frame.empty()) objects_.emplace(object.frame, i);
   }
 }
 
 void Mounts::find_base(const std::string& frame, const PostureHistory& postures, Path& path) const {
-  if (!cell_.ros.world_frame.empty() && frame == cell_.ros.world_frame) {
+  if (frame == world_) {
     path.base = kOrigin;
   } else if (const auto link = links_.find(frame); link != links_.end()) {
     const auto [robot, number] = link->second;
@@ -47,22 +55,60 @@ void Mounts::find_base(const std::string& frame, const PostureHistory& postures,
 }
 
 // A path that is longer than the number of frames contains a cycle.
-Mounts::Path Mounts::path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
-                             const FrameHistory& frames, const PostureHistory& postures) const {
-  Path path;
-  std::string at = sensor.frames_by_message ? frame : sensor.mount.frame;
-  find_base(at, postures, path);
+void Mounts::climb(std::string at, std::int64_t stamp_ns, const FrameHistory& frames,
+                   const PostureHistory& postures, Path& path) const {
   while (!path.base && path.frames.size() <= FrameHistory::kMostFrames) {
     const auto parent = frames.parent(at, stamp_ns);
-    if (!parent) {
-      if (any_root_ && cell_.ros.world_frame.empty() && !path.frames.empty()) path.base = kOrigin;
-      break;
-    }
+    if (!parent) break;
     path.known_until_ns = std::min(path.known_until_ns, parent->known_until_ns);
     path.frames.push_back(std::exchange(at, *parent->name));
     find_base(at, postures, path);
   }
+}
+
+Mounts::Path Mounts::path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
+                             const FrameHistory& frames, const PostureHistory& postures) const {
+  Path path;
+  const std::string& at = sensor.frames_by_message ? frame : sensor.mount.frame;
+  find_base(at, postures, path);
+  climb(at, stamp_ns, frames, postures, path);
   return path;
+}
+
+std::string Mounts::robot_elsewhere(const Sensor& sensor, const std::string& frame,
+                                    std::int64_t stamp_ns, const FrameHistory& frames,
+                                    const PostureHistory& postures, PastPose& place) const {
+  if (!sensor.is_on_tf()) return {};
+  const auto kind = path_of(sensor, frame, stamp_ns, frames, postures).carrier.kind;
+  if (kind == RobotBase::Kind::kLink) return {};
+  Excess most;
+  for (const FixedRoot& root : fixed_roots_) {
+    Path path;
+    if (root.frame == world_) path.base = kOrigin;
+    climb(root.frame, stamp_ns, frames, postures, path);
+    if (!path.base || path.carrier.kind != RobotBase::Kind::kWorld) continue;
+    const auto found = along(path, kOrigin, std::min(stamp_ns, path.known_until_ns), 0, frames);
+    if (!found) continue;
+    const Pose& by_tf = found->place.world_from_body;
+    const Pose& by_cell = root.world_from_root;
+    const double shift = way_between(by_tf, by_cell), turned = angle_between(by_tf, by_cell);
+    if (shift > kSameBase + found->place.shift_error ||
+        turned > kSameBase + found->place.turn_error) {
+      return fmt::format("tf has '{}' {:.1f} mm and {:.1f} mrad from where the cell has it",
+                         root.frame, 1e3 * shift, 1e3 * turned);
+    }
+    // The sensor as tf has it, seen from the robot where the cell has that.
+    const Pose& at = place.world_from_body;
+    const Eigen::Quaterniond turn =
+        by_cell.orientation.normalized() * by_tf.orientation.conjugate();
+    const Pose moved{by_cell.position + turn * (at.position - by_tf.position),
+                     turn * at.orientation};
+    most.shift = std::max(most.shift, way_between(moved, at));
+    most.turn = std::max(most.turn, angle_between(moved, at));
+  }
+  place.shift_error = rounded_up(place.shift_error + most.shift);
+  place.turn_error = rounded_up(place.turn_error + most.turn);
+  return {};
 }
 
 bool Mounts::awaits_transforms(const Sensor& sensor, const std::string& frame,

@@ -18,23 +18,32 @@ namespace clearance {
 
 class Mounts {
  public:
-  // `any_root`: without a world_frame, the root of all frames is taken to be the world, as in a
-  // log. The cell must outlive this.
-  Mounts(const Cell& cell, bool any_root);
+  // The cell must outlive this.
+  explicit Mounts(const Cell& cell);
 
-  // The pose of the sensor. `frame` is the one that the message names; `postures` are placed at the
-  // stamp. A path of frames ends at the first one that is a link, an object or the world of the
-  // cell: links are placed by their joints, whatever tf says of them. Not known: the path leads
-  // nowhere, or to what has no pose at that time, or its transforms end before the stamp. In the
-  // last case, a stated speed of the mount gives a pose all the same. A path whose transforms have
-  // jumped farther than that speed allows, or than 5 m/s and 6.3 rad/s do, is not known for a
-  // second.
+  // The pose of the sensor at the stamp. `frame` is the one that the message names. The caller has
+  // called place() of `postures` for the stamp.
+  // The path of frames ends at the first one that is a link, the frame of an object or the world of
+  // the cell. Joints place the links, whatever tf says of them. The name of an object is no frame,
+  // because its origin may be elsewhere.
+  // The pose is not known if the path leads nowhere, if its end has no pose at that time, or if its
+  // transforms end before the stamp. In the last case it is known if the mount has a stated speed.
+  // The pose is not known either for a second after the path has jumped farther than that speed
+  // allows, or farther than 5 m/s and 6.3 rad/s allow if no speed is stated.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
   // The carrier of the sensor at that stamp.
   [[nodiscard]] Carrier carrier(const Sensor& sensor, const std::string& frame,
                                 std::int64_t stamp_ns, const FrameHistory& frames,
                                 const PostureHistory& postures) const;
+  // Compares where tf and the cell place each robot that the cell fixes in the world. If they
+  // differ, a camera that tf places in the world, or on an object, is elsewhere as seen from that
+  // robot. Returns a sentence if they differ by more than 10 mm or 10 mrad. Otherwise adds the
+  // displacement of the camera to the errors of `place`, its pose, and returns "". A camera whose
+  // path ends at a link is not compared, since the cell alone places it.
+  [[nodiscard]] std::string robot_elsewhere(const Sensor& sensor, const std::string& frame,
+                                            std::int64_t stamp_ns, const FrameHistory& frames,
+                                            const PostureHistory& postures, PastPose& place) const;
   // True if the path leads to a place, and its last transforms are from before the stamp, but no
   // older than FrameHistory::kLostNs: later ones may still come.
   [[nodiscard]] bool awaits_transforms(const Sensor& sensor, const std::string& frame,
@@ -46,21 +55,22 @@ class Mounts {
     std::optional<PastPose> base;     // what carries the frames; none: the path leads nowhere
     Carrier carrier;                  // the same, for the tick
     std::vector<std::string> frames;  // from the sensor to the base
-    // The first of the last transforms.
+    // The stamp of the last transform; for several frames, the earliest of these stamps.
     std::int64_t known_until_ns = std::numeric_limits<std::int64_t>::max();
   };
 
   [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                              const FrameHistory& frames, const PostureHistory& postures) const;
-  // The way of the whole path between its transforms of the last second beyond the stated
-  // speeds, or those that no mount exceeds; nothing: farther than wrong stamps explain.
+  // The excess of the whole path's motion, between transforms of the last second, over what the
+  // stated speeds allow, or those that no mount exceeds. Nothing if that is more than wrong stamps
+  // explain.
   struct Excess {
     double shift = 0.0, turn = 0.0;  // m, rad
   };
   [[nodiscard]] std::optional<Excess> excess(const Sensor& sensor, const Path& path,
                                              std::int64_t last_ns,
                                              const FrameHistory& frames) const;
-  // The place at the end of the path, whose base is at `place`; nothing: a frame has none.
+  // The place at the end of the path whose base is at `place`. Nothing if a frame has no place.
   struct PathPlace {
     PastPose place;
     std::int64_t longest_ns = 0;  // between two transforms of a frame
@@ -77,13 +87,21 @@ class Mounts {
   [[nodiscard]] PastPose of_frame(const Sensor& sensor, const std::string& frame,
                                   std::int64_t stamp_ns, const FrameHistory& frames,
                                   const PostureHistory& postures) const;
+  // Follows the path from this frame up to one of the cell.
+  void climb(std::string at, std::int64_t stamp_ns, const FrameHistory& frames,
+             const PostureHistory& postures, Path& path) const;
   // Writes the base and the carrier of the path, if the frame is one of the cell.
   void find_base(const std::string& frame, const PostureHistory& postures, Path& path) const;
 
   const Cell& cell_;
-  bool any_root_;
+  std::string world_;                                                     // the frame of tf
   std::map<std::string, std::pair<std::uint32_t, std::uint32_t>> links_;  // robot and link
   std::map<std::string, std::uint32_t> objects_;                          // by their frames
+  struct FixedRoot {
+    std::string frame;
+    Pose world_from_root;
+  };
+  std::vector<FixedRoot> fixed_roots_;  // of robots
 };
 
 }  // namespace clearance

@@ -10,10 +10,14 @@ namespace {
 
 constexpr std::size_t kMarkBits = std::size_t{1} << 23;
 constexpr std::size_t kKnownBoxes = 16384;
-// A frame that would need more cells on each side than this counts as one with an element near.
+// A search for a near element enlarges a box by at most this many cells on each side. A frame that
+// needs more counts as one that has a near element.
 constexpr int kMostCells = 4;
-// The side of a cell, m, or the time in which it is passed at the largest speed, s.
+// The least side of a cell, m, and the least time in which a body at the largest speed crosses it,
+// s. The side is also at least the largest error of a depth, so that an element touches few cells.
 constexpr double kLeastSide = 0.02, kSideTime = 0.02;
+// An element that touches more cells than this stays, and counts as near to every other one.
+constexpr double kMostTouched = 1000.0;
 
 std::size_t hash(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
   std::uint64_t h = static_cast<std::uint32_t>(x) * 0x9E3779B97F4A7C15ULL;
@@ -22,8 +26,8 @@ std::size_t hash(std::int32_t x, std::int32_t y, std::int32_t z) noexcept {
   return static_cast<std::size_t>(h ^ h >> 32);
 }
 
-// Visits the bits of a box of cells that is larger by some cells on each side, until `visit`
-// returns true, and then returns true.
+// Visits the bits of a box of cells, enlarged by `more` cells on each side, until `visit` returns
+// true. Returns whether it did.
 template <class Cells, class Visit>
 bool visit_bits(const Cells& cells, int more, const Visit& visit) noexcept {
   for (std::int32_t x = cells.low[0] - more; x <= cells.high[0] + more; ++x) {
@@ -44,7 +48,7 @@ Persistence::Persistence(const Sensor& sensor, double max_speed)
       of_(sensor.persist_of),
       max_speed_(max_speed),
       stamp_errors_s_(2e-9 * static_cast<double>(sensor.stamp_error_ns)),
-      side_(std::max(kLeastSide, kSideTime * max_speed)),
+      side_(std::max({kLeastSide, kSideTime * max_speed, sensor.error_at(sensor.greatest_depth)})),
       earlier_(std::max<std::size_t>(of_, 2) - 1),
       known_(kKnownBoxes) {
   for (Marks& marks : earlier_) marks.bits.resize(kMarkBits / 64);
@@ -63,21 +67,21 @@ Persistence::Cells Persistence::touched(const Vec3& centre, double radius) const
   return cells;
 }
 
-// By the earlier frames.
+// Compares with earlier frames only. The newest frame has the element itself, so it counts as one.
 bool Persistence::stays(const Cells& cells, double error, std::int64_t stamp_ns) const noexcept {
   std::uint32_t found = 1;
   const std::size_t kept = std::min<std::size_t>(count_, earlier_.size());
   for (std::size_t i = 0; i < kept && found < frames_; ++i) {
     const Marks& marks = earlier_[i];
-    // Clocks are set back: a mark may be stamped later than this frame.
+    // An earlier frame may have a later stamp, if its clock was set back.
     const double seconds = 1e-9 * static_cast<double>(elapsed(marks.stamp_ns, stamp_ns) +
                                                       elapsed(stamp_ns, marks.stamp_ns));
-    const double apart =
+    const double distance =
         max_speed_ * std::max(0.0, seconds + stamp_errors_s_) + error + marks.error;
-    // The cells of two points that are this far apart differ by no more along an axis.
-    const double more = std::ceil(apart / side_ * (1.0 + 0x1p-40));
+    // The cells of two points at this distance differ by at most `more` along an axis.
+    const double more = std::ceil(distance / side_ * (1.0 + 0x1p-40));
     const bool is_near =
-        !(more <= kMostCells) ||
+        marks.has_wide || !(more <= kMostCells) ||
         visit_bits(cells, static_cast<int>(more), [&](std::size_t word, std::uint64_t bit) {
           return (marks.bits[word] & bit) != 0;
         });
@@ -91,10 +95,16 @@ std::size_t Persistence::hide(SeenCloud& cloud, const Pose& world_from_sensor, d
   std::ranges::fill(newest_.bits, 0);
   newest_.stamp_ns = stamp_ns;
   newest_.error = error;
+  newest_.has_wide = false;
   std::size_t hidden = 0;
   const std::uint64_t frame = count_ + 1;
   const Mat3 turn = world_from_sensor.orientation.toRotationMatrix();
   cloud.for_each([&](std::size_t block, std::size_t lane, const Vec3& centre, double radius) {
+    const double along = 2.0 * radius / side_ + 2.0;
+    if (along * along * along > kMostTouched) {
+      newest_.has_wide = true;
+      return;
+    }
     const Cells cells = touched(turn * centre + world_from_sensor.position, radius);
     Known& known = known_[hash(cells.low[0] + cells.high[0], cells.low[1] + cells.high[1],
                                cells.low[2] + cells.high[2]) %

@@ -31,7 +31,7 @@ struct PoseSpread {
 
 // Bounds the differences of all poses from the first time to the last one to this pose. Between two
 // poses, anything is taken to be within the ball whose diameter is the straight way between them:
-// it may begin to move, or stop, at any time in between. Of times within the series.
+// it may begin to move, or stop, at any time in between. Both times are within the series.
 [[nodiscard]] PoseSpread spread(const PoseSeries& series, const Pose& pose, std::int64_t first_ns,
                                 std::int64_t last_ns) noexcept;
 

@@ -42,7 +42,7 @@ struct PastPose {
 [[nodiscard]] PastPose carried(const PastPose& parent, const Pose& parent_from_child,
                                double shift_error, double turn_error) noexcept;
 
-// Where a scene's joints and bodies were at one time: what all links follow from.
+// The places of a scene's joints and bodies at one time. The poses of all links follow from them.
 struct PlacedPostures {
   struct Joint {
     bool known = false;
@@ -91,7 +91,7 @@ class PostureHistory {
   void place(std::int64_t stamp_ns, std::int64_t within_ns = 0);
   // The same for what another history of this scene found. False: it is of another scene.
   [[nodiscard]] bool place(const PlacedPostures& placed);
-  // As of the last place().
+  // The result of the last place().
   [[nodiscard]] PlacedPostures placed() const;
   [[nodiscard]] PastPose link(std::uint32_t robot, std::uint32_t link) const noexcept;
   // The pose of an object that is no link: a fixed one, or one whose poses come.

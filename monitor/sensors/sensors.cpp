@@ -29,7 +29,7 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNu
     : cell_(cell),
       options_(options),
       postures_(cell.scene, numbers),
-      mounts_(cell, options.is_log),
+      mounts_(cell),
       own_image_(cell.scene) {
   const Scene& scene = cell.scene;
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {

@@ -69,6 +69,9 @@ struct SensorStatus {
   // Messages that were used (kNoFault) or refused, by cause.
   std::array<std::uint64_t, kFrameFaults> counts{};
   std::vector<OwnImageStatus> own;
+  // Why the last frame was refused as kRobotElsewhere, with frame and difference; empty: it was
+  // not.
+  std::string robot_elsewhere;
 };
 
 class Sensors {
@@ -105,7 +108,7 @@ class Sensors {
   [[nodiscard]] bool rebuild(const BuiltFrame& frame, const IsUsed& is_used, const Use& use);
   // True if rebuild() finds a cloud that is not in use.
   [[nodiscard]] bool has_room(std::uint32_t sensor, const IsUsed& is_used) const;
-  // As SensorsOptions::keep; before the first message.
+  // Sets SensorsOptions::keep. Call this before the first message.
   void keep(std::function<void(BuiltFrame frame)> keep) { options_.keep = std::move(keep); }
 
   // Frames that wait are not built, since others are (rebuild()).

@@ -42,7 +42,7 @@ double scaling_of(double robot_speed, double speed_limit, double remaining_when_
   return rounded_down(speed_limit / robot_speed);
 }
 
-// What one assumption of the person's motion comes to.
+// The result for one assumption about the person's motion.
 struct Finding {
   Approach approach;
   ProtectiveDistance distance;  // at the robot's present speed

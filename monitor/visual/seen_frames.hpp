@@ -1,5 +1,5 @@
-// What the sensors of a cell see, for viewers: each frame as the daemon makes it of the same
-// messages, with fewer points and less often.
+// Frames of the cell's sensors for viewers. Each is made of the same messages as the daemon's, with
+// fewer points and less often.
 #pragma once
 
 #include <cstddef>

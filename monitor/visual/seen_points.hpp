@@ -1,4 +1,4 @@
-// What a sensor sees as points, for viewers of ROS 2 messages.
+// Turns the frame of a sensor into points, for viewers of ROS 2 messages.
 #pragma once
 
 #include <cstddef>

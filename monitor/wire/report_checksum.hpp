@@ -51,7 +51,7 @@ class AddToChecksum {
   Checksum& sum_;
 };
 
-// Of everything in Distances that the tick determines: of a report, or of its message.
+// The checksum of everything in Distances that the tick determines, from a report or its message.
 template <class Report>
 [[nodiscard]] std::uint64_t checksum_of(const Report& report) noexcept {
   Checksum sum;
@@ -110,8 +110,15 @@ inline void seal(clearance_msg_Distances& message) noexcept {
   message.delivery_checksum = delivery_checksum_of(message);
 }
 
-// Of the rest of a report, and of the state of its tick. The counts of refused samples are left
-// out: a daemon that has joined counts from another start.
+// No bit of the message has flipped since its daemon stated them.
+[[nodiscard]] inline bool has_its_checksums(const clearance_msg_Distances& message) noexcept {
+  const std::uint64_t delivery = message.delivery_checksum;
+  return checksum_of(message) == message.checksum &&
+         (delivery == 0 || delivery == delivery_checksum_of(message));
+}
+
+// The checksum of the rest of a report, and of the state of its tick. The counts of refused samples
+// are left out: a daemon that has joined counts from another start.
 [[nodiscard]] inline std::uint64_t checksum_of_rest(const Report& report,
                                                     std::uint64_t state) noexcept {
   Checksum sum;

@@ -17,7 +17,7 @@ namespace {
 using sensors_test::cell_with;
 using test::kStart;
 
-constexpr std::int64_t kStep = 10'000'000;
+constexpr std::int64_t kCarriedStep = 10'000'000;
 constexpr Carrier kWorld{}, kCart{.kind = RobotBase::Kind::kObject, .object = 0},
     kUpper{.kind = RobotBase::Kind::kLink, .robot = 0, .link = 1},
     kFoot{.kind = RobotBase::Kind::kLink, .robot = 0, .link = 0};
@@ -32,12 +32,14 @@ class CarriedSensors : public testing::Test {
   }
   // A tick with a frame that this has carried.
   void tick(double shoulder, double velocity, const Carrier& carrier, bool is_shown = true) {
-    now += kStep;
+    now += kCarriedStep;
     std::array<JointSample, 3> joints = test::joints(shoulder, 0.0, 0.0, now);
     for (JointSample& joint : joints) joint.has_velocity = true;
     joints[0].velocity = velocity;
-    const SensorFrame frame{
-        .cloud = &cloud, .stamp_ns = now - kStep / 2, .world_from_sensor = {}, .carrier = carrier};
+    const SensorFrame frame{.cloud = &cloud,
+                            .stamp_ns = now - kCarriedStep / 2,
+                            .world_from_sensor = {},
+                            .carrier = carrier};
     if (is_shown) {
       EXPECT_TRUE(monitor.show(0, frame));
     }
@@ -111,7 +113,7 @@ TEST_F(CarriedSensors, AreUnknownInTheStateThatAPartnerGets) {
   StateReader in(bytes);
   ASSERT_TRUE(joined.restore(in));
   const SensorFrame frame{
-      .cloud = &cloud, .stamp_ns = now - kStep, .world_from_sensor = {}, .carrier = kWorld};
+      .cloud = &cloud, .stamp_ns = now - kCarriedStep, .world_from_sensor = {}, .carrier = kWorld};
   EXPECT_TRUE(joined.show(0, frame));
   joined.tick(std::vector{test::sample(kCart.object, test::at(cart_x, 0, 0), now)}, {}, {now, 0});
   EXPECT_EQ(test::report_between(cell.scene, joined, "cart", "eye").status, PairStatus::kUnknown);

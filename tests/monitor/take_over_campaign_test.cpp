@@ -26,7 +26,7 @@ std::size_t index_below(Random& random, std::size_t count) {
 }
 
 // A body that moves on a smooth path. Each scene has some of the bodies.
-struct Body {
+struct ShownBody {
   Object object;
   Vec3 centre, swing, phase;
   [[nodiscard]] Pose at(double t) const {
@@ -43,7 +43,7 @@ struct Body {
 TEST(TakeOverCampaign, RandomChangesKeepBoundsTrueAndZonesRight) {
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     Random random(seed);
-    std::vector<Body> bodies;
+    std::vector<ShownBody> bodies;
     for (int i = 0; i < 10; ++i) {
       Object object = test::moving("body" + std::to_string(i), {});
       if (i % 3 == 0) {
@@ -103,8 +103,8 @@ TEST(TakeOverCampaign, RandomChangesKeepBoundsTrueAndZonesRight) {
       long double least = 1e9L;
       const Scene& scene = scenes.back();
       for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-        const Body &a = bodies[shown[scene.pairs[p].first]],
-                   &b = bodies[shown[scene.pairs[p].second]];
+        const ShownBody &a = bodies[shown[scene.pairs[p].first]],
+                        &b = bodies[shown[scene.pairs[p].second]];
         const long double truth = test::true_distance(a.object, a.at(t), b.object, b.at(t));
         least = std::min(least, truth);
         const PairReport pair = monitor->pair(p);

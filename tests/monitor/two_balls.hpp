@@ -32,7 +32,7 @@ inline PoseSample with_twist(const Pose& pose, const Vec3& linear, std::int64_t 
   return moved;
 }
 
-// How many poses of the first ball were refused for this cause.
+// The number of poses of the first ball that were refused for this cause.
 inline std::uint64_t rejected(const Monitor& monitor, Reject cause) {
   return monitor.rejected(0)[static_cast<std::size_t>(cause)];
 }

@@ -9,6 +9,8 @@ import pytest
 
 import clearance
 
+# Tests state their domains, and programs that state none join domain 0.
+os.environ.pop("ROS_DOMAIN_ID", None)
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 # Each daemon has a partition alone; the network is loopback. Domains below 100 avoid the ports that the
 # kernel assigns.
@@ -85,8 +87,12 @@ class Daemon:
             stderr=subprocess.DEVNULL,
         )
 
-    def connection(self):
-        return clearance.Connection(domain=DOMAIN, partition=self.partition)
+    def connection(self, **more):
+        return clearance.Connection(domain=DOMAIN, partition=self.partition, **more)
+
+    def kill(self):
+        self.process.kill()
+        self.process.wait(20)
 
     def end(self):
         self.process.terminate()

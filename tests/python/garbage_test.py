@@ -52,7 +52,7 @@ GARBAGE = [
 # The warnings are NumPy's, about such arguments.
 pytestmark = pytest.mark.filterwarnings("ignore")
 # These wait for a daemon, or join DDS anew with each call.
-LIVE = {"Reports", "JointWriter", "PoseWriter", "Commands", "Connection"}
+LIVE = {"Reports", "SharedCell", "JointWriter", "PoseWriter", "Commands", "Connection"}
 CALLABLE = sorted(set(clearance.__all__) - LIVE)
 
 

@@ -58,3 +58,9 @@ def test_pip_names_a_build_folder_that_is_none(tmp_path):
         capture_output=True, text=True, env={**os.environ, "CLEARANCE_BUILD": str(tmp_path)},
     )
     assert done.returncode != 0 and "is no folder of a build" in done.stdout + done.stderr
+
+
+def test_without_numpy_the_import_says_how_to_install_it():
+    program = "import sys; sys.modules['numpy'] = None; import clearance"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert done.returncode != 0 and "sudo apt install python3-numpy" in done.stderr

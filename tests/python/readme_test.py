@@ -20,6 +20,6 @@ def test_the_lines_about_bodies_and_robots_run(monkeypatch, arm_files):
 
 
 def test_the_other_lines_are_python():
-    for chapter in ("Motions before they are made", "Recordings", "Live"):
+    for chapter in ("Motions before they are made", "Recordings", "Live", "A cell in shares"):
         [block] = blocks_of(chapter)
         compile(block, chapter, "exec")

@@ -10,7 +10,6 @@ import clearance
 from clearance import _clearance, testing
 
 ROOM = pathlib.Path(testing.__file__).resolve().parent.parent
-PRIVATE_BASE = "_Live"
 
 
 def members_of_stub():
@@ -24,8 +23,12 @@ def members_of_stub():
             classes[node.name] = (named, [b.id for b in node.bases if isinstance(b, ast.Name)])
         elif isinstance(node, ast.FunctionDef):
             functions.add(node.name)
-    live = classes.pop(PRIVATE_BASE)[0]
-    return {name: n | (live if PRIVATE_BASE in b else set()) for name, (n, b) in classes.items()}, functions
+
+    def members(name):
+        named, bases = classes[name]
+        return named.union(*(members(base) for base in bases if base.startswith("_")))
+
+    return {name: members(name) for name in public(classes)}, functions
 
 
 def public(names):

@@ -19,6 +19,7 @@ namespace {
 
 void set_up(const ChildOptions& options, int output) {
   unsetenv("CYCLONEDDS_URI");
+  unsetenv("ROS_DOMAIN_ID");
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.most_file_bytes) {
     const rlimit limit{*options.most_file_bytes, *options.most_file_bytes};

@@ -52,7 +52,7 @@ void expect_exact(const SuiteCase& c, std::size_t k) {
     const oracle::CurvedBody body_a = curved(a), body_b = curved(b);
     const oracle::RealBounds truth =
         oracle::curved_truth({&body_a, pose_a}, {&body_b, pose_b}, kOracleTolerance);
-    // Of cores that meet, the oracle knows only that the distance is at most minus the radii.
+    // If the cores meet, the oracle knows only that the distance is at most minus the radii.
     if (static_cast<double>(truth.lower) > -1e300) {
       EXPECT_NEAR(said, static_cast<double>(truth.lower), kRoundedPoses);
       return;

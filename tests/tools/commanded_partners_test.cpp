@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "monitor/client/commands.hpp"
+#include "monitor/client/questions.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_partners.hpp"
 
@@ -168,14 +169,14 @@ std::string cell_with_post() {
 // Each daemon has a folder of its own, as on a machine of its own.
 class PartnersInFolders : public CommandedPartners {
  protected:
-  PartnersInFolders() : CommandedPartners(cell_with_post()) {
+  explicit PartnersInFolders(const std::string& text = cell_with_post()) : CommandedPartners(text) {
     for (const auto& [name, folder] : folders) test::write_text(folder / "cell.yaml", cell.yaml);
   }
   void begin(const std::string& name) {
     daemons[name] = std::make_unique<ChildProcess>(
         kDaemon,
         test::with(test::with({(folders[name] / "cell.yaml").string()}, test::dds_arguments(dds)),
-                   {"--partner", name, "--commands", "planner"}));
+                   {"--partner", name, "--commands", "planner", "--questions", "planner"}));
   }
   std::filesystem::path sent(const std::string& name) { return folders[name] / "clearance.sent"; }
   // Gives the post another mesh, which is sent along. A command that is done again, since the lead
@@ -254,6 +255,85 @@ TEST_F(PartnersInFolders, AFileThatIsMissingIsNamedAndTheyDoNotAgreeUntilItIsThe
   EXPECT_FALSE(daemons["left"]->told("partner-agrees")) << logs();
   std::filesystem::copy(sent("left"), sent("right"));
   EXPECT_TRUE(agree()) << logs();
+}
+
+// The arm slides along x, above the floor and to the post.
+std::string cell_with_arm() {
+  static const test::ScratchFolder folder;
+  test::write_text(folder / "arm.urdf", R"(<robot name="slide">
+  <link name="foot"/>
+  <link name="hand"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
+  <joint name="slide" type="prismatic"><origin xyz="-2 0 1"/><parent link="foot"/><child link="hand"/><axis xyz="1 0 0"/><limit lower="0" upper="2" velocity="1"/></joint>
+</robot>
+)");
+  std::string text = cell_with_post();
+  text.insert(text.find("objects:"),
+              "robots: [{name: slider, urdf: " + (folder / "arm.urdf").string() + "}]\n");
+  const std::string pairs = "pairs:\n";
+  return text.insert(text.find(pairs) + pairs.size(), "  - {between: [slider, post]}\n");
+}
+
+class AskedPartners : public PartnersInFolders {
+ protected:
+  AskedPartners() : PartnersInFolders(cell_with_arm()) {}
+  // Asks so many times, each by a client of its own, and keeps the revisions of the answers.
+  void ask(int count, std::set<std::uint64_t>& revisions) {
+    Question question;
+    question.motion = {
+        .joints = {"slide"}, .times = {0.0, 1.0}, .positions = {0.0, 0.5}, .velocities = {}};
+    for (int i = 0; i < count; ++i) {
+      client::Connection own(dds, cell.topics);
+      client::Questions questions(own, "planner");
+      const auto result = questions.ask(question, {}, std::chrono::seconds(20));
+      ASSERT_TRUE(result) << i << "\n" << logs();
+      EXPECT_TRUE(result->done()) << result->reason;
+      revisions.insert(result->scene_revision);
+    }
+  }
+};
+
+// It was away while a command was done, and lacks a file of the changed cell: its cell is the old
+// one, for which the motion may be free.
+TEST_F(AskedPartners, AreNotAnsweredByADaemonWithTheOldCellThatWasStartedAgain) {
+  begin("left");
+  ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
+  begin("right");
+  ASSERT_TRUE(agree()) << logs();
+  daemons["right"]->signal(SIGKILL);
+  daemons["right"]->wait();
+  const CommandResult changed = give_mesh("part");
+  ASSERT_TRUE(changed.done()) << changed.reason;
+  const dds_entity_t notices =
+      connection.participant().reader(TopicKind::kPartnerTicks, cell.topics.partner_ticks, 256);
+  std::set<std::uint64_t> leading;
+  const auto look = [&] {
+    Sample<clearance_msg_PartnerTick> tick;
+    void* pointer = &*tick;
+    dds_sample_info_t info;
+    while (dds_take(notices, &pointer, &info, 1, 1) > 0) leading.insert(tick->daemon);
+    return ended.load();
+  };
+  begin("right");
+  std::set<std::uint64_t> revisions;
+  std::thread asking([&] {
+    ask(5, revisions);
+    ended = true;
+  });
+  EXPECT_TRUE(read_until(look, 60)) << logs();
+  asking.join();
+  if (leading.size() > 1) GTEST_SKIP() << "the leader stood still, and the other one took the lead";
+  EXPECT_TRUE(daemons["right"]->told("partner-state-refused")) << logs();
+  EXPECT_EQ(revisions, std::set{changed.scene_revision}) << logs();
+  daemons["left"]->signal(SIGKILL);
+  daemons["left"]->wait();
+  revisions.clear();
+  std::thread asking_again([&] {
+    ask(1, revisions);
+    ended = false;
+  });
+  EXPECT_TRUE(read_until([this] { return !ended.load(); }, 60)) << logs();
+  asking_again.join();
+  EXPECT_EQ(revisions.size(), 1u) << "the one that is left answers\n" << logs();
 }
 
 }  // namespace

@@ -68,9 +68,7 @@ class DaemonCommands : public testing::Test {
     while (std::chrono::steady_clock::now() < end) {
       const auto report = distances.next();
       ASSERT_NE(report, nullptr);
-      if (cycle != 0) {
-        ASSERT_EQ((*report)->cycle, cycle + 1);
-      }
+      ASSERT_TRUE(cycle == 0 || (*report)->cycle == cycle + 1) << cycle;
       cycle = (*report)->cycle;
     }
   }
@@ -301,7 +299,6 @@ TEST_F(DaemonCommands, ThatAreCutOffAreCountedAndTheNextOneIsDone) {
 TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
   start();
   const auto planner = client("planner"), other = client("operator");
-  int removed = 0, attached = 0;
   for (int i = 0; i < 20; ++i) {
     robot.send(0.0);
     ASSERT_TRUE(planner->result_of({kBin}).done());
@@ -312,11 +309,8 @@ TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
     other->send(attach);
     const CommandResult first = planner->result_of(remove), second = other->result_of(attach);
     ASSERT_TRUE(first.done()) << first.reason;
-    removed += first.done() ? 1 : 0;
-    attached += second.done() ? 1 : 0;
     EXPECT_TRUE(second.done() || second.status == CommandStatus::kRefused) << second.reason;
   }
-  EXPECT_EQ(removed, 20);
   // Both wait in one queue, and the removal is the first in it.
   ASSERT_TRUE(planner->result_of({kBin}).done());
   const Command remove = planner->command({RemoveObject{"bin_1"}}),

@@ -74,7 +74,7 @@ TEST_F(DaemonJoints, OfSeveralPublishersAreOneRobot) {
   EXPECT_TRUE(step_until(5, send_arm, told("joints-late", {"1 joint of arm"}))) << daemon->output();
 }
 
-// A joint_state_publisher was left running. Which of the two is the driver, nobody can tell.
+// A joint_state_publisher was left running. The daemon cannot tell which of the two is the driver.
 TEST_F(DaemonJoints, OfAPublisherThatSendsZerosMakeTheLinksUnknownAndAreNamed) {
   start();
   RosJoints driver(client), zeros(client);
@@ -223,7 +223,7 @@ TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
   EXPECT_TRUE(step_until(
       50, [] {},
       told("joints-silent", {"3 joints of arm", "shoulder, elbow, push", "rt/tf", "interface lo",
-                             "domain " + std::to_string(dds.domain)})))
+                             "domain " + std::to_string(*dds.domain)})))
       << daemon->output();
 }
 

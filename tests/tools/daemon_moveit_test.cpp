@@ -43,9 +43,8 @@ const std::string kKeptCell =
     "  - {name: wall, groups: [still], fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}\n"
     "  - {name: cart, frame: cart_link, max_speed: 50, sphere: {radius: 0.1}}\n"
     "  - {name: box, max_speed: 50, box: {size: [0.2, 0.2, 0.2]}}\n"
-    "pairs:\n"
-    "  - {between: [arm, arm], publish: false}\n  - {between: [arm, wall]}\n  - {between: [cart, "
-    "wall]}\n  - {between: [box, wall]}\n"
+    "pairs:\n  - {between: [arm, arm], publish: false}\n  - {between: [arm, wall]}\n"
+    "  - {between: [cart, wall]}\n  - {between: [box, wall]}\n"
     "  - {between: [moveit, still]}\n  - {between: [arm, moveit]}\n"
     "zones:\n  - {name: near, between: [finger, moveit], enter_below: 0.5, leave_above: 0.55}\n";
 

@@ -94,6 +94,21 @@ TEST_F(DaemonReload, AChangedCellIsInForceWithoutAMissingCycleAndKnowsWhatItKnew
   EXPECT_TRUE(catalogue.pair("wall", "left"));
 }
 
+TEST_F(DaemonReload, TheSmallestDistanceAtTheEndIsThatOfAllCells) {
+  start();
+  run_until_told("started");
+  const std::string rule = "  - {between: [left, right], publish: true}\n";
+  std::string changed = replaced(text, rule, "");
+  const std::size_t zones = changed.find("zones:");
+  changed.erase(zones, changed.find("simulation:") - zones);
+  reload(changed);
+  run_until_told("scene-changed");
+  ASSERT_NE(revision, read.scene.revision);
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0);
+  EXPECT_TRUE(daemon->wrote(", left - right, at cycle ")) << daemon->output();
+}
+
 TEST_F(DaemonReload, WithReloadAChangedFileIsReadWithoutASignal) {
   start({"--reload"});
   run_until_told("started");

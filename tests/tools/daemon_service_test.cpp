@@ -78,13 +78,13 @@ TEST_F(DaemonAsAService, DoesNotFeedTheWatchdogWhileTicksStandStill) {
     // Each answer shows that the thread that feeds the watchdog has looked at the ticks again. The
     // first rounds may still see reports that were queued.
     int fed = 0;
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 12; ++round) {
       daemon->signal(SIGHUP);
       for (;;) {
         const auto message = socket.next();
         ASSERT_TRUE(message) << daemon->output();
         if (message->starts_with("RELOADING=1")) break;
-        if (round >= 3) fed += message == "WATCHDOG=1";
+        if (round >= 6) fed += message == "WATCHDOG=1";
       }
     }
     EXPECT_EQ(fed, 0);

@@ -253,6 +253,7 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   ChildProcess help(test::kDaemon, {"--help"});
   EXPECT_EQ(help.wait(), 0);
   EXPECT_TRUE(help.wrote("Example:")) << help.output();
+  EXPECT_TRUE(help.wrote("Wake this many us (1 to 500)")) << help.output();
   ChildProcess nothing(test::kDaemon, {});
   EXPECT_EQ(nothing.wait(), 2);
   ChildProcess unknown(test::kDaemon, {"cell.yaml", "--nosuchoption"});
@@ -269,6 +270,9 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
     EXPECT_EQ(negative.wait(), 2);
     EXPECT_TRUE(negative.wrote("found '-5'; expected a whole number from 0 to ")) << option;
   }
+  ChildProcess ahead(test::kDaemon, {"cell.yaml", "--ahead", "50"});
+  EXPECT_EQ(ahead.wait(), 2);
+  EXPECT_TRUE(ahead.wrote("--priority")) << ahead.output();
   ChildProcess version(test::kDaemon, {"--version"});
   EXPECT_EQ(version.wait(), 0);
   EXPECT_TRUE(version.wrote(std::string("clearance ") + kBuild)) << version.output();
@@ -276,6 +280,44 @@ TEST(DaemonCommand, SaysWhatIsWrongWithHowItIsCalled) {
   ChildProcess interface(test::kDaemon, {cell.path(), "--interface", "nosuch0"});
   EXPECT_EQ(interface.wait(), 4);
   EXPECT_TRUE(interface.wrote("domain")) << interface.output();
+}
+
+TEST(Daemon, TellsAClientWithoutANameOfItsOwnUnderWhichOneItMaySend) {
+  const test::CellFile cell(test::small_cell("small"));
+  const std::vector<std::string> dds = test::dds_arguments(test::own_dds());
+  ChildProcess daemon(test::kDaemon, test::with({cell.path(), "--commands", "planner"}, dds));
+  const std::vector<std::string> change = {"send", "--change", "set_margin: {object: left}"};
+  ChildProcess stranger(test::kScene, test::with(change, dds));
+  EXPECT_EQ(stranger.wait(), 6) << stranger.output();
+  EXPECT_TRUE(stranger.wrote("found a request of 'clearance-scene'; expected 'planner'") &&
+              stranger.wrote("--as NAME sends under another name"))
+      << stranger.output();
+  ChildProcess planner(test::kScene, test::with(test::with(change, {"--as", "planner"}), dds));
+  EXPECT_EQ(planner.wait(), 0) << planner.output();
+}
+
+// The option goes first, then the cell, then the variable.
+TEST(Daemon, JoinsTheDomainOfRosUnlessAnOptionOrTheCellStatesOne) {
+  const std::string id = std::to_string(*test::own_dds().domain), other = "101";
+  const test::CellFile silent(test::small_cell("silent"));
+  const test::CellFile stated(test::small_cell("stated") + "dds: {domain: " + id + "}\n");
+  const auto started = [](const test::CellFile& cell, const std::string& of_ros,
+                          const std::vector<std::string>& options, const std::string& domain) {
+    std::vector<std::string> line = {cell.path(), "--partition", test::own_dds().partition,
+                                     "--ticks", "1"};
+    line.insert(line.end(), options.begin(), options.end());
+    ChildProcess daemon(test::kDaemon, line, {.environment = {{"ROS_DOMAIN_ID", of_ros}}});
+    EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+    EXPECT_TRUE(daemon.told("started", {"on domain " + domain})) << daemon.output();
+  };
+  started(silent, id, {}, id + " (of ROS_DOMAIN_ID), ");
+  started(stated, other, {}, id + ", ");
+  started(silent, other, {"--domain", id}, id + ", ");
+  started(stated, "nonsense", {}, id + ", ");
+  ChildProcess refused(test::kDaemon, {silent.path()}, {.environment = {{"ROS_DOMAIN_ID", "x"}}});
+  EXPECT_EQ(refused.wait(), 4);
+  EXPECT_TRUE(refused.wrote("found ROS_DOMAIN_ID='x'; expected a domain, 0 to 232"))
+      << refused.output();
 }
 
 }  // namespace

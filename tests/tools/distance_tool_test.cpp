@@ -235,7 +235,7 @@ TEST_F(DistanceTool, ChecksEveryPoseOfAMotion) {
 TEST_F(DistanceTool, ACheckOfNothingFails) {
   const Outcome none = run("--cases - --out - --check", cubes("x", 1.5));
   EXPECT_EQ(none.status, 1);
-  EXPECT_NE(none.err.find("1 lines carry no exact answer\nnothing was checked"), std::string::npos)
+  EXPECT_NE(none.err.find("1 line carried no exact answer\nnothing was checked"), std::string::npos)
       << none.err;
   for (const char* bad : {R"("distance":0.5)", R"("distance":"0.5 m")", R"("distances":[])"}) {
     const Outcome r = run("--cases - --out - --check", with_exact(cubes("x", 1.5), bad));

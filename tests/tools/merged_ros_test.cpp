@@ -21,10 +21,10 @@ using std::chrono::milliseconds;
 using Float64 = std_msgs_msg_dds__Float64_;
 using DiagnosticArray = diagnostic_msgs_msg_dds__DiagnosticArray_;
 using MarkerArray = visualization_msgs_msg_dds__MarkerArray_;
-using PlanningScene = moveit_msgs_msg_dds__PlanningScene_;
+using RosPlanningScene = moveit_msgs_msg_dds__PlanningScene_;
 
-RosType type_of(TopicKind kind) {
-  const auto at = std::ranges::find(kRosMessageTypes, kind, &RosMessage::kind);
+RosType type_of_kind(TopicKind kind) {
+  const auto at = std::ranges::find(kRosMessageTypes, kind, &clearance::RosMessage::kind);
   return at->type;
 }
 
@@ -94,7 +94,7 @@ TEST_F(MergedForRos, AShareThatIsNotHeardIsUnknownAndNamedAsAnError) {
 TEST_F(MergedForRos, MarkersAndMessagesHaveThePairsOfAllShares) {
   RosReader<MarkerArray> markers(reader, kRosMarkers, "rt/clearance/markers");
   // The ROS 2 type has the layout of our own.
-  RosReader<clearance_msg_Distances> reports(reader, type_of(TopicKind::kDistances),
+  RosReader<clearance_msg_Distances> reports(reader, type_of_kind(TopicKind::kDistances),
                                              "rt/clearance/distances");
   start_joined();
   EXPECT_TRUE(eventually([&] {
@@ -114,8 +114,8 @@ TEST_F(MergedForRos, MarkersAndMessagesHaveThePairsOfAllShares) {
 
 // A changed cell has a scene of its own, and its numbers follow.
 TEST_F(MergedForRos, AChangedCellIsReadAgain) {
-  RosReader<PlanningScene> scenes(reader, kRosMonitoredScene,
-                                  "rt/clearance/monitored_planning_scene");
+  RosReader<RosPlanningScene> scenes(reader, kRosMonitoredScene,
+                                     "rt/clearance/monitored_planning_scene");
   start_joined();
   ASSERT_NE(scenes.next(), nullptr) << merge->output();
   ASSERT_TRUE(eventually([&] { return merge->told("share-heard", {"right floor"}); }));

@@ -24,7 +24,8 @@ using test::ChildProcess;
 using test::eventually;
 using test::kDaemon;
 
-// A link that is cut leaves a leader in each half. Of the two, one follows when it is whole again.
+// A link that is cut leaves a leader in each half. One of the two follows when the link is whole
+// again.
 TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
   test::NetworkNamespace one(1), other(2);
   for (const auto* machine : {&one, &other}) {

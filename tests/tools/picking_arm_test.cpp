@@ -10,20 +10,20 @@
 namespace clearance::test {
 namespace {
 
-struct Outcome {
+struct Picking {
   double nearest = 0.0, certified = 0.0;
   std::string moving;
 };
 
-Outcome outcome_of(const std::string& output, const std::string& name) {
-  Outcome outcome;
+Picking picking_of(const std::string& output, const std::string& name) {
+  Picking picking;
   std::istringstream lines(output);
   for (std::string line; std::getline(lines, line);) {
     if (!line.starts_with(name + " ")) continue;
     std::istringstream figures(line.substr(name.size()));
-    figures >> outcome.nearest >> outcome.certified >> outcome.moving;
+    figures >> picking.nearest >> picking.certified >> picking.moving;
   }
-  return outcome;
+  return picking;
 }
 
 // Steps are finite differences, checked at the ends and against the motion itself.
@@ -54,8 +54,8 @@ TEST(PickingArm, IsNearerToTheWallOnceTheDaemonKnowsThePart) {
   ChildProcess arm(test::places::programs() + "/picking_arm",
                    with({cell, "--speed", "2"}, dds_arguments(dds)));
   ASSERT_EQ(arm.wait(std::chrono::seconds(180)), 0) << arm.output();
-  const Outcome without = outcome_of(arm.output(), "not known"),
-                with_it = outcome_of(arm.output(), "known");
+  const Picking without = picking_of(arm.output(), "not known"),
+                with_it = picking_of(arm.output(), "known");
   EXPECT_NEAR(without.nearest, 0.11, 1e-3) << arm.output();
   EXPECT_EQ(with_it.moving, "part") << arm.output();
   // The part stands 90 mm out of the fingertips.

@@ -323,9 +323,9 @@ TEST_F(RecordReplay, RecorderTellsWhatItMissed) {
   write_messages(folder / "run.mcap", messages);
   std::string recorder;
   ASSERT_NO_FATAL_FAILURE(publish_and_record_again(recorder));
-  EXPECT_THAT(recorder, HasSubstr("2 of the batches of source 'arm' are missing"));
+  EXPECT_THAT(recorder, HasSubstr("missing in between: 2 of the batches of source 'arm'"));
   EXPECT_THAT(recorder, HasSubstr("the first of the batches of source 'cell' here is number 2"));
-  EXPECT_THAT(recorder, HasSubstr("1 of the reports of the daemon are missing"));
+  EXPECT_THAT(recorder, HasSubstr("missing in between: 1 of the reports of the daemon"));
 }
 
 TEST_F(RecordReplay, AWindowWithoutAnythingIsAnError) {

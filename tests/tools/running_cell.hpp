@@ -87,7 +87,7 @@ simulation:
 }
 
 inline std::vector<std::string> dds_arguments(const DdsOptions& dds) {
-  return {"--domain", std::to_string(dds.domain), "--partition", dds.partition};
+  return {"--domain", std::to_string(*dds.domain), "--partition", dds.partition};
 }
 
 inline std::vector<std::string> with(std::vector<std::string> first,

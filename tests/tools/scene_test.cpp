@@ -242,6 +242,30 @@ TEST_F(SceneProgram, ProposesPairsThatMayTouchBySampling) {
   EXPECT_EQ(output_, proposed);  // the same seed
 }
 
+// The far body passes the post at 0.03 m.
+TEST_F(SceneProgram, AllowsNoPairAsNeverInContactThatCameNear) {
+  std::string urdf = crane_urdf();
+  urdf.replace(urdf.find("0 9 0"), 5, "0 0.63 0");
+  std::ofstream(directory_ / "crane.urdf") << urdf;
+  std::vector<std::string> arguments = {"allow", file("crane.urdf"), "--samples", "2000"};
+  const std::string never = "link1=\"post\" link2=\"far\" reason=\"Never\"";
+  ASSERT_EQ(run(arguments), 0) << output_;
+  EXPECT_EQ(output_.find(never), std::string::npos) << output_;
+  EXPECT_NE(output_.find("near misses, which stay watched: "), std::string::npos) << output_;
+  EXPECT_NE(output_.find("(--samples 2000), but the least distance is within --never-margin 0.05"),
+            std::string::npos)
+      << output_;
+  const std::string miss = "\n  post - far: ";
+  ASSERT_NE(output_.find(miss), std::string::npos) << output_;
+  EXPECT_NEAR(std::stod(output_.substr(output_.find(miss) + miss.size())), 0.03, 0.001);
+  arguments.insert(arguments.end(), {"--never-margin", "0.02"});
+  ASSERT_EQ(run(arguments), 0) << output_;
+  EXPECT_NE(output_.find(never), std::string::npos) << output_;
+  EXPECT_EQ(output_.find("near misses"), std::string::npos) << output_;
+  arguments.back() = "-1";
+  EXPECT_EQ(run(arguments), 2);
+}
+
 TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
   std::ofstream(directory_ / "crane.urdf") << crane_urdf();
   std::ofstream(directory_ / "crane.srdf")

@@ -30,7 +30,11 @@ inline std::string shared_cell(const std::string& more = {}) {
 
 class SharedCells : public testing::Test {
  protected:
-  explicit SharedCells(const std::string& more = {}) : file(shared_cell(more)) {}
+  explicit SharedCells(const std::string& more = {}) : SharedCells(CellText{shared_cell(more)}) {}
+  struct CellText {
+    std::string text;
+  };
+  explicit SharedCells(const CellText& of) : file(of.text) {}
 
   DdsOptions dds = own_dds();
   CellFile file;

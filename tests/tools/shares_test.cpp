@@ -290,7 +290,7 @@ TEST(Several, LosesNoCycleAndHasNoZoneWrong) {
   const DdsOptions dds = test::own_dds();
   ChildProcess several(test::places::sources() + "/tools/several",
                        {test::places::programs(), "--seconds", "4", "--every", "1", "--rate", "50",
-                        "--late-ms", "1000", "--domain", std::to_string(dds.domain)});
+                        "--late-ms", "1000", "--domain", std::to_string(*dds.domain)});
   EXPECT_EQ(several.wait(), 0) << several.output();
   EXPECT_TRUE(several.wrote(" 0 cycles lost, 0 zones wrong")) << several.output();
   for (const char* complaint : {"No such file", "syntax error", "has not logged"})

@@ -24,9 +24,9 @@ def blocks():
 
 
 def for_this_machine(text):
-    """Runs beside other tests, so it gets a partition of its own. A busy machine delays joint states by more than 20 ms."""
+    """The block of code in a partition of its own."""
     return text.replace("partition: tutorial", f"partition: tutorial-{os.getpid()}").replace(
-        "--partition tutorial", f"--partition tutorial-{os.getpid()}").replace("age_limit_ms: 20}", "age_limit_ms: 5000}")
+        "--partition tutorial", f"--partition tutorial-{os.getpid()}")
 
 
 def pattern(line):
@@ -44,12 +44,25 @@ class Tutorial(unittest.TestCase):
             share = pathlib.Path(home) / "clearance/share/clearance"
             share.mkdir(parents=True)
             (share / "cells").symlink_to(ROOT / "config/cells")
-            environment = {**os.environ, "HOME": home, "PATH": f"{BUILD}/bin:/usr/bin:/bin", "PYTHONPATH": f"{BUILD}/python"}
-            folder, output, ran, compared = home, "", 0, 0
+            environment = {**{name: value for name, value in os.environ.items() if name != "ROS_DOMAIN_ID"}, "HOME": home, "PATH": f"{BUILD}/bin:/usr/bin:/bin", "PYTHONPATH": f"{BUILD}/python"}
+            folder, output, ran, compared, recording = home, "", 0, 0, ""
+
+            def run(text):
+                return subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(text)], cwd=folder, env=environment,
+                                      capture_output=True, text=True, timeout=120)
+
             for language, text in blocks():
                 if language == "sh":
-                    done = subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(text)], cwd=folder, env=environment,
-                                          capture_output=True, text=True, timeout=120)
+                    done = run(text)
+                    if "--record" in text:
+                        recording = text
+                    # A busy machine delays joint states by more than the age limit, and then the recording does not pass.
+                    for _ in range(3 if "replay check" in text else 0):
+                        if done.returncode != 1 or "stale" not in done.stderr:
+                            break
+                        (folder / "run.mcap").unlink()
+                        self.assertEqual(run(recording).returncode, 0)
+                        done = run(text)
                     folder = pathlib.Path(home) / "tutorial"
                     log = folder / "daemon.log"
                     output = done.stdout + done.stderr
@@ -59,7 +72,7 @@ class Tutorial(unittest.TestCase):
                     for line in text.splitlines():
                         self.assertRegex(output, pattern(line))
                         compared += 1
-            self.assertEqual((ran, compared), (5, 2))
+            self.assertEqual((ran, compared), (5, 7))
 
     def test_the_thresholds_that_it_works_out_are_those_of_its_formula(self):
         text = PAGE.read_text(encoding="utf-8")

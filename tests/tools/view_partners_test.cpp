@@ -9,6 +9,7 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <sstream>
 #include <thread>
 
 #include "tests/tools/made_partner.hpp"
@@ -29,6 +30,16 @@ nlohmann::json shown_at(const std::string& socket, int reports) {
   const auto lines = lines_of(client);
   EXPECT_EQ(lines.size(), 1u) << client.output();
   return lines.empty() ? nlohmann::json() : lines.front();
+}
+
+// The lines of `clearance-watch --plain`, one a second, from the first one with this text on.
+std::vector<std::string> lines_since(const ChildProcess& watch, const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream output(watch.output());
+  for (std::string line; std::getline(output, line);) {
+    if (!lines.empty() || line.find(text) != std::string::npos) lines.push_back(line);
+  }
+  return lines;
 }
 
 class ViewOfPartners : public testing::Test {
@@ -52,6 +63,13 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
                                     with(arguments, {"--partner", "right"}));
   ASSERT_TRUE(eventually([&] { return right->told("partner-agrees", {"left"}); }))
       << right->output();
+  ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
+  EXPECT_TRUE(eventually([&] { return watch.wrote("partners agree"); }));
+  const std::string figures = "tick p50";  // of the leader, whichever daemon the report is of
+  ASSERT_TRUE(eventually([&] { return lines_since(watch, figures).size() >= 10; },
+                         std::chrono::seconds(60)))
+      << watch.output();
+  EXPECT_THAT(lines_since(watch, figures), testing::Each(HasSubstr(figures)));
   View view(arguments);
   const nlohmann::json both = shown(view, 60);
   // Partners that a slow machine parts do not count cycles alike: times are always in order.
@@ -60,14 +78,20 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
       << "the page shows a report once, and none after a newer one: " << both["times"];
   EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("mixed")));
   EXPECT_THAT(both["statuses"].dump(), Not(HasSubstr("different")));
-  ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
-  EXPECT_TRUE(eventually([&] { return watch.wrote("partners agree"); }));
   right.reset();  // it is killed
   EXPECT_TRUE(eventually([&] { return watch.wrote("partner 'right': missing"); }))
       << watch.output();
-  const nlohmann::json one = shown(view, 60);
+  watch.signal(SIGTERM);
+  EXPECT_EQ(watch.wait(), 0);
+  EXPECT_THAT(watch.output(), testing::ContainsRegex("partners .*[0-9]+ agree.*, [0-9]+ missing"));
+  // A page without a viewer may lose reports, and does not tell its own loss as its partner's for a
+  // second.
+  const nlohmann::json one = shown(view, 400);
   EXPECT_THAT(one["statuses"].dump(), HasSubstr("partner 'right': missing"));
   EXPECT_THAT(one["statuses"].dump(), Not(HasSubstr("mixed")));
+  // Without a viewer for five seconds, the page forgets what it has heard.
+  std::this_thread::sleep_for(std::chrono::seconds(6));
+  EXPECT_THAT(shown(view, 60)["statuses"].dump(), HasSubstr("no partner yet"));
   EXPECT_EQ(view.end(), 0);
 }
 
@@ -87,6 +111,37 @@ TEST_F(ViewOfPartners, SaysThatOneIsAloneAndThatBitsAreDifferent) {
     }
   });
   EXPECT_THAT(shown(view, 120)["statuses"].dump(), HasSubstr("': different"));
+  ends = true;
+  repeats.join();
+}
+
+// One report in 40 is different, five times a second, and a line shows the last of 200.
+TEST_F(ViewOfPartners, ADifferenceStaysInTheLinesOfWatchForASecond) {
+  ChildProcess robot(kRobot, with(arguments, {"--rate", "200"}));
+  ChildProcess left(kDaemon, with(arguments, {"--partner", "left"}));
+  MadePartner partner(dds, cell);
+  Participant client(dds);
+  Distances reports(client, cell);
+  std::atomic<bool> ends{false};
+  std::thread repeats([&] {
+    while (!ends) {
+      const auto report = reports.next();
+      if (!report || (*report)->partner != std::string("left")) continue;
+      partner.report(**report, [](auto& message) {
+        if (message.cycle % 40 == 0) message.lower_all += 0.25;
+      });
+    }
+  });
+  ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
+  const std::string told = "partner 'right': different";
+  EXPECT_TRUE(
+      eventually([&] { return lines_since(watch, told).size() >= 6; }, std::chrono::seconds(60)))
+      << watch.output();
+  const auto lines = lines_since(watch, told);
+  const auto has_it = [&](const std::string& line) { return line.find(told) != line.npos; };
+  EXPECT_GT(2 * static_cast<std::size_t>(std::ranges::count_if(lines, has_it)), lines.size())
+      << "a slow machine compares few of them\n"
+      << watch.output();
   ends = true;
   repeats.join();
 }
@@ -117,7 +172,7 @@ TEST(ViewOfSeveral, GoesOnWhileDaemonsAreKilled) {
   const DdsOptions dds = own_dds();
   ChildProcess several(places::sources() + "/tools/several",
                        {places::programs(), "--seconds", "8", "--every", "1", "--rate", "50",
-                        "--late-ms", "1000", "--domain", std::to_string(dds.domain), "--view"});
+                        "--late-ms", "1000", "--domain", std::to_string(*dds.domain), "--view"});
   const std::string says = "in a browser: http://";
   ASSERT_TRUE(eventually([&] { return several.wrote(says); })) << several.output();
   std::string address = several.output();

@@ -12,14 +12,18 @@ namespace clearance::test {
 namespace {
 
 TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
-  const CellFile cell(small_cell("small"));
+  std::string text = small_cell("small");
+  const std::string zone = "enter_below: 0.3, leave_above: 0.35";
+  text.replace(text.find(zone), zone.size(), "enter_below: 3, leave_above: 3.5");
+  const CellFile cell(text);
   const auto dds = dds_arguments(own_dds());
   ChildProcess watch(kWatch, with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("waiting for clearanced"); })) << watch.output();
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
-  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right") && watch.wrote("tick p50"); }))
-      << watch.output();
+  ASSERT_TRUE(eventually([&] {
+    return watch.wrote("zone near (left - right)") && watch.wrote("tick p50");
+  })) << watch.output();
   watch.signal(SIGINT);
   EXPECT_EQ(watch.wait(), 0);
   EXPECT_TRUE(watch.wrote(" reports in ")) << watch.output();

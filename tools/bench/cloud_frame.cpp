@@ -47,6 +47,21 @@ const CloudFrame& cloud_frame() {
   return made;
 }
 
+std::vector<MeasuredPoint> dense_points(const Vec3& middle) {
+  Random random(3);
+  std::vector<MeasuredPoint> points(300'000);
+  const auto along = [&](int axis) {
+    return static_cast<float>(middle[axis] + random.uniform(-0.25, 0.25));
+  };
+  for (MeasuredPoint& point : points) {
+    point.x = along(0);
+    point.y = along(1);
+    point.z = along(2);
+    point.radius = kBallRadius;
+  }
+  return points;
+}
+
 std::vector<Pose> cloud_places(std::size_t count) {
   Random random(2);
   std::vector<Pose> places(count);

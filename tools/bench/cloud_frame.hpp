@@ -30,6 +30,9 @@ struct CloudFrame {
 // The frame of all rows: made once.
 [[nodiscard]] const CloudFrame& cloud_frame();
 
+// Balls that fill a cube of half a metre around a place: 300,000 of them.
+[[nodiscard]] std::vector<MeasuredPoint> dense_points(const Vec3& middle);
+
 // Places of a box among the scene.
 [[nodiscard]] std::vector<Pose> cloud_places(std::size_t count);
 

@@ -22,9 +22,14 @@ namespace {
 constexpr std::int64_t kTickNs = 1'000'000, kStart = 1'700'000'000'000'000'000;
 constexpr int kTicksAFrame = 33, kLinks = 7, kParts = 20;
 
-// Seven links of 20 boxes in all, a post, and what a camera sees. Without the camera, no pair names
-// what it sees.
-Scene arm_and_camera(bool with_camera) {
+struct TickRow {
+  const char* name;
+  bool with_camera, is_deep, is_round;
+};
+
+// Seven links of 20 boxes (or cylinders) in all, a post, and what a camera sees. Without the
+// camera, no pair names what it sees.
+Scene arm_and_camera(const TickRow& row) {
   Scene scene;
   scene.name = "cloud_ticks";
   scene.revision = 1;
@@ -36,8 +41,11 @@ Scene arm_and_camera(bool with_camera) {
     for (int part = link; part < kParts; part += kLinks) {
       Pose at;
       at.position = Vec3(0.0, 0.0, 0.06 * (part / kLinks));
+      const double half = 0.03 + 0.001 * part;
       object.parts.push_back(
-          {"part", std::get<ConvexBody>(box({0.04, 0.05, 0.03 + 0.001 * part})), at});
+          {"part",
+           std::get<ConvexBody>(row.is_round ? cylinder(0.045, half) : box({0.04, 0.05, half})),
+           at});
     }
     scene.objects.push_back(std::move(object));
   }
@@ -59,14 +67,15 @@ Scene arm_and_camera(bool with_camera) {
   sensor.error_quadratic = kCloudError.quadratic;
   sensor.least_depth = kCloudRange.least;
   sensor.greatest_depth = kCloudRange.greatest;
-  seen.parts.push_back({"view", std::get<ConvexBody>(point(Vec3::Zero(), sensor.extent())), {}});
+  seen.parts.push_back(
+      {"view", std::get<ConvexBody>(point(Vec3::Zero(), sensor.view_radius())), {}});
   scene.objects.push_back(std::move(seen));
   scene.sensors.push_back(sensor);
   for (std::uint32_t link = 0; link < kLinks; ++link) {
     for (std::uint32_t other = link + 2; other < kLinks; ++other)
       scene.pairs.push_back({link, other, true});
     scene.pairs.push_back({link, kLinks, true});
-    if (with_camera) scene.pairs.push_back({link, kLinks + 1, true});
+    if (row.with_camera) scene.pairs.push_back({link, kLinks + 1, true});
   }
   return scene;
 }
@@ -88,6 +97,18 @@ std::vector<PoseSample> arm_at(int tick, std::int64_t stamp_ns) {
   return samples;
 }
 
+// The arm is within these balls.
+const std::vector<SeenCloud>& dense_clouds() {
+  static const std::vector<SeenCloud> made = [] {
+    std::vector<SeenCloud> out;
+    const std::vector<MeasuredPoint> points = dense_points({0.1, 0.1, 1.1});
+    out.push_back(SeenCloud::of_points(points.size()));
+    static_cast<void>(out.back().points()->build(points, {{0, 0, 1}, 10.0}));
+    return out;
+  }();
+  return made;
+}
+
 const std::vector<SeenCloud>& clouds() {
   static const std::vector<SeenCloud> made = [] {
     std::vector<SeenCloud> out;
@@ -102,22 +123,24 @@ const std::vector<SeenCloud>& clouds() {
   return made;
 }
 
-void run(benchmark::State& state, bool with_camera) {
-  constexpr int kTicks = 3000;
+void run(benchmark::State& state, const TickRow& row) {
+  const int ticks = row.is_deep ? 330 : 3000;
   std::vector<double> times;
   double clock_cost = cost_of(wall_ns), queries = 0.0;
   for (auto _ : state) {
-    const Scene scene = arm_and_camera(with_camera);
+    const Scene scene = arm_and_camera(row);
+    const std::vector<SeenCloud>& frames = row.is_deep ? dense_clouds() : clouds();
     Monitor monitor(scene);
     double sum = 0.0;
-    for (int tick = 0; tick < kTicks; ++tick) {
+    for (int tick = 0; tick < ticks; ++tick) {
       const std::int64_t now = kStart + tick * kTickNs;
       const std::vector<PoseSample> samples = arm_at(tick, now);
       if (tick % kTicksAFrame == 0) {
-        monitor.show(0, {.cloud = &clouds()[static_cast<std::size_t>(tick / kTicksAFrame) % 3],
-                         .stamp_ns = now,
-                         .world_from_sensor = {},
-                         .pose_error = 0.0});
+        monitor.show(
+            0, {.cloud = &frames[static_cast<std::size_t>(tick / kTicksAFrame) % frames.size()],
+                .stamp_ns = now,
+                .world_from_sensor = {},
+                .pose_error = 0.0});
       }
       const double begin = wall_ns();
       const Report& report = monitor.tick(samples, now);
@@ -126,7 +149,7 @@ void run(benchmark::State& state, bool with_camera) {
       sum += took;
       queries += report.queries;
     }
-    state.SetIterationTime(1e-9 * sum / kTicks);
+    state.SetIterationTime(1e-9 * sum / ticks);
   }
   std::ranges::sort(times);
   const auto at = [&](double share) {
@@ -142,10 +165,11 @@ void run(benchmark::State& state, bool with_camera) {
 }  // namespace
 
 void register_cloud_ticks() {
-  for (const bool with_camera : {false, true}) {
-    benchmark::RegisterBenchmark(
-        with_camera ? "cloud/tick/with" : "cloud/tick/without",
-        [with_camera](benchmark::State& state) { run(state, with_camera); })
+  for (const TickRow& row :
+       {TickRow{"without", false, false, false}, TickRow{"with", true, false, false},
+        TickRow{"deep/boxes", true, true, false}, TickRow{"deep/cylinders", true, true, true}}) {
+    const std::string name = std::string("cloud/tick/") + row.name;
+    benchmark::RegisterBenchmark(name.c_str(), [row](benchmark::State& state) { run(state, row); })
         ->UseManualTime()
         ->Iterations(2)  // of 3,000 ticks
         ->Unit(benchmark::kMicrosecond);

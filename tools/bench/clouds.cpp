@@ -131,6 +131,7 @@ void register_clouds() {
       query<BallQuery>(s, tracked);
     })->UseManualTime();
   }
+  register_deep_clouds();
   register_cloud_ticks();
 #ifdef CLEARANCE_BENCH_NANOFLANN
   register_nanoflann_clouds();

@@ -43,6 +43,7 @@ Rows:
   tracked/f2 ... v40 one query of two facet-balls (f) or their duals (v) of that order; also boxes,
                      parallel-boxes and links
   cold/f2 ... links  the same without the state of the last query
+  relative/tracked/f2    the same with B's place in A's frame given; also f40, boxes, parallel-boxes, links
   curved/tracked/A-B one query of two bodies of these kinds, at least one of them curved: ellipsoid, cylinder,
                      cone, truncated_cone with one of these, box, link, capsule, sphere or rounded_box;
                      pair/tracked/A-B of two bodies that are not curved; .../cold/...
@@ -64,7 +65,9 @@ Rows:
                      DynamicAABBTreeCollisionManager
   cloud/build/...    a depth image of 640 x 480 pixels as slabs (16UC1, 32FC1) or balls; cloud/cold/slabs, cloud/tracked/slabs:
                      the slab nearest to a box; also balls; cloud/brute_force/balls: every ball, one by one. cloud/tick/with, cloud/tick/without: a tick
-                     of an arm of 20 parts with and without such a camera. cloud/PEER/build, cloud/PEER/cold: nanoflann,
+                     of an arm of 20 parts with and without such a camera. cloud/deep/balls/PART, cloud/deep/slabs/PART: cold
+                     queries of a box or cylinder deep in a cloud; cloud/tick/deep/boxes, .../cylinders: ticks of
+                     that arm deep in balls. cloud/PEER/build, cloud/PEER/cold: nanoflann,
                      nanoflann-spheres, octomap-15mm, octomap-25mm (FCL); counters max_error, mean_error, m
   parts/NAME         splitting a mesh into convex parts; counters parts, error_mm, triangles; CPU time of all threads
   sweep/WHAT/VALUE   the same of 300 moving bodies at other speeds (m/s) and spacings (m), and of other numbers of
@@ -113,7 +116,7 @@ struct Part {
   const char* rows;
 };
 constexpr Part kParts[] = {
-    {"--queries", "^(tracked|cold|batch|overlap|peer/[^/]+/(tracked|cold))/"},
+    {"--queries", "^(tracked|cold|relative|batch|overlap|peer/[^/]+/(tracked|cold))/"},
     {"--curved", "^(peer/[^/]+/)?(curved|pair)/"},
     {"--tick", "^tick/"},
     {"--parts", "^parts/"},

@@ -68,6 +68,13 @@ inline void count_steps(benchmark::State& state, double steps) {
   state.counters["iterations"] = state.counters["steps"] = steps;
 }
 
+// ns per iteration, which is a query.
+inline void count_time(benchmark::State& state) {
+  const double queries = static_cast<double>(state.iterations());
+  state.counters["ns"] =
+      benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
 // Its counters.
 inline void count(benchmark::State& state, const Verdict& verdict) {
   if (verdict.measures) state.counters["max_error"] = verdict.max_error;
@@ -81,6 +88,30 @@ inline void count(benchmark::State& state, const Verdict& verdict) {
 inline constexpr int kTracked = std::numeric_limits<int>::max();
 inline constexpr int kCold = 1;
 
+// Queries of a workload. `follow(i, use)` makes those of trajectory i, one after another, and calls
+// use(k, answer) after the k-th one.
+template <class Follow>
+Verdict judge_trajectories(const Workload& load, const Follow& follow) {
+  Verdict verdict;
+  for (std::size_t i = 0; i < load.trajectories.size(); ++i) {
+    follow(i, [&](std::size_t k, const Answer& a) { verdict.add(a, load.truth[i][k]); });
+  }
+  verdict.iterations /= static_cast<double>(load.queries());
+  return verdict;
+}
+// One iteration of the benchmark is one query.
+template <class Follow>
+void time_trajectories(benchmark::State& state, const Workload& load, const Follow& follow) {
+  double sum = 0.0;
+  while (state.KeepRunningBatch(load.queries())) {
+    for (std::size_t i = 0; i < load.trajectories.size(); ++i) {
+      follow(i, [&](std::size_t, const Answer& answer) { sum += answer.distance; });
+    }
+    benchmark::DoNotOptimize(sum);
+  }
+  count_time(state);
+}
+
 template <class Solver>
 class Row {
  public:
@@ -92,21 +123,11 @@ class Row {
       }
       solvers_.push_back(std::make_unique<Solver>(shapes_.at(t.a.get()), shapes_.at(t.b.get())));
     }
-    verdict_ = judge();
+    verdict_ = judge_trajectories(load, [this](std::size_t i, const auto& use) { follow(i, use); });
   }
 
-  // One iteration of the benchmark is one query.
   void time(benchmark::State& state) {
-    double sum = 0.0;
-    while (state.KeepRunningBatch(load_.queries())) {
-      for (std::size_t i = 0; i < solvers_.size(); ++i) {
-        follow(i, [&](std::size_t, const Answer& answer) { sum += answer.distance; });
-      }
-      benchmark::DoNotOptimize(sum);
-    }
-    const double queries = static_cast<double>(state.iterations());
-    state.counters["ns"] = benchmark::Counter(
-        queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+    time_trajectories(state, load_, [this](std::size_t i, const auto& use) { follow(i, use); });
     count(state, verdict_);
   }
 
@@ -122,15 +143,6 @@ class Row {
       }
       use(k, solvers_[i]->query(poses[k].first, poses[k].second));
     }
-  }
-
-  Verdict judge() {
-    Verdict verdict;
-    for (std::size_t i = 0; i < solvers_.size(); ++i) {
-      follow(i, [&](std::size_t k, const Answer& a) { verdict.add(a, load_.truth[i][k]); });
-    }
-    verdict.iterations /= static_cast<double>(load_.queries());
-    return verdict;
   }
 
   const Workload& load_;

@@ -35,7 +35,14 @@ void register_clouds();
 // cloud/tick/with and cloud/tick/without: one tick of an arm of seven links (20 boxes) with and
 // without the pairs of a camera, whose frames of 307,200 slabs come at 30 Hz. Counters, us: p50,
 // p99, p999, max; queries a tick.
+//
+// cloud/tick/deep/boxes and cloud/tick/deep/cylinders: ticks of that arm deep in 300,000 balls.
 void register_cloud_ticks();
+
+// cloud/deep/CLOUD/PART: cold queries of a part that is deep in a cloud: in 300,000 balls that fill
+// a cube of half a metre, or on the surfaces of a depth image. Counters: max_us; work, the cost in
+// overlaps; widest_gap, m.
+void register_deep_clouds();
 
 // parts/NAME: splitting a mesh into convex parts, for drawn meshes and for these files, STL, OBJ,
 // PLY or DAE in metres. Counters: parts, error_mm (certified) and triangles; the time is that of

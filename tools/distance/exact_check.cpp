@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <limits>
 
+#include "config/text/sentences.hpp"
 #include "core/distance.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "monitor/app/print.hpp"
@@ -288,7 +289,7 @@ void ExactCheck::print_summary() const {
   for (const auto& [family, figures] : families_) print_row(family, figures);
   const Figures sum = total();
   print_row("all", sum);
-  if (without_ > 0) print(stderr, "{} lines carry no exact answer\n", without_);
+  if (without_ > 0) print(stderr, "{} carried no exact answer\n", counted(without_, "line"));
   print(stderr, "{}\n",
         sum.answers == 0 ? "nothing was checked"
         : sum.wrong == 0

@@ -48,7 +48,7 @@ std::optional<std::uint32_t> needs_a_pose(const Command& command) {
 }  // namespace
 
 CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std::uint64_t daemon)
-    : connection_(connection) {
+    : connection_(connection), follow_first_(cell.ros.moveit.any()) {
   if (cell.commands.from.empty()) return;
   for (const Share& share : cell.shares.all) {
     OfShare& of = shares_.emplace_back();
@@ -86,6 +86,7 @@ CommandRelay::~CommandRelay() {
 }
 
 void CommandRelay::note(const client::SharedCell& whole) {
+  whole_in_ = whole.is_whole() ? whole->scene_revision : 0;
   if (revision_ == whole->scene_revision) return;
   since_cycle_ = whole->cycle;
   revision_ = whole->scene_revision;
@@ -138,6 +139,14 @@ std::uint64_t CommandRelay::in_force_from(std::uint64_t revision) const {
   return revision_ == revision ? since_cycle_.load() : 0;
 }
 
+// A share may have taken over the scene of the first one before the command came to it.
+bool CommandRelay::all_get(std::uint64_t revision) const {
+  const std::int64_t end_ns = client::monotonic_ns() + kReported.count();
+  while (whole_in_ != revision && !stop_ && client::monotonic_ns() < end_ns)
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  return whole_in_ == revision;
+}
+
 // All shares are asked first whether they can make the change. A share that then refuses it all the
 // same is of another revision, so that the cell is not whole until it agrees.
 CommandResult CommandRelay::pass_on(const Command& asked) {
@@ -172,22 +181,25 @@ CommandResult CommandRelay::pass_on(const Command& asked) {
   if (asked.dry_run) return answer_to(asked, std::move(results.back()));
   results = send_to_all(command, false);
   std::string made, not_made;
+  std::size_t last_made = 0;
   for (std::size_t i = 0; i < shares_.size(); ++i) {
     const bool is_same = results[i].scene_revision == expected;
     if (results[i].done() && is_same) {
+      last_made = i;
       made += fmt::format("{}'{}'", made.empty() ? "" : ", ", shares_[i].name);
     } else {
       not_made += fmt::format("{}'{}': {}", not_made.empty() ? "" : ", ", shares_[i].name,
                               results[i].done() ? "its scene is another one" : results[i].reason);
     }
   }
-  if (!not_made.empty()) {
+  const bool may_come = follow_first_ && !made.empty();
+  if (!not_made.empty() && !(may_come && all_get(expected))) {
     return refusal(asked, CommandStatus::kFailed,
                    fmt::format("not every share made it ({}){}; the cell is not whole until all "
                                "have the same scene",
                                not_made, made.empty() ? "" : fmt::format(", and {} did", made)));
   }
-  CommandResult last = answer_to(asked, std::move(results.back()));
+  CommandResult last = answer_to(asked, std::move(results[last_made]));
   last.in_force_from = in_force_from(last.scene_revision);
   return last;
 }

@@ -41,14 +41,17 @@ class CommandRelay {
 
   void run();
   [[nodiscard]] std::uint64_t in_force_from(std::uint64_t revision) const;
+  [[nodiscard]] bool all_get(std::uint64_t revision) const;
   [[nodiscard]] CommandResult pass_on(const Command& command);
   [[nodiscard]] CommandResult send(OfShare& share, const Command& command, bool dry_run);
   [[nodiscard]] std::vector<CommandResult> send_to_all(const Command& command, bool dry_run);
 
   client::Connection& connection_;
   std::vector<OfShare> shares_;
+  const bool follow_first_;  // the shares take over the scene of the first one
   std::atomic<std::uint64_t> revision_{0}, since_cycle_{0};
-  std::mutex mutex_;  // guards the queue
+  std::atomic<std::uint64_t> whole_in_{0};  // the revision that all shares have; 0: not the same
+  std::mutex mutex_;                        // guards the queue
   std::condition_variable changed_;
   std::deque<QueuedCommand> queue_;
   std::atomic<bool> stop_{false};

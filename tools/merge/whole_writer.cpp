@@ -136,7 +136,8 @@ void WholeWriter::write(client::SharedCell& whole) {
 
 std::string WholeWriter::summary(const client::SharedCell& whole) const {
   return fmt::format(
-      "{} reports of the whole cell, {} of them with a share missing, late or of another revision; "
+      "{} reports of the whole cell, {} of them with a share missing, late, of another revision or "
+      "divided otherwise; "
       "{} cycles lost, {} zones wrong, {} reports not taken by DDS\n"
       "from the oldest pose in use to the oldest share's report: {}; to that of the whole: {}\n"
       "delay from the oldest share's report to that of the whole: {}",

@@ -23,7 +23,7 @@ std::vector<std::string> StreamGaps::notes() const {
                       what, stream.first));
     }
     if (stream.missing > 0) {
-      notes.push_back(fmt::format("{} of the {} are missing in between", stream.missing, what));
+      notes.push_back(fmt::format("missing in between: {} of the {}", stream.missing, what));
     }
   }
   return notes;

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/participant/cdr_sample.hpp"
@@ -204,8 +205,8 @@ int record_from_dds(const RecordArguments& arguments, const Cell* cell, StopSign
   print(stderr, "{}: ", arguments.out);
   show(subscription, writer, "\n");
   if (subscription.lost() > 0) {
-    print(stderr, "clearance-record: {} samples were lost before they were recorded\n",
-          subscription.lost());
+    print(stderr, "clearance-record: lost {} before recording\n",
+          counted(subscription.lost(), "sample"));
   }
   for (const std::string& gap : subscription.gaps()) {
     print(stderr, "clearance-record: {}\n", gap);

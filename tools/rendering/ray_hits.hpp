@@ -1,4 +1,4 @@
-// Where a ray from the origin first meets a body of a simple form: closed forms, in doubles.
+// Finds where a ray from the origin first meets a body of a simple form: closed forms, in doubles.
 //
 // The ray is t * direction for t >= 0. Its direction need not be of unit length, so that a pixel's
 // direction (x, y, 1) gives t as a depth. Each function returns the least t at which the ray is in

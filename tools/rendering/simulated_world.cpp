@@ -10,7 +10,7 @@ namespace {
 std::optional<RobotBase> body_of(const Cell& cell, const std::string& frame) {
   const Scene& scene = cell.scene;
   RobotBase body;
-  if (frame == cell.ros.world_frame) return body;
+  if (frame == cell.ros.world()) return body;
   body.kind = RobotBase::Kind::kLink;
   for (body.robot = 0; body.robot < scene.robots.size(); ++body.robot) {
     const auto& links = scene.robots[body.robot].links;
@@ -21,8 +21,7 @@ std::optional<RobotBase> body_of(const Cell& cell, const std::string& frame) {
   body.kind = RobotBase::Kind::kObject;
   for (body.object = 0; body.object < scene.objects.size(); ++body.object) {
     const Object& object = scene.objects[body.object];
-    if (!object.is_seen() && (object.frame.empty() ? object.name : object.frame) == frame)
-      return body;
+    if (!object.frame.empty() && object.frame == frame) return body;
   }
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 // The arguments of clearance-replay's two subcommands.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -44,6 +45,7 @@ struct CheckArguments {
   std::string plot;                                             // SVG; empty: none
   std::string report;                                           // HTML; empty: none
   std::vector<std::pair<std::string, std::string>> plot_pairs;  // empty: the nearest
+  std::uint32_t balance = 0;  // a cell in this many shares of the same cost; 0: none
   bool force = false;
   bool published = false;
   bool evaluate_all = false;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <map>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -21,6 +22,7 @@
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/replay/run_curves.hpp"
+#include "tools/replay/share_balance.hpp"
 #include "tools/shared/progress_bar.hpp"
 
 namespace clearance {
@@ -82,21 +84,25 @@ OfflineReplayOptions options_of(const CheckArguments& arguments) {
   return options;
 }
 
-void print_summary(const OfflineReplay& replay, std::optional<double> tolerance, double elapsed_s) {
+// To stderr where --balance prints its key on stdout.
+void print_summary(const OfflineReplay& replay, const CheckArguments& arguments, double elapsed_s) {
+  std::FILE* const out = arguments.balance > 0 ? stderr : stdout;
+  const std::optional<double> tolerance = arguments.tolerance;
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
-  print(stdout, "{} ticks, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
-        replay.ticks, recorded_s, elapsed_s, elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
+  print(out, "{}, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
+        counted(replay.ticks, "tick"), recorded_s, elapsed_s,
+        elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
-    print(stdout, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", replay.closest_pair,
+    print(out, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", replay.closest_pair,
           pair.distance, pair.lower, pair.upper, replay.closest_tick.text());
   }
   if (replay.compared > 0) {
-    print(stdout, "{} reports compared\n", replay.compared);
+    print(out, "{} compared\n", counted(replay.compared, "report"));
   }
   if (replay.reference) {
     const ReferenceTotals& totals = *replay.reference;
-    print(stdout,
+    print(out,
           "{} reference distances compared, largest difference {:.2g} m; {} off by more than {:g} "
           "m, {} outside of the bounds{}\n",
           totals.compared, totals.largest, totals.off, tolerance.value_or(kReferenceTolerance),
@@ -104,13 +110,14 @@ void print_summary(const OfflineReplay& replay, std::optional<double> tolerance,
   }
 }
 
-// The files that -o, --csv, --plot and --report ask for.
+// The outputs of -o, --csv, --plot, --report and --balance.
 class Outputs {
  public:
   Outputs(const CheckArguments& arguments, const Cell& cell) : arguments_(arguments) {
     if (!arguments.out.empty()) recording_.emplace(arguments.out, cell);
     if (!arguments.csv.empty()) csv_.emplace(arguments.csv, cell.scene, !arguments.published);
     if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, cell);
+    if (arguments.balance > 0) balance_.emplace(arguments.balance);
   }
   // False, after saying why, when a file cannot be made.
   [[nodiscard]] bool ok() const { return !csv_ || said(csv_->error()); }
@@ -120,6 +127,7 @@ class Outputs {
     if (recording_) recording_->add(tick);
     if (csv_) csv_->add(tick);
     if (curves_) curves_->add(tick);
+    if (balance_) balance_->add(tick);
   }
   // False, after saying why, when not all is written.
   bool close(const OfflineReplay& replay) {
@@ -130,7 +138,9 @@ class Outputs {
                       recording_->without_files()));
     }
     const bool tabled = !csv_ || csv_->close() || said(csv_->error());
-    return recorded && tabled && drawn;
+    const bool balanced = !balance_ || said(balance_->error());
+    if (balance_) print(stdout, "{}", balance_->text());
+    return recorded && tabled && drawn && balanced;
   }
   // A recording is created with its first tick; before that, a file of this name is not ours.
   void abandon() {
@@ -152,6 +162,7 @@ class Outputs {
   std::optional<ReportRecorder> recording_;
   std::optional<ReportCsv> csv_;
   std::optional<RunCurves> curves_;
+  std::optional<ShareBalance> balance_;
   bool begun_ = false;
 };
 
@@ -181,6 +192,10 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
                     arguments.recording()));
     return kUsage;
   }
+  if (arguments.balance > cell.scene.pairs.size()) {
+    say(an_empty_share(arguments.balance, cell.scene.pairs.size()));
+    return kFailed;
+  }
   Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
 
@@ -198,7 +213,7 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
   bar.finish();
   print(stderr, "{}", replay.text());
   if (!replay.error.empty()) return kFailed;
-  print_summary(replay, arguments.tolerance, elapsed.count());
+  print_summary(replay, arguments, elapsed.count());
   return finish(replay, outputs);
 }
 

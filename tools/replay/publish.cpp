@@ -7,6 +7,7 @@
 #include <set>
 #include <variant>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
@@ -278,11 +279,11 @@ int Publishing::finish(const RecordingReader& reader) {
   bar_.finish();
   const double took_s =
       began_log_ns_ < 0 ? 0.0 : static_cast<double>(monotonic_ns() - began_ns_) * 1e-9;
-  print(stdout, "{} messages published in {:.3f} s on {}\n", published_, took_s,
+  print(stdout, "{} published in {:.3f} s on {}\n", counted(published_, "message"), took_s,
         participant_.where());
   if (undecodable_ > 0) {
-    print(stderr, "clearance-replay: {} messages do not decode as what their channel says\n",
-          undecodable_);
+    print(stderr, "clearance-replay: {} could not be decoded as the channel says\n",
+          counted(undecodable_, "message"));
   }
   if (published_ == 0 && !stop_.wait(0)) {
     std::string met;

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <iterator>
 
+#include "config/text/sentences.hpp"
 #include "monitor/pair_name.hpp"
 #include "tools/shared/html.hpp"
 
@@ -40,7 +41,8 @@ std::string summary_table(const Scene& scene, const OfflineReplay& replay, const
   std::string out = "<table>\n" + row("Recording", page.recording) +
                     row("Cell", fmt::format("{}: {}", page.cell, summary(scene)));
   out += row("Replayed with", page.build);
-  out += row("Run", fmt::format("{} ticks in {:.3f} s", replay.ticks, series.duration_s()));
+  out +=
+      row("Run", fmt::format("{} in {:.3f} s", counted(replay.ticks, "tick"), series.duration_s()));
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
     out += row("Least distance",
@@ -50,7 +52,7 @@ std::string summary_table(const Scene& scene, const OfflineReplay& replay, const
   } else {
     out += row("Least distance", "not known: no pair was ever evaluated");
   }
-  out += row("Zones entered", fmt::format("{} times", series.visits().size()));
+  out += row("Zones entered", counted(series.visits().size(), "time"));
   return out + "</table>\n";
 }
 

@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "config/text/sentences.hpp"
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "monitor/app/print.hpp"
@@ -218,19 +219,19 @@ void CameraTruth::tell() {
   }
   for (const auto& [pair, found] : found_) {
     const ObjectPair& objects = cell_.scene.pairs[pair];
-    print(
-        stdout,
-        "truth    {} - {}: {} reports, least true distance {:.4f} m, lower bounds {:.1f} mm below "
-        "the truth (median), {} above it{}\n",
-        cell_.scene.objects[objects.first].name, cell_.scene.objects[objects.second].name,
-        found.compared, found.least, 1e3 * median(found.gaps), found.above,
-        found.above == 0 ? "" : fmt::format(", by up to {:.3g} m", found.worst));
+    print(stdout,
+          "truth    {} - {}: {}, least true distance {:.4f} m, lower bounds {:.1f} mm below "
+          "the truth (median), {} above it{}\n",
+          cell_.scene.objects[objects.first].name, cell_.scene.objects[objects.second].name,
+          counted(found.compared, "report"), found.least, 1e3 * median(found.gaps), found.above,
+          found.above == 0 ? "" : fmt::format(", by up to {:.3g} m", found.worst));
   }
-  print(stdout,
-        "         of the surface that is visible, without {} pixels at most in the blind shell\n",
-        most_blind_);
+  print(stdout, "         of the surface that is visible; {} of a frame in the blind shell{}\n",
+        most_blind_ == 0 ? "no pixel" : fmt::format("at most {}", counted(most_blind_, "pixel")),
+        most_blind_ == 0 ? "" : ", left out");
   if (unknown_ > 0)
-    print(stdout, "         {} reports were not compared: their frames are not kept\n", unknown_);
+    print(stdout, "         {} could not be compared: the frames are not kept\n",
+          counted(unknown_, "report"));
 }
 
 }  // namespace clearance

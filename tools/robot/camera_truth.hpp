@@ -47,7 +47,7 @@ class CameraTruth {
     std::vector<Eigen::Vector3f> points;  // in the world, m
     std::vector<float> sizes;  // m: no element that contains the point extends farther from it
   };
-  // Of one pair.
+  // The findings for one pair.
   struct Found {
     std::uint64_t compared = 0, above = 0;
     double least = kInfinity;   // true distance, m

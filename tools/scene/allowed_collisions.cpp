@@ -41,42 +41,57 @@ std::string counts(const SampledPair& pair, std::uint64_t samples) {
 
 }  // namespace
 
-AllowedReason reason_to_allow(const SampledPair& pair, std::uint64_t samples) {
+AllowedReason reason_to_allow(const SampledPair& pair, const AllowRule& rule) {
   if (pair.adjacent) return AllowedReason::kAdjacent;
   if (pair.touch_at_zero) return AllowedReason::kDefault;
-  if (20 * pair.touching >= 19 * samples) return AllowedReason::kAlways;
-  return pair.touching == 0 ? AllowedReason::kNever : AllowedReason::kWatch;
+  if (20 * pair.touching >= 19 * rule.samples) return AllowedReason::kAlways;
+  return pair.least > rule.never_margin ? AllowedReason::kNever : AllowedReason::kWatch;
 }
 
 std::string as_srdf(const Scene& scene, const std::vector<SampledPair>& pairs,
-                    std::uint64_t samples) {
+                    const AllowRule& rule) {
   std::string text = fmt::format("<robot name=\"{}\">\n", scene.robots.front().name);
   for (const SampledPair& pair : pairs) {
-    const AllowedReason reason = reason_to_allow(pair, samples);
+    const AllowedReason reason = reason_to_allow(pair, rule);
     if (reason == AllowedReason::kWatch) continue;
     const auto& [a, b] = names_of(scene, pair);
     text += fmt::format(
         "  <disable_collisions link1=\"{}\" link2=\"{}\" reason=\"{}\"/>  <!-- {} -->\n", a, b,
-        word(reason), counts(pair, samples));
+        word(reason), counts(pair, rule.samples));
   }
   return text + "</robot>\n";
 }
 
 std::string as_cell(const Scene& scene, const std::vector<SampledPair>& pairs,
-                    std::uint64_t samples) {
+                    const AllowRule& rule) {
   std::string text = "allowed_collisions:\n";
   for (const SampledPair& pair : pairs) {
-    const AllowedReason reason = reason_to_allow(pair, samples);
+    const AllowedReason reason = reason_to_allow(pair, rule);
     if (reason == AllowedReason::kWatch) continue;
     const auto& [a, b] = names_of(scene, pair);
     text += fmt::format("  - {{between: [\"{}\", \"{}\"], reason: \"{}: {}\"}}\n", a, b,
-                        word(reason), counts(pair, samples));
+                        word(reason), counts(pair, rule.samples));
   }
   return text;
 }
 
+std::string near_misses(const Scene& scene, const std::vector<SampledPair>& pairs,
+                        const AllowRule& rule) {
+  std::string missed;
+  for (const SampledPair& pair : pairs) {
+    if (pair.touching > 0 || reason_to_allow(pair, rule) != AllowedReason::kWatch) continue;
+    const auto& [a, b] = names_of(scene, pair);
+    missed += fmt::format("  {} - {}: {:.4f} m\n", a, b, pair.least);
+  }
+  if (missed.empty()) return missed;
+  return fmt::format(
+      "near misses, which stay watched: no contact was sampled (--samples {}), but the least "
+      "distance is within --never-margin {:g}\n{}",
+      rule.samples, rule.never_margin, missed);
+}
+
 std::string agreement(const Scene& scene, const std::vector<SampledPair>& pairs,
-                      std::uint64_t samples, const Srdf& srdf) {
+                      const AllowRule& rule, const Srdf& srdf) {
   LinkNames shaped, fixed;
   for (const Object& object : scene.objects) {
     shaped.insert(object.name);
@@ -90,14 +105,15 @@ std::string agreement(const Scene& scene, const std::vector<SampledPair>& pairs,
   std::string only;
   for (const SampledPair& pair : pairs) {
     const auto [a, b] = names_of(scene, pair);
-    const AllowedReason reason = reason_to_allow(pair, samples);
+    const AllowedReason reason = reason_to_allow(pair, rule);
     const bool stock = disabled.contains(std::minmax(a, b));
     const bool ours = reason != AllowedReason::kWatch;
     both += stock && ours;
     neither += !stock && !ours;
     if (stock == ours) continue;
-    only += fmt::format("  {} - {}: {} the SRDF, {} here; {}\n", a, b,
-                        stock ? "disabled in" : "watched by", word(reason), counts(pair, samples));
+    only +=
+        fmt::format("  {} - {}: {} the SRDF, {} here; {}\n", a, b,
+                    stock ? "disabled in" : "watched by", word(reason), counts(pair, rule.samples));
   }
   return fmt::format(
       "{} of {} pairs as in the SRDF: {} left out by both, {} watched by both; {} pairs differ\n{}",

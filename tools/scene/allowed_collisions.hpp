@@ -13,18 +13,29 @@ namespace clearance {
 // The reasons of SRDFs, by weight. kWatch: there is no reason, and the pair is watched.
 enum class AllowedReason : std::uint8_t { kWatch, kAdjacent, kDefault, kAlways, kNever };
 
-// Adjacent; in contact at zero; in contact in 19 of 20 samples or more; in contact in none.
-[[nodiscard]] AllowedReason reason_to_allow(const SampledPair& pair, std::uint64_t samples);
+struct AllowRule {
+  std::uint64_t samples = 0;   // how many positions the pairs were sampled in
+  double never_margin = 0.05;  // m: 'Never' needs a greater least distance
+};
+
+// Adjacent; in contact at zero; in contact in 19 of 20 samples or more; farther apart than the
+// margin in all. More samples meet smaller distances, so a pair that came near may well touch.
+[[nodiscard]] AllowedReason reason_to_allow(const SampledPair& pair, const AllowRule& rule);
 
 // <disable_collisions> lines of an SRDF, with the counts as comments.
 [[nodiscard]] std::string as_srdf(const Scene& scene, const std::vector<SampledPair>& pairs,
-                                  std::uint64_t samples);
+                                  const AllowRule& rule);
 // The `allowed_collisions` of a cell.
 [[nodiscard]] std::string as_cell(const Scene& scene, const std::vector<SampledPair>& pairs,
-                                  std::uint64_t samples);
+                                  const AllowRule& rule);
+
+// Lists the pairs that touched in no sample but came within the margin, with their least distances;
+// empty if there are none.
+[[nodiscard]] std::string near_misses(const Scene& scene, const std::vector<SampledPair>& pairs,
+                                      const AllowRule& rule);
 
 // Lists the pairs that both allow, and those that only one allows, with the counts.
 [[nodiscard]] std::string agreement(const Scene& scene, const std::vector<SampledPair>& pairs,
-                                    std::uint64_t samples, const Srdf& srdf);
+                                    const AllowRule& rule, const Srdf& srdf);
 
 }  // namespace clearance

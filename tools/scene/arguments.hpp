@@ -21,6 +21,7 @@ struct ImportArguments {
 struct AllowArguments {
   RobotCellOptions robot;  // the URDF, its packages and perhaps an SRDF
   SamplingOptions sampling;
+  double never_margin = 0.05;  // m
   std::string form = "srdf";
   std::string output;  // empty: stdout
   bool force = false;

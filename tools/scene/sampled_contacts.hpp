@@ -10,7 +10,7 @@
 namespace clearance {
 
 struct SamplingOptions {
-  std::uint64_t samples = 10'000;
+  std::uint64_t samples = 100'000;
   std::uint64_t seed = 1;
   std::function<void(double share)> progress = {};  // 0 to 1, about a hundred times
 };

@@ -84,8 +84,10 @@ int add_changes(const std::string& text, const std::filesystem::path& file,
 
 int print_result(const CommandResult& result, bool dry_run) {
   if (!result.done()) {
-    print(stderr, "refused ({}): {}{}{}\n", name_of(result.status), result.path,
-          result.path.empty() ? "" : ": ", result.reason);
+    const bool is_stranger = result.status == CommandStatus::kNotNamed;
+    print(stderr, "refused ({}): {}{}{}{}\n", name_of(result.status), result.path,
+          result.path.empty() ? "" : ": ", result.reason,
+          is_stranger ? ". --as NAME sends under another name" : "");
     return kRefused;
   }
   if (dry_run) {

@@ -121,14 +121,15 @@ int allow_collisions(const AllowArguments& arguments) {
   if (!cell) return kBadCell;
   const Scene& scene = cell->scene;
   const std::vector<SampledPair> pairs = sample_with_progress(scene, arguments.sampling);
-  const std::uint64_t samples = arguments.sampling.samples;
+  const AllowRule rule{arguments.sampling.samples, arguments.never_margin};
   if (!robot.srdf.empty()) {
     const auto srdf = read_srdf(robot.srdf);
     if (const auto* faults = std::get_if<UrdfFaults>(&srdf)) return print_faults(*faults);
-    print(stderr, "{}", agreement(scene, pairs, samples, std::get<Srdf>(srdf)));
+    print(stderr, "{}", agreement(scene, pairs, rule, std::get<Srdf>(srdf)));
   }
+  print(stderr, "{}", near_misses(scene, pairs, rule));
   const std::string text =
-      arguments.form == "srdf" ? as_srdf(scene, pairs, samples) : as_cell(scene, pairs, samples);
+      arguments.form == "srdf" ? as_srdf(scene, pairs, rule) : as_cell(scene, pairs, rule);
   if (!arguments.output.empty()) return write_text(text, arguments.output);
   print(stdout, "{}", text);
   return kOk;

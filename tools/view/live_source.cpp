@@ -155,8 +155,9 @@ void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
 // Only the first report of a daemon that is alone is decoded for this, and one after reports that
 // lacked pairs were shown: it may have been started again with other options.
 bool LiveSource::are_all_needed(dds_entity_t reader) {
+  if (taken_.empty()) return false;
   const bool is_known = std::exchange(has_looked_, true) && !frame_->lacks_pairs();
-  if (taken_.empty() || (is_known && writers_alive(reader) < 2)) return false;
+  if (is_known && writers_alive(reader) < 2) return false;
   return decoder_.decode(taken_.back().bytes(), report_, CdrBytes::kOfReader) &&
          (*report_->partner != '\0' || report_->changes_since != 0);
 }

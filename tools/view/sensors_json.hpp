@@ -1,4 +1,4 @@
-// What sensors see, for the page, beside their points.
+// The sensors' frames for the page, without their points.
 #pragma once
 
 #include <span>

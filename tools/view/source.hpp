@@ -39,7 +39,7 @@ class Source {
   }
   // The distance of two objects as they are shown (Frame::distance_json).
   [[nodiscard]] virtual std::string distance(std::uint32_t a, std::uint32_t b) = 0;
-  // What the sensors of the cell see now (sensors_json.hpp).
+  // The newest frames of the cell's sensors (sensors_json.hpp).
   [[nodiscard]] virtual std::string sensors() const { return "[]"; }
   // The time line of a recording as JSON; "null" where there is none.
   [[nodiscard]] virtual std::string timeline() const { return "null"; }

@@ -12,6 +12,8 @@ namespace {
 
 // A terminal may block the program for a second; the reader keeps the reports of that time.
 constexpr std::int32_t kDepth = 2048;
+// The time for which a state of the partners is shown although a better one has come.
+constexpr std::int64_t kShownNs = 1'000'000'000;
 
 }  // namespace
 
@@ -42,6 +44,13 @@ void Feed::note_report(std::int64_t now_ns) {
   daemons_.insert(reports_->daemon);
   missed_ += check.missed;
   ++count_;
+  const client::PartnerCheck& partner = reports_.partner();
+  ++partner_counts_.at(static_cast<std::size_t>(partner.state));
+  const std::int64_t shown_ns = now_ns - partner_ns_;
+  if (partner.state >= partner_.state || shown_ns < 0 || shown_ns > kShownNs) {
+    partner_ = partner;
+    partner_ns_ = now_ns;
+  }
   if (check.is_old) {
     old_ = {.count = old_.count + 1,
             .oldest_ns = std::max(old_.oldest_ns, check.age_ns),
@@ -77,7 +86,9 @@ const clearance_msg_Catalogue* Feed::catalogue() const noexcept {
 
 const clearance_msg_Health* Feed::health() const noexcept {
   const clearance_msg_Health* const health = health_.message();
-  return health != nullptr && (!any() || health->daemon == reports_->daemon) ? health : nullptr;
+  return health != nullptr && (!any() || health->daemon == reports_->daemon || has_partner())
+             ? health
+             : nullptr;
 }
 
 std::string Feed::object_name(std::uint32_t object) const {

@@ -1,6 +1,7 @@
 // The state of a client of the daemon: the latest sample of every topic, and counts of its losses.
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <cstdint>
 #include <map>
@@ -30,6 +31,9 @@ struct OldReports {
   std::int64_t oldest_ns = 0;  // its age
   std::int64_t last_ns = 0;    // when the last of them was taken, CLOCK_REALTIME
 };
+
+// The number of reports that were handed out in each client::PartnerState.
+using PartnerCounts = std::array<std::uint64_t, 6>;
 
 // The last state stays while no daemon publishes.
 class Feed {
@@ -71,9 +75,11 @@ class Feed {
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
   // While no report has come: the shares of a cell whose daemons are there (SHARES.md).
   [[nodiscard]] std::set<std::string> shares() const;
-  // The daemons are partners, whose reports are merged; and whether the two agree.
+  // The daemons are partners, whose reports are merged; and whether the two agree. The worst state
+  // of a second is shown for as long, since a screen shows few reports.
   [[nodiscard]] bool has_partner() const noexcept { return *reports_->partner != '\0'; }
-  [[nodiscard]] const client::PartnerCheck& partner() const noexcept { return reports_.partner(); }
+  [[nodiscard]] const client::PartnerCheck& partner() const noexcept { return partner_; }
+  [[nodiscard]] const PartnerCounts& partner_counts() const noexcept { return partner_counts_; }
   // True when there is no daemon any longer, not even one that hangs.
   [[nodiscard]] bool has_ended() const { return reports_.has_ended(); }
 
@@ -95,6 +101,9 @@ class Feed {
   Smallest smallest_;
   std::uint64_t count_ = 0, missed_ = 0, restarts_ = 0;
   OldReports old_;
+  client::PartnerCheck partner_;
+  PartnerCounts partner_counts_{};
+  std::int64_t partner_ns_ = 0;                 // when partner_ came
   std::unique_ptr<client::ShareNames> shares_;  // null once a report has come
   std::set<std::uint64_t> daemons_;             // daemons whose reports have come
   std::int64_t last_ns_ = 0;

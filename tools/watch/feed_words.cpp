@@ -7,6 +7,7 @@
 #include <span>
 #include <string_view>
 
+#include "config/text/sentences.hpp"
 #include "monitor/client/share_merge.hpp"
 #include "monitor/zone_cause.hpp"
 
@@ -74,7 +75,8 @@ std::string not_fresh(const Feed& feed, std::int64_t now_ns) {
   }
   const OldReports& old = feed.old_reports();
   if (old.count == 0 || now_ns - old.last_ns > kToldForNs) return {};
-  return fmt::format("{} reports so far were old when they were read, up to {:.1f} s", old.count,
+  return fmt::format("{} so far {} read, up to {:.1f} s", counted(old.count, "report"),
+                     old.count == 1 ? "was old when it was" : "were old when they were",
                      seconds_of(old.oldest_ns));
 }
 

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <numeric>
 #include <span>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/report.hpp"
 #include "tools/watch/contact_lines.hpp"
 #include "tools/watch/feed_words.hpp"
 #include "tools/watch/number_text.hpp"
@@ -46,6 +49,27 @@ std::string partner_text(const client::PartnerCheck& check) {
   if (check.state == PartnerState::kAlone) return "no partner yet";
   if (check.state == PartnerState::kAgrees) return "partners agree";
   return fmt::format("partner '{}': {}", check.partner, name(check.state));
+}
+
+// Says how many reports came in each state of the partners, as "988 agree, 12 missing".
+std::string counted_partners(const PartnerCounts& counts) {
+  constexpr std::array kWords = {"without a partner", "agree",     "missing",
+                                 "on other inputs",   "different", "corrupt"};
+  std::string text;
+  for (std::size_t state = 0; state < counts.size(); ++state) {
+    if (counts[state] == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", counts[state], kWords[state]);
+  }
+  return text;
+}
+
+// Whether both partners reported the same since the last line.
+std::string partners_since(const Feed& feed, const PartnerCounts& counts) {
+  const auto agree = static_cast<std::size_t>(client::PartnerState::kAgrees);
+  const auto all = std::accumulate(counts.begin(), counts.end(), std::uint64_t{0});
+  const std::string text = partner_text(feed.partner());
+  if (counts[agree] == all || all == counts[0]) return text;
+  return fmt::format("{} ({})", text, counted_partners(counts));
 }
 
 Line& add_partner(Line& line, const Feed& feed) {
@@ -281,7 +305,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (const std::string why = frozen(feed, context.now_ns); !why.empty()) return why;
   const clearance_msg_Distances& report = feed.distances();
   std::string text = fmt::format("cycle {}", report.cycle);
-  if (feed.has_partner()) text += fmt::format("  {}", partner_text(feed.partner()));
+  if (feed.has_partner()) text += fmt::format("  {}", partners_since(feed, context.partner_counts));
   if (const std::string why = not_fresh(feed, context.now_ns); !why.empty()) {
     text += fmt::format("  ({})", why);
   }
@@ -301,7 +325,10 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   if (const std::string absent = absent_shares(feed); !absent.empty())
     text += fmt::format("  {}", absent);
   for (const auto& [id, zone] : feed.zones()) {
-    if (zone.active) text += fmt::format("  zone {}{}", zone.name, cause(feed, zone));
+    if (!zone.active) continue;
+    const std::string why = cause(feed, zone);
+    text += fmt::format("  zone {}{}", zone.name,
+                        why.empty() ? fmt::format(" ({})", feed.pair_name(zone.pair)) : why);
   }
   for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);
   for (const std::string& each : contact_texts(feed)) text += fmt::format("  {}", each);
@@ -327,6 +354,8 @@ std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns)
                         seconds_of(old.oldest_ns));
   }
   if (const std::string why = frozen(feed, now_ns); !why.empty()) text += fmt::format("{}\n", why);
+  if (feed.has_partner())
+    text += fmt::format("partners {}\n", counted_partners(feed.partner_counts()));
   if (feed.smallest().known) {
     const clearance_msg_PairDistance& pair = feed.smallest().pair;
     text += fmt::format("minimum  {:.6f} m in [{:.6f}, {:.6f}], {}, at cycle {}\n", pair.distance,

@@ -14,6 +14,7 @@ struct ViewContext {
   std::string where;        // DDS domain and partition
   std::int64_t now_ns = 0;  // CLOCK_REALTIME
   double reports_a_second = 0.0;
+  PartnerCounts partner_counts = {};  // since the last plain line
 };
 
 // At most size.rows lines; the closest pairs fill the remaining lines.

@@ -9,7 +9,7 @@
 
 int main(int argc, char** argv) {
   using namespace clearance::client;
-  Connection connection({.partition = argc > 1 ? argv[1] : ""});  // loopback, domain 0
+  Connection connection({.partition = argc > 1 ? argv[1] : ""});  // loopback
   Reports reports(connection);
   Catalogue names(connection);
   Pair hand_and_post(names, "left_hand", "post");  // by name, also after a change of the cell

@@ -266,7 +266,7 @@ const Mistake kMistakes[] = {
      "found every pair allowed to touch"},
     {"ZoneOverUnwatchedPair",
      kBoxes + "zones: [@{name: z, between: [arm, arm], enter_below: 1, leave_above: 1}]\n",
-     "found a zone over 1 pairs that are not watched, such as 'left' against 'right'"},
+     "found a zone over 1 pair that is not watched, such as 'left' against 'right'"},
     {"ZoneOverAllowedPairsOnly",
      kBoxes + "allowed_collisions: [{between: [left, floor], reason: x}]\nzones: [@{name: z, "
               "between: [left, floor], enter_below: 1, leave_above: 1}]\n",

@@ -25,7 +25,7 @@ TEST(CellFile, DefaultsAreThoseOfTheReference) {
   EXPECT_EQ(scene.rate_hz, 1000.0);
   EXPECT_EQ(scene.budget, 2000u);
   EXPECT_EQ(scene.future_limit_ns, 5'000'000);
-  EXPECT_EQ(cell.domain, 0u);
+  EXPECT_EQ(cell.domain, std::nullopt);
   EXPECT_EQ(cell.partition, "");
   EXPECT_EQ(cell.topics.distances, "clearance/distances");
   ASSERT_EQ(scene.objects.size(), 3u);

@@ -82,8 +82,10 @@ TEST(SensorsOfACell, ContainAllThatTheySeeInABall) {
     // The corner of the farthest slab that a picture can have, and half of the ball at it.
     const double z = 4.0 + sensor.error_at(4.0);
     const Vec3 corner(kWidestTangent * z, kWidestTangent * z, z);
-    EXPECT_GE(radius, corner.norm() + z * sensor.spacing * std::sqrt(0.5));
-    EXPECT_LE(radius, (sensor.by_neighbours ? 1.3 : 1.2) * corner.norm());
+    EXPECT_GE(sensor.extent(), corner.norm() + z * sensor.spacing * std::sqrt(0.5));
+    EXPECT_LE(sensor.extent(), (sensor.by_neighbours ? 1.3 : 1.2) * corner.norm());
+    EXPECT_EQ(radius, sensor.view_radius()) << "where its place has the largest error that counts";
+    EXPECT_GE(radius, 2.0 * sensor.extent());
   }
 }
 
@@ -147,7 +149,7 @@ TEST(SensorsOfACell, StateWhatIsLeftOutAndLookedFor) {
   const Sensor plain = scene_of(with_sensor(kDepth)).sensors[0];
   EXPECT_EQ(plain.persist_frames, 1u);
   EXPECT_FALSE(plain.unseen);
-  EXPECT_EQ(plain.crop.radius, kInfinity);
+  EXPECT_TRUE(plain.crop.empty());
   EXPECT_EQ(notes_of(plain).size(), 1u) << "unseen places are not looked for";
   const Sensor sensor =
       scene_of(with_sensor(kDepth + ", unseen: true, max_speed: 1, persist: {frames: 3, of: 5}"))

@@ -182,25 +182,53 @@ TEST(Shares, BalancedOnesCostTheSameWithinOnePair) {
     const std::string yaml = halls("shares: {auto: " + std::to_string(count) + "}\n");
     const Cell whole = read(yaml);
     ASSERT_EQ(whole.shares.all.size(), count);
-    std::uint64_t dearest = 0, least = ~0ull, most = 0;
-    for (const ObjectPair& pair : whole.scene.pairs)
-      dearest = std::max(dearest, pair_cost(whole.scene.objects, pair));
+    const auto costs = expected_costs(whole.scene.objects, whole.scene.pairs);
+    std::uint64_t least = ~0ull, most = 0;
     std::size_t pairs = 0;
     for (const Share& share : whole.shares.all) {
       std::uint64_t cost = 0;
-      for (const std::uint32_t pair : share.pairs)
-        cost += pair_cost(whole.scene.objects, whole.scene.pairs[pair]);
+      for (const std::uint32_t pair : share.pairs) cost += costs[pair];
       least = std::min(least, cost);
       most = std::max(most, cost);
       pairs += share.pairs.size();
     }
     EXPECT_EQ(pairs, whole.scene.pairs.size());
-    EXPECT_LE(most - least, 2 * dearest);
+    EXPECT_LE(most - least, 2 * *std::ranges::max_element(costs));
     const Cell again = read(yaml);
     for (std::size_t i = 0; i < count; ++i)
       EXPECT_EQ(again.shares.all[i].pairs, whole.shares.all[i].pairs);
   }
   EXPECT_NE(mistake(halls("shares: {auto: 40}\n")).find("empty"), std::string::npos);
+}
+
+// The pairs of `halls` in their order: a-b, a-c, a-d, a-post, b-c, b-d, b-post, c-d, c-pole,
+// d-pole.
+TEST(Shares, BalancedOnesBeginWhereTheCellSays) {
+  const Cell whole = read(halls("shares: {auto: 3, begin: [[a, post], [d, c]]}\n"));
+  ASSERT_EQ(whole.shares.all.size(), 3u);
+  EXPECT_EQ(whole.shares.all[0].pairs, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(whole.shares.all[1].pairs, (std::vector<std::uint32_t>{3, 4, 5, 6}));
+  EXPECT_EQ(whole.shares.all[2].pairs, (std::vector<std::uint32_t>{7, 8, 9}));
+  EXPECT_EQ(whole.shares.all[1].zones, (std::vector<std::uint32_t>{0, 1}));
+}
+
+// The cell may have changed: 'a' and 'pole' are not watched, and b-c follows them.
+TEST(Shares, AShareBeginsAfterAPairThatIsNotWatched) {
+  const Cell whole = read(halls("shares: {auto: 2, begin: [[pole, a]]}\n"));
+  ASSERT_EQ(whole.shares.all.size(), 2u);
+  EXPECT_EQ(whole.shares.all[1].pairs.front(), 4u);
+}
+
+TEST(Shares, BeginsThatDoNotDivideTheCellAreRefused) {
+  const auto with = [](const std::string& begins) {
+    return mistake(halls("shares: {auto: 3, begin: " + begins + "}\n"));
+  };
+  EXPECT_NE(with("[[a, b]]").find("found 1 first pairs"), std::string::npos);
+  EXPECT_NE(with("[[b, c], [a, c]]").find("order"), std::string::npos);
+  EXPECT_NE(with("[[b, c], [b, c]]").find("empty"), std::string::npos);
+  EXPECT_NE(with("[[a, b], [b, c]]").find("empty"), std::string::npos) << "no pair is before a-b";
+  EXPECT_NE(with("[[b, nothing], [b, c]]").find("'nothing'"), std::string::npos);
+  EXPECT_NE(with("[[b], [b, c]]").find("two objects"), std::string::npos);
 }
 
 // The budget has to refresh each share, and not the whole.

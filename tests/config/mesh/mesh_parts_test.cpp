@@ -231,7 +231,7 @@ TEST_F(PartsOfMeshes, OfAnotherMeshScaleOrToleranceAreOthers) {
   EXPECT_THAT(told_, IsEmpty());  // its hull is within the tolerance
   EXPECT_EQ(read(", tolerance: 0.2").objects.at(0).parts.size(), 1u);
   EXPECT_EQ(read("", "defaults: {max_parts: 1}\n").objects.at(0).parts.size(), 1u);
-  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reaches "));
   test::write_text(folder_ / "l.obj", drawn::obj_of(drawn::degenerate_l()));
   read();
   EXPECT_TRUE(was_split());
@@ -322,7 +322,7 @@ TEST_F(PartsOfMeshes, OfARobotsLinksAreAsItsKeysSay) {
   EXPECT_EQ(parts(""), 2u) << errors_;
   EXPECT_EQ(parts(", tolerance: 0.2"), 1u) << errors_;
   EXPECT_EQ(parts(", max_parts: 1"), 1u) << errors_;
-  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reach"));
+  EXPECT_THAT(told_, HasSubstr("warning: l.obj: its 1 part reaches "));
   EXPECT_THAT(told_, HasSubstr("raise max_parts (now 1) or tolerance in the cell\n"));
 }
 

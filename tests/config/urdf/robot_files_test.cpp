@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <optional>
+#include <string>
+
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -38,6 +42,44 @@ TEST_F(RobotFilesTest, FindNothingThatLeadsOutOfItsPackage) {
               std::string::npos)
         << name;
   }
+}
+
+// Sets a variable of the environment while it lives, or unsets it with nullptr.
+class Environment {
+ public:
+  Environment(const char* name, const char* value) : name_(name) {
+    if (const char* const before = std::getenv(name)) before_ = before;
+    set(value);
+  }
+  ~Environment() { set(before_ ? before_->c_str() : nullptr); }
+  void set(const char* value) const {
+    value == nullptr ? unsetenv(name_) : setenv(name_, value, 1);
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+TEST_F(RobotFilesTest, SaysWhereItLookedForAPackage) {
+  const Environment prefixes("AMENT_PREFIX_PATH", nullptr);
+  const auto why = [this](PackagesFrom from) {
+    return files_.why_not_found("package://gone/a.stl", from);
+  };
+  const std::string above = (folder_ / "arm/urdf").string() + ", the folders above it, and ";
+  EXPECT_EQ(why(PackagesFrom::kCell), "no directory for the package 'gone' in " + above +
+                                          "AMENT_PREFIX_PATH, which names none; expected packages: "
+                                          "{gone: DIRECTORY}, or PREFIX/share/gone with PREFIX in "
+                                          "AMENT_PREFIX_PATH");
+  prefixes.set("/opt/ros:/ws");
+  EXPECT_EQ(why(PackagesFrom::kCommandLine),
+            "no directory for the package 'gone' in " + above +
+                "AMENT_PREFIX_PATH's /opt/ros/share, /ws/share; expected --package gone=DIRECTORY, "
+                "or PREFIX/share/gone with PREFIX in AMENT_PREFIX_PATH");
+  files_.root = folder_ / "arm";
+  EXPECT_EQ(why(PackagesFrom::kCell), "no directory for the package 'gone' in " +
+                                          (folder_ / "arm").string() +
+                                          " and its folders; expected packages: {gone: DIRECTORY}");
 }
 
 // With a root, the files are those of another machine.

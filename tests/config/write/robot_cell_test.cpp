@@ -20,7 +20,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kUrdf = R"(<?xml version="1.0"?>
+const std::string kRobotUrdf = R"(<?xml version="1.0"?>
 <robot name="little">
   <link name="foot"><collision><geometry><box size="0.4 0.4 0.1"/></geometry></collision></link>
   <link name="mast">
@@ -54,7 +54,7 @@ class RobotCellFile : public testing::Test {
     std::filesystem::create_directories(root_ / "cells");
     write("little_description/head.obj",
           "v 0 0 0\nv 200 0 0\nv 0 200 0\nv 0 0 200\nf 1 2 3\nf 1 2 4\nf 1 3 4\nf 2 3 4\n");
-    write("little_description/urdf/little.urdf", kUrdf);
+    write("little_description/urdf/little.urdf", kRobotUrdf);
     write("little_description/urdf/little.srdf", kSrdf);
     options_.urdf = root_ / "little_description" / "urdf" / "little.urdf";
     options_.srdf = root_ / "little_description" / "urdf" / "little.srdf";
@@ -155,7 +155,7 @@ TEST_F(RobotCellFile, APackageIsWhereItIsSaidToBe) {
 
 TEST_F(RobotCellFile, FaultsNameFileAndLine) {
   const auto with = [&](const std::string& found, const std::string& replacement) {
-    std::string text = kUrdf;
+    std::string text = kRobotUrdf;
     text.replace(text.find(found), found.size(), replacement);
     write("little_description/urdf/little.urdf", text);
     return fault();
@@ -177,7 +177,7 @@ TEST_F(RobotCellFile, FaultsNameFileAndLine) {
 }
 
 TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
-  std::string text = kUrdf;
+  std::string text = kRobotUrdf;
   for (const auto& [found, replacement] : {std::pair("0.4 0.4 0.1", "0.4 0.4"),
                                            {"radius=\"0.1\"", "radius=\"wide\""},
                                            {"<sphere radius=\"0.12\"/>", "<cone/>"},
@@ -201,7 +201,7 @@ TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
 }
 
 TEST_F(RobotCellFile, EveryMeshThatIsMissingIsReportedWithItsLine) {
-  std::string text = kUrdf;
+  std::string text = kRobotUrdf;
   text.replace(text.find("<box size=\"0.4 0.4 0.1\"/>"), 25, "<mesh filename=\"foot.stl\"/>");
   text.replace(text.find("head.obj"), 8, "nose.obj");
   write("little_description/urdf/little.urdf", text);
@@ -211,7 +211,7 @@ TEST_F(RobotCellFile, EveryMeshThatIsMissingIsReportedWithItsLine) {
 }
 
 TEST_F(RobotCellFile, JointsThatMakeALoopAreRefused) {
-  std::string text = kUrdf;
+  std::string text = kRobotUrdf;
   text.replace(text.find("</robot>"), 0,
                "<joint name=\"d\" type=\"fixed\"><parent link=\"frame\"/><child "
                "link=\"foot\"/></joint>\n");
@@ -247,7 +247,7 @@ TEST_F(RobotCellFile, WithoutAnSrdfNeighboursAreLeftOutAndNamed) {
 // The mast rotates in a bearing that has no shape.
 TEST_F(RobotCellFile, WithoutAnSrdfAFrameBetweenTwoLinksMakesThemNeighbours) {
   options_.srdf.clear();
-  std::string text = kUrdf;
+  std::string text = kRobotUrdf;
   text.replace(text.find("<parent link=\"mast\"/>"), 21, "<parent link=\"bearing\"/>");
   text.replace(text.find("</robot>"), 0,
                "<link name=\"bearing\"/><joint name=\"d\" type=\"fixed\"><parent "
@@ -288,7 +288,7 @@ TEST_F(RobotCellFile, LinksThatDefaultsNameMustExist) {
 }
 
 TEST_F(RobotCellFile, ACapsuleIsOneWithItsEndsAlongZ) {
-  std::string text = kUrdf;
+  std::string text = kRobotUrdf;
   const std::string sphere = "<sphere radius=\"0.12\"/>";
   text.replace(text.find(sphere), sphere.size(), "<capsule radius=\"0.12\" length=\"1\"/>");
   write("little_description/urdf/little.urdf", text);

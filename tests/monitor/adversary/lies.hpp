@@ -70,7 +70,7 @@ struct Fault {
 // Up to three faults of different channels. The first kind is `seed` modulo the number of kinds.
 [[nodiscard]] std::vector<Fault> drawn_mix(std::uint64_t seed);
 
-// How soon a lie can be noticed, and how wrong a value may be that nobody can notice.
+// The delay until a lie can be noticed, and the error of a value that cannot be noticed.
 struct Admissible {
   std::int64_t delay = 0;  // ns from its beginning, during which nothing is judged
   // In units of (stated speed x age limit), from its beginning until kSlackEnds after its end.
@@ -86,7 +86,7 @@ inline constexpr std::int64_t kOwnerStarts = 300 * kMs;
 // comparison has just begun.
 inline constexpr std::int64_t kSpeedDelay = 16 * kAgeLimit;
 
-// What the owner of a channel does with the truth at an instant.
+// The changes that the owner of a channel makes to the truth at an instant.
 struct Told {
   std::int64_t value_at = 0;  // the instant of the told value
   Vec3 offset = Vec3::Zero();
@@ -103,7 +103,7 @@ struct Told {
 };
 [[nodiscard]] Told told(const Fault& fault, std::int64_t t);
 
-// What a rival tells, if it is there at all.
+// The message of a rival, if there is one.
 struct Rival {
   bool is_matched = false;  // its writer exists
   bool speaks = false;

@@ -13,7 +13,7 @@ namespace clearance::test::lies {
 inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kSecond = 1000 * kMs;
 
-// What a program of its own sends. A fault strikes one of these.
+// Each channel is sent by a program of its own. A fault strikes one channel.
 enum class Channel : std::uint8_t { kBall0, kBall1, kBall2, kArm, kPost, kOdom, kBase, kFollower };
 inline constexpr std::size_t kChannels = 8;
 [[nodiscard]] constexpr bool is_ball(Channel c) { return c <= Channel::kBall2; }

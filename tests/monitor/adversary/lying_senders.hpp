@@ -39,7 +39,7 @@ class LyingSenders {
     std::int64_t sent_ns = 0;
     std::vector<std::byte> cdr;
   };
-  // What one writer says of a channel.
+  // The message of one writer on a channel.
   struct Words {
     TruePose pose = TruePose::Identity();
     Twist twist;

@@ -16,7 +16,7 @@
 
 namespace clearance::test::lies {
 
-// What is false in a report.
+// The ways in which a report can be false.
 enum class Claim : std::uint8_t {
   kLower,       // a pair's lower bound is above the truth
   kUpper,       // its upper bound is below the truth
@@ -37,8 +37,8 @@ struct Verdict {
     std::string first;   // tick, pair, bounds, truth
   };
   std::array<False, kClaims> claims;
-  // Of all pairs, from the time when they have to be known again: the share of ticks in which they
-  // are certified, in all and of the worst pair.
+  // The share of ticks in which pairs are certified, from the time when they have to be known
+  // again: of all pairs, and of the worst one.
   double certified = 1.0, least_certified = 1.0;
   std::string least_pair;
 
@@ -63,7 +63,7 @@ class TruthJudge {
   [[nodiscard]] Verdict verdict() const;
 
  private:
-  // What the judge allows of a body in this tick.
+  // The errors of a body that the judge allows in this tick.
   struct Allowed {
     bool is_excused = false;
     double error = 0.0;  // m

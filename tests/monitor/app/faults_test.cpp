@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/all_log_lines.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/camera_messages.hpp"
 #include "monitor/intake/news.hpp"
@@ -35,7 +35,7 @@ std::set<std::string> codes_of_news() {
 
 std::set<std::string> codes_of_the_log() {
   std::set<std::string> codes = codes_of_news();
-  std::apply([&](const auto&... line) { (codes.emplace(line.code), ...); }, lines::kAll<>);
+  std::apply([&](const auto&... line) { (codes.emplace(line.code), ...); }, lines::kAll);
   return codes;
 }
 

@@ -1,5 +1,5 @@
 // The wording of every log line of the daemon is kept in tests/monitor/messages.golden.
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/all_log_lines.hpp"
 #include "tests/shared/places.hpp"
 
 #include <gtest/gtest.h>
@@ -43,7 +43,7 @@ std::string with_samples(const LogLine<Arguments...>& line) {
 
 TEST(LogLines, AreWordedAsInTheGoldenFile) {
   std::string text;
-  std::apply([&](const auto&... line) { ((text += with_samples(line)), ...); }, lines::kAll<>);
+  std::apply([&](const auto&... line) { ((text += with_samples(line)), ...); }, lines::kAll);
   if (std::getenv("CLEARANCE_WRITE_GOLDEN") != nullptr) std::ofstream(kGolden) << text;
   EXPECT_EQ(content(kGolden), text) << "CLEARANCE_WRITE_GOLDEN=1 writes the file anew";
 }
@@ -55,7 +55,7 @@ TEST(LogLines, AreAllInTheList) {
        ++at) {
     ++entries;
   }
-  EXPECT_EQ(entries, std::tuple_size_v<decltype(lines::kAll<>)>);
+  EXPECT_EQ(entries, std::tuple_size_v<decltype(lines::kAll)>);
 }
 
 TEST(LogLines, HaveCodesOfTheirOwnInSmallLetters) {
@@ -64,7 +64,7 @@ TEST(LogLines, HaveCodesOfTheirOwnInSmallLetters) {
     EXPECT_TRUE(codes.insert(code).second) << code;
     EXPECT_EQ(code.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), code.npos) << code;
   };
-  std::apply([&](const auto&... line) { (add(line.code), ...); }, lines::kAll<>);
+  std::apply([&](const auto&... line) { (add(line.code), ...); }, lines::kAll);
 }
 
 TEST(Counted, HasTheRightPlural) {

@@ -20,7 +20,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr std::int64_t kT = 1'700'000'000'000'000'000;
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kBagMs = 1'000'000;
 
 struct ReadLog {
   std::vector<LoggedBatch> batches;
@@ -92,8 +92,8 @@ TEST_F(BagLogTest, WhatIsNotUsedIsToldOnceWithItsCount) {
   EXPECT_EQ(2u, log.batches.size());
   EXPECT_THAT(log.notes, Contains(HasSubstr("joint 'sholder' of the bag is not in the cell: left "
                                             "out; did you mean 'shoulder'?")));
-  EXPECT_THAT(log.notes, Contains(HasSubstr("1 messages of /joint_states have no position")));
-  EXPECT_THAT(log.notes, Contains(HasSubstr("1 messages of /joint_states do not decode")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("1 message of /joint_states had no position")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("1 message of /joint_states did not decode")));
   EXPECT_THAT(log.notes, Contains(HasSubstr("what hangs on them is unknown: shoulder, push; "
                                             "--joint NAME=POSITION")));
 }
@@ -109,21 +109,23 @@ TEST_F(BagLogTest, OfAListThatIsTooShortTheRestIsNoPosition) {
 
 TEST_F(BagLogTest, StampsOfZeroAndOfAnotherClockAreReplacedByTheTimeOfRecording) {
   const ReadLog log = read({joint_state(kT, 0, {{"elbow"}, {0.1}}),
-                            joint_state(kT + kMs, 12 * 1'000'000'000LL, {{"elbow"}, {0.1}}),
-                            joint_state(kT + 2 * kMs, kT, {{"elbow"}, {0.1}})});
+                            joint_state(kT + kBagMs, 12 * 1'000'000'000LL, {{"elbow"}, {0.1}}),
+                            joint_state(kT + 2 * kBagMs, kT, {{"elbow"}, {0.1}})});
   ASSERT_EQ(3u, log.batches.size());
   EXPECT_EQ(kT, log.batches[0].batch.joints[0].stamp_ns);
-  EXPECT_EQ(kT + kMs, log.batches[1].batch.joints[0].stamp_ns);
+  EXPECT_EQ(kT + kBagMs, log.batches[1].batch.joints[0].stamp_ns);
   EXPECT_EQ(kT, log.batches[2].batch.joints[0].stamp_ns);
-  EXPECT_THAT(log.notes, Contains(HasSubstr("1 messages of /joint_states have no stamp")));
-  EXPECT_THAT(log.notes, Contains(HasSubstr("have stamps of another clock (-1699999988.0 s)")));
+  EXPECT_THAT(log.notes, Contains(HasSubstr("1 message of /joint_states had no stamp")));
+  EXPECT_THAT(log.notes,
+              Contains(HasSubstr(
+                  "1 message of /joint_states had a stamp of another clock (-1699999988.0 s)")));
 }
 
 TEST_F(BagLogTest, MessagesThatStandALittleOutOfOrderArePutInOrder) {
-  const ReadLog log = read({joint_state(kT + 5 * kMs, kT, {{"elbow"}, {0.5}}),
-                            joint_state(kT + 1 * kMs, kT, {{"elbow"}, {0.1}}),
-                            joint_state(kT + 9'000 * kMs, kT, {{"elbow"}, {0.9}}),
-                            joint_state(kT + 2 * kMs, kT, {{"elbow"}, {0.2}})});
+  const ReadLog log = read({joint_state(kT + 5 * kBagMs, kT, {{"elbow"}, {0.5}}),
+                            joint_state(kT + 1 * kBagMs, kT, {{"elbow"}, {0.1}}),
+                            joint_state(kT + 9'000 * kBagMs, kT, {{"elbow"}, {0.9}}),
+                            joint_state(kT + 2 * kBagMs, kT, {{"elbow"}, {0.2}})});
   ASSERT_EQ(4u, log.batches.size());
   const double order[] = {0.1, 0.5, 0.2, 0.9};
   for (std::size_t i = 0; i < 4; ++i) {
@@ -138,8 +140,8 @@ TEST_F(BagLogTest, TransformsMoveTheObjectsOfTheirNames) {
   const double half = std::sqrt(0.5);
   const ReadLog log =
       read({transforms(kT, 0, {{"world", "table", {1, 0, 0}, {0, 0, half, half}}}, "/tf_static"),
-            transforms(kT + kMs, kT, {{"/table", "cart", {2, 0, 0}}, {"table", "nobody"}}),
-            joint_state(kT + kMs, kT, {{"shoulder", "elbow", "push"}, {0, 0, 0}})});
+            transforms(kT + kBagMs, kT, {{"/table", "cart", {2, 0, 0}}, {"table", "nobody"}}),
+            joint_state(kT + kBagMs, kT, {{"shoulder", "elbow", "push"}, {0, 0, 0}})});
   EXPECT_EQ("", log.error);
   ASSERT_EQ(2u, log.batches.size());
   const PoseBatch& batch = log.batches[0].batch;
@@ -171,9 +173,9 @@ TEST_F(BagLogTest, FramesThatTheCellNamesMoveObjectsAndBases) {
       "objects: [{name: box, frame: box_link, sphere: {radius: 0.1}}]\n"
       "pairs: [{between: [arm, box]}]\n",
       folder / "cell.yaml");
-  const ReadLog log = read(
-      {transforms(kT, kT, {{"mir", "box_link", {0, 0, 2}}}, "/tf_static"),
-       transforms(kT + kMs, kT - kMs, {{"earth", "map", {9, 9, 9}}, {"map", "mir", {1, 0, 0}}})});
+  const ReadLog log = read({transforms(kT, kT, {{"mir", "box_link", {0, 0, 2}}}, "/tf_static"),
+                            transforms(kT + kBagMs, kT - kBagMs,
+                                       {{"earth", "map", {9, 9, 9}}, {"map", "mir", {1, 0, 0}}})});
   ASSERT_EQ(2u, log.batches.size());
   const PoseBatch& base = log.batches[0].batch;
   EXPECT_EQ("/tf:bases", base.source.view());
@@ -182,12 +184,12 @@ TEST_F(BagLogTest, FramesThatTheCellNamesMoveObjectsAndBases) {
   EXPECT_EQ(1.0, base.joints[0].position);
   EXPECT_EQ(1.0, base.joints[2].position);
   EXPECT_EQ(1.0, base.joints[6].position);
-  EXPECT_EQ(kT - kMs, base.joints[6].stamp_ns);
+  EXPECT_EQ(kT - kBagMs, base.joints[6].stamp_ns);
   const PoseBatch& box = log.batches[1].batch;
   EXPECT_EQ("/tf", box.source.view());
   ASSERT_EQ(1u, box.samples.size());
   EXPECT_EQ(Vec3(1, 0, 2), box.samples[0].world_from_object.position);
-  EXPECT_EQ(kT - kMs, box.samples[0].stamp_ns);
+  EXPECT_EQ(kT - kBagMs, box.samples[0].stamp_ns);
 }
 
 TEST_F(BagLogTest, FramesThatGoRoundInACircleMoveNothing) {

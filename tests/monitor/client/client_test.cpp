@@ -307,7 +307,7 @@ TEST(Client, MayLiveInAParticipantOfTheProgramsOwn) {
   Daemon daemon(dds);
   daemon.announce();
   // Another participant in this process's domain, like that of a program that uses DDS itself.
-  const dds_entity_t own = check_dds(dds_create_participant(dds.domain, nullptr, nullptr), "own");
+  const dds_entity_t own = check_dds(dds_create_participant(*dds.domain, nullptr, nullptr), "own");
   {
     client::Connection connection(own, dds.partition);
     client::Catalogue catalogue(connection);

@@ -16,7 +16,7 @@ namespace clearance {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
+using Seconds = std::chrono::seconds;
 using test::AnsweringDaemon;
 
 CommandResult done(const Command& command) {
@@ -47,7 +47,7 @@ TEST(ClientCommands, GetTheResultOfTheirRequestAndNoOther) {
   client::Commands commands(connection, "planner");
   const auto result = commands.send(
       kAttach, {.scene_revision = 5, .dry_run = true, .files = {{"part.stl", "solid"}}},
-      seconds(20));
+      Seconds(20));
   ASSERT_TRUE(result);
   EXPECT_TRUE(result->done());
   EXPECT_EQ(result->scene_revision, 9u);
@@ -66,7 +66,7 @@ TEST(ClientCommands, SendTheSameRequestAgainUntilAResultComes) {
   });
   client::Connection connection(dds);
   client::Commands commands(connection, "planner");
-  const auto result = commands.send(kAttach, {}, seconds(30));
+  const auto result = commands.send(kAttach, {}, Seconds(30));
   ASSERT_TRUE(result);
   EXPECT_TRUE(result->done());
   ASSERT_GE(requests.size(), 3u);
@@ -82,7 +82,7 @@ TEST(ClientCommands, CountUpAcrossPrograms) {
     client::Connection connection(dds);
     client::Commands commands(connection, "planner");
     for (int i = 0; i < 3; ++i) {
-      const auto result = commands.send(kAttach, {}, seconds(20));
+      const auto result = commands.send(kAttach, {}, Seconds(20));
       ASSERT_TRUE(result);
       EXPECT_GT(result->request, before);
       before = result->request;
@@ -98,7 +98,7 @@ TEST(ClientCommands, PostedOnesGetTheirResultsLater) {
   ASSERT_TRUE(test::eventually([&] { return commands.is_heard(); }));
   const std::uint64_t first = commands.post(kAttach), second = commands.post(kAttach);
   EXPECT_LT(first, second);
-  ASSERT_TRUE(commands.result(second, seconds(20)));
+  ASSERT_TRUE(commands.result(second, Seconds(20)));
   EXPECT_EQ(commands.result(first).value().request, first);
   EXPECT_FALSE(commands.result(second + 1));
 }
@@ -114,7 +114,7 @@ TEST(ClientCommands, StopWaitingForADaemonWhenTheCallerSaysSo) {
   client::Connection connection(test::own_dds());
   client::Commands commands(connection, "planner");
   int asked = 0;
-  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return ++asked == 3; }}, seconds(600)));
+  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return ++asked == 3; }}, Seconds(600)));
   EXPECT_EQ(asked, 3);
 }
 
@@ -127,7 +127,7 @@ TEST(ClientCommands, StopWaitingForAResultWhenTheCallerSaysSo) {
   });
   client::Connection connection(dds);
   client::Commands commands(connection, "planner");
-  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return came.load(); }}, seconds(600)));
+  EXPECT_FALSE(commands.send(kAttach, {.stop = [&] { return came.load(); }}, Seconds(600)));
   EXPECT_TRUE(came);
 }
 

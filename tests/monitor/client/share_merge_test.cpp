@@ -1,4 +1,4 @@
-// What the daemons of the shares of a cell say, joined. The oracle is a list of all pairs of all
+// Joins the messages of the daemons of a cell's shares. The oracle is a list of all pairs of all
 // shares: the least of their true distances, and which of them are known.
 #include <gtest/gtest.h>
 
@@ -171,6 +171,22 @@ TEST(ShareMerge, WithoutAnyShareEverythingIsUnknown) {
   EXPECT_FALSE(whole.minimum_known);
   EXPECT_EQ(whole.lower_all, -kNone);
   EXPECT_EQ(whole.pairs._length, 15u);
+}
+
+// The least upper bound is another share's, but the pair may be nearer all the same.
+TEST(ShareMerge, AWideMinimumOfAShareMayBeNearerThanTheLeastOfAll) {
+  std::vector<std::pair<double, double>> bounds(15, {1.0, 1.0});
+  const Shares of_pairs(bounds);
+  const std::uint32_t first = of_pairs.cell.shares.all[0].pairs.front(),
+                      second = of_pairs.cell.shares.all[1].pairs.front();
+  bounds[first] = {0.5, 0.5};
+  bounds[second] = {0.6, 0.8};
+  EXPECT_TRUE(Shares(bounds).join().minimum_certified) << "all of it is farther";
+  bounds[second] = {0.4, 0.8};
+  EXPECT_FALSE(Shares(bounds).join().minimum_certified);
+  bounds[first] = {0.3, 0.5};
+  bounds[second] = {0.5, 0.8};
+  EXPECT_TRUE(Shares(bounds).join().minimum_certified) << "the least itself may be wide";
 }
 
 // A share without a certified minimum may hold a nearer pair, unless all its bounds are beyond.

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <optional>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -52,10 +53,17 @@ class Daemon {
         id_(id),
         revision_(cell.scene.revision),
         partner_(std::move(partner)) {
+    for (const Share& each : cell.shares.all) {
+      if (each.name == share) pairs_ = static_cast<std::uint32_t>(each.pairs.size());
+    }
     auto catalogue = make_catalogue(cell);
+    catalogue->daemon = id;
     check_dds(dds_write(catalogue_, &*catalogue), "writing");
   }
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
+  // Its reports say from now on that it has so many pairs, or they have these bits.
+  void set_pairs(std::uint32_t pairs) { pairs_ = pairs; }
+  void set_bits(std::uint64_t state) { state_ = state; }
   // The clock of its machine is ahead of this one's by this time from now on.
   void set_clock_ahead(std::int64_t ns) { ahead_ns_ = ns; }
   void report(std::uint64_t cycle) { report(cycle, dds_time() + ahead_ns_); }
@@ -72,6 +80,8 @@ class Daemon {
     message.now_ns = now_ns(cycle);
     message.publish_ns = publish_ns;
     message.scene_revision = revision_;
+    message.pairs_total = pairs_;
+    message.state_checksum = state_;
     if (!partner_.empty()) message.checksum = checksum_of(message);
     check_dds(dds_write(distances_, &message), "writing");
   }
@@ -98,7 +108,8 @@ class Daemon {
   std::int64_t ahead_ns_ = 0;
   Topics topics_;
   Participant participant_;
-  std::uint64_t id_, revision_;
+  std::uint64_t id_, revision_, state_ = 0;
+  std::uint32_t pairs_ = 0;
   std::string partner_;
   dds_entity_t distances_ =
       participant_.writer(TopicKind::kDistances, topics_.distances, {.lease_ns = 60'000'000'000});
@@ -117,11 +128,7 @@ class ASharedCell : public testing::Test {
     left.zones(1, false);
     right.zones(1, false);
     open(std::move(names));
-    ASSERT_TRUE(eventually([&] {
-      left.report(cycle);
-      right.report(cycle++);
-      return whole->next(milliseconds(50));
-    }));
+    ASSERT_TRUE(report_until(left, [] { return true; }));
     EXPECT_TRUE(whole->is_whole()) << whole->what_is_missing();
   }
   [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
@@ -238,11 +245,10 @@ TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
     return whole->next(milliseconds(50)) && !whole->is_whole();
   }));
   EXPECT_LT(dds_time() - last, 3'000'000'000);
-  for (const ShareCheck& check : whole->shares()) {
-    if (check.name != "right") continue;
-    EXPECT_EQ(check.state, ShareState::kLate);
-    EXPECT_LT(check.age_ns, 400'000'000) << "by its stamp it is on time";
-  }
+  const ShareCheck& check = whole->shares()[1];
+  EXPECT_EQ(check.name, "right");
+  EXPECT_EQ(check.state, ShareState::kLate);
+  EXPECT_LT(check.age_ns, 400'000'000) << "by its stamp it is on time";
 }
 
 // A clock was set back: the report is as old as it was published, and not younger.
@@ -280,6 +286,83 @@ TEST_F(ASharedCell, HasAShareUnknownByNameWhoseTimesAreOfTheFutureOrOfThePast) {
       return whole->is_whole() && !is_active(kWide) && !is_active(kFar);
     })) << whole->what_is_missing();
   }
+}
+
+// The daemon of another build has the pairs of this scene in other shares: none has the pair a-b.
+TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
+  Cell otherwise = cell;
+  otherwise.shares.all[0].pairs = {1};
+  otherwise.shares.all[1].pairs = {0, 2};
+  std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
+  begin(*left, {"left", "right"});
+  const auto is_refused = [&] {
+    return whole->shares()[0].state == ShareState::kOtherDivision && is_active(kWide) &&
+           !is_active(kFar) && (*whole)->lower_all == -kInfinity;
+  };
+  left.emplace(dds, otherwise, "left", 4);
+  left->zones(cycle, false);
+  ASSERT_TRUE(report_until(*left, is_refused)) << whole->what_is_missing();
+  EXPECT_EQ(whole->what_is_missing(), "the share 'left' is divided otherwise");
+  left.emplace(dds, cell, "left", 5);
+  left->zones(cycle, false);
+  EXPECT_TRUE(report_until(*left, [&] { return whole->is_whole() && !is_active(kWide); }))
+      << whole->what_is_missing();
+  left->set_pairs(2);
+  EXPECT_TRUE(report_until(*left, is_refused)) << whole->what_is_missing();
+}
+
+// One after another, the daemons of all shares are those of another build.
+TEST_F(ASharedCell, FollowsADivisionThatAllSharesHave) {
+  Cell otherwise = cell;
+  otherwise.shares.all[0].pairs = {1};
+  otherwise.shares.all[1].pairs = {0, 2};
+  std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
+  begin(*left, {"left", "right"});
+  left.emplace(dds, otherwise, "left", 4);
+  left->zones(cycle, false);
+  ASSERT_TRUE(report_until(*left, [&] { return !whole->is_whole(); }));
+  Daemon later(dds, otherwise, "right", 5);
+  later.zones(cycle, false);
+  EXPECT_TRUE(eventually([&] {
+    left->report(cycle);
+    later.report(cycle++);
+    return whole->next(milliseconds(50)) && whole->is_whole();
+  })) << whole->what_is_missing();
+}
+
+// The share has two partners. What is told is about all their reports, not about the last ones.
+TEST_F(ASharedCell, TellsOnceThatPartnersDifferedAlthoughTheyAgreeAgain) {
+  Daemon one(dds, cell, "left", 1, "one"), two(dds, cell, "left", 2, "two");
+  Connection alone(dds, topics_of_share(cell.topics, "left"));
+  Reports reports(alone);
+  begin(one, {"left", "right"});
+  two.zones(1, false);
+  const auto report_all = [&](int times) {
+    for (int i = 0; i < times; ++i, ++cycle) {
+      one.report(cycle);
+      two.report(cycle);
+      right.report(cycle);
+    }
+    std::this_thread::sleep_for(milliseconds(300));
+  };
+  const auto told = [&] { return whole->shares()[0].partner.state; };
+  ASSERT_TRUE(eventually([&] {
+    report_all(3);
+    const bool came = whole->newest(milliseconds(50)) && reports.newest(milliseconds(50));
+    return came && told() == PartnerState::kAgrees &&
+           reports.partner().state == PartnerState::kAgrees;
+  }));
+  two.set_bits(7);
+  report_all(1);
+  two.set_bits(0);
+  report_all(4);
+  ASSERT_TRUE(whole->newest(milliseconds(50)) && reports.newest(milliseconds(50)));
+  EXPECT_EQ(told(), PartnerState::kDifferent);
+  EXPECT_EQ(reports.partner().state, PartnerState::kDifferent);
+  report_all(2);
+  ASSERT_TRUE(whole->newest(milliseconds(50)) && reports.newest(milliseconds(50)));
+  EXPECT_EQ(told(), PartnerState::kAgrees);
+  EXPECT_EQ(reports.partner().state, PartnerState::kAgrees);
 }
 
 // Its clock was set back, or ahead and back, by less. What it says then counts, although the state

@@ -205,6 +205,35 @@ TEST(DepthCloud, BoundsAreThoseOfBruteForceForEveryKindOfPart) {
   EXPECT_GT(contacts, 20);
 }
 
+// The front and back of a slab are across the ray, as two faces of a box with the camera's axes
+// are. Its other faces are not those of a box.
+TEST(DepthCloud, BoxesAlongTheCamerasAxesHaveTheDepthInTheirSlabs) {
+  Random random(12);
+  const PinholeCamera c = camera(40, 30);
+  const Picture p = picture(c, std::vector<float>(std::size_t{40} * 30, 1.0F));
+  const DepthCloud cloud = built(p);
+  const std::vector<ConvexBody> truth_slabs = slabs(cloud, c);
+  SlabBody scratch;
+  int overlapping = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vec3 edges(random.uniform(0.001, 0.1), random.uniform(0.001, 0.1), 0.5);
+    const ConvexBody part = made(box(edges));
+    const double deep = random.log_uniform(1e-5, 0.02);
+    const Vec3 at(random.uniform(-0.3, 0.3), random.uniform(-0.2, 0.2),
+                  1.0 - 0.25 - kError.at(1.0) + deep);
+    const RelativePose pose = relative_pose({at, Eigen::Quaterniond::Identity()}, {});
+    CloudTracking tracking;
+    for (int step = 0; step < 2; ++step) {  // cold, and tracked
+      const NearestElement got = nearest_element(part, cloud, scratch, pose, tracking);
+      const NearestElement truth = by_brute_force(part, truth_slabs, pose);
+      EXPECT_LE(got.lower, truth.upper + 1e-14) << i << " " << step;
+      EXPECT_GE(got.upper, truth.lower - 1e-14) << i << " " << step;
+      overlapping += got.upper < 0.0;
+    }
+  }
+  EXPECT_GT(overlapping, 100);
+}
+
 TEST(DepthCloud, SlabsContainTheDepthAndItsErrorAndNoMoreThanTwoFloats) {
   const PinholeCamera c = camera(40, 30);
   std::vector<std::uint16_t> pixels;

@@ -65,7 +65,7 @@ Command every_command() {
 }
 
 // The bytes on the wire, which contain every field.
-std::string bytes_of(const Command& command) {
+std::string wire_bytes(const Command& command) {
   CdrEncoder encoder;
   const auto bytes = encoder.encode(*to_wire(command));
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -112,7 +112,7 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   const std::size_t contact = read.changes.size() - 3;
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact]).end, (ContactEnd{0.01, 5, 6, 7}));
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact + 1]).end, ContactEnd{});
-  EXPECT_EQ(bytes_of(read), bytes_of(command));
+  EXPECT_EQ(wire_bytes(read), wire_bytes(command));
 }
 
 TEST(CommandMessage, DiffersInItsBytesForEachField) {
@@ -130,8 +130,8 @@ TEST(CommandMessage, DiffersInItsBytesForEachField) {
   for (const auto& [a, b] : pairs) {
     const Command first{.client = "c", .request = 1, .changes = {a}};
     const Command second{.client = "c", .request = 1, .changes = {b}};
-    EXPECT_NE(bytes_of(first), bytes_of(second)) << a.index();
-    EXPECT_EQ(bytes_of(decoded(first)), bytes_of(first)) << a.index();
+    EXPECT_NE(wire_bytes(first), wire_bytes(second)) << a.index();
+    EXPECT_EQ(wire_bytes(decoded(first)), wire_bytes(first)) << a.index();
   }
 }
 

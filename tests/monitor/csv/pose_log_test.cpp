@@ -15,7 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kHeader = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
+constexpr const char* kPoseHeader = "t_ns,object,px,py,pz,qw,qx,qy,qz\n";
 
 class CsvPoses : public testing::Test {
  protected:
@@ -50,7 +50,7 @@ TEST_F(CsvPoses, FindsColumnsByNameInAnyOrderAndIgnoresOthers) {
 }
 
 TEST_F(CsvPoses, RefuseALineThatDoesNotEnd) {
-  const std::string row = std::string(kHeader) + "5,hand,1,2,3,1,0,0,0\n";
+  const std::string row = std::string(kPoseHeader) + "5,hand,1,2,3,1,0,0,0\n";
   for (const char byte : {'7', ' ', '\0'}) {
     gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");
     const std::string text = row + std::string(std::size_t{8} << 20, byte);
@@ -65,7 +65,7 @@ TEST_F(CsvPoses, RefuseALineThatDoesNotEnd) {
 }
 
 TEST_F(CsvPoses, ReadLinesThatCrossTheBuffer) {
-  std::string text = kHeader;
+  std::string text = kPoseHeader;
   for (int i = 0; i < 5000; ++i) {
     text += std::to_string(i) + ",hand,1,2," + std::to_string(i) + ",1,0,0,0\n";
   }
@@ -78,7 +78,7 @@ TEST_F(CsvPoses, ReadLinesThatCrossTheBuffer) {
 }
 
 TEST_F(CsvPoses, ReadsGzipAndPlainAlike) {
-  const std::string text = std::string(kHeader) + "5,hand,1,2,3,1,0,0,0\n";
+  const std::string text = std::string(kPoseHeader) + "5,hand,1,2,3,1,0,0,0\n";
   gzFile file = gzopen((folder / "log.csv.gz").c_str(), "wb");
   gzwrite(file, text.data(), static_cast<unsigned>(text.size()));
   gzclose(file);
@@ -91,7 +91,7 @@ TEST_F(CsvPoses, ReadsGzipAndPlainAlike) {
 }
 
 TEST_F(CsvPoses, GzipCutOffIsAnErrorWithALine) {
-  std::string text = kHeader;
+  std::string text = kPoseHeader;
   std::mt19937_64 random(1);
   for (int i = 0; i < 5000; ++i) {
     text += std::to_string(i) + ",hand,0." + std::to_string(random()) + ",2,3,1,0,0,0\n";
@@ -125,7 +125,7 @@ TEST_F(CsvPoses, EveryErrorNamesItsLine) {
       {"1,,1,2,3,1,0,0,0\n", "log.csv:2: names no object"},
   };
   for (const auto& c : cases) {
-    read(std::string(kHeader) + c.rows);
+    read(std::string(kPoseHeader) + c.rows);
     EXPECT_THAT(error, HasSubstr(c.error));
   }
   read("t_ns,object,px,py,pz,qx,qy,qz\n");

@@ -6,8 +6,10 @@
 
 #include "monitor/client/client.hpp"
 #include "monitor/dds/report_writer.hpp"
+#include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/small_cells.hpp"
+#include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -113,6 +115,7 @@ TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   report.scene_revision = 6;
   ASSERT_TRUE(eventually([&] {
     ++report.cycle;
+    seal(report);
     check_dds(dds_write(distances, &report), "writing");
     return port.partner_revision() == 6;
   }));
@@ -169,6 +172,7 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   ASSERT_TRUE(eventually([&] {
     tick(0.3, kFollowing);
     ++report.cycle;
+    seal(report);
     check_dds(dds_write(distances, &report), "writing");
     return port.disagrees();
   }));
@@ -180,12 +184,52 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   client::Connection connection(dds, cell.topics);
   client::Zones seen(connection);
   EXPECT_TRUE(eventually([&] {
-    check_dds(dds_write(distances, &(++report.cycle, report)), "writing");
+    ++report.cycle;
+    seal(report);
+    check_dds(dds_write(distances, &report), "writing");
     tick(0.3, kFollowing);
     seen.update();
     const auto wide = seen.states().find(kWide);
     return wide != seen.states().end() && wide->second.now_ns > state.now_ns && wide->second.active;
   }));
+  port.stop();
+}
+
+// Bits that the checksum covers, and some that the other one does.
+TEST_F(APartner, WhoseReportHasAFlippedBitIsCountedAndItsSceneIsNotTaken) {
+  const auto logged = std::make_shared<test::Logged>();
+  const test::LoggedTo to{logged};
+  Participant other(dds);
+  const dds_entity_t distances = other.writer(TopicKind::kDistances, cell.topics.distances);
+  port.start({.wants_state = [] {}, .send_state = [] {}, .take_state = [](const auto&) {}});
+  clearance_msg_Distances report{};
+  const auto write = [&](const auto& flip) {
+    std::strcpy(report.partner, "left");
+    report.scene_revision = cell.scene.revision;
+    report.state_checksum = 7;
+    ++report.cycle;
+    seal(report);
+    flip();
+    check_dds(dds_write(distances, &report), "writing");
+  };
+  const auto health = [&] {
+    clearance_msg_PartnerHealth found{};
+    port.fill(found);
+    return found;
+  };
+  ASSERT_TRUE(eventually([&] {
+    write([] {});
+    return port.partner_revision() == cell.scene.revision;
+  }));
+  EXPECT_EQ(health().different, 0u);
+  write([&] { report.scene_revision ^= 1; });
+  EXPECT_TRUE(eventually([&] { return health().different == 1; }));
+  EXPECT_EQ(port.partner_revision(), cell.scene.revision);
+  write([&] { report.state_checksum ^= 1; });
+  EXPECT_TRUE(eventually([&] { return health().different == 2; }));
+  write([&] { report.partner[0] = '\0'; });
+  EXPECT_TRUE(eventually([&] { return health().different == 3; }));
+  EXPECT_EQ(logged->count("[partner-corrupt]"), 1u) << "once a second";
   port.stop();
 }
 

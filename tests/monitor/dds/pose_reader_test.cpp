@@ -238,7 +238,7 @@ TEST(PoseReader, DISABLED_SendsWhatCannotBeDecoded) {
 TEST(PoseReader, CountsWhatCannotBeDecodedInHealth) {
   route_dds_log();
   Port port;
-  ::setenv(kDomain, std::to_string(port.dds.domain).c_str(), 1);
+  ::setenv(kDomain, std::to_string(*port.dds.domain).c_str(), 1);
   ::setenv(kPartition, port.dds.partition.c_str(), 1);
   test::ChildProcess sender("/proc/self/exe",
                             {"--gtest_also_run_disabled_tests",

@@ -12,7 +12,7 @@
 namespace clearance {
 namespace {
 
-Scene watched_cell() {
+Scene watched_scene() {
   Scene scene = test::cell_of({test::moving("ball", {test::ball(0.1)}),
                                test::fixed("post", {test::ball(0.1)}, test::at(1, 0, 0))});
   scene.pairs[0].publish = true;
@@ -49,7 +49,7 @@ class Reader {
 
 // The publishing side without a tick loop: the test acts as the tick thread.
 struct Publisher {
-  Cell cell{watched_cell()};
+  Cell cell{watched_scene()};
   Scene& scene = cell.scene;
   DdsOptions dds = test::own_dds();
   Participant participant{dds};

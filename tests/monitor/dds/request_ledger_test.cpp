@@ -36,6 +36,10 @@ TEST(CommandLedger, TakesNoCommandOfAClientThatIsNotNamed) {
     EXPECT_EQ(refused->status, CommandStatus::kNotNamed);
     EXPECT_EQ(refused->client, name);
     EXPECT_EQ(refused->request, 4u);
+    EXPECT_NE(refused->reason.find("found a request of '" + std::string(name) +
+                                   "'; expected 'planner'. Send it"),
+              std::string::npos)
+        << refused->reason;
   }
 }
 

@@ -79,7 +79,7 @@ TEST_F(RosReadersTest, OfOneInstantAreWhatOurOwnTopicSays) {
 
 TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {
   EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("there is no publisher of"));
-  EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("domain " + std::to_string(dds.domain)));
+  EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("domain " + std::to_string(*dds.domain)));
   const dds_entity_t tf = robot.ros_writer(kRosTf, "rt/tf");
   EXPECT_GT(tf, 0);
   EXPECT_TRUE(test::eventually(

@@ -151,7 +151,7 @@ class Alternatives : public testing::Test {
     sample.world_from_object.position = cart;
     return monitor->tick({&sample, 1}, test::joints(shoulder, 0.0, 0.1, now), now);
   }
-  // Of the pair of these objects.
+  // The alternative for the pair of these objects.
   GradientAlternative between(std::uint32_t first, std::uint32_t second, const Report& report) {
     const GradientRows rows = gradient_rows(scene);
     for (std::size_t r = 0; r < rows.rows.size(); ++r) {

@@ -149,10 +149,28 @@ TEST_F(CameraStreamTest, ADepthThatRepeatsUnderFreshStampsIsFrozenUnlessItMay) {
   one_pixel.stamp_ns += kFrame;
   one_pixel.data[37] ^= 1;
   EXPECT_EQ(take(one_pixel), FrameFault::kNoFault);
+  // A driver that hangs sends its two buffers in turn.
+  for (ImageText buffer : {same, one_pixel, same}) {
+    buffer.stamp_ns = one_pixel.stamp_ns += kFrame;
+    EXPECT_EQ(take(buffer), FrameFault::kFrozen);
+  }
   stream = CameraStream({.most_pixels = 100, .may_repeat = true});
   ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ASSERT_EQ(take(frame(0)), FrameFault::kNoFault);
   EXPECT_EQ(take(same), FrameFault::kNoFault);
+}
+
+TEST_F(CameraStreamTest, AnImageIsRefusedWithTheCameraInfoOfAnotherFrame) {
+  InfoText said;
+  said.frame = "colour";
+  ASSERT_EQ(take(said), FrameFault::kNoFault);
+  ImageText picture = frame(0);
+  picture.frame = "depth";
+  EXPECT_EQ(take(picture), FrameFault::kOtherCamera);
+  picture.frame = "";
+  EXPECT_EQ(take(picture), FrameFault::kNoFault) << "it says nothing";
+  said.frame = "depth";
+  EXPECT_EQ(take(said), FrameFault::kCameraInfoChanged) << "two cameras on one topic";
 }
 
 // The colours of each point go on.

@@ -19,10 +19,11 @@ struct ImageText {
   std::uint32_t step = 16;
   std::vector<std::uint8_t> data = std::vector<std::uint8_t>(16 * 6, 7);
   std::int64_t stamp_ns = kStart;
+  std::string frame = "camera";
 
   [[nodiscard]] std::vector<std::byte> cdr() const {
     RosCdr out;
-    out.header(stamp_ns, "camera").number(height).number(width).text(encoding);
+    out.header(stamp_ns, frame).number(height).number(width).text(encoding);
     out.number(is_bigendian).number(step).number(static_cast<std::uint32_t>(data.size()));
     for (const std::uint8_t byte : data) out.number(byte);
     return out.bytes();
@@ -37,10 +38,11 @@ struct InfoText {
   std::vector<double> p = {10, 0, 3.5, 0, 0, 11, 2.5, 0, 0, 0, 1, 0};
   std::uint32_t binning = 0, x_offset = 0;
   std::int64_t stamp_ns = kStart;
+  std::string frame = "camera";
 
   [[nodiscard]] std::vector<std::byte> cdr() const {
     RosCdr out;
-    out.header(stamp_ns, "camera").number(height).number(width).text("plumb_bob").numbers(d);
+    out.header(stamp_ns, frame).number(height).number(width).text("plumb_bob").numbers(d);
     for (const auto* matrix : {&k, &r, &p}) {
       for (const double x : *matrix) out.number(x);
     }

@@ -14,7 +14,7 @@ namespace clearance::test {
 namespace {
 
 constexpr double kHalf = 0.70710678118654757;  // half of sqrt(2)
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kTransformMs = 1'000'000;
 constexpr const char* kStatic = "/tf_static";
 
 class RosTransformsTest : public testing::Test {
@@ -45,7 +45,7 @@ class RosTransformsTest : public testing::Test {
   // Sends frames stamped with the current time, one millisecond after the previous message.
   void send(const std::vector<FrameText>& frames, const std::string& topic = "/tf",
             std::uint64_t writer = 1) {
-    heard.pass(kMs);
+    heard.pass(kTransformMs);
     send_at(now(), frames, topic, writer);
   }
   // Returns the batches that result from the messages sent so far.
@@ -66,7 +66,7 @@ class RosTransformsTest : public testing::Test {
     return Vec3::Zero();
   }
 
-  // Where an object is along x, by the source that says so.
+  // The x of an object by the source that states it.
   using Places = std::map<std::string, double>;
   Places places_of(std::uint32_t object) {
     Places places;
@@ -86,8 +86,9 @@ class RosTransformsTest : public testing::Test {
 // Objects: cart 0, tool 1.
 TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   send_at(now(), {{"cart", "cart_link", {0, 0, 1}}}, kStatic, 2);
-  send_at(now() - 20 * kMs, {{"map", "odom", {1, 2, 0}, {0, 0, kHalf, kHalf}}});
-  send_at(now() - 5 * kMs, {{"odom", "cart", {3, 0, 0}}, {"/nowhere", "wheel", {9, 9, 9}}});
+  send_at(now() - 20 * kTransformMs, {{"map", "odom", {1, 2, 0}, {0, 0, kHalf, kHalf}}});
+  send_at(now() - 5 * kTransformMs,
+          {{"odom", "cart", {3, 0, 0}}, {"/nowhere", "wheel", {9, 9, 9}}});
   std::vector<PoseBatch> batches = settled();
   ASSERT_EQ(batches.size(), 1u);
   EXPECT_EQ(batches[0].source.view(), "/tf");
@@ -95,33 +96,33 @@ TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   ASSERT_EQ(batches[0].samples.size(), 1u);
   const PoseSample& sample = batches[0].samples[0];
   EXPECT_EQ(sample.object, 0u);
-  EXPECT_EQ(sample.stamp_ns, now() - 20 * kMs);
+  EXPECT_EQ(sample.stamp_ns, now() - 20 * kTransformMs);
   // 3 m along odom's x, which is the map's y.
   EXPECT_NEAR((sample.world_from_object.position - Vec3(1, 5, 1)).norm(), 0.0, 1e-12);
   EXPECT_FALSE(sample.has_twist);
   // A transform that does not change the oldest stamp brings no new information.
-  send_at(now() - 1 * kMs, {{"odom", "cart", {4, 0, 0}}});
+  send_at(now() - 1 * kTransformMs, {{"odom", "cart", {4, 0, 0}}});
   EXPECT_TRUE(settled().empty());
   send_at(now(), {{"map", "odom", {1, 2, 0}}});
   batches = settled();
   ASSERT_EQ(batches.size(), 1u);
   EXPECT_EQ(batches[0].sequence_number, 2u);
-  EXPECT_EQ(batches[0].samples[0].stamp_ns, now() - 1 * kMs);
+  EXPECT_EQ(batches[0].samples[0].stamp_ns, now() - 1 * kTransformMs);
   EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(5, 2, 1));
 }
 
 // A static transform is valid at any time. It is repeated before it becomes late.
 TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
   send({{"map", "cart_link", {0.5, 0, 0}}}, kStatic);
-  EXPECT_EQ(heard.intake.patience_ns(), 20 * kMs);
+  EXPECT_EQ(heard.intake.patience_ns(), 20 * kTransformMs);
   for (int i = 0; i < 5; ++i) {
     const std::vector<PoseBatch> batches = settled();
     ASSERT_EQ(batches.size(), 1u) << i;
     EXPECT_EQ(batches[0].samples.at(0).stamp_ns, now());
     EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(0.5, 0, 0));
-    heard.pass(10 * kMs);
+    heard.pass(10 * kTransformMs);
     EXPECT_TRUE(settled().empty()) << "not so soon again";
-    heard.pass(10 * kMs);
+    heard.pass(10 * kTransformMs);
   }
 }
 
@@ -228,7 +229,7 @@ TEST_F(RosTransformsTest, CarryTheBaseOfARobot) {
   for (std::size_t i = 0; i < 7; ++i) {
     EXPECT_NEAR(batch.joints[i].position, expected[i], 1e-15);
     EXPECT_TRUE(variables.at(batch.joints[i].variable).name.starts_with("r_arm_base/"));
-    EXPECT_EQ(variables[batch.joints[i].variable].age_limit_ns, 300 * kMs);
+    EXPECT_EQ(variables[batch.joints[i].variable].age_limit_ns, 300 * kTransformMs);
   }
   send({{"map", "mir/top", {1, 2, 3}, {0, 0, -kHalf, -kHalf}}});
   EXPECT_GT(settled().at(0).joints.at(6).position, 0.0);

@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kVariableMs = 1'000'000;
 constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kUnlimited = std::numeric_limits<double>::infinity();
 
@@ -21,7 +21,7 @@ class Variable : public testing::Test {
     joint_.lower = -1.0;
     joint_.upper = 1.0;
     joint_.max_speed = 2.0;
-    joint_.age_limit_ns = 20 * kMs;
+    joint_.age_limit_ns = 20 * kVariableMs;
   }
 
   static JointSample at(std::int64_t stamp_ns, double position) {
@@ -35,8 +35,8 @@ class Variable : public testing::Test {
   std::optional<Reject> take(const JointSample& sample, std::int64_t after_ns = 0) {
     const std::int64_t now = sample.stamp_ns + after_ns;
     const auto cause =
-        clearance::take(joint_, sample, sample.stamp_ns, {.now_ns = now, .future_ns = 5 * kMs},
-                        state_, state_.repetition);
+        clearance::take(joint_, sample, sample.stamp_ns,
+                        {.now_ns = now, .future_ns = 5 * kVariableMs}, state_, state_.repetition);
     advance(joint_, now, state_);
     return cause;
   }
@@ -46,51 +46,51 @@ class Variable : public testing::Test {
 };
 
 TEST_F(Variable, IsUnknownUntilItsFirstPosition) {
-  advance(joint_, 5 * kMs, state_);
+  advance(joint_, 5 * kVariableMs, state_);
   EXPECT_FALSE(state_.input.has_value);
-  EXPECT_EQ(state_.input.age_ns(5 * kMs), -1);
-  EXPECT_EQ(take(at(5 * kMs, 0.3)), std::nullopt);
+  EXPECT_EQ(state_.input.age_ns(5 * kVariableMs), -1);
+  EXPECT_EQ(take(at(5 * kVariableMs, 0.3)), std::nullopt);
   EXPECT_TRUE(state_.input.has_value);
   EXPECT_EQ(state_.position, 0.3);
   EXPECT_FALSE(state_.velocity_known);
 }
 
 TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
-  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
-  EXPECT_EQ(take(at(2 * kMs, 0.001)), std::nullopt);
+  EXPECT_EQ(take(at(1 * kVariableMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(2 * kVariableMs, 0.001)), std::nullopt);
   EXPECT_TRUE(state_.velocity_known);
   EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
-  JointSample sample = at(3 * kMs, 0.002);
+  JointSample sample = at(3 * kVariableMs, 0.002);
   sample.has_velocity = true;
   sample.velocity = -0.5;
   EXPECT_EQ(take(sample), std::nullopt);
   EXPECT_EQ(state_.velocity, -0.5);
   // A driver that measures no velocity sends NaN.
-  sample = at(4 * kMs, 0.003);
+  sample = at(4 * kVariableMs, 0.003);
   sample.has_velocity = true;
   sample.velocity = kNotANumber;
   EXPECT_EQ(take(sample), std::nullopt);
   EXPECT_NEAR(state_.velocity, 1.0, 1e-12);
   // After a long gap, a difference of positions says nothing about the present velocity.
-  EXPECT_EQ(take(at(100 * kMs, 0.1)), std::nullopt);
+  EXPECT_EQ(take(at(100 * kVariableMs, 0.1)), std::nullopt);
   EXPECT_FALSE(state_.velocity_known);
 }
 
 TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
   EXPECT_EQ(take(at(0, 0.5)), std::nullopt);
-  advance(joint_, 20 * kMs, state_);
+  advance(joint_, 20 * kVariableMs, state_);
   EXPECT_FALSE(state_.input.late);
   EXPECT_EQ(state_.may_have_moved, 0.0);
-  advance(joint_, 30 * kMs, state_);
+  advance(joint_, 30 * kVariableMs, state_);
   EXPECT_TRUE(state_.input.late);
   EXPECT_NEAR(state_.may_have_moved, 0.06, 1e-12);
-  advance(joint_, 10'000 * kMs, state_);
+  advance(joint_, 10'000 * kVariableMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
   joint_.max_speed = kUnlimited;
-  advance(joint_, 10'000 * kMs, state_);
+  advance(joint_, 10'000 * kVariableMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 1.5, 1e-12);
   joint_.lower = -kUnlimited;
-  advance(joint_, 10'000 * kMs, state_);
+  advance(joint_, 10'000 * kVariableMs, state_);
   EXPECT_EQ(state_.may_have_moved, kUnlimited);
 }
 
@@ -99,28 +99,28 @@ TEST_F(Variable, WhatItWasSeenToExceedDoesNotBoundIt) {
   fast.has_velocity = true;
   fast.velocity = -5.0;
   EXPECT_EQ(take(fast), std::nullopt);
-  advance(joint_, 100 * kMs, state_);
+  advance(joint_, 100 * kVariableMs, state_);
   EXPECT_NEAR(state_.may_have_moved, 0.5, 1e-12);
 }
 
 // If two positions exclude each other, it is unknown which one is wrong, so only the limits hold.
 TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnown) {
   EXPECT_EQ(take(at(0, 0.8)), std::nullopt);
-  EXPECT_EQ(take(at(10 * kMs, 0.0)), Reject::kTooFast);
+  EXPECT_EQ(take(at(10 * kVariableMs, 0.0)), Reject::kTooFast);
   EXPECT_TRUE(state_.input.late);
   EXPECT_TRUE(state_.input.contradicted);
   EXPECT_EQ(state_.position, 0.8);
   EXPECT_NEAR(state_.may_have_moved, 1.8, 1e-12);
   // This lasts until a position agrees again and an age limit has passed.
-  EXPECT_EQ(take(at(11 * kMs, 0.79)), std::nullopt);
+  EXPECT_EQ(take(at(11 * kVariableMs, 0.79)), std::nullopt);
   EXPECT_TRUE(state_.input.contradicted);
-  EXPECT_EQ(take(at(31 * kMs, 0.79)), std::nullopt);
+  EXPECT_EQ(take(at(31 * kVariableMs, 0.79)), std::nullopt);
   EXPECT_FALSE(state_.input.late);
   // If the positions persist, they are accepted once the joint can have reached them.
-  EXPECT_EQ(take(at(200 * kMs, 0.0)), Reject::kTooFast);
-  EXPECT_EQ(take(at(420 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(200 * kVariableMs, 0.0)), Reject::kTooFast);
+  EXPECT_EQ(take(at(420 * kVariableMs, 0.0)), std::nullopt);
   joint_.upper = kUnlimited;
-  EXPECT_EQ(take(at(421 * kMs, 0.9)), Reject::kTooFast);
+  EXPECT_EQ(take(at(421 * kVariableMs, 0.9)), Reject::kTooFast);
   EXPECT_EQ(state_.may_have_moved, kUnlimited);
 }
 
@@ -130,54 +130,54 @@ TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
   fast.has_velocity = true;
   fast.velocity = 6.0;
   EXPECT_EQ(take(fast), std::nullopt);
-  fast.stamp_ns = 100 * kMs;
+  fast.stamp_ns = 100 * kVariableMs;
   fast.position = 0.6;
   EXPECT_EQ(take(fast), std::nullopt);
-  EXPECT_EQ(take(at(101 * kMs, 0.9)), Reject::kTooFast);
+  EXPECT_EQ(take(at(101 * kVariableMs, 0.9)), Reject::kTooFast);
 }
 
 TEST_F(Variable, WildVelocityDoesNotExcuseALeap) {
   EXPECT_EQ(take(at(0, -0.5)), std::nullopt);
-  JointSample wild = at(kMs, 0.5);
+  JointSample wild = at(kVariableMs, 0.5);
   wild.has_velocity = true;
   wild.velocity = 1e6;
   EXPECT_EQ(take(wild), Reject::kTooFast);
-  wild.stamp_ns = 2 * kMs;
+  wild.stamp_ns = 2 * kVariableMs;
   wild.position = -0.5;
   EXPECT_EQ(take(wild), std::nullopt);
-  EXPECT_EQ(take(at(3 * kMs, 0.5)), Reject::kTooFast) << "nor does that of the one before";
+  EXPECT_EQ(take(at(3 * kVariableMs, 0.5)), Reject::kTooFast) << "nor does that of the one before";
 }
 
 TEST_F(Variable, WhatIsNoPositionOrOutOfTimeIsRefused) {
-  EXPECT_EQ(take(at(10 * kMs, 0.0)), std::nullopt);
-  EXPECT_EQ(take(at(11 * kMs, kNotANumber)), Reject::kNonFinite);
-  EXPECT_EQ(take(at(11 * kMs, 2e6)), Reject::kNonFinite);
-  EXPECT_EQ(take(at(9 * kMs, 0.0), 2 * kMs), Reject::kBackwards);
+  EXPECT_EQ(take(at(10 * kVariableMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(11 * kVariableMs, kNotANumber)), Reject::kNonFinite);
+  EXPECT_EQ(take(at(11 * kVariableMs, 2e6)), Reject::kNonFinite);
+  EXPECT_EQ(take(at(9 * kVariableMs, 0.0), 2 * kVariableMs), Reject::kBackwards);
   EXPECT_FALSE(state_.input.contradicted);
-  EXPECT_EQ(take(at(30 * kMs, 0.0), -6 * kMs), Reject::kFuture);
+  EXPECT_EQ(take(at(30 * kVariableMs, 0.0), -6 * kVariableMs), Reject::kFuture);
   EXPECT_TRUE(state_.input.contradicted);
-  EXPECT_EQ(state_.input.stamp_ns, 10 * kMs);
+  EXPECT_EQ(state_.input.stamp_ns, 10 * kVariableMs);
 }
 
 TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
-  JointSample other = at(2 * kMs, 0.0);
+  JointSample other = at(2 * kVariableMs, 0.0);
   other.source = 3;
-  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
+  EXPECT_EQ(take(at(1 * kVariableMs, 0.0)), std::nullopt);
   EXPECT_EQ(take(other), Reject::kOtherSource);
   EXPECT_EQ(state_.input.owner.other_source(), 3u);
-  other.stamp_ns = 1002 * kMs;
+  other.stamp_ns = 1002 * kVariableMs;
   EXPECT_EQ(take(other), std::nullopt);
   EXPECT_EQ(state_.input.owner.source(), 3u);
   state_.input.owner = InputOwner(3);
-  EXPECT_EQ(take(at(9000 * kMs, 0.0)), Reject::kOtherSource);
+  EXPECT_EQ(take(at(9000 * kVariableMs, 0.0)), Reject::kOtherSource);
 }
 
 TEST_F(Variable, AfterTimeThatNobodyCanTellItIsLate) {
-  EXPECT_EQ(take(at(1 * kMs, 0.0)), std::nullopt);
-  forget_age(-5 * kMs, state_);
-  advance(joint_, -5 * kMs, state_);
+  EXPECT_EQ(take(at(1 * kVariableMs, 0.0)), std::nullopt);
+  forget_age(-5 * kVariableMs, state_);
+  advance(joint_, -5 * kVariableMs, state_);
   EXPECT_TRUE(state_.input.late);
-  EXPECT_EQ(take(at(-4 * kMs, 0.9)), std::nullopt);
+  EXPECT_EQ(take(at(-4 * kVariableMs, 0.9)), std::nullopt);
   EXPECT_FALSE(state_.input.late);
 }
 
@@ -200,9 +200,10 @@ class LyingVariable : public Variable {
   double largest_error(std::int64_t from_ms, std::int64_t to_ms, Position position) {
     double largest = 0.0;
     for (std::int64_t ms = from_ms; ms < to_ms; ++ms) {
-      static_cast<void>(take_both(ms * kMs, position(ms * kMs), speed(ms * kMs)));
+      static_cast<void>(
+          take_both(ms * kVariableMs, position(ms * kVariableMs), speed(ms * kVariableMs)));
       if (!state_.input.late)
-        largest = std::max(largest, std::abs(state_.position - truth(ms * kMs)));
+        largest = std::max(largest, std::abs(state_.position - truth(ms * kVariableMs)));
     }
     return largest;
   }
@@ -210,9 +211,11 @@ class LyingVariable : public Variable {
 
 TEST_F(LyingVariable, FrozenPositionsUnderVelocitiesThatMoveAreFoundOut) {
   EXPECT_LT(largest_error(0, 1000, [](std::int64_t ns) { return truth(ns); }), 1e-12);
-  EXPECT_LT(largest_error(1000, 4000, [](std::int64_t) { return truth(1000 * kMs); }), 0.12);
+  EXPECT_LT(largest_error(1000, 4000, [](std::int64_t) { return truth(1000 * kVariableMs); }),
+            0.12);
   // The true positions are taken at once, and known when they have agreed for long enough.
-  EXPECT_EQ(take_both(4001 * kMs, truth(4001 * kMs), speed(4001 * kMs)), std::nullopt);
+  EXPECT_EQ(take_both(4001 * kVariableMs, truth(4001 * kVariableMs), speed(4001 * kVariableMs)),
+            std::nullopt);
   EXPECT_TRUE(state_.input.late);
   EXPECT_LT(largest_error(4002, 5200, [](std::int64_t ns) { return truth(ns); }), 1e-12);
   EXPECT_FALSE(state_.input.late);
@@ -226,35 +229,38 @@ TEST_F(LyingVariable, PositionsAtHalfTheSpeedAreFoundOut) {
 TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
   bool is_told = false;
   for (std::int64_t ms = 0; ms < 3000; ++ms) {
-    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 0.0), std::nullopt);
+    ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), 0.0), std::nullopt);
     is_told = is_told || state_.velocities_contradict;
     ASSERT_FALSE(state_.input.late);
     if (ms > 20) {
-      ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+      ASSERT_NEAR(state_.velocity, speed(ms * kVariableMs), 0.01) << ms;
     }
   }
   EXPECT_TRUE(is_told);
   // Velocities that move and agree are used again.
   for (std::int64_t ms = 3000; ms < 4000; ++ms) {
-    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), speed(ms * kMs)), std::nullopt);
+    ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), speed(ms * kVariableMs)),
+              std::nullopt);
   }
   EXPECT_FALSE(state_.velocities_contradict);
-  EXPECT_EQ(state_.velocity, speed(3999 * kMs));
+  EXPECT_EQ(state_.velocity, speed(3999 * kVariableMs));
 }
 
 // The larger of the two speeds counts, in the direction of the positions.
 TEST_F(LyingVariable, VelocitiesOfTheWrongSignGiveWayToPositions) {
   for (std::int64_t ms = 0; ms < 2000; ++ms) {
-    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), -speed(ms * kMs)), std::nullopt) << ms;
+    ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), -speed(ms * kVariableMs)),
+              std::nullopt)
+        << ms;
     if (ms > 60) {
-      ASSERT_NEAR(state_.velocity, speed(ms * kMs), 0.01) << ms;
+      ASSERT_NEAR(state_.velocity, speed(ms * kVariableMs), 0.01) << ms;
     }
   }
 }
 
 TEST_F(LyingVariable, VelocitiesThatTheJointCannotHaveAreNotUsed) {
   for (std::int64_t ms = 0; ms < 1000; ++ms) {
-    ASSERT_EQ(take_both(ms * kMs, truth(ms * kMs), 1e3), std::nullopt);
+    ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), 1e3), std::nullopt);
     if (ms > 0) {
       ASSERT_LT(std::abs(state_.velocity), 1.3);
     }
@@ -265,11 +271,11 @@ TEST_F(LyingVariable, VelocitiesThatTheJointCannotHaveAreNotUsed) {
 TEST_F(Variable, OutsideItsLimitsItIsRefusedAndNothingBoundsIt) {
   joint_.limit_tolerance = 0.02;
   EXPECT_EQ(take(at(0, 1.015)), std::nullopt) << "encoders have offsets";
-  EXPECT_EQ(take(at(10 * kMs, 1.03)), Reject::kOutsideLimits);
+  EXPECT_EQ(take(at(10 * kVariableMs, 1.03)), Reject::kOutsideLimits);
   EXPECT_EQ(state_.may_have_moved, kUnlimited);
-  EXPECT_EQ(take(at(20 * kMs, 1.0)), std::nullopt);
+  EXPECT_EQ(take(at(20 * kVariableMs, 1.0)), std::nullopt);
   EXPECT_TRUE(state_.input.contradicted);
-  EXPECT_EQ(take(at(41 * kMs, 1.0)), std::nullopt);
+  EXPECT_EQ(take(at(41 * kVariableMs, 1.0)), std::nullopt);
   EXPECT_FALSE(state_.input.late);
 }
 
@@ -278,18 +284,18 @@ TEST_F(Variable, ThatWrapsMakesNoLeapWhereItsAngleDoes) {
   joint_.upper = kUnlimited;
   joint_.wraps = true;
   EXPECT_EQ(take(at(0, 3.1406)), std::nullopt);
-  EXPECT_EQ(take(at(1 * kMs, -3.1416)), std::nullopt);
+  EXPECT_EQ(take(at(1 * kVariableMs, -3.1416)), std::nullopt);
   EXPECT_NEAR(state_.velocity, 1.0, 0.02);
-  EXPECT_EQ(take(at(2 * kMs, 3.1416 + 6.283185307179586 * 1000)), std::nullopt);
-  EXPECT_EQ(take(at(3 * kMs, 0.0)), Reject::kTooFast);
+  EXPECT_EQ(take(at(2 * kVariableMs, 3.1416 + 6.283185307179586 * 1000)), std::nullopt);
+  EXPECT_EQ(take(at(3 * kVariableMs, 0.0)), Reject::kTooFast);
   joint_.wraps = false;
-  EXPECT_EQ(take(at(4 * kMs, 3.1416)), Reject::kTooFast);
+  EXPECT_EQ(take(at(4 * kVariableMs, 3.1416)), Reject::kTooFast);
 }
 
 TEST_F(Variable, ThatDriftsFasterThanItMovesIsFoundOut) {
   double position = -0.9;
   std::int64_t ms = 0;
-  while (take(at(ms * kMs, position)) == std::nullopt) {
+  while (take(at(ms * kVariableMs, position)) == std::nullopt) {
     ASSERT_LT(++ms, 400);
     position += 0.0045;  // 4.5 rad/s, of 2
   }
@@ -297,18 +303,18 @@ TEST_F(Variable, ThatDriftsFasterThanItMovesIsFoundOut) {
 }
 
 TEST_F(Variable, ThatMayNotStandStillIsFrozenWhenItDoes) {
-  joint_.frozen_limit_ns = 50 * kMs;
+  joint_.frozen_limit_ns = 50 * kVariableMs;
   EXPECT_EQ(take(at(0, 0.1)), std::nullopt);
-  EXPECT_EQ(take(at(50 * kMs, 0.1)), std::nullopt);
-  EXPECT_EQ(take(at(51 * kMs, 0.1)), Reject::kFrozen);
+  EXPECT_EQ(take(at(50 * kVariableMs, 0.1)), std::nullopt);
+  EXPECT_EQ(take(at(51 * kVariableMs, 0.1)), Reject::kFrozen);
   EXPECT_TRUE(state_.input.contradicted);
 }
 
 // Whoever came first: two sources cannot both be right.
 TEST_F(Variable, ThatTwoSourcesContradictIsUnknownWhileTheyDo) {
   for (std::int64_t ms = 0; ms < 500; ++ms) {
-    ASSERT_EQ(take(at(ms * kMs, 0.0)), std::nullopt);
-    JointSample other = at(ms * kMs, 0.5);
+    ASSERT_EQ(take(at(ms * kVariableMs, 0.0)), std::nullopt);
+    JointSample other = at(ms * kVariableMs, 0.5);
     other.source = 3;
     ASSERT_EQ(take(other), Reject::kDisputed);
     ASSERT_TRUE(state_.input.contradicted);
@@ -317,12 +323,12 @@ TEST_F(Variable, ThatTwoSourcesContradictIsUnknownWhileTheyDo) {
   std::int64_t ms = 500;
   for (; state_.input.contradicted; ++ms) {
     ASSERT_LT(ms, 2000);
-    ASSERT_EQ(take(at(ms * kMs, 0.0)), std::nullopt);
+    ASSERT_EQ(take(at(ms * kVariableMs, 0.0)), std::nullopt);
   }
   EXPECT_NEAR(static_cast<double>(ms), 1500.0, 2.0);
   // A source that the cell names is not disputed.
   state_.input.owner = InputOwner(0);
-  JointSample other = at(ms * kMs, 0.5);
+  JointSample other = at(ms * kVariableMs, 0.5);
   other.source = 3;
   EXPECT_EQ(take(other), Reject::kOtherSource);
   EXPECT_FALSE(state_.input.contradicted);
@@ -332,13 +338,13 @@ TEST_F(Variable, ThatTwoSourcesContradictIsUnknownWhileTheyDo) {
 TEST_F(Variable, ThatIsRefusedKeepsItsOwner) {
   EXPECT_EQ(take(at(0, 0.0)), std::nullopt);
   for (std::int64_t ms = 1; ms < 3000; ++ms) {
-    static_cast<void>(take(at(ms * kMs, ms % 2 == 0 ? kNotANumber : 5.0)));
-    JointSample other = at(ms * kMs, 0.0);
+    static_cast<void>(take(at(ms * kVariableMs, ms % 2 == 0 ? kNotANumber : 5.0)));
+    JointSample other = at(ms * kVariableMs, 0.0);
     other.source = 3;
     ASSERT_EQ(take(other), Reject::kOtherSource) << ms;
   }
   EXPECT_EQ(state_.input.owner.takeovers(), 0u);
-  JointSample other = at(4001 * kMs, 0.0);
+  JointSample other = at(4001 * kVariableMs, 0.0);
   other.source = 3;
   EXPECT_EQ(take(other), std::nullopt);
   EXPECT_EQ(state_.input.owner.takeovers(), 1u);

@@ -26,12 +26,15 @@ class TurnedClock final : public Clock {
     ++sleeps_;
     if (while_asleep) while_asleep(sleeps_);
   }
+  void stay_awake_until(std::int64_t monotonic_ns) noexcept override {
+    now_ = std::max(now_, monotonic_ns);
+  }
   void pass(std::int64_t ns) noexcept { now_ += ns; }
   void wake_late_by(std::int64_t ns) noexcept { late_ = ns; }
   [[nodiscard]] int sleeps() const noexcept { return sleeps_; }
   // Sleeps whose end was still to come: only these leave the processor to others.
   [[nodiscard]] int rests() const noexcept { return rests_; }
-  // What other threads do before the tick of this number, from 1.
+  // Does the work of other threads before the tick of this number, counted from 1.
   std::function<void(int)> while_asleep;
 
  private:

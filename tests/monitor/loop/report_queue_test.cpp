@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <thread>
+
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
@@ -79,6 +81,44 @@ TEST(ReportQueue, RefusesABatchThatIsLargerThanItsSlots) {
   EXPECT_EQ(queue.inputs().front(), nullptr);
 }
 
+TEST(ReportQueue, LosesNoReportThatAnAwakeConsumerExpects) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  const Report& report = monitor.tick({}, test::kStart);
+  ReportQueue queue(scene, {.reports = 4, .awaits = true});
+  std::atomic<int> taken{0};
+  std::thread consumer([&] {
+    while (!queue.closed()) {
+      queue.wait();
+      for (; queue.reports().front() != nullptr; ++taken) queue.reports().pop();
+    }
+  });
+  // Some come while it is awake, others when it has just gone to sleep. After each the test waits:
+  // a consumer that was not woken would never take it.
+  SystemClock clock;
+  constexpr int kReports = 2000;
+  for (int i = 0; i < kReports && taken == i; ++i) {
+    const std::int64_t now = clock.monotonic_ns();
+    queue.expect(now + 10'000);
+    clock.stay_awake_until(now + 100 * (i % 400));
+    queue.report(report, {});
+    const std::int64_t patience = clock.monotonic_ns() + 2'000'000'000;
+    while (taken <= i && clock.monotonic_ns() < patience) std::this_thread::yield();
+  }
+  EXPECT_EQ(taken, kReports) << "the consumer was not woken";
+  queue.close();
+  consumer.join();
+}
+
+TEST(ReportQueue, WakesAConsumerThatExpectsAReportWhichDoesNotCome) {
+  ReportQueue queue(published_cell(), {.awaits = true});
+  const std::int64_t deadline = SystemClock().monotonic_ns() + 1'000'000;
+  queue.expect(deadline);
+  queue.wait();
+  EXPECT_GE(SystemClock().monotonic_ns(), deadline) << "it stays awake until then";
+  EXPECT_EQ(queue.reports().front(), nullptr);
+}
+
 TEST(ReportQueue, AllocatesNothingInTheTickThread) {
   const Scene scene = test::scara_cell();
   Monitor monitor(scene);
@@ -89,6 +129,7 @@ TEST(ReportQueue, AllocatesNothingInTheTickThread) {
   const SourceUse use{};
   const std::uint64_t before = allocations();
   for (int i = 0; i < 20; ++i) {  // full slots and dropped ones
+    queue.expect(0);
     queue.input(batch);
     queue.report(report, {&use, 1});
     queue.statistics(statistics);

@@ -8,14 +8,14 @@ namespace clearance {
 namespace {
 
 using test::kStart;
-constexpr std::int64_t kMs = test::kTick;
+constexpr std::int64_t kMillisecond = test::kTick;
 
 // Each reading of a clock takes some time.
 class TurnedClocks final : public Clock {
  public:
   std::int64_t realtime_ns() noexcept override { return kStart + wall_ahead + pass(); }
   std::int64_t monotonic_ns() noexcept override { return pass(); }
-  std::int64_t steady_ns() noexcept override { return 77 * kMs + pass(); }
+  std::int64_t steady_ns() noexcept override { return 77 * kMillisecond + pass(); }
   void sleep_until(std::int64_t) noexcept override {}
 
   std::int64_t now = 0, wall_ahead = 0, reading_takes = 20;
@@ -30,8 +30,9 @@ TEST(SteadyTime, BeginsAtTheWallClockAndGoesOnAtTheSteadyOne) {
   const TickTime first = time.read(clocks);
   EXPECT_NEAR(static_cast<double>(first.now_ns - kStart), 0.0, 100.0);
   EXPECT_EQ(first.clock_offset_ns, 0);
-  clocks.now += 5 * kMs;
-  EXPECT_NEAR(static_cast<double>(time.read(clocks).now_ns - first.now_ns), 5.0 * kMs, 100.0);
+  clocks.now += 5 * kMillisecond;
+  EXPECT_NEAR(static_cast<double>(time.read(clocks).now_ns - first.now_ns), 5.0 * kMillisecond,
+              100.0);
 }
 
 TEST(SteadyTime, StepsOfTheWallClockMoveTheOffsetOnly) {
@@ -39,7 +40,8 @@ TEST(SteadyTime, StepsOfTheWallClockMoveTheOffsetOnly) {
   SteadyTime time;
   std::int64_t before = time.read(clocks).now_ns;
   std::uint64_t steps = 0;
-  for (const std::int64_t step : {-2000 * kMs, 3'600'000 * kMs, -3'600'000 * kMs, 2000 * kMs}) {
+  for (const std::int64_t step : {-2000 * kMillisecond, 3'600'000 * kMillisecond,
+                                  -3'600'000 * kMillisecond, 2000 * kMillisecond}) {
     clocks.wall_ahead += step;
     const TickTime now = time.read(clocks);
     EXPECT_NEAR(static_cast<double>(now.now_ns - before), 0.0, 200.0);
@@ -53,7 +55,7 @@ TEST(SteadyTime, ThreadHeldUpBetweenTwoReadingsIsNoStep) {
   TurnedClocks clocks;
   SteadyTime time;
   (void)time.read(clocks);
-  clocks.reading_takes = 300 * kMs;
+  clocks.reading_takes = 300 * kMillisecond;
   EXPECT_EQ(time.read(clocks).clock_offset_ns, 0);
   EXPECT_EQ(time.steps(), 0u);
 }

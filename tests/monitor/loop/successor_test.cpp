@@ -252,6 +252,54 @@ TEST(SuccessionOfThreads, EveryCycleIsReportedOnceWhileScenesChange) {
   }
 }
 
+// The thread that sends a successor's state reads its lineage as soon as it sees that it has begun.
+TEST(SuccessionOfThreads, ThePaceKnowsOfASuccessorBeforeOtherThreadsSeeThatItHasBegun) {
+  const Scene scene = balls({"a", "b"}, 7);
+  class NoPoses final : public PoseSource {
+    const PoseBatch* next() noexcept override { return nullptr; }
+  } poses;
+  class Pace final : public TickPace {
+   public:
+    std::atomic<const Successor*> successor{nullptr};
+    std::atomic<bool> has_begun_before{false};
+
+   private:
+    std::int64_t ahead_ns() const noexcept override { return 0; }
+    std::int64_t decide(std::int64_t deadline, std::uint64_t, std::uint64_t) noexcept override {
+      return deadline;
+    }
+    TickTime time() noexcept override { return now_ns_ += kTick; }
+    void ticked(const Monitor&) noexcept override {}
+    std::uint64_t lineage() const noexcept override { return 1; }
+    bool is_behind() noexcept override { return false; }
+    void successor_begins(bool) noexcept override {
+      has_begun_before = successor.load()->state() != State::kOffered;
+    }
+    void successor_gave_up() noexcept override {}
+    void successor_followed() noexcept override {}
+    bool may_join() const noexcept override { return false; }
+    void joined(std::uint64_t, std::uint64_t) noexcept override {}
+    std::int64_t now_ns_ = 1;
+  } pace;
+  SystemClock clock;
+  Kept sinks[2];
+  TickLoop loop(scene, poses, {&sinks[0]}, clock, {.pace = &pace});
+  TickRecords records;
+  Successor next(scene, loop.monitor(), scene, {&sinks[1]}, records);
+  pace.successor = &next;
+  ASSERT_TRUE(loop.offer(next));
+  std::atomic<bool> stop{false};
+  std::thread ticking([&] { loop.run(stop); });
+  while (next.state() == State::kOffered) std::this_thread::yield();
+  EXPECT_FALSE(pace.has_begun_before);
+  while (next.state() != State::kSucceeded && !next.failed()) {
+    next.catch_up();
+    std::this_thread::yield();
+  }
+  stop = true;
+  ticking.join();
+}
+
 // The running report is certified, and that of the changed scene cannot be: c has been silent for
 // too long, or b is not there.
 TEST_F(Succession, WaitsForNoInputThatIsMissing) {

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/shared/allocation_count.hpp"
@@ -96,6 +97,69 @@ TEST(TickLoop, RestsAboutEvery50MillisecondsWhenNoTickIsInTime) {
   const std::int64_t lasted_ns = loop.clock.monotonic_ns();
   EXPECT_GE(loop.clock.rests(), lasted_ns / 55'000'000);
   EXPECT_LE(loop.clock.rests(), lasted_ns / 45'000'000);
+}
+
+TEST(TickLoop, RestsAlsoWhenAllTicksEndWhenTheNextOneIsToBePrepared) {
+  Loop loop;
+  loop.reports.all_slow = true;
+  loop.reports.slow_ns = kTick - 20'000;
+  loop.run({.max_ticks = 400, .ahead_ns = 50'000});
+  EXPECT_EQ(loop.statistics.overruns, 0u);
+  EXPECT_GE(loop.clock.rests(), 400 * kTick / 55'000'000);
+}
+
+// Copies reports, and checks what it was told to expect.
+class ExpectingSink final : public ReportSink {
+ public:
+  explicit ExpectingSink(TurnedClock& clock) : clock_(clock) {}
+  void expect(std::int64_t deadline_ns) noexcept override {
+    told_ns.push_back(clock_.monotonic_ns());
+    deadlines_ns.push_back(deadline_ns);
+  }
+  void input(const PoseBatch&) noexcept override {}
+  void report(const Report& report, std::span<const SourceUse>) noexcept override {
+    checksums.push_back(checksum_of_rest(report, 0));
+    times_ns.push_back(report.now_ns);
+    pairs.push_back(report.pairs);
+  }
+  void statistics(const LoopStatistics&) noexcept override {}
+  std::vector<std::int64_t> told_ns, deadlines_ns, times_ns;
+  std::vector<std::uint64_t> checksums;
+  std::vector<std::vector<PairReport>> pairs;
+
+ private:
+  TurnedClock& clock_;
+};
+
+TEST(TickLoop, ChangesNoBitOfAReportByWakingAhead) {
+  const auto run = [](std::int64_t ahead_ns) {
+    Loop loop;
+    for (std::uint64_t i = 1; i <= 30; ++i) {
+      loop.poses.add("arm", i, 1);
+      loop.poses.last().samples[0].world_from_object.position.z() += 0.001 * static_cast<double>(i);
+      loop.poses.last().samples[0].stamp_ns += static_cast<std::int64_t>(i) * kTick;
+    }
+    ExpectingSink sink(loop.clock);
+    TickLoop(loop.scene, loop.poses, {&sink}, loop.clock,
+             {.max_ticks = 50, .max_samples = 1, .ahead_ns = ahead_ns})
+        .run(loop.stop);
+    return sink;
+  };
+  const ExpectingSink at_deadlines = run(0), ahead = run(30'000);
+  EXPECT_TRUE(at_deadlines.told_ns.empty());
+  ASSERT_EQ(ahead.told_ns.size(), 50u);
+  for (std::size_t i = 0; i < 50; ++i) {
+    EXPECT_EQ(ahead.deadlines_ns[i], static_cast<std::int64_t>(i + 1) * kTick);
+    EXPECT_EQ(ahead.told_ns[i], ahead.deadlines_ns[i] - 30'000);
+    ASSERT_EQ(ahead.pairs[i].size(), 1u);
+    const PairReport &a = at_deadlines.pairs[i][0], &b = ahead.pairs[i][0];
+    EXPECT_EQ(a.lower, b.lower);
+    EXPECT_EQ(a.upper, b.upper);
+    EXPECT_EQ(a.swept_lower, b.swept_lower);
+  }
+  EXPECT_EQ(ahead.times_ns, at_deadlines.times_ns);
+  EXPECT_EQ(ahead.checksums, at_deadlines.checksums);
+  EXPECT_NE(ahead.pairs[10][0].lower, ahead.pairs[20][0].lower) << "the ball moves";
 }
 
 TEST(TickLoop, CountsHowLateItWakesAndHowLongTicksTake) {
@@ -203,7 +267,7 @@ TEST(TickLoop, AllocatesNothingOnceItRuns) {
   for (std::uint64_t i = 1; i <= 300; ++i) loop.poses.add("arm", i, 3);
   CountingSink sink;
   TickLoop ticking(loop.scene, loop.poses, {&sink}, loop.clock,
-                   {.max_ticks = 200, .max_samples = 8});
+                   {.max_ticks = 200, .max_samples = 8, .ahead_ns = 50'000});
   ticking.run(loop.stop);
   EXPECT_EQ(sink.allocated(), 0u);
 }

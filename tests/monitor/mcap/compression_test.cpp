@@ -42,10 +42,10 @@ Bytes compressed(McapCompression how, std::span<const std::byte> bytes) {
   return how == McapCompression::kLz4 ? as_lz4(bytes) : as_zstd(bytes);
 }
 
-constexpr McapCompression kBoth[] = {McapCompression::kZstd, McapCompression::kLz4};
+constexpr McapCompression kCompressions[] = {McapCompression::kZstd, McapCompression::kLz4};
 
 TEST(Compression, GivesBackWhatTheLibrariesCompressed) {
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     for (const std::size_t size : {0u, 1u, 1000u, 6'000'000u}) {
       const Bytes bytes = some_bytes(size);
       Bytes out;
@@ -61,7 +61,7 @@ TEST(Compression, GivesBackWhatTheLibrariesCompressed) {
 
 TEST(Compression, WhatIsCutOffGivesItsBeginning) {
   const Bytes bytes = some_bytes(1'000'000);
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     const Bytes whole = compressed(how, bytes);
     Bytes out;
     decompress(how, std::span(whole).first(whole.size() / 2), bytes.size(), out);
@@ -74,7 +74,7 @@ TEST(Compression, WhatIsCutOffGivesItsBeginning) {
 // A megabyte of zeros is compressed into a few dozen bytes. The requested size is the limit.
 TEST(Compression, NeverGivesMoreThanIsAskedFor) {
   const Bytes zeros(1'000'000);
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     Bytes out;
     decompress(how, compressed(how, zeros), 1000, out);
     EXPECT_EQ(1000u, out.size());
@@ -84,7 +84,7 @@ TEST(Compression, NeverGivesMoreThanIsAskedFor) {
 TEST(Compression, GarbageGivesSomethingOrNothingAndEnds) {
   std::mt19937_64 random(6);
   const Bytes bytes = some_bytes(20'000);
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     const Bytes whole = compressed(how, bytes);
     for (int i = 0; i < 2000; ++i) {
       Bytes damaged = whole;
@@ -158,7 +158,7 @@ Outcome outcome_of(const Chunk& chunk) {
 
 TEST(CompressedChunk, IsReadWhicheverWayItIsCompressed) {
   const Bytes records = records_of_one_message();
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     const Outcome outcome =
         outcome_of({std::string(name(how)), compressed(how, records), records.size()});
     EXPECT_EQ(1, outcome.messages);
@@ -168,7 +168,7 @@ TEST(CompressedChunk, IsReadWhicheverWayItIsCompressed) {
 
 TEST(CompressedChunk, ThatLiesAboutItsSizeIsDamage) {
   const Bytes records = records_of_one_message();
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     const std::string method(name(how));
     for (const std::uint64_t size :
          {records.size() - 1, records.size() + 1, std::size_t{100'000'000}}) {
@@ -187,7 +187,7 @@ TEST(CompressedChunk, ThatLiesAboutItsSizeIsDamage) {
 // Ten thousand times as large as it is in the file.
 TEST(CompressedChunk, OfNothingIsDamageAtItsFirstRecord) {
   const Bytes nothing(std::size_t{1} << 24);
-  for (const McapCompression how : kBoth) {
+  for (const McapCompression how : kCompressions) {
     const Outcome outcome =
         outcome_of({std::string(name(how)), compressed(how, nothing), nothing.size()});
     EXPECT_EQ(0, outcome.messages);

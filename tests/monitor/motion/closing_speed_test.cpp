@@ -10,7 +10,7 @@
 namespace clearance {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoSpeed = std::numeric_limits<double>::quiet_NaN();
 
 TEST(ClosingSpeed, SpinningPointMovesAcrossItsArm) {
   Pose pose = test::at(1.0, 0.0, 0.0);
@@ -28,10 +28,10 @@ TEST(ClosingSpeed, TimeToContactCountsOnlyWhatApproaches) {
   EXPECT_EQ(time_to_contact(0.5, 0.0), kInfinity);
   EXPECT_EQ(time_to_contact(0.5, -1.0), kInfinity);
   EXPECT_EQ(time_to_contact(-0.1, 1.0), 0.0);
-  EXPECT_EQ(time_to_contact(0.0, kNan), 0.0);
+  EXPECT_EQ(time_to_contact(0.0, kNoSpeed), 0.0);
   EXPECT_EQ(time_to_contact(0.0, -1.0), kInfinity);
-  EXPECT_TRUE(std::isnan(time_to_contact(kNan, 1.0)));
-  EXPECT_TRUE(std::isnan(time_to_contact(0.3, kNan)));
+  EXPECT_TRUE(std::isnan(time_to_contact(kNoSpeed, 1.0)));
+  EXPECT_TRUE(std::isnan(time_to_contact(0.3, kNoSpeed)));
 }
 
 // Oracle: the distance shortly before and after, by closed form.

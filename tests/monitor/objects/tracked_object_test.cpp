@@ -11,7 +11,7 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 constexpr std::int64_t kEarliest = std::numeric_limits<std::int64_t>::min();
 constexpr std::int64_t kLatest = std::numeric_limits<std::int64_t>::max();
 constexpr std::int64_t kFutureLimit = 5 * kTick;
@@ -43,7 +43,7 @@ void take(const PoseSample& sample, TrackedObject& state) {
 TEST(TrackedObject, AcceptsAPlainSample) { EXPECT_EQ(judged(good()), std::nullopt); }
 
 TEST(TrackedObject, RefusesEveryNonFiniteFigure) {
-  for (const double bad : {kNan, kInfinity, -kInfinity, 2e9}) {
+  for (const double bad : {kNoNumber, kInfinity, -kInfinity, 2e9}) {
     for (int i = 0; i < 3; ++i) {
       PoseSample sample = good();
       sample.world_from_object.position[i] = bad;
@@ -61,7 +61,7 @@ TEST(TrackedObject, RefusesEveryNonFiniteFigure) {
   }
   for (int i = 0; i < 4; ++i) {
     PoseSample sample = good();
-    sample.world_from_object.orientation.coeffs()[i] = kNan;
+    sample.world_from_object.orientation.coeffs()[i] = kNoNumber;
     EXPECT_EQ(judged(sample), Reject::kNonFinite);
   }
 }

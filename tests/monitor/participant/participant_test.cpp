@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <optional>
+#include <string>
 
 #include "tests/shared/loopback.hpp"
 
@@ -13,6 +15,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+using testing::StartsWith;
 
 TEST(Participant, SendsWholeBatchesAsOneDatagramOnLoopback) {
   const std::string xml = domain_configuration({.interface = "lo"});
@@ -35,6 +38,46 @@ TEST(Participant, LeavesTheLastWordToCyclonesOwnVariable) {
   ::unsetenv("CYCLONEDDS_URI");
   EXPECT_GT(xml.find("9000B"), xml.find("1400B"));
   EXPECT_LT(xml.find("9000B"), xml.size());
+}
+
+class RosDomain : public testing::Test {
+ protected:
+  ~RosDomain() override {
+    before ? ::setenv("ROS_DOMAIN_ID", before->c_str(), 1) : ::unsetenv("ROS_DOMAIN_ID");
+  }
+  static std::string where(const char* of_ros, std::optional<std::uint32_t> stated = {}) {
+    ::setenv("ROS_DOMAIN_ID", of_ros, 1);
+    DdsOptions options = test::own_dds();
+    options.domain = stated;
+    return Participant(options).where();
+  }
+
+ private:
+  std::optional<std::string> before =
+      std::getenv("ROS_DOMAIN_ID") == nullptr
+          ? std::nullopt
+          : std::optional<std::string>(std::getenv("ROS_DOMAIN_ID"));
+};
+
+TEST_F(RosDomain, IsJoinedWhereNoOptionStatesADomain) {
+  EXPECT_THAT(where("77"), StartsWith("domain 77 (of ROS_DOMAIN_ID), partition test-"));
+  EXPECT_THAT(where("0"), StartsWith("domain 0 (of ROS_DOMAIN_ID), "));
+  EXPECT_THAT(where(""), StartsWith("domain 0, "));
+  EXPECT_THAT(where("77", 78), StartsWith("domain 78, "));
+  EXPECT_THAT(where("77", 0), StartsWith("domain 0, "));
+  EXPECT_THAT(where("nonsense", 78), StartsWith("domain 78, ")) << "it does not matter here";
+}
+
+TEST_F(RosDomain, IsRefusedWhereItIsNone) {
+  for (const char* text : {"233", "-1", "7x", " 7", "1e1", "0x7", "99999999999999999999"}) {
+    try {
+      const std::string joined = where(text);
+      ADD_FAILURE() << "'" << text << "' joins " << joined;
+    } catch (const DdsError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("found ROS_DOMAIN_ID='" + std::string(text) +
+                                          "'; expected a domain, 0 to 232"));
+    }
+  }
 }
 
 TEST(Participant, SaysHowLargeItsDatagramsAre) {

@@ -18,7 +18,7 @@ using test::Side;
 using enum PartnerStanding;
 
 constexpr std::uint32_t kSeen = 4;  // the object of the sensor
-constexpr std::int64_t kPatience = 20'000'000;
+constexpr std::int64_t kJoinPatience = 20'000'000;
 
 // Four moving balls, and a sensor that sees one point.
 Scene seen_cell() {
@@ -139,8 +139,8 @@ TEST_F(SharedFrames, ThatTheFollowerDoesNotBuildAreShownToTheLeaderAllTheSame) {
   build(left, 1, 2.0F);
   int waited = 0;
   for (; used(left) != 1 && waited < 100; ++waited) tick_both();
-  EXPECT_GE(waited * kTick, kPatience);
-  EXPECT_LE(waited * kTick, kPatience + 2 * kTick);
+  EXPECT_GE(waited * kTick, kJoinPatience);
+  EXPECT_LE(waited * kTick, kJoinPatience + 2 * kTick);
   EXPECT_EQ(right.ticks.standing(), kApart) << "it rests on other inputs, and says so";
   EXPECT_NE(left.tag.lineage, right.tag.lineage);
 }
@@ -153,7 +153,7 @@ TEST_F(SharedFrames, AreNotHeldUpByNewerOnes) {
     build(left, number, 2.0F);
     for (int i = 0; i < 4; ++i, ++ticks) tick_both();
   }
-  EXPECT_LE(ticks * kTick, kPatience + 5 * kTick);
+  EXPECT_LE(ticks * kTick, kJoinPatience + 5 * kTick);
 }
 
 // 60 frames a second come, and the partner needs 18 ms for each.
@@ -237,7 +237,7 @@ TEST_F(SharedFrames, InUseStayInUseAtTheOneThatIsToJoin) {
   for (int i = 0; i < 3; ++i) tick_both();
   ASSERT_EQ(used(left), 1u);
   ASSERT_EQ(used(right), 1u) << "although it is apart";
-  left.ticks.successor_began(true);
+  left.ticks.successor_begins(true);
   for (std::uint64_t number = 2; number < 5; ++number) {
     for (Side* side : {&left, &right}) build(*side, number, 3.0F);
     left.frames.note_built(0, number);
@@ -256,7 +256,7 @@ TEST_F(SharedFrames, InUseStayWhileASuccessorCatchesUp) {
   build(left, 1, 2.0F);
   build(right, 1, 2.0F);
   left.frames.note_built(0, 1);
-  left.ticks.successor_began(true);
+  left.ticks.successor_begins(true);
   for (int i = 0; i < 50; ++i) tick_both();
   EXPECT_EQ(used(left), 0u);
   left.ticks.successor_gave_up();

@@ -120,7 +120,7 @@ class Side {
   // The other one joins with the state of this one's successor, which this one ticks from then on.
   void give_state(Side& other) {
     monitor = taken_over(*monitor, scene_, scene_, ids.sources());
-    ticks.successor_began(true);
+    ticks.successor_begins(true);
     std::vector<std::byte> bytes;
     save_state(ids.sources(), ids, *monitor, bytes);
     JoinedState joined(scene_);

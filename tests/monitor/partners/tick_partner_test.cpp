@@ -309,6 +309,16 @@ TEST_F(TickPartners, WhatADaemonHasUsedApartCountsAgainAfterItJoins) {
   EXPECT_EQ(std::ranges::count(right.used, sent), 1);
 }
 
+// 0 is no lineage: a leader without a successor states it in every notice.
+TEST_F(TickPartners, AStateWithoutALineageLetsNoDaemonFollow) {
+  run_until_left_leads();
+  for (int i = 0; i < 3; ++i) tick_both();
+  left.give_state(right);
+  right.ticks.joined(0, right.monitor->cycle());
+  tick_both();
+  EXPECT_EQ(right.ticks.standing(), kApart);
+}
+
 // A bit of its notice has flipped.
 TEST_F(TickPartners, AFollowerDoesNotWaitForATickThatIsDueHoursLater) {
   join();

@@ -2,6 +2,7 @@
 //
 // Oracle: the scene that is rendered into the images, by closed forms for boxes, spheres and the
 // points where rays meet them.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -68,16 +69,23 @@ struct SeenPoint {
   double size;
 };
 
+// An arm below a camera that looks down, with depth images on this topic.
+Cell scara_with_eye(const ScratchFolder& folder, const std::string& topic) {
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  return read_good(
+      "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n"
+      "sensors:\n  - {name: eye, depth_image: " +
+          topic +
+          ", size: [80, 60], depth_error: {constant: 0.002, quadratic: 0.001}, range: [0.3, 5], "
+          "own_shell: 0.005, age_limit_ms: 150, mount: "
+          "{pose: {xyz: [0.9, 0, 2.2], rpy: [3.141592653589793, 0, 0]}}}\n"
+          "pairs:\n  - {between: [arm, eye]}\n",
+      folder / "cell.yaml");
+}
+
 TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
   const ScratchFolder folder;
-  write_text(folder / "scara.urdf", kScaraUrdf);
-  const Cell cell = read_good(
-      "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n"
-      "sensors:\n  - {name: eye, depth_image: /cam/depth, size: [80, 60], depth_error: {constant: "
-      "0.002, quadratic: 0.001}, range: [0.3, 5], own_shell: 0.005, age_limit_ms: 150, mount: "
-      "{pose: {xyz: [0.9, 0, 2.2], rpy: [3.141592653589793, 0, 0]}}}\n"
-      "pairs:\n  - {between: [arm, eye]}\n",
-      folder / "cell.yaml");
+  const Cell cell = scara_with_eye(folder, "/cam/depth");
   std::vector<RosMessage> bag{camera_info(kBagStart, kView)};
   std::map<std::int64_t, std::vector<SeenPoint>> frames;  // by stamp: what is not the robot
   Random random(5);
@@ -142,6 +150,21 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
   EXPECT_GT(rows, 4 * 50);
   EXPECT_GT(near, 50);
   EXPECT_GT(shells, 50);
+}
+
+// A camera whose topic is spelt wrongly would leave every distance to it unknown, without a word.
+TEST(CameraReplay, FailsWhereABagHasNoMessageOfASensorAndListsTheTopicsThatItHas) {
+  const ScratchFolder folder;
+  const Cell cell = scara_with_eye(folder, "/camera/depth");
+  const std::vector<float> depth(80 * 60, 1.0F);
+  write_mcap_bag(
+      folder / "run.mcap",
+      {camera_info(kBagStart, kView),
+       joint_state(kBagStart, kBagStart, {{"shoulder", "elbow", "push"}, {0, 0, 0}, {}, {}}),
+       depth_image(kBagStart, kView, depth)});
+  const OfflineReplay replay = replay_offline(cell, folder / "run.mcap");
+  ASSERT_EQ(1u, replay.failures.size()) << replay.text();
+  EXPECT_THAT(replay.failures[0].what, testing::HasSubstr("/cam/depth"));
 }
 
 }  // namespace

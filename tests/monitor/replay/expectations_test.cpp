@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <limits>
 
 #include "tests/monitor/replay/offline_replay_run.hpp"
 
@@ -12,6 +13,8 @@ namespace {
 using testing::HasSubstr;
 
 using ReplayExpectations = OfflineReplayTest;
+
+constexpr double kNoCoordinate = std::numeric_limits<double>::quiet_NaN();
 
 TEST_F(ReplayExpectations, ExpectedMinimumDistanceNamesTickPairAndFigureWhenBroken) {
   record_run(cell, run, {.nearest = 0.08});
@@ -98,6 +101,96 @@ TEST_F(ReplayExpectations, ExpectationsFailWhenAnObjectIsNeverSeen) {
   const OfflineReplay result = replay({.expect_min_distance = 0.01});
   ASSERT_EQ(1u, result.failures.size());
   EXPECT_THAT(result.failures[0].what, HasSubstr("never tells where 'ghost' is"));
+}
+
+// Hand and tool send in every tick, but the tool not in [silent_from, silent_to), or no number. The
+// hand stands 0.3 m above the box, and from `sinks` on `sunk`.
+struct Silence {
+  int ticks = 300, silent_from = 200, silent_to = 300, sinks = 300;
+  double sunk = 0.02;  // m above the box
+  bool sends_nan = false;
+};
+
+// Nothing is stated of the tool's speed, so it is anywhere once it is late.
+void record_silence(Cell& cell, const std::filesystem::path& file, const Silence& run) {
+  cell.scene.objects[1].max_speed = kInfinity;
+  Monitor monitor(cell.scene);
+  Recorder recorder(file, cell, kStart);
+  for (int tick = 0; tick < run.ticks; ++tick) {
+    const std::int64_t now_ns = kStart + tick * kTick;
+    const bool silent = tick >= run.silent_from && tick < run.silent_to;
+    PoseBatch batch{
+        SourceName("arm"), static_cast<std::uint64_t>(tick + 1), cell.scene.revision, {}};
+    batch.samples.push_back(sample(0, at(0, 0, tick < run.sinks ? 0.45 : 0.15 + run.sunk), now_ns));
+    if (silent && run.sends_nan)
+      batch.samples.push_back(sample(1, at(kNoCoordinate, 1, 0.5), now_ns));
+    if (!silent) batch.samples.push_back(sample(1, at(0, 1, 0.5), now_ns));
+    recorder.poses(batch);
+    recorder.report(monitor.tick(batch.samples, now_ns),
+                    std::array{SourceUse{batch.source, batch.sequence_number}});
+  }
+  EXPECT_TRUE(recorder.close()) << recorder.error();
+}
+
+const OfflineReplayOptions kBothExpectations = [] {
+  OfflineReplayOptions options;
+  options.expect_min_distance = 0.05;
+  options.expect_no_zone = {"stop"};
+  return options;
+}();
+
+TEST_F(ReplayExpectations, ADriverThatEndsShortlyBeforeTheRecordingBreaksNothingAndIsNoted) {
+  record_silence(cell, run, {});
+  const OfflineReplay result = replay(kBothExpectations);
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("'tool' was late")));
+}
+
+TEST_F(ReplayExpectations, ADriverThatEndsLongBeforeTheRecordingBreaksThem) {
+  record_silence(cell, run, {.ticks = 1400, .silent_to = 1400, .sinks = 1400});
+  const OfflineReplay result = replay(kBothExpectations);
+  ASSERT_EQ(2u, result.failures.size()) << result.text();
+  EXPECT_LT(result.failures[0].tick.cycle, 300u);
+  EXPECT_THAT(result.text(), HasSubstr("--end"));
+  OfflineReplayOptions before = kBothExpectations;
+  before.end_s = 0.5;
+  EXPECT_EQ(2u, replay(before).failures.size()) << "the recording goes on for longer than 1 s";
+  before.end_s = 0.15;
+  EXPECT_TRUE(replay(before).ok());
+}
+
+TEST_F(ReplayExpectations, ADriverWhoseSamplesAreRefusedToTheEndHasNotEnded) {
+  record_silence(cell, run, {.sends_nan = true});
+  EXPECT_EQ(2u, replay(kBothExpectations).failures.size());
+}
+
+// The hand is 0.12 m above the box: inside of the zone of 0.1 m by the margins alone.
+TEST_F(ReplayExpectations, AKnownPairIsInAZoneByItsMarginsAlsoAfterTheEndOfAnotherDriver) {
+  scene.objects[0].margin = 0.015;
+  scene.objects[2].margin = 0.015;
+  record_silence(cell, run, {.sinks = 290, .sunk = 0.12});
+  const OfflineReplay result = replay(kBothExpectations);
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_EQ(291u, result.failures[0].tick.cycle);
+  EXPECT_THAT(result.failures[0].what, HasSubstr("zone 'stop' is active: hand - box"));
+}
+
+TEST_F(ReplayExpectations, ADriverThatIsSilentForAWhileBreaksThemAlsoIfTheJudgementEndsMeanwhile) {
+  record_silence(cell, run, {.silent_to = 299});
+  EXPECT_EQ(2u, replay(kBothExpectations).failures.size());
+  OfflineReplayOptions meanwhile = kBothExpectations;
+  meanwhile.end_s = 0.29;
+  const OfflineReplay result = replay(meanwhile);
+  EXPECT_EQ(2u, result.failures.size()) << result.text();
+}
+
+TEST_F(ReplayExpectations, APairThatIsKnownBreaksThemAlsoAfterTheEndOfAnotherDriver) {
+  record_silence(cell, run, {.sinks = 290});
+  const OfflineReplay result = replay(kBothExpectations);
+  ASSERT_EQ(2u, result.failures.size()) << result.text();
+  EXPECT_EQ(291u, result.failures[0].tick.cycle);
+  EXPECT_EQ(291u, result.failures[1].tick.cycle);
+  EXPECT_THAT(result.failures[1].what, HasSubstr("hand - box"));
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// What changes of the cell need a restart.
+// Some changes of the cell need a restart.
 #include <gtest/gtest.h>
 
 #include <functional>

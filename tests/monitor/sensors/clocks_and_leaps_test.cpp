@@ -225,10 +225,10 @@ TEST_F(ClocksAndLeaps, AnObjectMayHaveMovedAndTurnedBetweenPosesThatAreFarFromEa
   make_with_info("on: cart");
   cell.scene.objects[0].max_speed = 1.5;
   add_cart(1.0, kStart, kStart);
-  add_cart(1.0, kStart + 400 * kMs, kStart + 400 * kMs);
-  const auto frames = see(kStart + 200 * kMs, 60 * kMs, 200 * kMs);
+  add_cart(1.0, kStart + 240 * kMs, kStart + 240 * kMs);
+  const auto frames = see(kStart + 120 * kMs, 60 * kMs, 120 * kMs);
   ASSERT_EQ(frames.size(), 1u);
-  EXPECT_GE(frames[0].pose_error, 0.2 * (1.5 + 6.3 * cell.scene.sensors[0].extent()));
+  EXPECT_GE(frames[0].pose_error, 0.12 * (1.5 + 6.3 * cell.scene.sensors[0].extent()));
 }
 
 TEST_F(ClocksAndLeaps, AFrameMayHaveMovedAndTurnedBetweenTransformsThatAreFarFromEachOther) {
@@ -316,6 +316,9 @@ TEST_F(ClocksAndLeaps, AnObjectWhosePosesAreFrozenPlacesNoCamera) {
 TEST_F(ClocksAndLeaps, AFrameNamesWhatCarriesItsCamera) {
   const auto carrier = [&](const std::string& mount, const char* parent) {
     make_with_info(mount);
+    cell.scene.objects[0].frame = "trolley";
+    sensors = std::make_unique<Sensors>(cell, SensorsOptions{});
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
     for (int ms = 0; ms <= 300; ms += 10) {
       const std::int64_t at = kStart + ms * kMs;
       add_cart(1.0, at, at);
@@ -336,7 +339,7 @@ TEST_F(ClocksAndLeaps, AFrameNamesWhatCarriesItsCamera) {
   expect(carrier("on: upper", nullptr), RobotBase::Kind::kLink, 1);
   expect(carrier("frame: mast", "upper"), RobotBase::Kind::kLink, 1);
   expect(carrier("on: cart", nullptr), RobotBase::Kind::kObject, 0);
-  expect(carrier("frame: mast", "cart"), RobotBase::Kind::kObject, 0);
+  expect(carrier("frame: mast", "trolley"), RobotBase::Kind::kObject, 0);
   expect(carrier("frame: mast", "map"), RobotBase::Kind::kWorld, 0);
 }
 

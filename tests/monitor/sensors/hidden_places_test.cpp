@@ -1,4 +1,4 @@
-// What a frame cannot show near a link: the blind shell, and places that it has not seen.
+// A frame cannot show everything near a link: the blind shell, and places that it has not seen.
 //
 // Oracles: closed forms for boxes, balls and planes that the test puts in.
 #include <gtest/gtest.h>

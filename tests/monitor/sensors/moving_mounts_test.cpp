@@ -14,7 +14,7 @@
 namespace clearance::sensors_test {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMountMs = 1'000'000;
 
 TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfTheirPlace) {
   Random random(11);
@@ -30,7 +30,7 @@ TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfThe
     };
     FrameHistory frames;
     for (int i = 0; i <= 10; ++i)
-      frames.add("cart", "map", truth(0.1 * i), kStart + 100 * i * kMs, false);
+      frames.add("cart", "map", truth(0.1 * i), kStart + 100 * i * kMountMs, false);
     const double s = random.uniform(0.0, 1.0), within = run % 2 == 0 ? 0.0 : 0.15;
     const auto ns = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
     const auto step = frames.step("cart", kStart + ns(s), ns(within));
@@ -49,12 +49,12 @@ TEST(PastFrames, AreNotKnownWhereTheirTransformsHaveAGapOrEnd) {
   FrameHistory frames;
   frames.add("cart", "map", {}, kStart, false);
   EXPECT_TRUE(frames.step("cart", kStart));
-  EXPECT_FALSE(frames.step("cart", kStart + kMs)) << "it may have begun to move";
-  frames.add("cart", "map", {}, kStart + 1000 * kMs, false);
-  EXPECT_TRUE(frames.step("cart", kStart + kMs));
-  frames.add("cart", "map", {}, kStart + 2001 * kMs, false);
-  EXPECT_FALSE(frames.step("cart", kStart + 1500 * kMs)) << "more than a second";
-  EXPECT_FALSE(frames.step("cart", kStart + 2000 * kMs, 2 * kMs));
+  EXPECT_FALSE(frames.step("cart", kStart + kMountMs)) << "it may have begun to move";
+  frames.add("cart", "map", {}, kStart + 1000 * kMountMs, false);
+  EXPECT_TRUE(frames.step("cart", kStart + kMountMs));
+  frames.add("cart", "map", {}, kStart + 2001 * kMountMs, false);
+  EXPECT_FALSE(frames.step("cart", kStart + 1500 * kMountMs)) << "more than a second";
+  EXPECT_FALSE(frames.step("cart", kStart + 2000 * kMountMs, 2 * kMountMs));
 }
 
 class MovingMounts : public SensorsTest {
@@ -81,65 +81,119 @@ class MovingMounts : public SensorsTest {
 
 TEST_F(MovingMounts, GiveAFrameItsPlaceWhenATransformFromAfterItsStampHasCome) {
   make_mast();
-  for (const std::int64_t ms : {-100, -50, 0}) add_mast(0.0, kStart + ms * kMs);
-  add_image(kStart + 40 * kMs);
-  EXPECT_TRUE(settle(kStart + 41 * kMs).empty());
-  EXPECT_TRUE(settle(kStart + 65 * kMs).empty()) << "longer than for joints";
+  for (const std::int64_t ms : {-100, -50, 0}) add_mast(0.0, kStart + ms * kMountMs);
+  add_image(kStart + 40 * kMountMs);
+  EXPECT_TRUE(settle(kStart + 41 * kMountMs).empty());
+  EXPECT_TRUE(settle(kStart + 65 * kMountMs).empty()) << "longer than for joints";
   EXPECT_TRUE(sensors->any_waiting());
-  add_mast(0.2, kStart + 50 * kMs);  // at 4 m/s, which is no leap
-  const auto frames = settle(kStart + 66 * kMs);
+  add_mast(0.2, kStart + 50 * kMountMs);  // at 4 m/s, which is no leap
+  const auto frames = settle(kStart + 66 * kMountMs);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 0.16, 1e-9);
   EXPECT_GE(frames[0].pose_error, 0.16) << "it may still have stood at 0";
   EXPECT_LT(frames[0].pose_error, 0.17);
 }
 
+// The transform from the robot to `camera_link` is missing: it may be anywhere.
+TEST_F(MovingMounts, HaveNoPlaceIfTheirPathEndsAtNoFrameOfTheCellAlsoInALog) {
+  for (const char* root : {"camera_link", "world"}) {
+    SCOPED_TRACE(root);
+    make(kImage + ", mount: {frame: mast}");
+    sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = true});
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+    for (const std::int64_t ms : {0, 2})
+      add(Type::kTransforms,
+          test::transforms(kStart + ms * kMountMs, kStart + ms * kMountMs,
+                           {{root, "mast", {0, 0, 2}}})
+              .cdr,
+          kStart + ms * kMountMs);
+    add_image(kStart + kMountMs);
+    const bool is_world = std::string(root) == "world";
+    EXPECT_EQ(settle(kStart + 3 * kMountMs).size(), is_world ? 1u : 0u);
+    EXPECT_EQ(count(FrameFault::kNoPlace), is_world ? 0u : 1u);
+  }
+}
+
+// A frame may have the name of an object, and another origin.
+TEST_F(MovingMounts, DoNotTakeTheNameOfAnObjectForAFrame) {
+  for (const std::string frame : {"", "cart"}) {
+    make(kImage + ", mount: {frame: mast}");
+    cell.scene.objects[0].frame = frame;
+    sensors = std::make_unique<Sensors>(cell, SensorsOptions{});
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+    for (const std::int64_t ms : {0, 2}) {
+      const std::int64_t at_ns = kStart + ms * kMountMs;
+      add(Type::kTransforms, test::transforms(at_ns, at_ns, {{"cart", "mast", {0, 0, 2}}}).cdr,
+          at_ns);
+      sensors->add(std::vector{test::sample(0, {}, at_ns)}, {}, at_ns);
+    }
+    add_image(kStart + kMountMs);
+    EXPECT_EQ(settle(kStart + 3 * kMountMs).size(), frame.empty() ? 0u : 1u) << frame;
+  }
+}
+
 TEST_F(MovingMounts, RefuseAFrameWhoseTransformsAreLateForHalfOfItsAgeLimit) {
   make_mast();
   add_mast(0.0, kStart);
-  add_image(kStart + kMs);
-  EXPECT_TRUE(settle(kStart + 50 * kMs).empty());
+  add_image(kStart + kMountMs);
+  EXPECT_TRUE(settle(kStart + 50 * kMountMs).empty());
   EXPECT_EQ(count(FrameFault::kLateTransforms), 0u);
-  EXPECT_TRUE(settle(kStart + 51 * kMs).empty());
+  EXPECT_TRUE(settle(kStart + 51 * kMountMs).empty());
   EXPECT_EQ(count(FrameFault::kLateTransforms), 1u);
   EXPECT_FALSE(sensors->any_waiting());
-  add_mast(0.1, kStart + 60 * kMs);
-  EXPECT_TRUE(settle(kStart + 60 * kMs).empty()) << "it is gone";
+  add_mast(0.1, kStart + 60 * kMountMs);
+  EXPECT_TRUE(settle(kStart + 60 * kMountMs).empty()) << "it is gone";
   // A frame that is silent for a second is lost: nothing waits for it.
-  add_image(kStart + 1100 * kMs);
-  EXPECT_TRUE(settle(kStart + 1100 * kMs).empty());
+  add_image(kStart + 1100 * kMountMs);
+  EXPECT_TRUE(settle(kStart + 1100 * kMountMs).empty());
   EXPECT_EQ(count(FrameFault::kNoPlace), 1u);
 }
 
 TEST_F(MovingMounts, WidenTheirErrorByAStatedSpeedWhereTransformsAreLate) {
   make_mast(", max_speed: 0.5, max_turn_speed: 0.1");
-  add_mast(0.0, kStart - 50 * kMs);
+  add_mast(0.0, kStart - 50 * kMountMs);
   add_mast(0.0, kStart);
-  add_image(kStart + 40 * kMs);
-  EXPECT_TRUE(settle(kStart + 59 * kMs).empty()) << "it waits as for joints";
-  const auto frames = settle(kStart + 60 * kMs);
+  add_image(kStart + 40 * kMountMs);
+  EXPECT_TRUE(settle(kStart + 59 * kMountMs).empty()) << "it waits as for joints";
+  const auto frames = settle(kStart + 60 * kMountMs);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_NEAR(frames[0].pose_error, 0.04 * (0.5 + 0.1 * cell.scene.sensors[0].extent()), 1e-9);
-  add_image(kStart + 90 * kMs);
-  add_mast(0.0, kStart + 100 * kMs);
-  const auto next = settle(kStart + 101 * kMs);
+  add_image(kStart + 90 * kMountMs);
+  add_mast(0.0, kStart + 100 * kMountMs);
+  const auto next = settle(kStart + 101 * kMountMs);
   ASSERT_EQ(next.size(), 1u);
   EXPECT_LT(next[0].pose_error, 1e-9);
+}
+
+// Elements may be outside of the ball that is the body of the sensor's object.
+TEST_F(MovingMounts, HaveNoPlaceIfItsErrorIsLargerThanTheBallOfTheViewAllows) {
+  make_mast(", max_speed: 20, max_turn_speed: 0.1");
+  const Sensor& sensor = cell.scene.sensors[0];
+  for (const std::int64_t late_ms : {100, 800}) {
+    add_mast(0.0, kStart);
+    add_image(kStart + late_ms * kMountMs);
+    const auto frames = settle(kStart + (late_ms + 30) * kMountMs);
+    const bool fits = late_ms == 100;
+    ASSERT_EQ(frames.size(), fits ? 1u : 0u);
+    for (const SensorFrame& frame : frames)
+      EXPECT_LE(sensor.extent() + frame.pose_error, sensor.view_radius());
+    EXPECT_EQ(count(FrameFault::kNoPlace), fits ? 0u : 1u);
+  }
 }
 
 TEST_F(MovingMounts, BuildTheFrameThatHasWaitedForLongestIfManyCome) {
   make_mast();
   add_mast(0.0, kStart);
-  for (int i = 1; i <= 10; ++i) add_image(kStart + 4 * i * kMs);
-  EXPECT_TRUE(settle(kStart + 41 * kMs).empty());
-  add_mast(0.0, kStart + 6 * kMs);
-  const auto frames = settle(kStart + 42 * kMs);
+  for (int i = 1; i <= 10; ++i) add_image(kStart + 4 * i * kMountMs);
+  EXPECT_TRUE(settle(kStart + 41 * kMountMs).empty());
+  add_mast(0.0, kStart + 6 * kMountMs);
+  const auto frames = settle(kStart + 42 * kMountMs);
   ASSERT_EQ(frames.size(), 1u);
-  EXPECT_EQ(frames[0].stamp_ns, kStart + 4 * kMs);
-  add_mast(0.0, kStart + 40 * kMs);
-  const auto newest = settle(kStart + 43 * kMs);
+  EXPECT_EQ(frames[0].stamp_ns, kStart + 4 * kMountMs);
+  add_mast(0.0, kStart + 40 * kMountMs);
+  const auto newest = settle(kStart + 43 * kMountMs);
   ASSERT_EQ(newest.size(), 1u);
-  EXPECT_EQ(newest[0].stamp_ns, kStart + 40 * kMs);
+  EXPECT_EQ(newest[0].stamp_ns, kStart + 40 * kMountMs);
 }
 
 // The cart turns at 6 rad/s at most. What the camera sees is up to 8 m away from it.
@@ -152,14 +206,14 @@ TEST_F(MovingMounts, OnAnObjectCountHowItMayHaveTurnedSinceItsLastPose) {
     sensors->add(std::vector{sample}, {}, stamp_ns);
   };
   add_cart(0.0, kStart);
-  add_image(kStart + 10 * kMs);
-  EXPECT_TRUE(settle(kStart + 20 * kMs).empty()) << "it waits";
-  const auto late = settle(kStart + 30 * kMs);
+  add_image(kStart + 10 * kMountMs);
+  EXPECT_TRUE(settle(kStart + 20 * kMountMs).empty()) << "it waits";
+  const auto late = settle(kStart + 30 * kMountMs);
   ASSERT_EQ(late.size(), 1u);
   EXPECT_GT(late[0].pose_error, 0.06 * cell.scene.sensors[0].extent());
-  add_image(kStart + 40 * kMs);
-  add_cart(0.2, kStart + 50 * kMs);
-  const auto frames = settle(kStart + 51 * kMs);
+  add_image(kStart + 40 * kMountMs);
+  add_cart(0.2, kStart + 50 * kMountMs);
+  const auto frames = settle(kStart + 51 * kMountMs);
   ASSERT_EQ(frames.size(), 1u);
   const Pose& found = frames[0].world_from_sensor;
   EXPECT_NEAR(2.0 * std::atan2(found.orientation.z(), found.orientation.w()), 0.16, 1e-9);

@@ -174,6 +174,19 @@ TEST_F(OctomapsTest, BeyondTheRangeAreKnownToBeThere) {
   ASSERT_NE(pair, report.pairs.end());
   EXPECT_NEAR(pair->lower, 0.4, 1e-6);
   EXPECT_GT(pair->upper, 9.0);
+  // Beside the far cube, which begins at 100 m: however far from the map, something may be there.
+  for (const double z : {12.0, 25.0, 99.0}) {
+    Monitor far_off(cell.scene);
+    EXPECT_TRUE(far_off.show(0, frames[0]));
+    const Report& beyond =
+        far_off.tick(std::vector{test::sample(0, test::at(9, 0, z), kStart)}, kStart + 1'000'000);
+    const auto of_cart = std::ranges::find_if(beyond.pairs, [&](const PairReport& each) {
+      return cell.scene.pairs[each.pair].first == 0;
+    });
+    ASSERT_NE(of_cart, beyond.pairs.end());
+    EXPECT_LE(of_cart->lower, 0.9) << z;
+    EXPECT_FALSE(beyond.lower_all > 0.9) << z;
+  }
 }
 
 }  // namespace

@@ -253,6 +253,29 @@ TEST_F(SeenObjects, KeepTheirCloudWhileItIsUsed) {
   EXPECT_FALSE(monitor->uses(first));
 }
 
+// The hand is 0.43 m from the arm. What the sensor sees is at 0.75 m, and may be nearer by its
+// error.
+TEST_F(SeenObjects, LeaveTheMinimumUncertifiedWhereTheirWideBoundsMayBeTheClosest) {
+  const auto report = [&](double error) {
+    now += test::kTick;
+    show_point(1.0);
+    EXPECT_TRUE(monitor->show(
+        0,
+        {.cloud = &clouds.back(), .stamp_ns = now, .world_from_sensor = {}, .pose_error = error}));
+    return monitor->tick(
+        std::vector{test::sample(0, {}, now), test::sample(1, test::at(0, 0.7, 0), now)}, now);
+  };
+  for (const double error : {0.0, 1e-3, 0.1, 0.3, 0.33, 0.5}) {
+    const Report found = report(error);
+    double nearest_other = kInfinity;
+    for (const PairReport& pair : found.pairs) {
+      if (pair.pair != found.minimum.pair) nearest_other = std::min(nearest_other, pair.lower);
+    }
+    EXPECT_EQ(found.minimum_certified, nearest_other >= found.minimum.upper - 2e-9) << error;
+    EXPECT_EQ(found.minimum_certified, error < 0.32);
+  }
+}
+
 TEST_F(SeenObjects, HaveTheErrorOfTheirPlaceInTheirBounds) {
   show_point(1.0);
   ASSERT_TRUE(monitor->show(

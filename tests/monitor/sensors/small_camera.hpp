@@ -102,6 +102,12 @@ class SensorsTest : public testing::Test {
         [&](std::uint32_t, const SensorFrame& frame) { frames.push_back(frame); });
     return frames;
   }
+  // The elements of the frame that is made of an image; 0: no frame.
+  std::size_t elements(const ImageText& image) {
+    add(image);
+    const auto frames = settle(image.stamp_ns + 25'000'000);
+    return frames.empty() ? 0 : frames[0].cloud->size();
+  }
   [[nodiscard]] std::uint64_t count(FrameFault fault) const {
     return sensors->status(0).counts[static_cast<std::size_t>(fault)];
   }

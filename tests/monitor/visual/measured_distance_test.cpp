@@ -15,7 +15,7 @@
 namespace clearance::test {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000;
+constexpr std::int64_t kMeasuredMs = 1'000'000;
 
 class MeasuredDistanceTest : public testing::Test {
  protected:
@@ -51,7 +51,7 @@ TEST_F(MeasuredDistanceTest, HoldsTheTruthForAnyTwoObjectsAndBothOrders) {
     const auto next = [&] { return coordinate(random); };
     const Pose hand{Vec3(next(), next(), next()),
                     Eigen::Quaterniond(next(), next(), next(), next()).normalized()};
-    use(hand, i * kMs, i * kMs);
+    use(hand, i * kMeasuredMs, i * kMeasuredMs);
     const Vec3 far = transform(hand, Vec3(0.3, 0, 0));
     const auto truth = [&](const Vec3& centre, double radius) {
       return std::min((centre - hand.position).norm() - 0.1, (centre - far).norm() - 0.05) - radius;
@@ -91,16 +91,16 @@ TEST_F(MeasuredDistanceTest, IsUnknownWithoutAPoseAndWithALateOne) {
   };
   expect_unknown(0, 1);
   const std::int64_t limit = scene.objects[0].age_limit_ns;
-  use(at(0, 0, 1), kMs, kMs + limit);
+  use(at(0, 0, 1), kMeasuredMs, kMeasuredMs + limit);
   EXPECT_NE(measured.between(0, 1, poses).status, PairStatus::kUnknown);
-  use(at(0, 0, 1), 2 * kMs, 2 * kMs + limit + 1);
+  use(at(0, 0, 1), 2 * kMeasuredMs, 2 * kMeasuredMs + limit + 1);
   expect_unknown(0, 1);
   expect_unknown(1, 1);
   expect_unknown(1, 3);
 }
 
 TEST_F(MeasuredDistanceTest, OfWhatASensorSeesIsUnknown) {
-  use(at(1, 0, 0), kMs, kMs);
+  use(at(1, 0, 0), kMeasuredMs, kMeasuredMs);
   ASSERT_NE(measured.between(0, 1, poses).status, PairStatus::kUnknown);
   scene.objects[1].sensor = 0;
   EXPECT_EQ(measured.between(0, 1, poses).status, PairStatus::kUnknown);

@@ -132,7 +132,7 @@ class Bullet {
   btVector3 guess_{0, 0, 0};  // from B to A, in A's frame
 };
 
-// Where the bodies overlap, the depth as well, by Bullet's EPA.
+// Answers with the depth, by Bullet's EPA, where the bodies overlap.
 class WithDepth : public Bullet {
  public:
   using Bullet::Bullet;

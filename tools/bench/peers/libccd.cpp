@@ -128,7 +128,7 @@ class Libccd {
   ccd_t ccd_;
 };
 
-// Where the bodies overlap, their depth by libccd's EPA.
+// Answers with the depth, by libccd's EPA, where the bodies overlap.
 class WithDepth : public Libccd {
  public:
   using Libccd::Libccd;

@@ -18,8 +18,8 @@ struct Welded {
 
 [[nodiscard]] Welded welded(const ConvexBody& body);
 
-// Of a box around the origin with sides along the axes; empty for any other body, and for a box
-// with a radius. Libraries have a shape of their own for it.
+// The half extents of a box around the origin with sides along the axes, for which libraries have a
+// shape of their own. Empty for any other body, and for a box with a radius.
 [[nodiscard]] std::optional<Vec3> box_half_extents(const ConvexBody& body);
 
 }  // namespace clearance::bench

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
+#include <optional>
 
 #include "monitor/files/build_info.hpp"
 #include "tools/bench/suite/suite.hpp"
@@ -59,6 +61,43 @@ std::string line(std::span<const RaceRow> rows, const std::string& kind, std::si
                      tracked->failures + cold->failures, tracked->queries + cold->queries);
 }
 
+// The classes in which a rival that is right has the smaller median, and the separations of others.
+std::string where_rivals_lead(std::span<const RaceRow> rows, std::span<const Rival> rivals) {
+  const auto is_same = [](double a, double b) {
+    return a == b || (std::isnan(a) && std::isnan(b));
+  };
+  const auto find_row = [&](const RaceRow& like, std::size_t rival, double separation) {
+    return std::ranges::find_if(rows, [&](const RaceRow& row) {
+      return row.rival == rival && row.cold == like.cold && row.kind == like.kind &&
+             is_same(row.separation, separation);
+    });
+  };
+  // The multiple of our time, where that is below 1.
+  const auto lead = [&](const RaceRow& row) -> std::optional<double> {
+    if (row.failures > 0 || std::isnan(row.max_error)) return std::nullopt;
+    const auto ours = find_row(row, 0, row.separation);
+    if (ours == rows.end() || !(row.p50_ns < ours->p50_ns)) return std::nullopt;
+    return row.p50_ns / ours->p50_ns;
+  };
+  std::string text;
+  for (const RaceRow& row : rows) {
+    const auto multiple = row.rival == 0 ? std::nullopt : lead(row);
+    if (!multiple) continue;
+    const bool is_one = !std::isnan(row.separation);
+    if (is_one && lead(*find_row(row, row.rival, std::numeric_limits<double>::quiet_NaN())))
+      continue;
+    text += fmt::format("| {} | {} | {} | {} | {:.0f} | {:.2f} | {} |\n", row.kind,
+                        is_one ? number(row.separation) : "all", rivals[row.rival].name,
+                        name(row.cold), row.p50_ns, *multiple, error(row.max_error));
+  }
+  if (text.empty()) return {};
+  return "\n## Where another library is faster\n\nThe table has only rows in which the rival has "
+         "no failure. None of these rivals certifies bounds.\n\n| class | separation, m | rival | "
+         "| p50, ns | x | largest error, m "
+         "|\n|---|---|---|---|---:|---:|---:|\n" +
+         text;
+}
+
 }  // namespace
 
 std::string suite_csv(std::span<const RaceRow> rows, std::span<const Rival> rivals) {
@@ -83,7 +122,7 @@ std::string suite_page(std::span<const RaceRow> rows, std::span<const Rival> riv
 Every case has a distance that follows from its construction ([bench/suite](../suite/README.md)). Each class has separations from
 contact over 1e-6 m to 10 m, and depths where they are known; [suite.csv](suite.csv) has each by itself. The rivals run in turns in one
 process, {} passes over all cases. A time is that of one query between two readings of the clock, both poses as quaternions, the least
-of all passes: it is longer than in [report.md](report.md), where queries overlap in the processor. *In a row* is the mean
+of all passes, in steps of the clock: compare it only within this page, since queries overlap in the processor in [report.md](report.md). *In a row* is the mean
 of a motion's tracked queries, one after another. *x* is the multiple of Clearance's median
 over the whole class, also where the rival is not asked for depths; the CSV compares separation by separation. A query fails that has no answer, or one
 that is wrong by more than 1e-6 of the larger body's radius plus the distance. Answers are exact to {:.0e} m. A class that a rival has
@@ -103,6 +142,7 @@ no shapes for, or no depths, is left out.
   for (const std::string& kind : kinds_of(rows)) {
     for (std::size_t r = 0; r < rivals.size(); ++r) text += line(rows, kind, r, rivals[r].name);
   }
+  text += where_rivals_lead(rows, rivals);
   return text + fmt::format("\nMade from {} by `clearance-bench --suite`.\n", kBuild);
 }
 

@@ -42,7 +42,7 @@ PlainBody plain_body(const ConvexBody& body) {
 
 PlainPose plain_pose(const Pose& pose) {
   const Eigen::Quaterniond& q = pose.orientation;
-  return {{q.w(), q.x(), q.y(), q.z()}, numbers(pose.position)};
+  return {{q.w(), q.x(), q.y(), q.z()}, numbers(pose.position), &pose};
 }
 
 }  // namespace clearance::bench

@@ -7,9 +7,9 @@
 
 namespace clearance::bench {
 
-// Of a bounded body: a sphere around the origin, a capsule along z and around the origin, a
-// cylinder, a cone, an ellipsoid, a box, or else the hull of its welded vertices. The body outlives
-// the result.
+// Turns a bounded body into a sphere around the origin, a capsule along z and around the origin, a
+// cylinder, a cone, an ellipsoid, a box, or else the hull of its welded vertices. Body and pose
+// outlive the results.
 [[nodiscard]] PlainBody plain_body(const ConvexBody& body);
 [[nodiscard]] PlainPose plain_pose(const Pose& pose);
 

@@ -67,8 +67,10 @@ struct Heat {
   std::vector<std::unique_ptr<Lane>> lanes;
 };
 
-std::unique_ptr<Heat> heat_of(SuiteCase set, std::span<const Rival> rivals) {
+std::unique_ptr<Heat> heat_of(SuiteCase case_set, std::span<const Rival> rivals) {
   auto heat = std::make_unique<Heat>();
+  heat->set = std::move(case_set);
+  const SuiteCase& set = heat->set;
   heat->a = plain_body(*set.motion.a);
   heat->b = plain_body(*set.motion.b);
   for (const auto& [a, b] : set.motion.poses) {
@@ -80,7 +82,6 @@ std::unique_ptr<Heat> heat_of(SuiteCase set, std::span<const Rival> rivals) {
     heat->lanes.push_back(pair ? std::make_unique<Lane>(std::move(pair), heat->poses.size())
                                : nullptr);
   }
-  heat->set = std::move(set);
   return heat;
 }
 

@@ -12,7 +12,8 @@
 
 namespace clearance {
 struct ConvexBody;
-}
+struct Pose;
+}  // namespace clearance
 
 namespace clearance::bench {
 
@@ -22,6 +23,7 @@ using Numbers3 = std::array<double, 3>;
 struct PlainPose {
   std::array<double, 4> quaternion;
   Numbers3 position;
+  const Pose* pose = nullptr;  // the same pose, for adapters without flags of their own
 };
 
 // A body in its own frame, in metres. A rival should use its own shape of this kind where it has

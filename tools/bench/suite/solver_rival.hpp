@@ -12,11 +12,6 @@
 
 namespace clearance::bench {
 
-inline Pose pose_of(const PlainPose& plain) {
-  const auto& [w, x, y, z] = plain.quaternion;
-  return {{plain.position[0], plain.position[1], plain.position[2]}, {w, x, y, z}};
-}
-
 template <class Solver>
 class SolverPair final : public RivalPair {
  public:
@@ -24,7 +19,7 @@ class SolverPair final : public RivalPair {
       : a_(Solver::shape(a)), b_(Solver::shape(b)), solver_(a_, b_) {}
   void forget() override { solver_.forget(); }
   double distance(const PlainPose& a, const PlainPose& b) override {
-    const Answer answer = solver_.query(pose_of(a), pose_of(b));
+    const Answer answer = solver_.query(*a.pose, *b.pose);
     return answer.ok ? answer.distance : std::numeric_limits<double>::quiet_NaN();
   }
 

@@ -29,8 +29,8 @@ Usage: clearance-bench --suite [OPTIONS]
   --list          print the classes, and the rivals with their settings
 
 Debian packages FCL, Bullet and libccd (tools/setup --bench). Other rivals are used from the folder in which they are
-installed: cmake -DCLEARANCE_BENCH_COAL=FOLDER, _OPENGJK, _VCLIP, _JOLT, _BOX3D. tools/bench/suite/README.md
-says what is expected there.
+installed: cmake -DCLEARANCE_BENCH_COAL=FOLDER, _OPENGJK, _VCLIP, _JOLT, _BOX3D, _MUJOCO.
+tools/bench/suite/README.md says what is expected there.
 
 Examples:
   clearance-bench --suite --out build/suite

@@ -5,6 +5,13 @@ unless a name ends in _ns. Quaternions are x, y, z, w. An unknown bound is infin
 figure is NaN.
 """
 
+try:
+    import numpy as _numpy  # the extension loads it only when it makes the first array
+except ImportError as error:
+    raise ImportError(
+        "clearance needs NumPy: 'sudo apt install python3-numpy', or 'pip install numpy' in a virtual environment"
+    ) from error
+
 from ._clearance import (
     Body,
     Cell,
@@ -35,6 +42,8 @@ from ._clearance import (
     Report,
     Reports,
     ShapeError,
+    SharedCell,
+    ShareState,
     TimeLimit,
     TrackingState,
     Verdict,
@@ -85,6 +94,8 @@ __all__ = [
     "Report",
     "Reports",
     "ShapeError",
+    "ShareState",
+    "SharedCell",
     "TimeLimit",
     "TrackingState",
     "Verdict",

@@ -167,7 +167,8 @@ file: the name in messages; paths in the cell are relative to its folder. Raises
       .def_property_readonly(
           "rate_hz", [](const CellObject& c) { return c.scene().rate_hz; }, "Ticks a second.")
       .def_property_readonly(
-          "domain", [](const CellObject& c) { return c.cell().domain; }, "Of DDS.")
+          "domain", [](const CellObject& c) { return c.cell().domain; },
+          "Of DDS; None: that of ROS_DOMAIN_ID, or 0.")
       .def_property_readonly(
           "partition", [](const CellObject& c) { return c.cell().partition; }, "Of DDS.")
       .def_property_readonly(

@@ -41,6 +41,7 @@ PYBIND11_MODULE(_clearance, module) {
   add_cell(module);
   add_replay(module);
   add_reports(module);
+  add_shared_cell(module);
   add_writers(module);
   add_commands(module);
   refuse_new_without_init(module);

@@ -11,6 +11,7 @@ void add_batch(pybind11::module_& module);
 void add_cell(pybind11::module_& module);
 void add_replay(pybind11::module_& module);
 void add_reports(pybind11::module_& module);
+void add_shared_cell(pybind11::module_& module);
 void add_writers(pybind11::module_& module);
 void add_commands(pybind11::module_& module);
 void add_answers(pybind11::module_& module);

@@ -116,9 +116,9 @@ SeparationArrays separation_arrays(const clearance_msg_Separation& message) {
           records_of(pair_separation_dtype(), message.pairs._buffer, message.pairs._length)};
 }
 
-py::dict zones_of(const client::Zones& zones, const py::list& names) {
+py::dict zones_of(const ZoneStates& zones, const py::list& names) {
   py::dict all;
-  for (const auto& [id, state] : zones.states()) {
+  for (const auto& [id, state] : zones) {
     const py::array record = records_of(zone_dtype(), &state, 1);
     const bool is_named = *state.name != '\0' || id >= names.size();
     all[is_named ? py::object(py::str(state.name)) : py::object(names[id])] = record[py::int_(0)];
@@ -189,6 +189,14 @@ py::dict health_of(const clearance_msg_Health& m) {
   partner["missing"] = m.partner.missing;
   partner["phase_ns"] = m.partner.phase_ns;
   all["partner"] = partner;
+  all["shares"] = dicts_of(m.shares, [](py::dict& item, const auto& one) {
+    item["share"] = py::str(one.share);
+    item["state"] = one.state;
+    item["daemon"] = one.daemon;
+    item["cycle"] = one.cycle;
+    item["scene_revision"] = one.scene_revision;
+    item["age_ns"] = one.age_ns;
+  });
   return all;
 }
 

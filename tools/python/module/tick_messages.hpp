@@ -1,12 +1,13 @@
-// What a daemon publishes beside a report: gradients and separations of the same tick, zones and
-// health.
+// The messages beside a report: gradients and separations of the same tick, zones and health.
 #pragma once
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "monitor/client/client.hpp"
@@ -23,23 +24,47 @@ class TickMessages {
   TickMessages(client::Connection& connection, const client::StreamOptions& options)
       : stream_(connection, options) {}
 
-  // The message of this tick, valid until the next call; null: none came. The daemon sends it right
-  // behind the report, so a daemon that sends such messages is waited for.
-  [[nodiscard]] const Message* of(std::uint64_t daemon, std::uint64_t cycle) {
-    const auto is_before = [&] { return stream_->daemon != daemon || stream_->cycle < cycle; };
-    while (is_before()) {
+  using Clock = std::chrono::steady_clock;
+
+  // The message of the tick of this report, valid until the next call; null: none came. It is sent
+  // right behind the report, so where there are such messages one is waited for: kPatience, and not
+  // beyond `end`.
+  [[nodiscard]] const Message* of(const clearance_msg_Distances& report, Clock::time_point end) {
+    end = std::min(end, Clock::now() + kPatience);
+    for (;;) {
+      if (is_of(report)) return &*stream_;
+      if (is_after(report)) return nullptr;
       if (stream_.next()) continue;
-      if (stream_.daemons() == 0 || !stream_.next(kPatience)) return nullptr;
+      const auto left = end - Clock::now();
+      if (stream_.daemons() == 0 || left <= Clock::duration::zero() || !stream_.next(left))
+        return nullptr;
     }
-    return stream_->cycle == cycle ? &*stream_ : nullptr;
   }
 
  private:
   static constexpr std::chrono::milliseconds kPatience{20};
+  // A message that is later by more is of the time before a clock was set back.
+  static constexpr std::int64_t kLongNs = 60'000'000'000;
+
+  // Reports of two partners are merged, but only the leader sends such messages. Both daemons tell
+  // a tick with the same inputs the same time.
+  [[nodiscard]] bool is_of(const clearance_msg_Distances& report) const {
+    if (stream_->cycle != report.cycle) return false;
+    return *report.partner == '\0' ? stream_->daemon == report.daemon
+                                   : stream_->now_ns == report.now_ns;
+  }
+  [[nodiscard]] bool is_after(const clearance_msg_Distances& report) const {
+    if (*report.partner == '\0')
+      return stream_->daemon == report.daemon && stream_->cycle > report.cycle;
+    const std::int64_t later_ns = stream_->now_ns - report.now_ns;
+    return later_ns > 0 && later_ns < kLongNs;
+  }
+
   client::Stream<Message> stream_;
 };
 
-// As Python sees them; these need the lock. `joints` is the number of the scene's joints.
+// Gradients as Python sees them. Making them needs the lock. `joints` is the number of the scene's
+// joints.
 struct GradientArrays {
   py::array rates;   // (rows, joints)
   py::array drifts;  // (rows,)
@@ -55,9 +80,10 @@ struct SeparationArrays {
 };
 [[nodiscard]] SeparationArrays separation_arrays(const clearance_msg_Separation& message);
 
-// The state of every zone by its name, as records.
-// By name; `names` are those of zones by id, for a state that has none yet.
-[[nodiscard]] py::dict zones_of(const client::Zones& zones, const py::list& names);
+// The state of every zone by its name, as records. `names` are those of zones by id, for a state
+// that has none yet.
+using ZoneStates = std::map<std::uint32_t, clearance_msg_ZoneState>;
+[[nodiscard]] py::dict zones_of(const ZoneStates& zones, const py::list& names);
 
 // A dict with the fields of the message; lists of dicts for its sequences.
 [[nodiscard]] py::dict health_of(const clearance_msg_Health& message);

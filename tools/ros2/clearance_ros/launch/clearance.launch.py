@@ -21,7 +21,7 @@ ARGUMENTS = [
     ("srdf", "", "An SRDF with the pairs that are left out, where no cell is given"),
     ("outputs", "all", "What is written for ROS 2, by the keys of `ros2:`, with commas between them"),
     ("interface", "default", "The network: that of all ROS 2 nodes, lo, or a card"),
-    ("domain", os.environ.get("ROS_DOMAIN_ID", ""), "The DDS domain; empty: the cell's, or 0"),
+    ("domain", "", "The DDS domain; empty: the cell's, or else that of ROS_DOMAIN_ID, or 0"),
     ("priority", "", "Real-time priority, 1 to 99; empty: none"),
     ("record", "", "An MCAP file to record to; empty: none"),
     ("rviz", "false", "Whether rviz2 is started"),

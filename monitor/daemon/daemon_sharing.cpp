@@ -1,0 +1,77 @@
+// The parts of a daemon that other daemons of the same cell share: its partner, and those of other
+// shares.
+#include <cmath>
+#include <utility>
+
+#include "monitor/daemon/daemon.hpp"
+
+namespace clearance {
+
+Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseReader& poses,
+                             Clock& clock, const DaemonIdentity& identity)
+    : ticks(poses, clock,
+            {.period_ns = std::llround(1e9 / cell.scene.rate_hz),
+             .daemon = identity.id,
+             .start_ns = identity.start_ns,
+             .batch = {.samples = PoseReader::samples_a_batch(cell),
+                       .joints = PoseReader::joints_a_batch(cell)},
+             .frames = poses.frames()}),
+      port(participant, cell.topics, identity, ticks),
+      poses_(poses) {
+  poses.share_frames(cell.topics, identity, ticks);
+}
+
+CommandPort::Sharing Daemon::share_commands() {
+  return {.takes = [this] { return partner_states_->takes_requests(); },
+          .overhear = [this](Command command) { partner_states_->keep_files(std::move(command)); }};
+}
+
+// In a cell in shares, the daemon of the first share does MoveIt's messages.
+void Daemon::share_moveit() {
+  if (now_.cell->shares.is_one()) {
+    shares_ = std::make_unique<ShareScenes>(
+        *now_.cell, participant_,
+        ShareScenes::Actions{
+            .put = [this](QueuedCommand command) { return put(std::move(command)); },
+            .revision = [this] { return revision_.load(); },
+            .changes =
+                [this] {
+                  return !partner_ || partner_->ticks.standing() == PartnerStanding::kLeading;
+                },
+            .look = [this] { moveit_.look(); }});
+  }
+  if (!partner_ && !shares_) return;
+  MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};
+  if (partner_) {
+    sharing.tell = [port = &partner_->port](auto changes, auto bytes) {
+      port->send_scene(changes, bytes);
+    };
+  }
+  if (shares_) {
+    sharing.leads = [shares = shares_.get(), of_partners = sharing.leads] {
+      return shares->does_messages() && (!of_partners || of_partners());
+    };
+    if (!shares_->is_first()) sharing.leads = nullptr;
+  }
+  moveit_.share(std::move(sharing));
+}
+
+PartnerPort::Actions Daemon::partner_actions() {
+  PartnerPort::Actions actions = partner_states_->actions();
+  if (!now_.cell->ros.moveit.any()) return actions;
+  actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
+  actions.look = [this] { moveit_.look(); };
+  return actions;
+}
+
+RosWrites::Leads Daemon::leads() {
+  if (!partner_) return {};
+  return [port = &partner_->port] { return port->leads(); };
+}
+
+void Daemon::stop_sharing() {
+  if (partner_) partner_->port.stop();
+  if (shares_) shares_->stop();
+}
+
+}  // namespace clearance
