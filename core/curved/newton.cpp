@@ -56,8 +56,6 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
 
 HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
                        CurvedTrackingState& state, DistanceResult& r) {
-  // The search of the depth goes first.
-  if (HWY_UNLIKELY(state.overlap == Overlap::kLastQuery)) return false;
   if (!a.bounded() || !b.bounded() || !(a.is_curved() || b.is_curved())) return false;
   Vec4 x = load3(state.normal);
   if (HWY_UNLIKELY(state.normal.isZero(0.0))) {

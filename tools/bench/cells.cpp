@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <string>
@@ -17,6 +18,8 @@
 #include "core/distance.hpp"
 #include "monitor/app/print.hpp"
 #include "tools/bench/measure.hpp"
+#include "tools/rendering/simulated_world.hpp"
+#include "tools/shared/joint_sweep.hpp"
 
 namespace clearance::bench {
 namespace {
@@ -33,14 +36,15 @@ struct PartPair {
 
 // A cell with its poses at every step and its part pairs, made once a cell.
 struct Workload {
-  Scene scene;
+  Cell cell;
   std::vector<std::vector<Pose>> world_from_object;  // [step][object]
+  std::vector<ObjectPair> object_pairs;              // both have a place at every step
   std::vector<PartPair> pairs;
 };
 
-std::vector<PartPair> part_pairs(const Scene& scene) {
+std::vector<PartPair> part_pairs(const Scene& scene, const std::vector<ObjectPair>& of_objects) {
   std::vector<PartPair> pairs;
-  for (const ObjectPair& pair : scene.pairs) {
+  for (const ObjectPair& pair : of_objects) {
     for (const Part& a : scene.objects[pair.first].parts) {
       for (const Part& b : scene.objects[pair.second].parts) {
         pairs.push_back(
@@ -51,19 +55,33 @@ std::vector<PartPair> part_pairs(const Scene& scene) {
   return pairs;
 }
 
+// Objects move as the cell's simulation says, and each joint of a robot swings through its range.
 std::shared_ptr<Workload> make_workload(Cell cell) {
   auto load = std::make_shared<Workload>();
-  load->scene = std::move(cell.scene);
-  std::vector<PoseAt> poses;
+  load->cell = std::move(cell);
+  const std::size_t objects = load->cell.scene.objects.size();
+  SimulatedWorld simulated(
+      load->cell,
+      [sweep = JointSweep(load->cell.scene)](double t_s, std::vector<JointSample>& joints) {
+        sweep.at(t_s, joints);
+      },
+      {});
+  std::vector<bool> placed(objects, true);
   for (int step = 0; step < kSteps; ++step) {
-    std::vector<Pose> world(load->scene.objects.size());
-    for (std::size_t i = 0; i < world.size(); ++i)
-      world[i] = load->scene.objects[i].world_from_object;
-    poses_at(cell.simulation, 1e-3 * step, poses);
-    for (const PoseAt& p : poses) world[p.object] = p.world_from_object;
+    simulated.place(1e-3 * step);
+    std::vector<Pose> world(objects);
+    for (std::uint32_t i = 0; i < objects; ++i) {
+      if (const auto& pose = simulated.object(i)) {
+        world[i] = *pose;
+      } else {
+        placed[i] = false;
+      }
+    }
     load->world_from_object.push_back(std::move(world));
   }
-  load->pairs = part_pairs(load->scene);
+  std::ranges::copy_if(load->cell.scene.pairs, std::back_inserter(load->object_pairs),
+                       [&](const ObjectPair& p) { return placed[p.first] && placed[p.second]; });
+  load->pairs = part_pairs(load->cell.scene, load->object_pairs);
   return load;
 }
 
@@ -98,14 +116,14 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
 void time_batch(benchmark::State& state, const Workload& load) {
   std::vector<const ConvexBody*> parts;
   std::vector<std::uint32_t> first_part;  // [object]
-  for (const Object& object : load.scene.objects) {
+  for (const Object& object : load.cell.scene.objects) {
     first_part.push_back(static_cast<std::uint32_t>(parts.size()));
     for (const Part& part : object.parts) parts.push_back(&part.shape);
   }
   std::vector<BodyPair> pairs;
-  for (const ObjectPair& pair : load.scene.pairs) {
-    for (std::uint32_t a = 0; a < load.scene.objects[pair.first].parts.size(); ++a) {
-      for (std::uint32_t b = 0; b < load.scene.objects[pair.second].parts.size(); ++b) {
+  for (const ObjectPair& pair : load.object_pairs) {
+    for (std::uint32_t a = 0; a < load.cell.scene.objects[pair.first].parts.size(); ++a) {
+      for (std::uint32_t b = 0; b < load.cell.scene.objects[pair.second].parts.size(); ++b) {
         pairs.push_back({first_part[pair.first] + a, first_part[pair.second] + b});
       }
     }
@@ -118,7 +136,7 @@ void time_batch(benchmark::State& state, const Workload& load) {
     const auto& world = load.world_from_object[step++ % kSteps];
     std::size_t part = 0;
     for (std::size_t object = 0; object < world.size(); ++object) {
-      for (const Part& p : load.scene.objects[object].parts) {
+      for (const Part& p : load.cell.scene.objects[object].parts) {
         world_from_part[part++] = compose(world[object], p.object_from_part);
       }
     }
