@@ -11,6 +11,8 @@
 #define CLEARANCE_CORE_EDGE_SCAN
 #endif
 
+#include <algorithm>
+
 #include "core/model/edge_scan.hpp"
 #include "core/numerics/vec4-inl.hpp"
 
@@ -52,21 +54,28 @@ HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
   return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
 }
 
+// The same edge as steepest_edge() finds, without a branch an edge, whose outcome no processor
+// could predict.
 inline HWY_NOINLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& vertex,
                                           const Vec3& g) {
-  const std::int32_t n = vertex.edges;
-  if (HWY_UNLIKELY(n > 4)) return steepest_edge(body, vertex, g);
-  SteepestEdge best;
-  const auto take = [&](double derivative, std::int32_t i) HWY_ATTR {
-    if (derivative > best.derivative) best = {derivative, vertex.first_edge + i};
-  };
-  const Vec4 along_g =
-      derivatives(body.outgoing.row(vertex.first_edge), Spread3(vec4(g.x(), g.y(), g.z(), 0.0)));
-  if (n > 0) take(lane(along_g, 0), 0);
-  if (n > 1) take(lane(along_g, 1), 1);
-  if (n > 2) take(lane(along_g, 2), 2);
-  if (n > 3) take(lane(along_g, 3), 3);
-  return best;
+  SteepestEdge none;
+  Vec4 best = spread(none.derivative), at = spread(0.0);
+  const double* four = body.outgoing.row(vertex.first_edge);
+  const Spread3 along(vec4(g.x(), g.y(), g.z(), 0.0));
+  Vec4 numbers = vec4(0.0, 1.0, 2.0, 3.0);
+  for (std::int32_t i = 0; i < vertex.edges; i += 4, four += kFourDirections) {
+    const Vec4 derivative = derivatives(four, along);
+    at = where_less(best, derivative, numbers, at);
+    best = where_less(best, derivative, derivative, best);
+    numbers = numbers + spread(4.0);
+  }
+  const double greatest =
+      std::max(std::max(lane(best, 0), lane(best, 1)), std::max(lane(best, 2), lane(best, 3)));
+  if (!(greatest > none.derivative)) return none;
+  at = where_less(best, spread(greatest), spread(kInfinity), at);
+  const double first =
+      std::min(std::min(lane(at, 0), lane(at, 1)), std::min(lane(at, 2), lane(at, 3)));
+  return {greatest, vertex.first_edge + static_cast<std::int32_t>(first)};
 }
 HWY_INLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& vertex, Vec4 g) {
   return steepest(body, vertex, vec3(g));

@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "monitor/files/build_info.hpp"
 #include "tests/shared/child_process.hpp"
@@ -29,11 +30,13 @@ std::set<std::string> names(const std::string& program) {
 }
 
 // The rows as JSON contains them.
-nlohmann::json rows_of(const std::string& filter) {
+nlohmann::json rows_of(const std::string& filter, const std::vector<std::string>& more = {}) {
   const test::ScratchFolder folder;
   const std::string file = (folder / "rows.json").string();
-  test::ChildProcess bench(kBench, {"--benchmark_filter=" + filter, "--benchmark_min_time=0.001",
-                                    "--benchmark_out=" + file, "--benchmark_out_format=json"});
+  std::vector<std::string> words{"--benchmark_filter=" + filter, "--benchmark_min_time=0.001",
+                                 "--benchmark_out=" + file, "--benchmark_out_format=json"};
+  words.insert(words.end(), more.begin(), more.end());
+  test::ChildProcess bench(kBench, words);
   EXPECT_EQ(bench.wait(), 0) << bench.output();
   return nlohmann::json::parse(std::ifstream(file)).at("benchmarks");
 }
@@ -94,6 +97,29 @@ TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
     EXPECT_LT(row.at("failures").get<double>(), 40.0);
     EXPECT_EQ(row.contains("max_error"), row.at("name") != "peer/libccd/tracked/boxes");
   }
+}
+
+// The foot is 0.9 m below the hand, however the joint between them turns.
+constexpr const char* kPost = R"(<robot name="post">
+  <link name="foot"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <link name="pole"/>
+  <link name="hand"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
+  <joint name="turn" type="revolute"><origin xyz="0 0 0.5"/><parent link="foot"/><child link="pole"/>
+    <axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1"/></joint>
+  <joint name="top" type="fixed"><origin xyz="0 0 0.5"/><parent link="pole"/><child link="hand"/></joint>
+</robot>
+)";
+
+TEST(BenchRows, OfCellsHaveTheLinksOfRobotsWhereTheirJointsPlaceThem) {
+  const test::ScratchFolder folder;
+  std::ofstream(folder / "post.urdf") << kPost;
+  std::ofstream(folder / "post.yaml") << "name: post\nunits: {length: m, angle: rad}\n"
+                                         "robots: [{name: post, urdf: post.urdf}]\n"
+                                         "pairs: [{between: [post, post]}]\n";
+  const nlohmann::json rows =
+      rows_of("^cell/(tracked|cold)/post$", {"--cell", (folder / "post.yaml").string()});
+  ASSERT_EQ(rows.size(), 2u);
+  for (const auto& row : rows) EXPECT_NEAR(row.at("nearest").get<double>(), 0.9, 1e-12);
 }
 
 // Tests the script that makes the pages in tools/bench/measured.

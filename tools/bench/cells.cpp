@@ -87,7 +87,7 @@ std::shared_ptr<Workload> make_workload(Cell cell) {
 
 void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
   std::vector<TrackingState> tracking(load.pairs.size());
-  double sum = 0.0, widest = 0.0;
+  double sum = 0.0, widest = 0.0, nearest = kInfinity;
   std::uint64_t iterations = 0, queries = 0;
   std::size_t step = 0;
   for (auto _ : state) {
@@ -99,6 +99,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
                                         compose(world[p.object_b], p.b_in_object), tracking[i]);
       sum += r.distance;
       widest = std::max(widest, r.upper - r.lower);
+      nearest = std::min(nearest, r.distance);
       iterations += r.iterations;
       ++queries;
     }
@@ -107,6 +108,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
   state.SetItemsProcessed(static_cast<std::int64_t>(queries));
   count_steps(state, static_cast<double>(iterations) / static_cast<double>(queries));
   state.counters["widest_gap"] = widest;
+  state.counters["nearest"] = nearest;
   state.counters["ns"] =
       benchmark::Counter(static_cast<double>(queries) * 1e-9,
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);

@@ -56,7 +56,8 @@ Rows:
   overlap/tracked/KIND/HOW, overlap/cold/...  penetration depth: boxes, links, f10, v10, f40, v40; shallow, half,
                      near, nearer, middle; no reference
   peer/WHO/...       the same by other solvers: fcl, fcl-tight, fcl-gjk, bullet, libccd, qp
-  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion; cell/cold/NAME;
+  cell/tracked/NAME  one distance query of the cell's pairs along its simulated motion, each joint of a robot swinging
+                     through its range; counter nearest, m; cell/cold/NAME;
                      cell/batch/NAME: a round of all part pairs of the cell at once
   tick/NAME          one Monitor::tick: the shipped cells, and generated cells of thousands to millions of pairs.
                      control_..._us: the machine's noise, arithmetic that takes as long as the tick's median,
