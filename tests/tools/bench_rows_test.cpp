@@ -102,7 +102,7 @@ TEST(BenchRows, SayErrorAndFailuresOfPeersThatMeasure) {
 // The foot is 0.9 m below the hand, however the joint between them turns.
 constexpr const char* kPost = R"(<robot name="post">
   <link name="foot"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
-  <link name="pole"/>
+  <link name="pole"><collision><geometry><sphere radius="0.05"/></geometry></collision></link>
   <link name="hand"><collision><geometry><box size="0.1 0.1 0.1"/></geometry></collision></link>
   <joint name="turn" type="revolute"><origin xyz="0 0 0.5"/><parent link="foot"/><child link="pole"/>
     <axis xyz="0 0 1"/><limit lower="-1" upper="1" velocity="1"/></joint>
