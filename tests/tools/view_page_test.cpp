@@ -87,7 +87,7 @@ TEST_F(ViewPage, IsNeverBlankWhileItChangesItsResolution) {
 
 TEST_F(ViewPage, MovingBodiesStayInTheFirstViewUntilAPersonMovesIt) {
   const json found = run({"firstView"})["firstView"];
-  EXPECT_LE(found.value("largest", 9.0), 1.05);
+  EXPECT_LE(found.value("largest", 9.0), 1.0);
   EXPECT_TRUE(found.value("stays", false));
 }
 

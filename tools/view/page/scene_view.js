@@ -17,8 +17,9 @@ const ROUNDING = 1e-7; // m
 // When frames take longer than this, ms, they are drawn with fewer pixels, down to this share.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 const FADE_AGAIN_MS = 250; // between searches for bodies that hide moving ones
-// The first view is checked, and grows by this factor before bodies pass this share of it on their way out.
-const STAYS_AGAIN_MS = 100, GROWTH = 1.15, INSIDE = 0.95;
+// Checks of the first view take at most the first share of the time. It grows by the factor before bodies pass the last share of it
+// on their way out.
+const KEEPING_SHARE = 0.05, GROWTH = 1.15, INSIDE = 0.95;
 // A pair fills this share of the view, or less where its gap is small beside its objects or this length, m.
 const GAP_SHARE = 0.45, OBJECT_SHARE = 0.6, LEAST_LOOK = 0.03;
 const ALONG = 0.6; // cosine between view and gap, above which the gap would be seen from its end
@@ -118,9 +119,9 @@ export class SceneView {
   }
   // Until a person moves the view, moving bodies stay in it.
   keepInView(nowMs) {
-    if (!this.follows || !this.fitted || nowMs - this.keptMs < STAYS_AGAIN_MS) return;
-    this.keptMs = nowMs;
-    const moving = this.movingBounds();
+    if (!this.follows || !this.fitted || nowMs < this.keepAgainMs) return;
+    const began = performance.now(), moving = this.movingBounds();
+    this.keepAgainMs = nowMs + (performance.now() - began) / KEEPING_SHARE;
     if (moving.isEmpty()) return;
     this.reached.union(moving);
     const { min, max } = moving, corner = new THREE.Vector3();
