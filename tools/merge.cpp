@@ -47,7 +47,8 @@ Example:
 
 struct Arguments {
   CellArguments cell;
-  double late_ms = 20.0, seconds = 0.0;
+  std::optional<double> late_ms;
+  double seconds = 0.0;
   int fifo_priority = 0;
   std::vector<std::string> ros;  // ROS 2 outputs in addition to the cell's
   std::string log_level = "info";
@@ -58,9 +59,9 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("CELL", arguments.cell.cell, "The cell file (YAML), which names the shares")
       ->required();
   app.add_option("--late-ms", arguments.late_ms,
-                 "What hangs on a share whose last report is older than this is unknown")
-      ->check(CLI::Range(1.0, 10'000.0))
-      ->capture_default_str();
+                 "What hangs on a share whose last report is older than this is unknown (default: "
+                 "three periods of the cell, and at least 20)")
+      ->check(CLI::Range(1.0, 10'000.0));
   app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
       ->check(number_from_zero());
   app.add_option("--priority", arguments.fifo_priority, "Run under SCHED_FIFO with this priority")
@@ -115,7 +116,8 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
     log_line(lines::kPartitionWithoutRos, dds.partition);
   client::Connection connection(dds, cell.topics);
   client::SharedCellOptions options{.gradients = true};
-  options.late_after = std::chrono::nanoseconds(std::llround(1e6 * arguments.late_ms));
+  if (arguments.late_ms)
+    options.late_after = std::chrono::nanoseconds(std::llround(1e6 * *arguments.late_ms));
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
   client::SharedCell whole(connection, options);
   merge::RosRelay ros(connection.participant(), cell, arguments.cell.reading(), arguments.ros);

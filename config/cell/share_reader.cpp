@@ -170,7 +170,8 @@ class BalancedReader {
   }
 
  private:
-  // Two objects lead to their pair, or to the one that would follow it.
+  // Each entry names two objects. Their pair begins a share, or the next pair does if the cell does
+  // not watch theirs.
   std::optional<std::vector<std::uint32_t>> read_begins(const YamlNode& node, std::size_t count) {
     const std::vector<YamlNode>& items = read_list(node, "two objects [A, B]", diagnostics_);
     if (items.size() != count) {

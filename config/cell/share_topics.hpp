@@ -21,7 +21,7 @@ namespace clearance {
   return name;
 }
 
-// The topic of another share, from that of one.
+// Returns the topic of the share `other`, given `topic` of `share`.
 [[nodiscard]] inline std::string topic_of_other_share(std::string_view topic,
                                                       std::string_view share,
                                                       std::string_view other) {

@@ -67,12 +67,13 @@ inline constexpr std::uint64_t kKeptCost = 10;
 [[nodiscard]] std::vector<std::uint64_t> expected_costs(const std::vector<Object>& objects,
                                                         const std::vector<ObjectPair>& pairs);
 
-// The first pairs of the second and all further shares that divide pairs of these costs into
-// `count` runs of about the same cost, in the pairs' order, so that a share has few of the first
-// objects. Ascending; equal ones are a share without pairs. `count` is not 0.
+// Divides the pairs, in their order, into `count` runs of about the same cost. Consecutive pairs
+// keep the number of first objects of a share small. Returns the first pair of each run after the
+// first one, ascending. Equal values mean a run without pairs. `count` is not 0.
 [[nodiscard]] std::vector<std::uint32_t> balanced_begins(const std::vector<std::uint64_t>& costs,
                                                          std::uint32_t count);
-// Shares "1", "2", ... of `pairs` pairs that begin at 0 and there. Their zones are not filled.
+// Makes shares "1", "2", ... of `pairs` pairs. The first share begins at pair 0, and each further
+// one at its entry of `begins`. Does not fill their zones.
 [[nodiscard]] std::vector<Share> shares_of_runs(std::size_t pairs,
                                                 const std::vector<std::uint32_t>& begins);
 

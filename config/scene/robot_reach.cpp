@@ -66,8 +66,8 @@ std::vector<double> distances(const Robot& robot, double root,
 
 }  // namespace
 
-// Robots on a link are in the ball of the robot that carries them. What is attached to an object
-// that moves is carried by no robot.
+// Robots on a link are in the ball of the robot that carries them. What is attached to a moving
+// object has no ball, since no robot carries it.
 std::variant<std::vector<ReachBall>, std::string> robots_reach(const Scene& scene) {
   constexpr std::size_t kNoBall = std::numeric_limits<std::size_t>::max();
   std::vector<ReachBall> balls;

@@ -10,9 +10,9 @@
 
 namespace clearance {
 
-// The balls that contain all links, and what they carry, as long as joints are within their limits:
-// one around the base of each robot that stands on no other one. Else a reason, as the end of a
-// sentence: no robot, or a joint that slides without limits.
+// Returns one ball around the base of each robot that stands on no other robot. While joints are
+// within their limits, the balls contain all links and what they carry. If there is no robot, or a
+// joint slides without limits, returns the reason as the end of a sentence.
 [[nodiscard]] std::variant<std::vector<ReachBall>, std::string> robots_reach(const Scene& scene);
 
 }  // namespace clearance

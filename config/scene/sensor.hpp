@@ -63,7 +63,8 @@ struct Sensor {
   double error_constant = 0.0, error_quadratic = 0.0;
   bool along_ray = false;
   // The range of depths, m; other depths count as missing. For a map, the greatest one is a
-  // distance from the origin of its frame: cubes farther away are known to be there, and no more.
+  // distance from the origin of its frame. Cubes farther away bound distances, but have none of
+  // their own.
   double least_depth = 0.0, greatest_depth = 0.0;
   // The distance between neighbouring rays of points at a depth of 1 m, m. A ball of half of it
   // times the depth, and of the error, contains the surface around a point. 0: the points alone.
@@ -108,9 +109,10 @@ struct Sensor {
   [[nodiscard]] double error_at(double depth) const noexcept {
     return error_constant + error_quadratic * depth * depth;
   }
-  // The ball that is the body of its object, m. Whatever a frame shows or knows to be there is in
-  // it, wherever the sensor is within the error of its place: a frame with a larger one is refused.
-  // Beyond the range of a map, anything may be.
+  // The radius of the ball that is the body of the sensor's object, m. The ball contains all that a
+  // frame shows, wherever the sensor is within the error of its place. A frame whose error is too
+  // large for that is refused. Nothing bounds what is beyond the range of a map, so a map's ball
+  // has the largest radius.
   [[nodiscard]] double view_radius() const noexcept {
     return kind == SensorKind::kOctomap ? kLargestCoordinate : 2.0 * extent() + 0.1;
   }

@@ -240,8 +240,9 @@ HWY_INLINE Vec4 clamped_to_facet(const BoxFeatures& box, Vec4 n, Vec4 p) {
 }
 
 // Does what slide_back() does, by two clamps, for two boxes that share all axes. The first clamp is
-// onto the facet of A, the second one onto that of B. Returns false if the second one moves the
-// point out of A's facet: the facets then do not face each other there.
+// onto the facet of A, the second one onto that of B. Returns false if a body is no box, or if the
+// boxes do not share all axes. Also returns false if the second clamp moves the point out of A's
+// facet: the facets then do not face each other there.
 inline HWY_NOINLINE bool slide_back_on_boxes(const TrackedPair& pair, const Facet& of_a,
                                              const Facet& of_b, Vec4& local) {
   const BoxFeatures &a = pair.a.box, &b = pair.b.box;

@@ -54,8 +54,8 @@ HWY_INLINE double dot(const Vec3& u, const Vec3& v) {
   return (u.x() * v.x() + u.y() * v.y()) + u.z() * v.z();
 }
 
-// The same edge as steepest_edge() finds, without a branch an edge, whose outcome no processor
-// could predict.
+// Finds the same edge as steepest_edge(). It has no branch per edge, since no processor could
+// predict the outcome.
 inline HWY_NOINLINE SteepestEdge steepest(const ConvexBody& body, const Vertex& vertex,
                                           const Vec3& g) {
   SteepestEdge none;

@@ -38,8 +38,8 @@ namespace client {
 // The daemon's domain, partition and network, as in its first log lines.
 class Connection {
  public:
-  // Without options: this machine's loopback, the domain of ROS_DOMAIN_ID or 0, the default
-  // partition.
+  // Without options, a connection uses this machine's loopback and the default partition. Its
+  // domain is that of ROS_DOMAIN_ID, or 0.
   explicit Connection(const DdsOptions& options = {}, const Topics& topics = {});
   // Uses a participant that the program already has and that outlives this.
   Connection(dds_entity_t participant, const std::string& partition, const Topics& topics = {});
@@ -132,7 +132,7 @@ class Catalogue {
   static constexpr std::size_t kKept = 9;
 
   explicit Catalogue(Connection& connection);
-  // `each` is called with every one that has come, also if a later one replaces it at once.
+  // Calls `each` with every catalogue that has come, even if a later one replaces it at once.
   void update(const std::function<void(const clearance_msg_Catalogue&)>& each = {});
 
   // The latest one; null until one has come.

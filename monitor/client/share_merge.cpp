@@ -106,7 +106,8 @@ void join_sources(std::span<const ShareView> views, clearance_msg_Distances& out
 }
 
 // No pair of a share is nearer than its lower_all. If its minimum is certified, none of its other
-// pairs is nearer than that. That pair itself may be, unless its bounds are tight.
+// pairs is nearer than that minimum's upper bound. The pair of the minimum may be nearer, unless
+// its bounds are tight.
 bool allows_minimum(const clearance_msg_Distances& report,
                     const clearance_msg_PairDistance& least) {
   const bool is_tight =

@@ -22,6 +22,9 @@ namespace clearance::client {
 // since its partner may have written nothing since.
 inline constexpr std::int64_t kHeardFor = 1'000'000'000;
 
+// The least time after which a share is late, ns, unless the caller states one.
+inline constexpr std::int64_t kLeastLate = 20'000'000;
+
 // The last message of each of two scenes: while the shares change one after another, the former one
 // still counts.
 template <class Message>
@@ -49,18 +52,18 @@ struct OfTwoScenes {
 
 // A share with all its readers.
 struct SharedCell::OfShare {
-  OfShare(Connection& whole, std::string of, const SharedCellOptions& options)
+  OfShare(Connection& whole, std::string of, std::int64_t late, bool has_gradients)
       : name(std::move(of)),
-        late_ns(options.late_after.count()),
+        late_ns(late),
         connection(whole.participant().handle(), whole.participant().partition(),
                    topics_of_share(whole.topics(), name)),
-        reports(connection, {.old_after = options.late_after}),
+        reports(connection),
         separations(connection),
         catalogue(connection),
         health(connection),
         zones(connection.participant().reader_of_several(TopicKind::kZones,
                                                          connection.topics().zones)) {
-    if (options.gradients) gradients.emplace(connection);
+    if (has_gradients) gradients.emplace(connection);
   }
   ~OfShare() { dds_delete(zones); }
 
@@ -225,7 +228,7 @@ struct SharedCell::OfShare {
   const clearance_msg_Distances* used = nullptr;  // in the joined report; one of `current`
   bool is_new = false, has_ahead = false;
   std::uint64_t missed = 0;
-  PartnerCheck partner;                         // the worst since the call of SharedCell before
+  PartnerCheck partner;                         // the worst since the previous call of SharedCell
   bool partner_is_told = false;                 // the caller knows `partner`
   bool partner_is_old = false;                  // the caller has called again since
   std::int64_t taken_at = 0, came_at = 0;       // the last take() and report, by monotonic_ns()

@@ -31,6 +31,7 @@ std::uint64_t random_number() {
 SharedCell::SharedCell(Connection& connection, SharedCellOptions options)
     : connection_(connection),
       options_(std::move(options)),
+      late_ns_(options_.late_after ? options_.late_after->count() : kLeastLate),
       daemon_(random_number()),
       checker_(options_.old_after.count()) {
   if (options_.names.empty()) {
@@ -52,7 +53,7 @@ void SharedCell::open(const std::vector<std::string>& names) {
   std::vector<dds_entity_t> readers;
   if (discovery_) readers.push_back(discovery_->reader());
   for (const std::string& name : names) {
-    shares_.push_back(std::make_unique<OfShare>(connection_, name, options_));
+    shares_.push_back(std::make_unique<OfShare>(connection_, name, late_ns_, options_.gradients));
     readers.push_back(shares_.back()->reports.reader());
   }
   wait_ = std::make_unique<DataWait>(connection_.participant(), readers);
@@ -95,7 +96,7 @@ bool SharedCell::waits_for_first() const {
   const bool is_known = std::ranges::any_of(shares_, [this](const auto& share) {
     return catalogue_of(share->current.latest->scene_revision) != nullptr;
   });
-  const std::int64_t waits_ns = std::max(options_.late_after.count(), kMeeting);
+  const std::int64_t waits_ns = std::max(late_ns_, kMeeting);
   return !is_known ||
          (monotonic_ns() - opened_at_ <= waits_ns &&
           !std::ranges::all_of(shares_, [](const auto& share) { return share->is_heard(); }));
@@ -125,7 +126,7 @@ bool SharedCell::wait_for_next(std::chrono::nanoseconds timeout) {
     }
     const std::int64_t left_ns = end_ns - monotonic_ns();
     if (left_ns <= 0) return false;
-    wait_->wait(std::min(left_ns, options_.late_after.count() / 4));
+    wait_->wait(std::min(left_ns, late_ns_ / 4));
   }
 }
 
@@ -140,16 +141,16 @@ bool SharedCell::newest(std::chrono::nanoseconds timeout) {
 // A share that is late or missing is not waited for.
 bool SharedCell::is_due(std::int64_t now_ns) const {
   if (shares_.empty() || waits_for_first()) return false;
-  const std::int64_t late_ns = options_.late_after.count(), at = monotonic_ns();
+  const std::int64_t at = monotonic_ns();
   bool has_any = false, lacks_one = false;
   for (const auto& share : shares_) {
     if (share->has_ahead) return true;
     has_any = has_any || share->is_new;
     const std::int64_t age = now_ns - share->current.latest->publish_ns;
-    lacks_one = lacks_one || (!share->is_new && age <= late_ns && at - share->came_at <= late_ns);
+    lacks_one = lacks_one || (!share->is_new && age <= late_ns_ && at - share->came_at <= late_ns_);
   }
   if (has_any) return !lacks_one;
-  return joined_ns_ != 0 && at - joined_at_ >= late_ns;
+  return joined_ns_ != 0 && at - joined_at_ >= late_ns_;
 }
 
 void SharedCell::judge(std::int64_t now_ns) {
@@ -169,10 +170,9 @@ void SharedCell::judge(std::int64_t now_ns) {
     if (report.cycle == 0) continue;
     check.age_ns = now_ns - report.publish_ns;
     // The times of two machines are compared, so that silence counts as well.
-    const std::int64_t limit = options_.late_after.count();
-    const bool is_late = check.age_ns > limit || share->taken_at - share->came_at > limit;
+    const bool is_late = check.age_ns > late_ns_ || share->taken_at - share->came_at > late_ns_;
     if (is_late && share->reports.daemons() == 0) continue;
-    check.state = is_late || check.age_ns < -limit           ? ShareState::kLate
+    check.state = is_late || check.age_ns < -late_ns_        ? ShareState::kLate
                   : report.scene_revision != map_.revision() ? ShareState::kOtherRevision
                   : !is_divided_alike(i)                     ? ShareState::kOtherDivision
                                                              : ShareState::kWhole;
@@ -192,8 +192,7 @@ bool SharedCell::join(std::int64_t now_ns) {
     view.report = share.used;
     const auto of_now = [&](const auto& of_two) {
       const auto* const message = of_two.of(map_.revision());
-      const bool is_late =
-          message != nullptr && now_ns - message->publish_ns > options_.late_after.count();
+      const bool is_late = message != nullptr && now_ns - message->publish_ns > late_ns_;
       return is_late ? nullptr : message;
     };
     view.separation = of_now(share.separation);
@@ -205,7 +204,7 @@ bool SharedCell::join(std::int64_t now_ns) {
   // but where a clock was set. The report says truly when its oldest part was published.
   if (message_->now_ns == 0) message_->now_ns = now_ns;
   if (message_->publish_ns == 0) message_->publish_ns = now_ns;
-  if (before_ns - message_->now_ns < options_.late_after.count())
+  if (before_ns - message_->now_ns < late_ns_)
     message_->now_ns = std::max(message_->now_ns, before_ns);
   message_->daemon = daemon_;
   ++message_->cycle;

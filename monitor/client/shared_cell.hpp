@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,8 +20,9 @@ class ShareNames;
 
 struct SharedCellOptions {
   // A share whose last report is older is left out, and what hangs on it is unknown. It has to be
-  // longer than the time that partners take to go on without each other: two periods.
-  std::chrono::nanoseconds late_after = std::chrono::milliseconds(20);
+  // longer than the time that partners take to go on without each other: two periods. If not set,
+  // it is three periods of the cell, and at least 20 ms.
+  std::optional<std::chrono::nanoseconds> late_after = {};
   std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // as StreamOptions'
   bool gradients = false;  // they are read and joined, too
   // The names of the shares. If empty, they are those of the first share that is met.
@@ -33,7 +35,7 @@ struct ShareCheck {
   ShareState state = ShareState::kMissing;
   std::uint64_t daemon = 0, cycle = 0, scene_revision = 0;  // of its last report; 0: none
   std::int64_t age_ns = -1;                                 // since it was published; -1: none
-  // The worst of the reports since the call of next() or newest() before.
+  // The worst partner state of the reports since the previous call of next() or newest().
   PartnerCheck partner = {};
 };
 
@@ -105,6 +107,7 @@ class SharedCell {
   [[nodiscard]] std::uint64_t division_of_most(std::uint64_t revision) const;
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
   [[nodiscard]] bool follow_revision();
+  void set_late(std::int64_t late_ns);
   // The pairs of its report are those that the map gives to it.
   [[nodiscard]] bool is_divided_alike(std::size_t share) const;
   void judge(std::int64_t now_ns);
@@ -117,6 +120,7 @@ class SharedCell {
 
   Connection& connection_;
   SharedCellOptions options_;
+  std::int64_t late_ns_;  // a report that is older is late
   std::uint64_t daemon_;
   std::unique_ptr<ShareNames> discovery_;  // null: the names are known
   std::vector<std::unique_ptr<OfShare>> shares_;

@@ -13,7 +13,15 @@ namespace clearance::client {
 
 bool SharedCell::is_here(const OfShare& share) const {
   const clearance_msg_Distances& report = *share.current.latest;
-  return report.scene_revision != 0 && joined_ns_ - report.publish_ns < options_.late_after.count();
+  return report.scene_revision != 0 && joined_ns_ - report.publish_ns < late_ns_;
+}
+
+// SharedCellOptions::late_after if it is not set, ns; without a rate, its least value.
+std::int64_t late_after(double rate_hz) {
+  constexpr double kPeriods = 3.0, kMost = 60.0;  // kMost: s
+  if (!(rate_hz > 0.0)) return kLeastLate;
+  const double seconds = std::min(kPeriods / rate_hz, kMost);
+  return std::max(kLeastLate, static_cast<std::int64_t>(1e9 * seconds));
 }
 
 // The scene that most shares have; among equally many, the one in use, or that of the first share.
@@ -80,9 +88,15 @@ bool SharedCell::follow_revision() {
       return false;
     }
     map_ = std::move(map);
+    if (!options_.late_after) set_late(late_after(found->rate_hz));
     return true;
   }
   return true;
+}
+
+void SharedCell::set_late(std::int64_t late_ns) {
+  late_ns_ = late_ns;
+  for (const auto& share : shares_) share->late_ns = late_ns;
 }
 
 const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {

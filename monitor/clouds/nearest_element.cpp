@@ -17,7 +17,8 @@ constexpr double kGap = 4e-10;
 constexpr double kPlaneError = 0x1p-46;
 // The origin of the part's frame is the pivot of its motion until it is this far away, m.
 constexpr double kPivotMoves = 0.25;
-// While more groups are stored, those are removed that their parent's plane leaves out by this, m.
+// While more than kManyGroups are stored, a group is removed if its parent's plane leaves it out by
+// kSpareToRemove, m.
 constexpr std::uint32_t kManyGroups = CloudCut::kSlots / 2;
 constexpr double kSpareToRemove = 2e-3;
 // Planes towards more children of a group than this cost more queries than they save.

@@ -19,9 +19,9 @@ enum class CloudAnswer : std::uint8_t {
 
 // The work limit: a part that is deep in a cloud overlaps thousands of elements, and a query of the
 // core takes up to a hundred times as long in an overlap. Once an overlap is certified and the
-// queries in overlaps have cost this much, no further element is queried. A query of a polyhedron
-// and a point costs 1, some 0.7 us. One of a curved part takes 80 us, and one of a polyhedron and a
-// slab or cube 14 us.
+// queries in overlaps have cost this much, no further element is queried. The unit is a query of a
+// polyhedron and a point, some 0.7 us. A query of a curved part takes 80 us (kCostOfCurved). A
+// query of a polyhedron and a slab or cube takes 14 us (kCostOfBodies).
 inline constexpr std::uint32_t kMostOverlapWork = 8192, kCostOfCurved = 128, kCostOfBodies = 32;
 
 // lower <= signed distance of the part and the nearest element <= upper, rounding included, as in

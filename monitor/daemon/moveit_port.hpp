@@ -23,10 +23,10 @@ class MoveItPort {
   using Put = std::function<bool(QueuedCommand)>;
   // A daemon needs this if other daemons hear the messages, too.
   struct Sharing {
-    std::function<bool()> leads;              // this daemon, at the moment; empty: it never does
+    std::function<bool()> leads;              // this daemon, at the moment; empty: it never leads
     std::function<std::uint64_t()> revision;  // of the scene in force
     // Tells the partner of the last changes, and of what is kept between messages. Empty: there is
-    // none.
+    // no partner.
     std::function<void(std::span<const DoneSceneChange>, std::span<const std::byte>)> tell = {};
   };
   explicit MoveItPort(Put put) : put_(std::move(put)) {}
@@ -38,8 +38,8 @@ class MoveItPort {
   void take(moveit::RawScene message);
   void close();
 
-  // All of these do nothing unless the messages are shared. The scene thread: a scene of this
-  // revision comes into force.
+  // The next three functions do nothing unless the messages are shared. The scene thread calls
+  // coming() when a scene of this revision comes into force.
   void coming(std::uint64_t revision);
   // The leading partner tells of this. Any thread but that of the tick.
   void hear(const clearance_msg_PartnerScene& scene);
@@ -68,7 +68,7 @@ class MoveItPort {
   void ended(std::uint64_t identity, std::uint64_t revision);
   void note(std::uint64_t identity, std::uint64_t revision);
 
-  std::optional<Sharing> sharing_;  // none: this daemon does all messages at once
+  std::optional<Sharing> sharing_;  // none: this daemon applies all messages at once
   std::mutex mutex_;                // guards what follows
   Put put_;                         // empty: closed
   SceneTurns turns_;

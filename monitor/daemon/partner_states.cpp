@@ -128,8 +128,8 @@ void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
   static_cast<void>(put_command_(std::move(queued)));
 }
 
-// Two daemons that both lead the ticks for a moment do not both take a command, and a daemon with
-// the cell from before a change answers no question.
+// Two daemons may both lead the ticks for a moment, but must not both take a command. A daemon that
+// still has the former cell must not answer a question.
 bool PartnerStates::takes_requests() const {
   const auto end = std::chrono::steady_clock::now() + kLeadsAgain;
   while (ticks_.standing() == PartnerStanding::kLeading && !loop_ended_) {

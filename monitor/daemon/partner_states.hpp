@@ -42,8 +42,9 @@ class PartnerStates {
 
   [[nodiscard]] PartnerPort::Actions actions();
 
-  // Any thread but that of the tick. False: the partner takes commands and questions, or neither
-  // does for a moment.
+  // Returns whether this daemon takes commands and questions. If not, the partner takes them, or
+  // neither daemon does while the lead changes. May wait for 100 ms, so the tick thread must not
+  // call it.
   [[nodiscard]] bool takes_requests() const;
   // Keeps the files of a command that the partner takes.
   void keep_files(Command command);

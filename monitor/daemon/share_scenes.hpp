@@ -1,6 +1,6 @@
-// One scene for a cell in shares that takes MoveIt's messages: the daemon of the first share does
-// the messages, and those of all others take over its scene. So all make the same changes in the
-// same order, whatever messages each of them got, and when.
+// One scene for a cell in shares that takes MoveIt's messages: the daemon of the first share
+// applies the messages, and those of all others take over its scene. So all make the same changes
+// in the same order, whatever messages each of them got, and when.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,13 @@
 
 namespace clearance {
 
-// Decides whose scene a daemon takes over, by what the daemons of other shares say of theirs. To be
-// used by one thread, with times of one steady clock.
+// Decides whose scene a daemon takes over, by what the daemons of other shares say of theirs. One
+// thread uses this, with times of one steady clock.
 //  - A daemon of the first share that has changed nothing since its start takes the scene that most
 //    others have changed to: it was away while they did. After that it takes none.
 //  - Any other daemon follows a daemon of the first share with which it has agreed once. Before it
-//    has agreed with any, it follows whichever it hears. So a share that has agreed once does not
-//    follow a daemon of the first share that lost the scene by a restart, until that one has it
+//    has agreed with any, it follows whichever it hears. A restarted daemon of the first share may
+//    have lost the scene. A share that has agreed before does not follow it until it has that scene
 //    again.
 class SceneToFollow {
  public:
@@ -41,14 +41,14 @@ class SceneToFollow {
       : own_(own), told_(shares), start_ns_(now_ns) {}
 
   void hear(std::size_t share, const Told& told) { told_[share] = told; }
-  // Returns the share whose scene is to be taken over. The first share waits for 200 ms, the others
-  // do not wait. After a change of the scene here, all wait for a second. It is returned again
-  // every second while the scenes differ. `in_force` is the revision here. `has_changed`: this
-  // daemon did not begin with it.
+  // Returns the share whose scene this daemon is to take over now, if any. A new scene of another
+  // share is returned at once, but to the first share after 200 ms. After a change of this daemon's
+  // own scene, it is returned after a second. While the scenes differ, it is returned again every
+  // second. `in_force` is the revision here. `has_changed`: this daemon did not begin with it.
   [[nodiscard]] std::optional<std::size_t> look(std::uint64_t in_force, bool has_changed,
                                                 std::int64_t now_ns);
-  // The first share may do messages: it has heard all others and has their scene, or its start was
-  // a second ago, or 3 s where it does not get that scene.
+  // True once the first share may apply messages. It then has no scene to take over, and has heard
+  // all others or has run for a second. After 3 s it is true in any case.
   [[nodiscard]] bool is_settled() const noexcept { return is_settled_; }
 
  private:
@@ -87,7 +87,7 @@ class ShareScenes {
   [[nodiscard]] bool is_first() const noexcept { return own_ == 0; }
   // The name of the first share.
   [[nodiscard]] const std::string& first() const noexcept { return names_.front(); }
-  // This daemon does MoveIt's messages.
+  // This daemon applies MoveIt's messages.
   [[nodiscard]] bool does_messages() const noexcept { return does_messages_; }
 
  private:

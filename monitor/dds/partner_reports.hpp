@@ -17,7 +17,8 @@ class PartnerReports {
   // A report that this daemon published, or that its partner did.
   void note_own(const clearance_msg_Distances& report) { note(report, false); }
   void note_other(const clearance_msg_Distances& report) { note(report, true); }
-  // One of the partner's without the checksum that it states: it counts as different.
+  // Notes a report of the partner that does not have the checksum that it states. It counts as
+  // different.
   void note_corrupt(const clearance_msg_Distances& report);
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();

@@ -52,7 +52,7 @@ std::uint64_t digest_of(const PointsView& points) noexcept {
   return digest.value();
 }
 
-// 0: it has no name.
+// Returns a digest of the frame's name, or 0 if it has none.
 std::uint64_t digest_of(const std_msgs_msg_dds__Header_& header) noexcept {
   const std::string_view name = header.frame_id == nullptr ? "" : header.frame_id;
   if (name.empty()) return 0;

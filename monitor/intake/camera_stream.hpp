@@ -65,7 +65,7 @@ class CameraStream {
  private:
   FrameFault counted(FrameFault fault) noexcept;
   [[nodiscard]] FrameFault judge(const FrameOrigin& origin) const noexcept;
-  // `ring`: of so many of the last frames, none may have the same content.
+  // None of the last `ring` frames may have the same content.
   [[nodiscard]] FrameFault accept(const FrameOrigin& origin, std::uint64_t digest,
                                   std::uint64_t ring) noexcept;
 

@@ -71,9 +71,10 @@ void ReportQueue::expect(std::int64_t deadline_ns) noexcept {
   ready_.post();
 }
 
-// A consumer who is awake is not woken, since that takes a system call. It yields to threads of its
-// own priority: they may be reading inputs. Both sides exchange `awake_`. If the consumer is first,
-// the tick thread wakes it; otherwise it sees the report that was pushed before the exchange.
+// A wake-up takes a system call, so a consumer that is awake is not woken. While it is awake, it
+// yields to threads of its own priority, which may be reading inputs. Both sides exchange `awake_`.
+// If the consumer is first, the tick thread wakes it. Otherwise the consumer sees the report, which
+// was pushed before the tick thread's exchange.
 void ReportQueue::wait() noexcept {
   ready_.wait();
   const std::int64_t until = awake_until_ns_.exchange(0, std::memory_order_relaxed);

@@ -43,8 +43,8 @@ class ReportQueue final : public ReportSink {
   ReportQueue(const Scene& scene, const ReportQueueOptions& options);
 
   // Tick thread. Prefetches the memory of the next report. If the queue `awaits`, this call also
-  // wakes the consumer, which then stays awake until the report comes. It gives up when the
-  // deadline is as long ago as it was ahead at this call.
+  // wakes the consumer, which then stays awake until the report comes. The consumer stops waiting
+  // once the time since the deadline equals the time from this call to the deadline.
   void expect(std::int64_t deadline_ns) noexcept override;
   void input(const PoseBatch& batch) noexcept override;
   void lineage(std::uint64_t lineage) noexcept override { lineage_ = lineage; }

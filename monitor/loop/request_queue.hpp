@@ -1,4 +1,4 @@
-// Requests of clients that wait until a thread does them: in order, and never too many.
+// Requests of clients that wait until a thread handles them: in order, and never too many.
 #pragma once
 
 #include <condition_variable>

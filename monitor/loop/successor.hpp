@@ -84,7 +84,7 @@ class Successor {
                std::vector<ReportSink*>& sinks, SceneIds& ids) noexcept;
 
   [[nodiscard]] const Scene& scene() const noexcept { return scene_; }
-  // The preparing thread, after succeed(): the figures of the scene before.
+  // Returns the figures of the former scene. Only the preparing thread calls this, after succeed().
   [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
 
  private:

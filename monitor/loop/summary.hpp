@@ -11,11 +11,12 @@ namespace clearance {
 // "p50 12.3 us  p99.9 45.6 us  max 78.9 us"
 [[nodiscard]] std::string percentiles(const Histogram& histogram);
 
-// Ticks, overruns, tick and wake-up times. Ends with a newline.
+// Lists ticks, overruns, tick times and wake-up times. Ends with a newline.
 [[nodiscard]] std::string run_summary(const RunStatistics& statistics, double seconds,
                                       std::uint64_t dropped_reports);
 
-// The smallest distance, which is of this scene. Ends with a newline.
+// Says the smallest distance that was seen. `scene` is the scene in which it was measured. Ends
+// with a newline.
 [[nodiscard]] std::string minimum_text(const MinimumSeen& minimum, const Scene& scene);
 
 }  // namespace clearance

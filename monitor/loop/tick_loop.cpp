@@ -185,7 +185,7 @@ void TickLoop::follow_offer() noexcept {
   Successor* const next = offered_.load(std::memory_order_acquire);
   if (next == nullptr) return;
   if (next->state() == Successor::State::kOffered) {
-    // Once it has begun, another thread reads what the pace says of it.
+    // This call comes before begin(), after which another thread reads the pace's lineage of it.
     if (options_.pace != nullptr)
       options_.pace->successor_begins(next->scene().revision == scene_->revision);
     next->begin(*monitor_, ids_.sources());

@@ -24,8 +24,8 @@ struct TickLoopOptions {
   std::uint64_t max_ticks = 0;  // 0: until told to stop
   std::size_t max_samples =
       4096;  // samples that one tick can use; the rest waits for the next tick
-  // The loop wakes this long before each deadline and stays awake until the deadline. At most half
-  // a period. Not used with a pace.
+  // The loop wakes this long before each deadline and stays awake until the deadline. It is cut to
+  // half a period, and is not used with a pace.
   std::int64_t ahead_ns = 0;
   TickPace* pace = nullptr;         // null: the loop alone decides when it ticks
   FrameExchange* frames = nullptr;  // of sensors; null: there are none

@@ -34,9 +34,9 @@ struct Evaluation {
   TrackingState tracking;
   ClosestPoints closest;
   double gap = -kInfinity;  // kept_gap() of the last evaluation along closest.normal, m
-  // The first part pair of a pair has this lower bound of the pair's distance, m, from the tick
-  // before its last evaluation up to that evaluation. The directions of two evaluations prove it.
-  // -infinity: they prove none.
+  // A lower bound of the pair's distance, m, which only the first part pair of a pair has. It holds
+  // from the tick before the last evaluation up to that evaluation. The directions of two
+  // evaluations prove it. -infinity: they prove none.
   double lower_between = -kInfinity;
   DistanceStatus status = DistanceStatus::kIterationLimit;
 };

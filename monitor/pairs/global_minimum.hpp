@@ -22,8 +22,8 @@ class GlobalMinimum {
   [[nodiscard]] std::uint32_t pair() const noexcept { return pair_; }
   [[nodiscard]] const PairBounds& bounds() const noexcept { return bounds_; }  // of pair()
 
-  // No other pair can be closer; among pairs that were evaluated to rounding in this tick, by more
-  // than kTightGap. The bounds of pair() itself may be wide.
+  // True if no other added pair can be closer. A pair that was evaluated in this tick with tight
+  // bounds may be closer by kTightGap at most. The bounds of pair() itself may be wide.
   [[nodiscard]] bool certified() const noexcept;
 
   // A lower bound of every pair's distance, m.

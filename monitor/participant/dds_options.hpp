@@ -13,7 +13,8 @@ namespace clearance {
 
 // Only programs of the same domain, partition and network find each other.
 struct DdsOptions {
-  // 0 to 232; without one, that of the variable ROS_DOMAIN_ID, as for ROS 2 nodes, or 0.
+  // 0 to 232. If it is empty, the variable ROS_DOMAIN_ID states the domain, as for ROS 2 nodes. If
+  // that is not set either, the domain is 0.
   std::optional<std::uint32_t> domain = {};
   std::string partition = "";  // empty: the default one
   // The network interface. "lo": this machine only; "default": the one that Cyclone chooses for
@@ -26,7 +27,8 @@ struct Domain {
   std::uint32_t id = 0;
   bool is_of_ros = false;  // ROS_DOMAIN_ID states it
 };
-// The domain that these options mean. Throws DdsError if it is not from 0 to 232.
+// Returns the domain that these options mean. Throws DdsError if it is above 232, or if the
+// variable counts and is no such number.
 [[nodiscard]] Domain domain_of(const DdsOptions& options);
 
 // Says what was attempted, where, and Cyclone's reason; or what was found and expected.

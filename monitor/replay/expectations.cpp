@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <iterator>
-#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -25,7 +24,7 @@ std::string zone_names(const Scene& scene) {
   return names.empty() ? "it has none" : fmt::format("its zones are {}", one_of(names));
 }
 
-// ns. So much later than the driver of a robot ends a recording, at most.
+// A recording ends at most this long after the driver of a robot, ns.
 constexpr std::int64_t kMostLateEnd = 1'000'000'000;
 
 bool may_touch(const Report& report, std::uint32_t pair) {
@@ -70,9 +69,12 @@ std::optional<std::uint32_t> Expectations::zone(const std::string& name) const {
 
 void Expectations::change(const Scene& scene) {
   scene_ = &scene;
-  all_known_ = false;
-  if (late_since_ns_) late_since_ns_ = std::numeric_limits<std::int64_t>::min() / 2;
-  for (Expectation& expected : expectations_) expected.index = zone(expected.zone);
+  all_known_ = any_late_ = false;
+  late_.clear();
+  for (Expectation& expected : expectations_) {
+    expected.index = zone(expected.zone);
+    expected.late_then.clear();
+  }
 }
 
 // Before every moving object is known, distances are unknown and zones active by definition.
@@ -86,24 +88,32 @@ bool Expectations::all_seen(const Monitor& monitor) {
 // An object that is contradicted is not late: something of it was heard.
 void Expectations::note_late(const Report& report, const Monitor& monitor) {
   any_late_ = false;
-  late_.assign(scene_->objects.size(), false);
+  late_.resize(scene_->objects.size());
   refused_ = std::accumulate(report.rejected.begin(), report.rejected.end(), std::uint64_t{0});
   for (std::uint32_t i = 0; i < scene_->objects.size(); ++i) {
     const InputAge input = monitor.input_age(i);
-    if (scene_->objects[i].fixed || !input.stale || input.contradicted) continue;
-    late_[i] = true;
-    if (!std::exchange(any_late_, true) && !late_since_ns_) {
-      late_since_ns_ = report.now_ns;
-      late_name_ = scene_->objects[i].name;
-      refused_then_ = refused_;
+    if (scene_->objects[i].fixed || !input.stale || input.contradicted) {
+      late_[i].reset();
+      continue;
     }
+    any_late_ = true;
+    if (!late_[i]) late_[i] = Lateness{report.now_ns, refused_};
   }
-  if (!any_late_) late_since_ns_.reset();
 }
 
 bool Expectations::has_late_object(std::uint32_t pair) const {
   const ObjectPair& objects = scene_->pairs[pair];
   return late_[objects.first] || late_[objects.second];
+}
+
+std::optional<std::uint32_t> Expectations::longest_late(
+    const std::vector<std::uint32_t>& objects) const {
+  std::optional<std::uint32_t> longest;
+  for (const std::uint32_t object : objects) {
+    if (!late_[object]) return std::nullopt;
+    if (!longest || late_[object]->since_ns < late_[*longest]->since_ns) longest = object;
+  }
+  return longest;
 }
 
 std::vector<Expectations::Broken> Expectations::check(const Report& report, const Monitor& monitor,
@@ -123,7 +133,7 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
     const auto found = [&](Sentence& what) {
       return Broken{report.cycle, report.now_ns, std::move(*what)};
     };
-    if (known && !late && expected.while_late) {
+    if (known && expected.while_late && !longest_late(expected.late_then)) {
       tell(std::move(*expected.while_late));
     } else if (!judge) {
       continue;
@@ -135,7 +145,12 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
     } else if (Sentence surely = surely_broken_by(expected, report, monitor)) {
       tell(found(surely));
     } else if (!expected.while_late) {
-      if (Sentence what = broken_by(expected, report, monitor)) expected.while_late = found(what);
+      if (Sentence what = broken_by(expected, report, monitor)) {
+        expected.while_late = found(what);
+        for (std::uint32_t i = 0; i < late_.size(); ++i) {
+          if (late_[i]) expected.late_then.push_back(i);
+        }
+      }
     }
   }
   return broken;
@@ -145,18 +160,24 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
 std::vector<Expectations::Broken> Expectations::finish(std::int64_t last_ns, std::string& note) {
   std::vector<Broken> broken;
   for (Expectation& expected : expectations_) {
-    if (!expected.broken && expected.while_late) broken.push_back(std::move(*expected.while_late));
+    if (expected.broken || !expected.while_late) continue;
+    Broken& what = broken.emplace_back(std::move(*expected.while_late));
+    const auto object = all_known_ ? longest_late(expected.late_then) : std::nullopt;
+    if (!object) {
+      what.what += " (an object was late then; the cell has changed since)";
+      continue;
+    }
+    const std::int64_t late_ns = last_ns - late_[*object]->since_ns;
+    const std::string silence =
+        fmt::format("'{}' was late for the last {:.3f} s of the recording",
+                    scene_->objects[*object].name, static_cast<double>(late_ns) * 1e-9);
+    if (late_ns <= kMostLateEnd && judged_on_time_ && refused_ == late_[*object]->refused) {
+      note = silence + ", in which its pairs were not judged unless they were certainly too near";
+      broken.pop_back();
+    } else {
+      what.what += fmt::format(" ({}; --end judges what is before)", silence);
+    }
   }
-  if (broken.empty() || !late_since_ns_) return broken;
-  const std::int64_t late_ns = last_ns - *late_since_ns_;
-  const std::string silence = fmt::format("'{}' was late for the last {:.3f} s of the recording",
-                                          late_name_, static_cast<double>(late_ns) * 1e-9);
-  if (late_ns <= kMostLateEnd && judged_on_time_ && refused_ == refused_then_) {
-    note = silence + ", in which its pairs were not judged unless they were certainly too near";
-    return {};
-  }
-  for (Broken& each : broken)
-    each.what += fmt::format(" ({}; --end judges what is before)", silence);
   return broken;
 }
 
@@ -176,14 +197,25 @@ Expectations::Sentence Expectations::surely_broken_by(const Expectation& expecte
   return check_distance(report, monitor, false);
 }
 
-// The threshold of a zone with `separation` is the tick's: there, the pair that it names decides.
+// The threshold of a zone with `separation` is the tick's. The pair that the tick names may have a
+// late object and hide another one that is too near.
 Expectations::Sentence Expectations::entered_surely(std::uint32_t id, const Report& report,
                                                     const Monitor& monitor) const {
   const Zone& zone = scene_->zones[id];
   const ZoneReport& in_tick = report.zones[id];
   if (zone.separation) {
-    if (!in_tick.active || has_late_object(in_tick.pair)) return std::nullopt;
-    return entered(*scene_, id, in_tick);
+    if (!in_tick.active) return std::nullopt;
+    if (!has_late_object(in_tick.pair)) return entered(*scene_, id, in_tick);
+    for (const PairSeparation& pair : report.separated_pairs) {
+      if (pair.zone != id || has_late_object(pair.pair) || may_touch(report, pair.pair) ||
+          !(pair.remaining < 0.0))
+        continue;
+      return fmt::format(
+          "zone '{}' is active: {} has a clearance of {}, less than its protective separation "
+          "distance",
+          zone.name, pair_name(*scene_, pair.pair), metres(pair.clearance));
+    }
+    return std::nullopt;
   }
   for (const std::uint32_t p : zone.pairs) {
     const PairReport pair = monitor.pair(p);

@@ -43,9 +43,9 @@ class Expectations {
   // of its moving objects are known. A zone that it lacks is not active.
   void change(const Scene& scene);
 
-  // After the recording's last tick: returns what a late object has broken that stayed late. If it
-  // was late for 1 s at most, its driver has ended and the recording soon after: then returns
-  // nothing, and says so in `note`.
+  // Call this after the recording's last tick. Returns what was first broken while an object was
+  // late and has not been returned yet. If the object was late for at most 1 s, its driver is taken
+  // to have ended before the recording. Then this returns nothing and says so in `note`.
   [[nodiscard]] std::vector<Broken> finish(std::int64_t last_ns, std::string& note);
 
   // After the last tick: the reason why no tick could be judged, if none was.
@@ -58,6 +58,12 @@ class Expectations {
     std::optional<std::uint32_t> index;     // of the zone; none: the scene has no such zone
     bool broken = false;                    // and returned
     std::optional<Broken> while_late = {};  // first broken while an object was late
+    // The objects that were late then. Empty: the cell has changed since.
+    std::vector<std::uint32_t> late_then = {};
+  };
+  struct Lateness {
+    std::int64_t since_ns = 0;
+    std::uint64_t refused = 0;  // samples of all objects until then
   };
 
   using Sentence = std::optional<std::string>;  // about an expectation that the tick breaks
@@ -65,15 +71,19 @@ class Expectations {
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   void note_late(const Report& report, const Monitor& monitor);
   [[nodiscard]] bool has_late_object(std::uint32_t pair) const;
+  // Of these objects, the one that has been late for longest. None: one of them is on time.
+  [[nodiscard]] std::optional<std::uint32_t> longest_late(
+      const std::vector<std::uint32_t>& objects) const;
   [[nodiscard]] Sentence broken_by(const Expectation& expectation, const Report& report,
                                    const Monitor& monitor) const;
-  // While an object is late: by another pair, or by a pair that is certainly too near.
+  // For a tick with a late object. Returns a sentence if a pair without late objects breaks the
+  // expectation, or if a pair is certainly too near.
   [[nodiscard]] Sentence surely_broken_by(const Expectation& expectation, const Report& report,
                                           const Monitor& monitor) const;
   [[nodiscard]] Sentence entered_surely(std::uint32_t zone, const Report& report,
                                         const Monitor& monitor) const;
   [[nodiscard]] Sentence certainly_near(const Report& report, const Monitor& monitor) const;
-  // `late_too`: of pairs with a late object, too.
+  // `late_too`: pairs with a late object count, too.
   [[nodiscard]] Sentence check_distance(const Report& report, const Monitor& monitor,
                                         bool late_too) const;
   [[nodiscard]] Sentence check_sweep(const Report& report, const Monitor& monitor,
@@ -87,12 +97,9 @@ class Expectations {
   bool all_known_ = false;
   bool judged_ = false, judged_on_time_ = false;  // some tick; one in which no object was late
   std::string error_;
-  std::vector<bool> late_;  // by object, in this tick
+  std::vector<std::optional<Lateness>> late_;  // by object, in this tick
   bool any_late_ = false;
-  // Since when some object has been late, its name, and the refused samples until then and now.
-  std::optional<std::int64_t> late_since_ns_;
-  std::string late_name_;
-  std::uint64_t refused_then_ = 0, refused_ = 0;
+  std::uint64_t refused_ = 0;  // samples of all objects until now
 };
 
 }  // namespace clearance

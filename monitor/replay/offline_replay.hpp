@@ -56,8 +56,9 @@ struct OfflineReplayOptions {
   std::map<std::string, double> joints = {};
 
   // Expectations begin when every moving object of the cell has been known once. While an
-  // object is late, its pairs count at once only where they are certainly too near; if it was late
-  // for at most 1 s when the recording ended, nothing else of that time counts (Expectations).
+  // object is late, its pairs count at once only where they are certainly too near. If it was late
+  // for at most 1 s when the recording ended, nothing else counts for its pairs in that time
+  // (Expectations).
   // Every pair's distance is certified to be at least this, m.
   std::optional<double> expect_min_distance = {};
   // Names of zones that are never active.

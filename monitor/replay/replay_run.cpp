@@ -135,7 +135,7 @@ void ReplayRun::follow(const Scene& scene) {
   difference_ = std::make_unique<ReportDifference>(scene, *options_.compare, some_without_pairs_);
 }
 
-// Everything that is judged by name goes on.
+// Checks by name continue in the new scene.
 void ReplayRun::change_scene(const TickInput& input, const Report& report) {
   has_changed_ = true;
   follow(loop_.cell().scene);
@@ -256,7 +256,7 @@ std::string ReplayRun::nothing_in_window() {
                      seconds(result_.last_ns));
 }
 
-// Values that met no tick are notes; when none was met, the check has failed.
+// Reference values without a tick become notes. If no value has a tick, the check fails.
 void ReplayRun::finish_reference() {
   if (!reference_) return;
   result_.reference = reference_->totals();
@@ -272,7 +272,7 @@ void ReplayRun::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string
   result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
 }
 
-// Notes at the end what was left out, as totals.
+// Notes the totals of all that was left out, after the last tick.
 void ReplayRun::note_counts() {
   std::ranges::copy(feed_.notes(options_.compare.has_value()), std::back_inserter(result_.notes));
   const auto note_count = [this](std::uint64_t count, const std::string& what) {
@@ -292,7 +292,7 @@ void ReplayRun::note_counts() {
   }
 }
 
-// About a hundred calls, whatever the length of the recording.
+// Calls `progress` about a hundred times, whatever the length of the recording.
 void ReplayRun::show_progress() {
   const double share = feed_.progress();
   if (!options_.progress || share < shown_ + 0.01) return;

@@ -77,7 +77,7 @@ class ReplayRun {
   bool restarted_ = false, has_changed_ = false;
   std::uint64_t cycle_offset_ = 0;  // recorded less replayed
   std::uint64_t last_recorded_cycle_ = 0;
-  // The share that was shown last.
+  // The progress that was reported last, 0 to 1; -1 before the first report.
   double shown_ = -1.0;
 };
 

@@ -11,9 +11,13 @@ namespace clearance {
 
 namespace {
 
-bool is_unheard(const SensorStatus& status) {
-  return status.frames == 0 &&
-         std::ranges::all_of(status.counts, [](auto count) { return count == 0; });
+bool is_unheard(const SensorStatus& status) { return status.frames == 0 && status.heard == 0; }
+
+// Messages came, and nothing is known of the sensor, but none was refused with a cause.
+bool is_without_frames(const SensorStatus& status) {
+  return status.frames == 0 && status.heard > 0 &&
+         std::all_of(status.counts.begin() + 1, status.counts.end(),
+                     [](std::uint64_t count) { return count == 0; });
 }
 
 }  // namespace
@@ -22,8 +26,17 @@ std::vector<std::string> unheard_sensors(const Sensors* sensors, const Scene& sc
                                          const InputLog* log) {
   std::vector<std::string> texts;
   for (std::uint32_t i = 0; sensors != nullptr && i < scene.sensors.size(); ++i) {
-    if (!is_unheard(sensors->status(i))) continue;
+    const SensorStatus status = sensors->status(i);
     const Sensor& sensor = scene.sensors[i];
+    if (is_without_frames(status)) {
+      texts.push_back(fmt::format(
+          "sensor '{}': {} came on its topic '{}', but no frame could be made of them: {}",
+          sensor.name, counted(status.heard, "message"), sensor.topic,
+          sensor.kind == SensorKind::kOctomap
+              ? std::string("none had an octomap")
+              : fmt::format("no CameraInfo came on '{}'", sensor.camera_info)));
+    }
+    if (!is_unheard(status)) continue;
     if (log == nullptr || !log->has_topics()) {
       texts.push_back(
           fmt::format("sensor '{}': no frame of it was found for the cell that was in force last",

@@ -1,5 +1,5 @@
-// Commands that wait until the scene thread does them. DDS, SIGHUP and MoveIt's messages all enter
-// here.
+// Commands that wait until the scene thread applies them. DDS, SIGHUP and MoveIt's messages all
+// enter here.
 #pragma once
 
 #include <cstddef>

@@ -27,7 +27,7 @@ class CellParts {
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
   // cell before may go. There is no way back, so whatever can fail belongs into prepare().
   virtual void follow(const SceneInForce& since) noexcept = 0;
-  // Before follow(): the final figures of the cell that the loop no longer ticks.
+  // Is called before follow(), with the final figures of the cell that the loop no longer ticks.
   virtual void end(const LoopStatistics&) noexcept {}
   // The changed cell is given up, and so is what prepare() made.
   virtual void abandon() = 0;

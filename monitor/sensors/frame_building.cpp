@@ -213,7 +213,9 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
   // A map is cropped to the range, and nothing of it is dropped.
   const CloudCrop whole{.centre = Vec3::Zero(),
                         .radius = is_map ? sensor.greatest_depth : sensor.extent()};
-  if (!build_within(crop_of(sensor, place, postures_).value_or(whole)))
+  // Links that are farther apart than a map reaches need no crop: the range is one already.
+  if (!build_within(crop_of(sensor, place, postures_).value_or(whole)) &&
+      !(is_map && build_within(whole)))
     return FrameFault::kCannotBuild;
   // If all but the robot is beyond the links' reach, none is cropped: the frame shows something.
   if (points.size() == 0 && points.cropped() > 0 && !build_within(whole))

@@ -20,8 +20,8 @@ const PastPose kOrigin{.known = true, .world_from_body = {}};
 // A mount without stated speeds leaps if it is faster than this. It bounds nothing else.
 constexpr MountSpeed kUnstated{.shift = kFastestBase, .turn = kFastestBaseTurn};
 
-// Calibrations and rounded numbers of a robot's base differ by less, m and rad. What differs by
-// more is another base, or another world.
+// Calibration and rounding change a robot's base by less than this, m and rad. A larger difference
+// means another base or another world.
 constexpr double kSameBase = 0.01;
 
 }  // namespace
@@ -97,7 +97,8 @@ std::string Mounts::robot_elsewhere(const Sensor& sensor, const std::string& fra
       return fmt::format("tf has '{}' {:.1f} mm and {:.1f} mrad from where the cell has it",
                          root.frame, 1e3 * shift, 1e3 * turned);
     }
-    // The sensor as tf has it, seen from the robot where the cell has that.
+    // The sensor's pose after the motion that takes the robot from its place in tf to its place in
+    // the cell.
     const Pose& at = place.world_from_body;
     const Eigen::Quaterniond turn =
         by_cell.orientation.normalized() * by_tf.orientation.conjugate();

@@ -25,11 +25,10 @@ class Mounts {
   // called place() of `postures` for the stamp.
   // The path of frames ends at the first one that is a link, the frame of an object or the world of
   // the cell. Joints place the links, whatever tf says of them. The name of an object is no frame,
-  // because its origin may be elsewhere.
-  // The pose is not known if the path leads nowhere, if its end has no pose at that time, or if its
-  // transforms end before the stamp. In the last case it is known if the mount has a stated speed.
-  // The pose is not known either for a second after the path has jumped farther than that speed
-  // allows, or farther than 5 m/s and 6.3 rad/s allow if no speed is stated.
+  // because its origin may be elsewhere. The pose is unknown if the path leads nowhere, or if its
+  // end has no pose at that time. It is also unknown if the transforms end before the stamp and the
+  // mount states no speed. It stays unknown for a second after the path has jumped farther than the
+  // speed allows. Without a stated speed, 5 m/s and 6.3 rad/s count.
   [[nodiscard]] PastPose find(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                               const FrameHistory& frames, const PostureHistory& postures) const;
   // The carrier of the sensor at that stamp.
@@ -62,8 +61,8 @@ class Mounts {
   [[nodiscard]] Path path_of(const Sensor& sensor, const std::string& frame, std::int64_t stamp_ns,
                              const FrameHistory& frames, const PostureHistory& postures) const;
   // The excess of the whole path's motion, between transforms of the last second, over what the
-  // stated speeds allow, or those that no mount exceeds. Nothing if that is more than wrong stamps
-  // explain.
+  // stated speeds allow. Without them, 5 m/s and 6.3 rad/s count. Returns nothing if wrong stamps
+  // cannot explain the excess.
   struct Excess {
     double shift = 0.0, turn = 0.0;  // m, rad
   };

@@ -96,6 +96,7 @@ void Sensors::add_transforms(const RawSensorMessage& message, std::int64_t came_
 
 template <class Message>
 void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns) {
+  ++state.status.heard;
   auto frame = std::make_unique<Waiting>();
   Sample<Message>& sample = frame->sample(static_cast<const Message*>(nullptr));
   if (!decoder_.decode(message.cdr, sample, message.bytes)) return state.stream.refuse();

@@ -57,6 +57,7 @@ struct OwnImageStatus {
 };
 
 struct SensorStatus {
+  std::uint64_t heard = 0;    // messages on its topic, but for CameraInfo
   std::uint64_t frames = 0;   // built
   std::uint64_t skipped = 0;  // good ones that a newer one overtook
   std::int64_t stamp_ns = 0;  // of the last frame that was built

@@ -292,8 +292,8 @@ class AskedPartners : public PartnersInFolders {
   }
 };
 
-// It was away while a command was done, and lacks a file of the changed cell: its cell is the old
-// one, for which the motion may be free.
+// The daemon was away during a command, and lacks a file of the changed cell. It still has the old
+// cell, in which the motion may be free.
 TEST_F(AskedPartners, AreNotAnsweredByADaemonWithTheOldCellThatWasStartedAgain) {
   begin("left");
   ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();

@@ -147,7 +147,8 @@ TEST_F(MoveItPartners, TheCellOfTheLeaderIsReadAgainAndNotThatOfTheOtherOne) {
   std::ofstream(file.path(), std::ios::app) << "# another text\n";
   const std::uint64_t after = file.cell().scene.revision;
   const auto is_read = [&] { return reports->scene_revision == after; };
-  for (int attempt = 0; attempt < 20 && !read_until(is_read, 1); ++attempt) {
+  const auto both_have_read = [&] { return read_until(is_read, 1) && agree() && is_read(); };
+  for (int attempt = 0; attempt < 20 && !both_have_read(); ++attempt) {
     for (const char* name : {"left", "right"}) daemons[name]->signal(SIGHUP);
   }
   EXPECT_TRUE(agree()) << logs();

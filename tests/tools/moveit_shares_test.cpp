@@ -101,8 +101,9 @@ class MoveItSharedCells : public SharedCells {
         },
         seconds);
   }
-  // A killed daemon counts as a reader until its lease ends, so that nothing tells whether the one
-  // that was started hears already. Hence the message is sent again: that changes nothing.
+  // A killed daemon counts as a reader until its lease ends. The number of readers therefore does
+  // not show whether its successor hears already. Hence the message is sent again: that changes
+  // nothing.
   bool are_whole_after(ByteWriter& writer, const std::vector<std::string>& names) {
     for (int attempt = 0; attempt < 40; ++attempt) {
       writer.send();

@@ -5,10 +5,13 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
 #include <map>
 #include <regex>
 #include <sstream>
+#include <thread>
 
 #include "config/cell/cell_file.hpp"
 #include "tests/tools/running_cell.hpp"
@@ -105,6 +108,28 @@ TEST_F(ShareBalance, IsThatOfTheEvaluationsAndTheCellTakesItsKey) {
   EXPECT_EQ(share, 2u);
   ASSERT_EQ(0, balance("divided.yaml", "2")) << "a cell that is divided already";
   EXPECT_THAT(output, HasSubstr(key.str()));
+}
+
+// The second daemon has a cell with fewer pairs.
+TEST_F(ShareBalance, IsThatOfTheLastCellWhereTheDaemonWasStartedAgainWithAnother) {
+  std::string fewer = kHall;
+  fewer.erase(fewer.find("  - {name: west"), fewer.find("pairs:") - fewer.find("  - {name: west"));
+  write_text(folder / "fewer.yaml", fewer);
+  const auto record = [&](const char* cell, const char* file) {
+    ChildProcess daemon(kDaemon,
+                        with({path(cell), "--record", path(file)}, dds_arguments(own_dds())));
+    ASSERT_TRUE(eventually([&] { return daemon.told("started"); })) << daemon.output();
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+    daemon.signal(SIGTERM);
+    EXPECT_EQ(0, daemon.wait()) << daemon.output();
+  };
+  record("cell.yaml", "one.mcap");
+  record("fewer.yaml", "two.mcap");
+  ASSERT_EQ(0, run(kReplay, {"check", path("one.mcap"), path("two.mcap"), "--balance", "2"}))
+      << output;
+  const std::string both = output.substr(output.find("shares:"));
+  ASSERT_EQ(0, run(kReplay, {"check", path("two.mcap"), "--balance", "2"})) << output;
+  EXPECT_EQ(both, output.substr(output.find("shares:")));
 }
 
 TEST_F(ShareBalance, IsRefusedWhereAShareWouldBeEmptyOrPairsAreLeftOut) {

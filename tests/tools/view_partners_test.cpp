@@ -84,8 +84,8 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
   watch.signal(SIGTERM);
   EXPECT_EQ(watch.wait(), 0);
   EXPECT_THAT(watch.output(), testing::ContainsRegex("partners .*[0-9]+ agree.*, [0-9]+ missing"));
-  // A page without a viewer may lose reports, and does not tell its own loss as its partner's for a
-  // second.
+  // A page without a viewer may lose reports. For a second after a loss of its own, it does not say
+  // that the partner lost them.
   const nlohmann::json one = shown(view, 400);
   EXPECT_THAT(one["statuses"].dump(), HasSubstr("partner 'right': missing"));
   EXPECT_THAT(one["statuses"].dump(), Not(HasSubstr("mixed")));

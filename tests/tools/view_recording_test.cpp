@@ -84,7 +84,8 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
     const std::vector<json> said = lines_of(client);
     ASSERT_EQ(said.size(), 1u) << client.output();
     found[i] = said.front();
-    EXPECT_EQ(found[i]["parameters"]["playback.time"], 1.0);
+    // The machine's clock may be corrected while the daemon runs: then no tick is at 1 s exactly.
+    EXPECT_NEAR(found[i]["parameters"]["playback.time"], 1.0, 0.02);
     EXPECT_FALSE(found[i]["parameters"]["playback.playing"]);
   }
   SCOPED_TRACE(found[0]["last"]["clearance/distances"]["minimum"].dump());

@@ -1,13 +1,19 @@
 // Rows of monitor/clouds: building a cloud from a frame, and the element nearest to a box.
 #include <benchmark/benchmark.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <string>
 #include <variant>
 #include <vector>
 
 #include "core/shapes.hpp"
 #include "monitor/clouds/nearest_element.hpp"
+#include "monitor/intake/camera_messages.hpp"
+#include "monitor/sensors/measured_points.hpp"
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/dds_sample.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/cloud_frame.hpp"
 #include "tools/bench/peers/cloud_peers.hpp"
@@ -35,6 +41,59 @@ void build_balls(benchmark::State& state) {
     }
   }
   state.counters["pixels"] = static_cast<double>(cloud_frame().points.size());
+}
+
+// The frame's points as a PointCloud2, whose points have 16 bytes, as drivers send them.
+std::vector<std::byte> points_message() {
+  constexpr std::uint32_t kStep = 16;
+  constexpr std::uint8_t kFloat32 = 7;
+  const std::vector<MeasuredPoint>& points = cloud_frame().points;
+  Sample<sensor_msgs_msg_dds__PointCloud2_> message;
+  message->height = 1;
+  message->width = static_cast<std::uint32_t>(points.size());
+  message->point_step = kStep;
+  message->row_step = kStep * message->width;
+  reserve_sequence(message->fields, 3);
+  message->fields._length = 3;
+  for (std::uint32_t axis = 0; axis < 3; ++axis) {
+    const std::string name(1, "xyz"[axis]);
+    message->fields._buffer[axis] = {dds_string_dup(name.c_str()), 4 * axis, kFloat32, 1};
+  }
+  reserve_sequence(message->data, message->row_step);
+  message->data._length = message->row_step;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const float at[4] = {points[i].x, points[i].y, points[i].z, 0.0F};
+    std::memcpy(message->data._buffer + kStep * i, at, kStep);
+  }
+  CdrEncoder encoder;
+  const auto bytes = encoder.encode(*message);
+  return {bytes.begin(), bytes.end()};
+}
+
+// All that the daemon does with a message of points, but for the own image of a robot.
+void build_message(benchmark::State& state) {
+  const std::vector<std::byte> bytes = points_message();
+  Sensor sensor;
+  sensor.kind = SensorKind::kPoints;
+  sensor.error_constant = kCloudError.constant;
+  sensor.error_quadratic = kCloudError.quadratic;
+  sensor.least_depth = kCloudRange.least;
+  sensor.greatest_depth = kCloudRange.greatest;
+  const std::size_t most = cloud_frame().points.size();
+  PointCloud cloud(most);
+  std::vector<MeasuredPoint> points;
+  CdrDecoder decoder;
+  Sample<sensor_msgs_msg_dds__PointCloud2_> message;
+  for (auto _ : state) {
+    PointsView view;
+    if (!decoder.decode(bytes, message) ||
+        clearance::view(*message, most, view) != FrameFault::kNoFault ||
+        !measured_points(view, sensor, points) ||
+        cloud.build(points, {{0, 0, 2}, 10.0}) != CloudBuild::kBuilt) {
+      state.SkipWithError("refused");
+    }
+  }
+  state.counters["pixels"] = static_cast<double>(most);
 }
 
 struct SlabQuery {
@@ -122,6 +181,7 @@ void register_clouds() {
   add("build/slabs/16UC1", [](benchmark::State& s) { build_slabs(s, Format::kMillimetres16); });
   add("build/slabs/32FC1", [](benchmark::State& s) { build_slabs(s, Format::kMetres32); });
   add("build/balls", build_balls);
+  add("build/balls/PointCloud2", build_message);
   for (const bool tracked : {false, true}) {
     const std::string how = tracked ? "tracked/" : "cold/";
     add(how + "slabs", [tracked](benchmark::State& s) {

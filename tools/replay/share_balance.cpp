@@ -35,7 +35,7 @@ std::string an_empty_share(std::size_t shares, std::size_t pairs) {
 
 void ShareBalance::begin(const ReplayedTick& tick) {
   const Scene& scene = tick.cell.scene;
-  since_ = tick.since;
+  scene_ = &scene;
   is_one_share_ = tick.cell.shares.is_one();
   names_.clear();
   for (const Object& object : scene.objects) names_.push_back(object.name);
@@ -48,7 +48,7 @@ void ShareBalance::begin(const ReplayedTick& tick) {
 }
 
 void ShareBalance::add(const ReplayedTick& tick) {
-  if (ticks_ == 0 || tick.since != since_) begin(tick);
+  if (scene_ != &tick.cell.scene) begin(tick);
   ++ticks_;
   for (std::uint32_t pair = 0; pair < pairs_.size(); ++pair)
     evaluations_[pair] += is_evaluated(tick.monitor.pair(pair).status) ? 1 : 0;

@@ -14,7 +14,7 @@
 
 namespace clearance {
 
-// Says that so many shares of so many pairs are too many.
+// Returns the message that `pairs` pairs are too few for this number of shares.
 [[nodiscard]] std::string an_empty_share(std::size_t shares, std::size_t pairs);
 
 class ShareBalance {
@@ -24,7 +24,8 @@ class ShareBalance {
   void add(const ReplayedTick& tick);
 
   // The key `shares` of the cell, with a comment line for each share; "": there is no such
-  // division, and error() says why. Where the cell changes in the run, it is that of the last one.
+  // division, and error() says why. If the cell changes during the run, the key is that of the last
+  // cell.
   [[nodiscard]] std::string text() const;
   [[nodiscard]] std::string error() const;
 
@@ -33,8 +34,8 @@ class ShareBalance {
   [[nodiscard]] std::vector<std::uint64_t> measured_costs() const;  // of all ticks, by pair
 
   std::uint32_t count_;
-  // These are of the scene in force.
-  SceneInForce since_;
+  // These are of the scene of the last tick.
+  const Scene* scene_ = nullptr;
   bool is_one_share_ = false;
   std::vector<std::string> names_;  // of its objects
   std::vector<ObjectPair> pairs_;

@@ -18,8 +18,9 @@ struct AllowRule {
   double never_margin = 0.05;  // m: 'Never' needs a greater least distance
 };
 
-// Adjacent; in contact at zero; in contact in 19 of 20 samples or more; farther apart than the
-// margin in all. More samples meet smaller distances, so a pair that came near may well touch.
+// A pair may touch if it is adjacent, in contact with all joints at zero, or in contact in at least
+// 19 of 20 samples. It may also touch if it is farther apart than the margin in all samples. More
+// samples meet smaller distances, so a pair that came near may well touch.
 [[nodiscard]] AllowedReason reason_to_allow(const SampledPair& pair, const AllowRule& rule);
 
 // <disable_collisions> lines of an SRDF, with the counts as comments.

@@ -212,7 +212,8 @@ TEST(Shares, BalancedOnesBeginWhereTheCellSays) {
   EXPECT_EQ(whole.shares.all[1].zones, (std::vector<std::uint32_t>{0, 1}));
 }
 
-// The cell may have changed: 'a' and 'pole' are not watched, and b-c follows them.
+// The cell may have changed since. It does not watch the pair a-pole, so the share begins at the
+// next pair, b-c.
 TEST(Shares, AShareBeginsAfterAPairThatIsNotWatched) {
   const Cell whole = read(halls("shares: {auto: 2, begin: [[pole, a]]}\n"));
   ASSERT_EQ(whole.shares.all.size(), 2u);

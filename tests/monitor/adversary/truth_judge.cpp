@@ -17,7 +17,7 @@ constexpr double kBend = 2.5e-4;  // m
 // A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No
 // body accelerates by more than 8 m/s2.
 constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
-// The way of the farthest point of a robot when a joint turns by a radian, m.
+// The path length of the farthest point of a robot when a joint rotates by a radian, m.
 constexpr double kLever = 2.1;
 
 bool is_link_of(Channel robot, std::size_t body) {

@@ -251,6 +251,21 @@ TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
   EXPECT_LT(check.age_ns, 400'000'000) << "by its stamp it is on time";
 }
 
+// The right share's clock is behind, so that its reports seem old.
+TEST_F(ASharedCell, HasAShareLateAfterThreePeriodsUnlessTheCallerStatesATime) {
+  Cell slow = cell;
+  slow.scene.rate_hz = 0.5;
+  Daemon left(dds, slow, "left", 1);
+  left.zones(1, false);
+  right.zones(1, false);
+  whole.emplace(connection, SharedCellOptions{.names = {"left", "right"}});
+  right.set_clock_ahead(-4'000'000'000);
+  EXPECT_TRUE(report_until(left, [&] { return whole->is_whole(); })) << whole->what_is_missing();
+  right.set_clock_ahead(-8'000'000'000);
+  EXPECT_TRUE(report_until(left, [&] { return !whole->is_whole(); }));
+  EXPECT_EQ(whole->shares()[1].state, ShareState::kLate);
+}
+
 // A clock was set back: the report is as old as it was published, and not younger.
 TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
   Daemon left(dds, cell, "left", 1);
@@ -288,11 +303,16 @@ TEST_F(ASharedCell, HasAShareUnknownByNameWhoseTimesAreOfTheFutureOrOfThePast) {
   }
 }
 
-// The daemon of another build has the pairs of this scene in other shares: none has the pair a-b.
+// The cell as the daemons of another build divide it: its pairs are in other shares.
+Cell divided_otherwise(Cell cell) {
+  cell.shares.all[0].pairs = {1};
+  cell.shares.all[1].pairs = {0, 2};
+  return cell;
+}
+
+// The right share is still that of this build, so no share has the pair a-b.
 TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
-  Cell otherwise = cell;
-  otherwise.shares.all[0].pairs = {1};
-  otherwise.shares.all[1].pairs = {0, 2};
+  const Cell otherwise = divided_otherwise(cell);
   std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
   begin(*left, {"left", "right"});
   const auto is_refused = [&] {
@@ -313,9 +333,7 @@ TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
 
 // One after another, the daemons of all shares are those of another build.
 TEST_F(ASharedCell, FollowsADivisionThatAllSharesHave) {
-  Cell otherwise = cell;
-  otherwise.shares.all[0].pairs = {1};
-  otherwise.shares.all[1].pairs = {0, 2};
+  const Cell otherwise = divided_otherwise(cell);
   std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
   begin(*left, {"left", "right"});
   left.emplace(dds, otherwise, "left", 4);
@@ -330,7 +348,8 @@ TEST_F(ASharedCell, FollowsADivisionThatAllSharesHave) {
   })) << whole->what_is_missing();
 }
 
-// The share has two partners. What is told is about all their reports, not about the last ones.
+// The share has two partners. The state that is told covers all their reports, not only the last
+// ones.
 TEST_F(ASharedCell, TellsOnceThatPartnersDifferedAlthoughTheyAgreeAgain) {
   Daemon one(dds, cell, "left", 1, "one"), two(dds, cell, "left", 2, "two");
   Connection alone(dds, topics_of_share(cell.topics, "left"));

@@ -195,7 +195,7 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   port.stop();
 }
 
-// Bits that the checksum covers, and some that the other one does.
+// Flips bits that `checksum` covers, and bits that `delivery_checksum` covers.
 TEST_F(APartner, WhoseReportHasAFlippedBitIsCountedAndItsSceneIsNotTaken) {
   const auto logged = std::make_shared<test::Logged>();
   const test::LoggedTo to{logged};

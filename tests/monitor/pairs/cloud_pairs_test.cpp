@@ -128,7 +128,7 @@ TEST(CloudPairs, DeepInACloudShareTheWorkOfATickAndBothBoundsHold) {
       SlabBody body;
       unlimited += CloudPairs::query({&cloud, 0.0}, b, a, body, tracking).overlap_work;
     }
-    // One query more than the share, of each part.
+    // Each of the 8 parts may exceed its share by one element, which takes two queries at most.
     EXPECT_LE(work, CloudPairs::kOverlapWorkOfATick + 8 * 2 * kCostOfCurved);
     EXPECT_GT(unlimited, 3 * CloudPairs::kOverlapWorkOfATick);
   }

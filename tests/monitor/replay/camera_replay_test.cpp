@@ -167,5 +167,31 @@ TEST(CameraReplay, FailsWhereABagHasNoMessageOfASensorAndListsTheTopicsThatItHas
   EXPECT_THAT(replay.failures[0].what, testing::HasSubstr("/cam/depth"));
 }
 
+// The folder of the topic is right, and so is that of its CameraInfo.
+TEST(CameraReplay, FailsWhereOnlyTheCameraInfoOfASensorIsThere) {
+  const ScratchFolder folder;
+  const Cell cell = scara_with_eye(folder, "/cam/depht");
+  write_mcap_bag(
+      folder / "run.mcap",
+      {camera_info(kBagStart, kView),
+       joint_state(kBagStart, kBagStart, {{"shoulder", "elbow", "push"}, {0, 0, 0}, {}, {}}),
+       depth_image(kBagStart, kView, std::vector<float>(80 * 60, 1.0F))});
+  const OfflineReplay replay = replay_offline(cell, folder / "run.mcap");
+  ASSERT_EQ(1u, replay.failures.size()) << replay.text();
+  EXPECT_THAT(replay.failures[0].what, testing::HasSubstr("/cam/depht"));
+}
+
+TEST(CameraReplay, FailsWhereAnImageHasNoCameraInfoAndNamesItsTopic) {
+  const ScratchFolder folder;
+  const Cell cell = scara_with_eye(folder, "/cam/depth");
+  write_mcap_bag(
+      folder / "run.mcap",
+      {joint_state(kBagStart, kBagStart, {{"shoulder", "elbow", "push"}, {0, 0, 0}, {}, {}}),
+       depth_image(kBagStart, kView, std::vector<float>(80 * 60, 1.0F))});
+  const OfflineReplay replay = replay_offline(cell, folder / "run.mcap");
+  ASSERT_EQ(1u, replay.failures.size()) << replay.text();
+  EXPECT_THAT(replay.failures[0].what, testing::HasSubstr("/cam/camera_info"));
+}
+
 }  // namespace
 }  // namespace clearance::camera_replay_test

@@ -103,11 +103,12 @@ TEST_F(ReplayExpectations, ExpectationsFailWhenAnObjectIsNeverSeen) {
   EXPECT_THAT(result.failures[0].what, HasSubstr("never tells where 'ghost' is"));
 }
 
-// Hand and tool send in every tick, but the tool not in [silent_from, silent_to), or no number. The
-// hand stands 0.3 m above the box, and from `sinks` on `sunk`.
+// The hand and the tool send in every tick. In [silent_from, silent_to) the tool is silent or sends
+// NaN. The hand is 0.3 m above the box, and from tick `sinks` on it is `sunk` above it.
 struct Silence {
   int ticks = 300, silent_from = 200, silent_to = 300, sinks = 300;
-  double sunk = 0.02;  // m above the box
+  int hand_ends = 300;  // the hand is silent from this tick on
+  double sunk = 0.02;   // m above the box
   bool sends_nan = false;
 };
 
@@ -121,7 +122,8 @@ void record_silence(Cell& cell, const std::filesystem::path& file, const Silence
     const bool silent = tick >= run.silent_from && tick < run.silent_to;
     PoseBatch batch{
         SourceName("arm"), static_cast<std::uint64_t>(tick + 1), cell.scene.revision, {}};
-    batch.samples.push_back(sample(0, at(0, 0, tick < run.sinks ? 0.45 : 0.15 + run.sunk), now_ns));
+    const double height = tick < run.sinks ? 0.45 : 0.15 + run.sunk;
+    if (tick < run.hand_ends) batch.samples.push_back(sample(0, at(0, 0, height), now_ns));
     if (silent && run.sends_nan)
       batch.samples.push_back(sample(1, at(kNoCoordinate, 1, 0.5), now_ns));
     if (!silent) batch.samples.push_back(sample(1, at(0, 1, 0.5), now_ns));
@@ -182,6 +184,14 @@ TEST_F(ReplayExpectations, ADriverThatIsSilentForAWhileBreaksThemAlsoIfTheJudgem
   meanwhile.end_s = 0.29;
   const OfflineReplay result = replay(meanwhile);
   EXPECT_EQ(2u, result.failures.size()) << result.text();
+}
+
+// The tool was late for a while and is on time to the end.
+TEST_F(ReplayExpectations, ADriverThatWasSilentForAWhileBreaksThemAlsoIfAnotherOneEndsMeanwhile) {
+  record_silence(cell, run, {.silent_from = 100, .silent_to = 200, .hand_ends = 150});
+  const OfflineReplay result = replay({.expect_min_distance = 0.05});
+  ASSERT_EQ(1u, result.failures.size()) << result.text();
+  EXPECT_LT(result.failures[0].tick.cycle, 150u);
 }
 
 TEST_F(ReplayExpectations, APairThatIsKnownBreaksThemAlsoAfterTheEndOfAnotherDriver) {

@@ -24,6 +24,17 @@ std::vector<std::byte> map_message(const std::string& bytes, std::int64_t stamp_
   return out.bytes();
 }
 
+// The maps of two cubes as one. The cubes are in different children of a node, the first one in the
+// lower child. Nodes are depth first, in order.
+std::string joined(const std::string& near, const std::string& far) {
+  std::size_t same = 0;
+  while (near.substr(2 * same, 2) == far.substr(2 * same, 2)) ++same;
+  std::string both = near.substr(0, 2 * same);
+  both += static_cast<char>(near[2 * same] | far[2 * same]);
+  both += static_cast<char>(near[2 * same + 1] | far[2 * same + 1]);
+  return both + near.substr(2 * same + 2) + far.substr(2 * same + 2);
+}
+
 class OctomapsTest : public SensorsTest {
  protected:
   void add_map(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns) {
@@ -147,18 +158,34 @@ TEST_F(OctomapsTest, AreRefusedByCauseIfTheyAreDamagedOrEmpty) {
   refuses(std::string("\x00\x80", 2), "OcTree", FrameFault::kCannotBuild);  // an eighth of the tree
 }
 
+// The ball around the reaches of both robots is larger than what a map of this range can hold.
+TEST_F(OctomapsTest, AreNotRefusedWhereRobotsAreFartherApartThanTheRange) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
+      "  - {name: left, urdf: scara.urdf, prefix: left_}\n"
+      "  - {name: right, urdf: scara.urdf, prefix: right_, base: {pose: {xyz: [27, 0, 0]}}}\n"
+      "sensors:\n  - {name: eye, " +
+          kMap +
+          ", reach: 0, mount: {pose: {xyz: [0, 0, 0]}}}\n"
+          "pairs: [{between: [left, eye]}, {between: [right, eye]}]\n",
+      folder / "cell.yaml");
+  ASSERT_EQ(cell.scene.sensors[0].crop.size(), 2u);
+  sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
+  const std::string both = joined(one_cube({30, 0, 0}), one_cube({270, 0, 0}));
+  add_map(Type::kOctomap, map_message(both, kStart), kStart);
+  const auto frames = settle(kStart + 1000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 1u);
+  EXPECT_EQ(sensors->status(0).cropped, 1u);
+}
+
 // A cube that is 100 m away is beyond the range of 10 m. It is not dropped: the distance is at
 // least that to the range's end.
 TEST_F(OctomapsTest, BeyondTheRangeAreKnownToBeThere) {
   make(kMap + ", mount: {pose: {xyz: [0, 0, 0]}}");
-  // Two children of the root: a near cube, and one far away along z. Depth first, in order.
-  const std::string near = one_cube({90, 0, 0}), far = one_cube({90, 0, 1000});
-  std::size_t same = 0;
-  while (near.substr(2 * same, 2) == far.substr(2 * same, 2)) ++same;
-  std::string both = near.substr(0, 2 * same);
-  both += static_cast<char>(near[2 * same] | far[2 * same]);
-  both += static_cast<char>(near[2 * same + 1] | far[2 * same + 1]);
-  both += near.substr(2 * same + 2) + far.substr(2 * same + 2);
+  const std::string both = joined(one_cube({90, 0, 0}), one_cube({90, 0, 1000}));
   add_map(Type::kOctomap, map_message(both, kStart), kStart);
   const auto frames = settle(kStart + 1000);
   ASSERT_EQ(frames.size(), 1u);

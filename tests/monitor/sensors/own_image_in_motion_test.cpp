@@ -206,7 +206,8 @@ TEST_F(OwnImageInMotion, LeavesNoOwnPointWithAShellNearTheThinnestThatTheErrorsA
     record("own_points_left", static_cast<double>(figures.foreign));
     record("thickness_mm", 1e3 * thickness);
     record("thickness_least_mm", 1e3 * least);
-    // The time from a message's bytes to what the tick takes contains the robot's own image.
+    // This time, from a message's bytes to the frame that the tick takes, includes the removal of
+    // the robot's own image.
     std::vector<double> build_ns = figures.build_ns;
     std::ranges::nth_element(build_ns, build_ns.begin() + std::ssize(build_ns) / 2);
     record("build_ns_a_pixel", build_ns[build_ns.size() / 2] / (kCamera.width * kCamera.height));

@@ -393,7 +393,7 @@ class SharedCell(_LiveReports):
         self,
         connection: Optional[Connection] = ...,
         *,
-        late_after_s: float = ...,
+        late_after_s: Optional[float] = ...,
         old_after_s: float = ...,
         gradients: bool = ...,
         names: Sequence[str] = ...,

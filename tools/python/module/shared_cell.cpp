@@ -2,6 +2,7 @@
 #include "monitor/client/shared_cell.hpp"
 
 #include <pybind11/stl.h>
+#include <optional>
 
 #include <algorithm>
 #include <set>
@@ -40,7 +41,7 @@ py::dict dict_of(const client::ShareCheck& check) {
   share["daemon"] = check.daemon;
   share["cycle"] = check.cycle;
   share["revision"] = check.scene_revision;
-  share["age_s"] = check.age_ns < 0 ? py::object(py::none())
+  share["age_s"] = check.cycle == 0 ? py::object(py::none())
                                     : py::float_(1e-9 * static_cast<double>(check.age_ns));
   share["partner"] = client::name(check.partner.state);
   return share;
@@ -48,8 +49,8 @@ py::dict dict_of(const client::ShareCheck& check) {
 
 class SharedCell : public Live<SharedParts> {
  public:
-  SharedCell(const SharedConnection& connection, double late_after_s, double old_after_s,
-             bool gradients, std::vector<std::string> names)
+  SharedCell(const SharedConnection& connection, const std::optional<double>& late_after_s,
+             double old_after_s, bool gradients, std::vector<std::string> names)
       : Live("SharedCell", connection_of(connection),
              options(late_after_s, old_after_s, gradients, std::move(names))) {}
 
@@ -91,7 +92,8 @@ class SharedCell : public Live<SharedParts> {
       throw py::value_error(std::string(name) + ": expected seconds above 0, at most 1e6");
     return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * value));
   }
-  static client::SharedCellOptions options(double late_after_s, double old_after_s, bool gradients,
+  static client::SharedCellOptions options(const std::optional<double>& late_after_s,
+                                           double old_after_s, bool gradients,
                                            std::vector<std::string> names) {
     const auto fits = [](const std::string& name) {
       return !name.empty() && name.size() <= kMaxShareName;
@@ -99,7 +101,9 @@ class SharedCell : public Live<SharedParts> {
     const bool differ = std::set<std::string>(names.begin(), names.end()).size() == names.size();
     if (!differ || names.size() > kMaxShares || !std::ranges::all_of(names, fits))
       throw py::value_error("names: expected at most 64 different names of 1 to 32 bytes");
-    return {.late_after = seconds(late_after_s, "late_after_s"),
+    std::optional<std::chrono::nanoseconds> late_after;
+    if (late_after_s) late_after = seconds(*late_after_s, "late_after_s");
+    return {.late_after = late_after,
             .old_after = seconds(old_after_s, "old_after_s"),
             .gradients = gradients,
             .names = std::move(names)};
@@ -123,12 +127,14 @@ Iterating waits for each report in order, without an end. One thread uses it at 
 the interpreter's lock, and Ctrl-C ends them.)");
   shared
       .def(
-          py::init<const SharedConnection&, double, double, bool, std::vector<std::string>>(),
-          py::arg("connection") = py::none(), py::kw_only(), py::arg("late_after_s") = 0.02,
+          py::init<const SharedConnection&, const std::optional<double>&, double, bool,
+                   std::vector<std::string>>(),
+          py::arg("connection") = py::none(), py::kw_only(), py::arg("late_after_s") = py::none(),
           py::arg("old_after_s") = 0.1, py::arg("gradients") = false,
           py::arg("names") = std::vector<std::string>(),
           R"(connection: None: one without arguments, on this machine's loopback. late_after_s: what hangs on a
-share whose last report is older is unknown, s; at least two periods. old_after_s: an older report is
+share whose last report is older is unknown, s; at least two periods. None: three periods of the
+cell, and at least 0.02 s. old_after_s: an older report is
 not fresh, s. gradients: reports have these of the shares, where the cell asks for them. names: of the
 shares; without any, they are those of the first share that is met. Raises ValueError and DdsError.)")
       .def(

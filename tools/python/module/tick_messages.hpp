@@ -27,8 +27,8 @@ class TickMessages {
   using Clock = std::chrono::steady_clock;
 
   // The message of the tick of this report, valid until the next call; null: none came. It is sent
-  // right behind the report, so where there are such messages one is waited for: kPatience, and not
-  // beyond `end`.
+  // right behind the report. If a daemon sends such messages, this waits for at most kPatience, and
+  // not beyond `end`.
   [[nodiscard]] const Message* of(const clearance_msg_Distances& report, Clock::time_point end) {
     end = std::min(end, Clock::now() + kPatience);
     for (;;) {
