@@ -71,7 +71,7 @@ class Expectations {
   [[nodiscard]] bool all_seen(const Monitor& monitor);
   void note_late(const Report& report, const Monitor& monitor);
   [[nodiscard]] bool has_late_object(std::uint32_t pair) const;
-  // Of these objects, the one that has been late for longest. None: one of them is on time.
+  // Returns the object that has been late for longest, or nothing if one of these is on time.
   [[nodiscard]] std::optional<std::uint32_t> longest_late(
       const std::vector<std::uint32_t>& objects) const;
   [[nodiscard]] Sentence broken_by(const Expectation& expectation, const Report& report,
