@@ -13,11 +13,11 @@ namespace {
 
 bool is_unheard(const SensorStatus& status) { return status.frames == 0 && status.heard == 0; }
 
-// Messages came, and nothing is known of the sensor, but none was refused with a cause.
+// Messages came, but none was good or was refused with a cause. A good frame may still have waited
+// for something at the end of the log.
 bool is_without_frames(const SensorStatus& status) {
   return status.frames == 0 && status.heard > 0 &&
-         std::all_of(status.counts.begin() + 1, status.counts.end(),
-                     [](std::uint64_t count) { return count == 0; });
+         std::ranges::all_of(status.counts, [](auto count) { return count == 0; });
 }
 
 }  // namespace
