@@ -171,6 +171,15 @@ void add_expectations(CLI::App& app, CheckArguments& arguments) {
          "been late for up to 1 s, as after its driver's end: its pairs then count only "
          "where they are certainly too near")
       ->check(finite_number());
+  app.add_option("--between", arguments.between,
+                 "Only these pairs: A,B of two objects or groups, or a zone; with '=METRES' a "
+                 "distance of their own. Repeatable. Example: --between arm,table=0.02")
+      ->type_name("A,B[=METRES]")
+      ->allow_extra_args(false);
+  app.add_option("--allow-unknown", arguments.allow_unknown,
+                 "The share of judged ticks, 0 to 1, in which a pair may be unknown. Ticks count "
+                 "from the first one in which all objects are known and on time")
+      ->check(CLI::Range(0.0, 1.0));
   app.add_option("--expect-no-zone", arguments.expect_no_zone,
                  "This zone is never active; repeatable")
       ->allow_extra_args(false);

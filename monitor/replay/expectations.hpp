@@ -9,97 +9,124 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/monitor.hpp"
+#include "monitor/replay/expected_distance.hpp"
 
 namespace clearance {
 
+// What a test expects of every tick.
+struct Expected {
+  std::vector<ExpectedDistance> distances;
+  std::vector<std::string> no_zone;  // names of zones that are never active
+  double allow_unknown = 0.0;        // the share of judged ticks in which a pair may be unknown
+};
+
 // Each expectation is told once, at the tick that breaks it first. Bounds decide: what is not
 // certified counts as broken.
+//
+// An expectation rests on its pairs. It is judged from the first tick in which all moving objects
+// of these pairs are known and on time; before, only what is certain of known pairs counts. From
+// then on a tick is doubtful if one of its pairs is unknown, or late and not certainly too near.
+// More doubtful ticks than allowed break it. A pair whose contact is as allowed may be nearer.
 class Expectations {
  public:
-  // `min_distance`, m: of every pair in every tick and at every instant since the last. Zone names
-  // that the scene does not have are told in error().
-  Expectations(const Scene& scene, std::optional<double> min_distance,
-               const std::vector<std::string>& no_zone);
+  // Names that the scene does not have are told in error().
+  Expectations(const Scene& scene, const Expected& expected);
 
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
   // One sentence about the tick that broke an expectation.
   struct Broken {
-    std::uint64_t cycle = 0;
+    std::uint64_t cycle = 0;  // 0: no tick, all of them
     std::int64_t now_ns = 0;
     std::string what;
   };
 
-  // To be called for every tick; judges only if told. Until all moving objects have been known
-  // once, only a pair that is certainly too near counts. A pair whose contact is as allowed may be
-  // nearer. Returns each expectation that is broken for the first time.
-  //
-  // While an object is late, pairs of two other objects are judged as ever, and its own pairs count
-  // at once where they are known and certainly too near. What its own pairs break otherwise is
-  // returned once it is on time again, or by finish().
+  // To be called for every tick; judges only if told. Returns each expectation that is certainly
+  // broken for the first time.
   [[nodiscard]] std::vector<Broken> check(const Report& report, const Monitor& monitor, bool judge);
 
-  // Ticks are of another scene from now on, which outlives this. Expectations begin again once all
-  // of its moving objects are known. A zone that it lacks is not active.
+  // Ticks are of another scene from now on, which outlives this. Expectations begin again once
+  // their objects are known. A zone or an object that it lacks is not judged.
   void change(const Scene& scene);
 
-  // Call this after the recording's last tick. Returns what was first broken while an object was
-  // late and has not been returned yet. If the object was late for at most 1 s, its driver is taken
-  // to have ended before the recording. Then this returns nothing and says so in `note`.
-  [[nodiscard]] std::vector<Broken> finish(std::int64_t last_ns, std::string& note);
+  // Call this after the recording's last tick. Returns what was doubtful too often, and what could
+  // not be judged in any tick. If an object was late for at most 1 s then, its driver is taken to
+  // have ended before the recording, and these ticks are not doubtful.
+  [[nodiscard]] std::vector<Broken> finish(const Monitor& monitor, std::int64_t last_ns);
 
-  // After the last tick: the reason why no tick could be judged, if none was.
-  [[nodiscard]] std::optional<std::string> never_judged(const Monitor& monitor) const;
+  // After finish(): which ticks of which expectation were not judged, or doubtful but allowed.
+  [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  // The most ticks that one expectation was not judged in.
+  [[nodiscard]] std::uint64_t not_judged() const noexcept;
 
  private:
-  // Every tick must meet it: the minimum distance, or that a zone is not active.
+  // The minimum distance of pairs, or that a zone is not active.
   struct Expectation {
-    std::string zone;                       // empty: the minimum distance
-    std::optional<std::uint32_t> index;     // of the zone; none: the scene has no such zone
-    bool broken = false;                    // and returned
-    std::optional<Broken> while_late = {};  // first broken while an object was late
-    // The objects that were late then. Empty: the cell has changed since.
+    std::optional<ExpectedDistance> distance;  // none: a zone
+    std::string zone;
+    std::optional<std::uint32_t> index;    // of the zone; none: the scene has no such zone
+    bool all_pairs = false;                // of the scene
+    std::vector<std::uint32_t> pairs;      // in ascending order
+    std::vector<std::uint32_t> objects;    // the moving ones of these
+    bool begun = false, broken = false;    // broken: and returned
+    bool judged_on_time = false;           // in some tick, no object of it was late
+    std::uint64_t judged = 0, before = 0;  // ticks; those before it had begun
+    std::int64_t begun_after_ns = 0;       // since the first tick
+    std::uint64_t doubtful = 0;
+    std::optional<Broken> first_doubt = {};
+    // Doubtful ticks since these objects are late. They are left out if the recording ends so.
+    std::uint64_t late_doubts = 0;
+    std::optional<Broken> first_late_doubt = {};
     std::vector<std::uint32_t> late_then = {};
   };
   struct Lateness {
     std::int64_t since_ns = 0;
     std::uint64_t refused = 0;  // samples of all objects until then
   };
+  // Why a tick breaks an expectation. `certain`: no bound of an unknown or late pair decided.
+  struct Finding {
+    std::string what;
+    bool certain = true;
+  };
+  using Found = std::optional<Finding>;
 
-  using Sentence = std::optional<std::string>;  // about an expectation that the tick breaks
-
-  [[nodiscard]] bool all_seen(const Monitor& monitor);
+  void rest_on(Expectation& expectation);
+  [[nodiscard]] std::string unknown_name(const Expectation& expectation) const;
   void note_late(const Report& report, const Monitor& monitor);
+  [[nodiscard]] bool begins(const Expectation& expectation, const Monitor& monitor) const;
+  [[nodiscard]] bool is_late(const Expectation& expectation) const;
   [[nodiscard]] bool has_late_object(std::uint32_t pair) const;
   // Returns the object that has been late for longest, or nothing if one of these is on time.
   [[nodiscard]] std::optional<std::uint32_t> longest_late(
       const std::vector<std::uint32_t>& objects) const;
-  [[nodiscard]] Sentence broken_by(const Expectation& expectation, const Report& report,
-                                   const Monitor& monitor) const;
-  // For a tick with a late object. Returns a sentence if a pair without late objects breaks the
-  // expectation, or if a pair is certainly too near.
-  [[nodiscard]] Sentence surely_broken_by(const Expectation& expectation, const Report& report,
-                                          const Monitor& monitor) const;
-  [[nodiscard]] Sentence entered_surely(std::uint32_t zone, const Report& report,
-                                        const Monitor& monitor) const;
-  [[nodiscard]] Sentence certainly_near(const Report& report, const Monitor& monitor) const;
-  // `late_too`: pairs with a late object count, too.
-  [[nodiscard]] Sentence check_distance(const Report& report, const Monitor& monitor,
-                                        bool late_too) const;
-  [[nodiscard]] Sentence check_sweep(const Report& report, const Monitor& monitor,
-                                     bool late_too) const;
-
-  [[nodiscard]] std::optional<std::uint32_t> zone(const std::string& name) const;
+  void doubt(Expectation& expectation, Broken broken) const;
+  void end_lateness(Expectation& expectation, const std::string& why) const;
+  void finish_lateness(Expectation& expectation, std::int64_t last_ns);
+  [[nodiscard]] Found found(const Expectation& expectation, const Report& report,
+                            const Monitor& monitor) const;
+  // Without unknown pairs, and of late ones what is certain.
+  [[nodiscard]] Found found_certain(const Expectation& expectation, const Report& report,
+                                    const Monitor& monitor) const;
+  [[nodiscard]] Found entered(const Expectation& expectation, const Report& report,
+                              const Monitor& monitor) const;
+  [[nodiscard]] Found entered_by_known(const Expectation& expectation, const Report& report,
+                                       const Monitor& monitor) const;
+  [[nodiscard]] Found certainly_near(const Expectation& expectation, const Report& report,
+                                     const Monitor& monitor) const;
+  [[nodiscard]] Found too_near(const Expectation& expectation, const Report& report,
+                               const Monitor& monitor) const;
+  [[nodiscard]] Found swept_too_near(const Expectation& expectation, const Report& report,
+                                     const Monitor& monitor) const;
+  void note_ticks(const Expectation& expectation);
 
   const Scene* scene_;
-  std::optional<double> min_distance_;
+  double allow_unknown_ = 0.0;
   std::vector<Expectation> expectations_;
-  bool all_known_ = false;
-  bool judged_ = false, judged_on_time_ = false;  // some tick; one in which no object was late
   std::string error_;
+  std::vector<std::string> notes_;
+  std::optional<std::int64_t> first_ns_;
   std::vector<std::optional<Lateness>> late_;  // by object, in this tick
-  bool any_late_ = false;
-  std::uint64_t refused_ = 0;  // samples of all objects until now
+  std::uint64_t refused_ = 0;                  // samples of all objects until now
 };
 
 }  // namespace clearance

@@ -27,6 +27,7 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/replay/comparison.hpp"
+#include "monitor/replay/expected_distance.hpp"
 #include "monitor/replay/reference_totals.hpp"
 #include "monitor/report.hpp"
 
@@ -55,14 +56,17 @@ struct OfflineReplayOptions {
   // Positions of joints that a bag or joint log does not have, by name, rad or m.
   std::map<std::string, double> joints = {};
 
-  // Expectations begin when every moving object of the cell has been known once. While an
-  // object is late, its pairs count at once only where they are certainly too near. If it was late
-  // for at most 1 s when the recording ended, nothing else counts for its pairs in that time
-  // (Expectations).
+  // An expectation rests on pairs. It is judged from the first tick in which their moving objects
+  // are all known and on time; before, only a pair that is certainly too near counts. Later, a pair
+  // that is unknown breaks it. If an object was late for at most 1 s when the recording ended, its
+  // pairs count in that time only where they are certainly too near (Expectations).
   // Every pair's distance is certified to be at least this, m.
   std::optional<double> expect_min_distance = {};
+  // The same of the pairs between two objects or groups, or of a zone.
+  std::vector<ExpectedDistance> expect_between = {};
   // Names of zones that are never active.
   std::vector<std::string> expect_no_zone = {};
+  double allow_unknown = 0.0;  // the share of judged ticks in which a pair may be unknown
 
   bool evaluate_all = false;  // every pair in every tick, whatever it costs
   bool gradients = false;     // also where the cell does not ask for them
@@ -119,7 +123,8 @@ struct OfflineReplay {
   std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
 
   std::uint64_t ticks = 0, compared = 0, batches = 0;
-  std::uint64_t joins = 0;  // states of a partner that the daemon took over
+  std::uint64_t not_judged = 0;  // the most ticks in which one expectation was not judged
+  std::uint64_t joins = 0;       // states of a partner that the daemon took over
   std::int64_t first_ns = 0, last_ns = 0;
   std::optional<PairReport> closest;  // the smallest distance of all ticks handed out
   std::string closest_pair;           // its name

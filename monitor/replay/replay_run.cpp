@@ -17,6 +17,12 @@ std::int64_t whole_ns(double seconds) {
   return std::llround(std::min(seconds, kCentury) * 1e9);
 }
 
+Expected expected(const OfflineReplayOptions& options) {
+  Expected all{options.expect_between, options.expect_no_zone, options.allow_unknown};
+  if (options.expect_min_distance) all.distances.push_back({*options.expect_min_distance});
+  return all;
+}
+
 // Nothing unless a reference was given.
 std::optional<ReferenceCheck> reference_of(const Scene& scene,
                                            const OfflineReplayOptions& options) {
@@ -36,7 +42,7 @@ ReplayRun::ReplayRun(SceneHistory& history, TickFeed feed, const OfflineReplayOp
       feed_(std::move(feed)),
       loop_(history, moveit),
       moveit_(moveit),
-      expectations_(*scene_, options.expect_min_distance, options.expect_no_zone),
+      expectations_(*scene_, expected(options)),
       reference_(reference_of(*scene_, options)),
       zones_(*scene_) {
   follow(*scene_);
@@ -120,12 +126,10 @@ void ReplayRun::judge_the_whole() {
       fail(0, result_.last_ns, what);
     }
   }
-  std::string note;
-  for (const Expectations::Broken& broken : expectations_.finish(result_.last_ns, note))
+  for (const Expectations::Broken& broken : expectations_.finish(loop_.monitor(), result_.last_ns))
     fail(broken.cycle, broken.now_ns, broken.what);
-  if (!note.empty()) result_.notes.push_back(note);
-  if (const auto what = expectations_.never_judged(loop_.monitor()))
-    fail(0, result_.last_ns, *what);
+  std::ranges::copy(expectations_.notes(), std::back_inserter(result_.notes));
+  result_.not_judged = expectations_.not_judged();
 }
 
 // Replaces everything that belongs to one scene.

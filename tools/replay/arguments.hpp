@@ -56,6 +56,8 @@ struct CheckArguments {
   bool true_meshes = false;         // the reference is of meshes, not of their parts
   bool compare_bounds = false;
   std::optional<double> expect_min_distance;
+  std::vector<std::string> between;  // A,B or a zone, with =METRES or the distance above
+  double allow_unknown = 0.0;        // share of ticks
   std::vector<std::string> expect_no_zone;
 
   [[nodiscard]] const std::string& recording() const { return span.recording(); }

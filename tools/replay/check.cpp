@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -79,7 +80,8 @@ OfflineReplayOptions options_of(const CheckArguments& arguments) {
   options.gradients = arguments.gradients;
   options.reference = arguments.reference;
   options.tolerance = arguments.tolerance;
-  options.expect_min_distance = arguments.expect_min_distance;
+  if (arguments.between.empty()) options.expect_min_distance = arguments.expect_min_distance;
+  options.allow_unknown = arguments.allow_unknown;
   options.expect_no_zone = arguments.expect_no_zone;
   return options;
 }
@@ -92,6 +94,9 @@ void print_summary(const OfflineReplay& replay, const CheckArguments& arguments,
   print(out, "{}, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
         counted(replay.ticks, "tick"), recorded_s, elapsed_s,
         elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
+  if (replay.not_judged > 0) {
+    print(out, "not judged: {} of {}\n", replay.not_judged, counted(replay.ticks, "tick"));
+  }
   if (replay.closest) {
     const PairReport& pair = *replay.closest;
     print(out, "closest: {}, {:.9g} m ({:.9g} to {:.9g}) at {}\n", replay.closest_pair,
@@ -108,6 +113,39 @@ void print_summary(const OfflineReplay& replay, const CheckArguments& arguments,
           totals.compared, totals.largest, totals.off, tolerance.value_or(kReferenceTolerance),
           totals.outside, tolerance ? " by more than that" : "");
   }
+}
+
+// Reads --between: "A,B=METRES", where B and the distance may be left out. Returns what is wrong.
+std::string read_between(const CheckArguments& arguments, std::vector<ExpectedDistance>& read) {
+  for (const std::string& text : arguments.between) {
+    std::optional<double> metres = arguments.expect_min_distance;
+    std::string names = text;
+    if (const std::size_t at = text.rfind('='); at != std::string::npos) {
+      const char* const end = text.data() + text.size();
+      double stated = 0.0;
+      if (std::from_chars(text.data() + at + 1, end, stated).ptr != end || at + 1 == text.size() ||
+          !std::isfinite(stated)) {
+        return fmt::format("--between: found '{}' after '=' in '{}'; expected a distance, m",
+                           text.substr(at + 1), text);
+      }
+      metres = stated;
+      names.resize(at);
+    }
+    if (!metres) {
+      return fmt::format("--between {}: no distance; expected '{}=0.05', or --expect-min-distance",
+                         text, text);
+    }
+    ExpectedDistance expected{*metres};
+    const std::size_t comma = names.find(',');
+    expected.a = names.substr(0, comma);
+    if (comma != std::string::npos) expected.b = names.substr(comma + 1);
+    if (expected.a.empty() || (comma != std::string::npos && expected.b.empty())) {
+      return fmt::format("--between: found '{}'; expected two objects or groups, A,B, or a zone",
+                         text);
+    }
+    read.push_back(std::move(expected));
+  }
+  return {};
 }
 
 // The outputs of -o, --csv, --plot, --report and --balance.
@@ -196,11 +234,15 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
     say(an_empty_share(arguments.balance, cell.scene.pairs.size()));
     return kFailed;
   }
+  OfflineReplayOptions options = options_of(arguments);
+  if (const auto wrong = read_between(arguments, options.expect_between); !wrong.empty()) {
+    say(wrong);
+    return kUsage;
+  }
   Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
 
   ProgressBar bar(arguments.span.progress);
-  OfflineReplayOptions options = options_of(arguments);
   options.joints = joints;
   options.mesh_errors = mesh_errors;
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };

@@ -203,5 +203,49 @@ TEST_F(ReplayExpectations, APairThatIsKnownBreaksThemAlsoAfterTheEndOfAnotherDri
   EXPECT_THAT(result.failures[1].what, HasSubstr("hand - box"));
 }
 
+// The tool is heard for the first time at tick 201.
+TEST_F(ReplayExpectations, AreJudgedFromTheFirstTickInWhichTheirObjectsAreKnownAndSayFromWhen) {
+  record_silence(cell, run, {.silent_from = 0, .silent_to = 200, .sinks = 300});
+  const OfflineReplay result = replay({.expect_min_distance = 0.05});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_EQ(200u, result.not_judged);
+  EXPECT_THAT(result.notes,
+              testing::Contains(HasSubstr("not judged in the first 200 of 300 tick")));
+}
+
+TEST_F(ReplayExpectations, OfOtherPairsAreJudgedWhileAnObjectIsNeverHeard) {
+  record_silence(cell, run, {.silent_from = 0, .silent_to = 300, .sinks = 250});
+  const OfflineReplay zone = replay({.expect_no_zone = {"stop"}});
+  ASSERT_EQ(1u, zone.failures.size()) << zone.text();
+  EXPECT_EQ(251u, zone.failures[0].tick.cycle);
+  const OfflineReplay pair = replay({.expect_between = {{0.05, "hand", "box"}}});
+  ASSERT_EQ(1u, pair.failures.size()) << pair.text();
+  EXPECT_EQ(251u, pair.failures[0].tick.cycle);
+  EXPECT_EQ(0u, pair.not_judged);
+}
+
+TEST_F(ReplayExpectations, AllowAsManyUnknownTicksAsIsStatedAndSayHowManyThereWere) {
+  record_silence(cell, run, {.silent_from = 100, .silent_to = 200});
+  OfflineReplayOptions options = kBothExpectations;
+  options.allow_unknown = 0.1;
+  EXPECT_FALSE(replay(options).ok());
+  options.allow_unknown = 0.5;
+  const OfflineReplay result = replay(options);
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_THAT(result.notes, testing::Contains(HasSubstr("as allowed")));
+}
+
+TEST_F(ReplayExpectations, BetweenTwoObjectsOrOfAZoneMeanTheirPairsAlone) {
+  record_run(cell, run, {.nearest = 0.08});
+  EXPECT_TRUE(replay({.expect_between = {{0.09, "hand", "tool"}}}).ok());
+  EXPECT_FALSE(replay({.expect_between = {{0.09, "box", "hand"}}}).ok());
+  EXPECT_FALSE(replay({.expect_between = {{0.09, "stop", ""}}}).ok());
+  const OfflineReplay two =
+      replay({.expect_between = {{0.0799, "hand", "box"}, {0.09, "hand", "box"}}});
+  ASSERT_EQ(1u, two.failures.size()) << "each has a distance of its own";
+  EXPECT_THAT(replay({.expect_between = {{0.09, "hand", "bxo"}}}).error, HasSubstr("'bxo'"));
+  EXPECT_THAT(replay({.expect_between = {{0.09, "halt", ""}}}).error, HasSubstr("its zones are"));
+}
+
 }  // namespace
 }  // namespace clearance::test

@@ -236,6 +236,8 @@ class ReplayCheck:
     @property
     def ticks(self) -> int: ...
     @property
+    def not_judged(self) -> int: ...
+    @property
     def closest_distance(self) -> Optional[float]: ...
     @property
     def closest_pair(self) -> str: ...
@@ -257,6 +259,8 @@ def check_replay(
     min_distance: Optional[float] = ...,
     no_zone: Sequence[str] = ...,
     *,
+    between: Mapping[Tuple[str, str], float] = ...,
+    allow_unknown: float = ...,
     start_s: float = ...,
     end_s: float = ...,
     tick_hz: Optional[float] = ...,

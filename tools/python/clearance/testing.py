@@ -13,13 +13,18 @@ Path = Union[str, "PathLike[str]"]
 def assert_min_distance(
     recording: Path,
     cell: Union[Cell, Path],
-    distance: float,
+    distance: float | None = None,
     *,
+    between: dict[tuple[str, str], float] | None = None,
+    allow_unknown: float = 0.0,
     no_zone: Sequence[str] = (),
     tick_hz: float | None = None,
     joints: dict[str, float] | None = None,
 ) -> ReplayCheck:
     """Asserts that a replay certifies every pair to be at least `distance` m from each other.
+
+    between: the same by pairs, {("arm", "table"): 0.02}: two objects or groups, or a zone and "".
+    allow_unknown: the share of judged ticks in which a pair may be unknown.
 
     recording: as for clearance.replay(). cell: a Cell or the name of its file. no_zone: zones that
     must not become active. joints: positions that the recording lacks, by name, rad or m.
@@ -30,7 +35,14 @@ def assert_min_distance(
     __tracebackhide__ = True  # pytest shows the line of the test
     checked = cell if isinstance(cell, Cell) else Cell(cell)
     check = check_replay(
-        checked, recording, distance, list(no_zone), tick_hz=tick_hz, joints=joints or {}
+        checked,
+        recording,
+        distance,
+        list(no_zone),
+        between=between or {},
+        allow_unknown=allow_unknown,
+        tick_hz=tick_hz,
+        joints=joints or {},
     )
     if not check.ok:
         raise AssertionError(check.text)

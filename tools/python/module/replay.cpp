@@ -249,9 +249,13 @@ py::object replay(const CellObject& cell, const std::filesystem::path& recording
   return records.take().attr("view")(py::module_::import("numpy").attr("recarray"));
 }
 
+// By the names of two objects or groups, or a zone and "": m.
+using BetweenPairs = std::map<std::pair<std::string, std::string>, double>;
+
 OfflineReplay check_replay(const CellObject& cell, const std::filesystem::path& recording,
                            std::optional<double> min_distance, std::vector<std::string> no_zone,
-                           double start_s, double end_s, std::optional<double> tick_hz,
+                           const BetweenPairs& between, double allow_unknown, double start_s,
+                           double end_s, std::optional<double> tick_hz,
                            std::vector<std::string> joint_topics,
                            std::map<std::string, double> joints, bool evaluate_all) {
   if (min_distance && !std::isfinite(*min_distance))
@@ -259,7 +263,14 @@ OfflineReplay check_replay(const CellObject& cell, const std::filesystem::path& 
   const ReplayArguments arguments{start_s,           end_s,       tick_hz, std::move(joint_topics),
                                   std::move(joints), evaluate_all};
   OfflineReplayOptions options = arguments.options();
+  if (!(allow_unknown >= 0.0 && allow_unknown <= 1.0))
+    throw py::value_error("allow_unknown: expected a share, 0 to 1");
   options.expect_min_distance = min_distance;
+  options.allow_unknown = allow_unknown;
+  for (const auto& [names, metres] : between) {
+    if (!std::isfinite(metres)) throw py::value_error("between: expected finite distances, m");
+    options.expect_between.push_back({metres, names.first, names.second});
+  }
   options.expect_no_zone = std::move(no_zone);
   return run(cell, recording, std::move(options), nullptr);
 }
@@ -289,6 +300,8 @@ void add_replay(py::module_& module) {
       .def_readonly("damage", &OfflineReplay::damage,
                     "Not empty: the recording was read up to a damage.")
       .def_readonly("ticks", &OfflineReplay::ticks, "The number of ticks.")
+      .def_readonly("not_judged", &OfflineReplay::not_judged,
+                    "The most ticks in which one expectation was not judged.")
       .def_property_readonly("closest_distance", &closest_distance,
                              "The smallest distance of all ticks, m; None: no pair was known.")
       .def_readonly("closest_pair", &OfflineReplay::closest_pair, "Its name.")
@@ -316,13 +329,16 @@ Raises ReplayError if it cannot be run; warns of a damaged recording. Releases t
 Ctrl-C ends it.)");
   module.def("check_replay", &check_replay, py::arg("cell"), py::arg("recording"),
              py::arg("min_distance") = py::none(), py::arg("no_zone") = std::vector<std::string>(),
-             py::kw_only(), py::arg("start_s") = 0.0, py::arg("end_s") = kInfinity,
+             py::kw_only(), py::arg("between") = BetweenPairs(), py::arg("allow_unknown") = 0.0,
+             py::arg("start_s") = 0.0, py::arg("end_s") = kInfinity,
              py::arg("tick_hz") = py::none(), py::arg("joint_topics") = std::vector<std::string>(),
              py::arg("joints") = std::map<std::string, double>(), py::arg("evaluate_all") = false,
              R"(Judges a recording: a ReplayCheck.
 
-min_distance: every pair's distance is certified to be at least this, m. no_zone: names of zones that
-are never active. Both begin when every moving object has been known once. The other arguments are
+min_distance: every pair's distance is certified to be at least this, m. between: the same by pairs,
+{("arm", "table"): 0.02}; two objects or groups, or a zone and "". no_zone: names of zones that are
+never active. Each is judged from the first tick in which the objects of its pairs are known and on
+time. Then a pair may be unknown in this share of the ticks: allow_unknown. The other arguments are
 those of replay(). Raises ReplayError if it cannot be run.)");
 }
 

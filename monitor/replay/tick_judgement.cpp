@@ -1,0 +1,174 @@
+// Judges one tick. The bound over all pairs decides where an expectation is about all of them,
+// which takes one comparison. Single pairs are searched only to name the one that broke it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "monitor/pair_name.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/replay/expectations.hpp"
+#include "monitor/replay/metres.hpp"
+
+namespace clearance {
+namespace {
+
+bool may_touch(const Report& report, std::uint32_t pair) {
+  const auto found = std::ranges::lower_bound(report.contacts, pair, {}, &ContactReport::pair);
+  return found != report.contacts.end() && found->pair == pair &&
+         found->status == ContactStatus::kAllowed;
+}
+
+// Whether a pair counts for an expected distance.
+bool counts(const PairReport& pair, const Report& report) {
+  return pair.status != PairStatus::kAbsent && !may_touch(report, pair.pair);
+}
+
+}  // namespace
+
+Expectations::Found Expectations::found(const Expectation& expectation, const Report& report,
+                                        const Monitor& monitor) const {
+  if (is_late(expectation)) {
+    if (Found certain = found_certain(expectation, report, monitor)) return certain;
+  }
+  return expectation.distance ? too_near(expectation, report, monitor)
+                              : entered(expectation, report, monitor);
+}
+
+Expectations::Found Expectations::found_certain(const Expectation& expectation,
+                                                const Report& report,
+                                                const Monitor& monitor) const {
+  return expectation.distance ? certainly_near(expectation, report, monitor)
+                              : entered_by_known(expectation, report, monitor);
+}
+
+// A zone is active by the distance now, or by what may have happened between two ticks.
+Expectations::Found Expectations::entered(const Expectation& expectation, const Report& report,
+                                          const Monitor& monitor) const {
+  if (!expectation.index || !report.zones[*expectation.index].active) return std::nullopt;
+  const Zone& zone = scene_->zones[*expectation.index];
+  const ZoneReport& in_tick = report.zones[*expectation.index];
+  const bool between =
+      in_tick.clearance >= zone.enter_below && in_tick.swept_clearance < zone.enter_below;
+  const std::string what =
+      between ? fmt::format(" was between two ticks not certified to have more clearance than {}",
+                            metres(in_tick.swept_clearance))
+              : fmt::format(" has a clearance of {}", metres(in_tick.clearance));
+  return Finding{fmt::format("zone '{}' is active: {}{} (its lower bound less both margins)",
+                             zone.name, pair_name(*scene_, in_tick.pair), what),
+                 !is_late(expectation) && (in_tick.pair >= scene_->pairs.size() ||
+                                           is_known(monitor.pair(in_tick.pair).status))};
+}
+
+// The threshold of a zone with `separation` is the tick's. The pair that the tick names may have a
+// late object and hide another one that is too near.
+Expectations::Found Expectations::entered_by_known(const Expectation& expectation,
+                                                   const Report& report,
+                                                   const Monitor& monitor) const {
+  if (!expectation.index || !report.zones[*expectation.index].active) return std::nullopt;
+  const Zone& zone = scene_->zones[*expectation.index];
+  if (zone.separation) {
+    for (const PairSeparation& pair : report.separated_pairs) {
+      if (pair.zone != *expectation.index || has_late_object(pair.pair) ||
+          may_touch(report, pair.pair) || !(pair.remaining < 0.0))
+        continue;
+      return Finding{
+          fmt::format("zone '{}' is active: {} has a clearance of {}, less than its "
+                      "protective separation distance",
+                      zone.name, pair_name(*scene_, pair.pair), metres(pair.clearance))};
+    }
+    return std::nullopt;
+  }
+  for (const std::uint32_t p : expectation.pairs) {
+    const PairReport pair = monitor.pair(p);
+    const ObjectPair& objects = scene_->pairs[p];
+    const double margins =
+        scene_->objects[objects.first].margin + scene_->objects[objects.second].margin;
+    const bool late = has_late_object(p);
+    const double decides = late ? pair.upper : std::min(pair.lower, pair.swept_lower);
+    if (!counts(pair, report) || !is_known(pair.status) || !(decides - margins < zone.enter_below))
+      continue;
+    return Finding{fmt::format(
+        "zone '{}' is active: {} has a clearance of {} (its {} bound less both margins)", zone.name,
+        pair_name(*scene_, p), metres(decides - margins), late ? "upper" : "lower")};
+  }
+  return std::nullopt;
+}
+
+Expectations::Found Expectations::certainly_near(const Expectation& expectation,
+                                                 const Report& report,
+                                                 const Monitor& monitor) const {
+  if (!expectation.distance) return std::nullopt;
+  const double expected = expectation.distance->metres;
+  for (const std::uint32_t p : expectation.pairs) {
+    const PairReport pair = monitor.pair(p);
+    if (!is_known(pair.status) || !(pair.upper < expected) || !counts(pair, report)) continue;
+    return Finding{fmt::format("{} is {} apart, at least {} expected", pair_name(*scene_, p),
+                               metres(pair.distance), metres(expected))};
+  }
+  return std::nullopt;
+}
+
+// The bound over all pairs decides; only where it fails is a pair looked for to name it. Pairs with
+// late objects come last: a pair without one decides for certain.
+Expectations::Found Expectations::too_near(const Expectation& expectation, const Report& report,
+                                           const Monitor& monitor) const {
+  const double expected = expectation.distance->metres;
+  if (expectation.all_pairs && report.lower_all >= expected)
+    return swept_too_near(expectation, report, monitor);
+  std::optional<PairReport> nearest;
+  bool is_certain = false;
+  for (const std::uint32_t p : expectation.pairs) {
+    const PairReport pair = monitor.pair(p);
+    if (!(pair.lower < expected) || !counts(pair, report)) continue;
+    const bool certain = is_known(pair.status) && !has_late_object(p);
+    if (!nearest || certain > is_certain ||
+        (certain == is_certain && pair.lower < nearest->lower)) {
+      nearest = pair;
+      is_certain = certain;
+    }
+  }
+  if (!nearest) return swept_too_near(expectation, report, monitor);
+  const std::string who = pair_name(*scene_, nearest->pair);
+  if (nearest->upper < expected) {
+    return Finding{fmt::format("{} is {} apart, at least {} expected", who,
+                               metres(nearest->distance), metres(expected))};
+  }
+  return Finding{fmt::format("{} is not certified to be {} apart: {}, lower bound {}, at least {} "
+                             "expected",
+                             who, metres(expected), name(nearest->status), metres(nearest->lower),
+                             metres(expected)),
+                 is_certain};
+}
+
+// No pair is too near now, but one may have been since the last tick.
+Expectations::Found Expectations::swept_too_near(const Expectation& expectation,
+                                                 const Report& report,
+                                                 const Monitor& monitor) const {
+  const double expected = expectation.distance->metres;
+  if (expectation.all_pairs && report.swept_lower_all >= expected) return std::nullopt;
+  Found doubtful;
+  for (const std::uint32_t p : expectation.pairs) {
+    const PairReport pair = monitor.pair(p);
+    if (pair.swept_lower >= expected || !counts(pair, report)) continue;
+    // More expensive than the tick's own bound, hence only where that one does not suffice.
+    const SweptBounds swept = monitor.sweep(p, expected);
+    if (swept.lower >= expected) continue;
+    const std::string who = pair_name(*scene_, p);
+    const bool late = has_late_object(p);
+    if (swept.upper < expected && !late) {
+      return Finding{fmt::format(
+          "{} was no more than {} apart between this tick and the last, at least {} expected", who,
+          metres(swept.upper), metres(expected))};
+    }
+    Finding finding{fmt::format("{} is not certified to have been {} apart between this tick and "
+                                "the last: lower bound {}, at least {} expected",
+                                who, metres(expected), metres(swept.lower), metres(expected)),
+                    !late};
+    if (!late) return finding;
+    if (!doubtful) doubtful = std::move(finding);
+  }
+  return doubtful;
+}
+
+}  // namespace clearance
