@@ -73,7 +73,7 @@ void PartnerStates::send() {
       const std::uint64_t lineage = ticks_.becoming();
       if (lineage == 0) return;  // it was given up: the partner asks again
       std::vector<std::byte> bytes;
-      save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
+      successor.save(loop_.state().ids(), bytes);
       port_.send_state({.revision = successor.scene().revision,
                         .lineage = lineage,
                         .cycle = successor.began_after(),

@@ -18,8 +18,8 @@
 #include "monitor/dds/sensor_reader.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/state/spsc_ring.hpp"
 
 namespace clearance {
 

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
-#include "monitor/loop/joined_state.hpp"
+#include "monitor/state/saved_state.hpp"
 #include "tests/monitor/scene_changes/commanded_cell.hpp"
 #include "tests/shared/loopback.hpp"
 
