@@ -81,7 +81,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       cell_file_(cell.file.string()),
       service_(fmt::format("cell '{}' at {} Hz", cell.scene.name, cell.scene.rate_hz)),
       participant_(join(options)),
-      moveit_([this](QueuedCommand command) { return put(std::move(command)); }),
+      moveit_([this](SceneTask task) { return put(std::move(task)); }),
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       identity_(make_identity(options.partner)),
@@ -114,15 +114,14 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   if (partner_) {
     partner_states_ = std::make_unique<PartnerStates>(
         partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
-        recording_.get(), [this](QueuedCommand command) { return put(std::move(command)); },
-        revision);
+        recording_.get(), [this](SceneTask task) { return put(std::move(task)); }, revision);
   }
   if (cell.ros.moveit.any()) share_moveit();
   if (!cell.commands.from.empty()) {
     commands_ = std::make_unique<CommandPort>(
         cell, cell.commands.from, participant_, reports_.daemon(),
-        [this](QueuedCommand command) {
-          return put(partner_ ? partner_states_->for_both(std::move(command)) : std::move(command));
+        [this](GivenCommand given) {
+          return put(partner_ ? partner_states_->for_both(std::move(given)) : std::move(given));
         },
         revision, partner_ ? share_commands() : CommandPort::Sharing());
   }
@@ -246,13 +245,15 @@ void Daemon::end_requests() {
   if (!still_reads_) commands_.reset();
 }
 
-bool Daemon::put(QueuedCommand command) {
-  command.answer = [this, answer = std::move(command.answer)](const CommandResult& result) {
-    note_change(result);
-    if (recording_) recording_->note_command();
-    if (answer) answer(result);
-  };
-  return scene_thread_->put(std::move(command));
+bool Daemon::put(SceneTask task) {
+  if (AnswerCommand* const asked = answer_of(task)) {
+    *asked = [this, answer = std::move(*asked)](const CommandResult& result) {
+      note_change(result);
+      if (recording_) recording_->note_command();
+      if (answer) answer(result);
+    };
+  }
+  return scene_thread_->put(std::move(task));
 }
 
 // Returns false if nothing has changed.
@@ -317,7 +318,7 @@ void Daemon::read_again() {
     service_.reloaded("the changed cell was refused: see the log");
   };
   wants_to_read_ =
-      !scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer});
+      !scene_thread_->put(GivenCommand{{.client = "", .changes = {ReadCellAgain{}}}, true, answer});
   if (!wants_to_read_) return;
   log_line(lines::kSceneRefused, "too many commands wait: it is tried again");
   service_.reloaded("the cell waits to be read again: see the log");

@@ -78,9 +78,9 @@ class Daemon : private CellParts {
   // this object and static ones.
   [[nodiscard]] bool still_reads() const noexcept { return still_reads_; }
 
-  // Any thread while run() runs: the one way in for commands, wherever they come from. Returns
-  // false if too many wait.
-  [[nodiscard]] bool put(QueuedCommand command);
+  // Any thread while run() runs: the one entry for tasks, wherever they come from. Returns false if
+  // too many wait.
+  [[nodiscard]] bool put(SceneTask task);
 
  private:
   // The parts that a change of the cell replaces.

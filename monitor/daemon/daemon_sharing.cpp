@@ -31,14 +31,14 @@ void Daemon::share_moveit() {
   if (now_.cell->shares.is_one()) {
     shares_ = std::make_unique<ShareScenes>(
         *now_.cell, participant_,
-        ShareScenes::Actions{
-            .put = [this](QueuedCommand command) { return put(std::move(command)); },
-            .revision = [this] { return revision_.load(); },
-            .changes =
-                [this] {
-                  return !partner_ || partner_->ticks.standing() == PartnerStanding::kLeading;
-                },
-            .look = [this] { moveit_.look(); }});
+        ShareScenes::Actions{.put = [this](SceneTask task) { return put(std::move(task)); },
+                             .revision = [this] { return revision_.load(); },
+                             .changes =
+                                 [this] {
+                                   return !partner_ ||
+                                          partner_->ticks.standing() == PartnerStanding::kLeading;
+                                 },
+                             .look = [this] { moveit_.look(); }});
   }
   if (!partner_ && !shares_) return;
   MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};

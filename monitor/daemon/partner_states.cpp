@@ -45,16 +45,13 @@ PartnerPort::Actions PartnerStates::actions() {
 
 // A full queue drops it; the port asks again.
 void PartnerStates::put(std::function<void()> task) {
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.task = [task = std::move(task)] {
+  static_cast<void>(thread_.put(OtherWork{[task = std::move(task)] {
     try {
       task();
     } catch (const std::exception& error) {
       log_line(lines::kPartnerStateRefused, error.what());
     }
-  };
-  static_cast<void>(thread_.put(std::move(queued)));
+  }}));
 }
 
 // The monitor of a large cell takes long to make: it is made before the state is asked for.
@@ -110,22 +107,21 @@ void PartnerStates::join(const PartnerStateView& state) {
 
 // By its turn this daemon may lead, or have the cell.
 void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.bytes_to_make = text.size();
-  queued.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
+  MadeCommand made;
+  made.bytes = text.size();
+  made.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
     const bool has_it = cell.scene.revision == revision;
     if (has_it || ticks_.standing() == PartnerStanding::kLeading) return Command{};
     return Command{.changes = {ReplaceCell{text}}};
   };
-  queued.answer = [this, revision](const CommandResult& result) {
+  made.answer = [this, revision](const CommandResult& result) {
     const bool is_taken = result.done() && result.scene_revision == revision;
     if (is_taken || std::exchange(refused_, revision) == revision) return;
     log_line(lines::kPartnerStateRefused,
              fmt::format("its cell of revision {:016x} is refused here: {}", revision,
                          result.done() ? "files or options differ" : result.reason));
   };
-  static_cast<void>(put_command_(std::move(queued)));
+  static_cast<void>(put_command_(std::move(made)));
 }
 
 // Two daemons may both lead the ticks for a moment, but must not both take a command. A daemon that
@@ -143,21 +139,21 @@ bool PartnerStates::takes_requests() const {
 // The client sends a command again until it has the result.
 void PartnerStates::keep_files(Command command) {
   if (command.dry_run || command.files.empty()) return;
-  QueuedCommand queued{.command = std::move(command), .is_own = true};
-  queued.command.changes.clear();
-  queued.only_keeps_files = true;
-  queued.answer = [](const CommandResult& result) {
+  KeptFiles kept;
+  for (const SentFile& file : command.files) kept.bytes += file.bytes.size();
+  kept.make = [files = std::move(command.files)](const Cell&) { return files; };
+  kept.answer = [](const CommandResult& result) {
     if (!result.done()) log_line(lines::kPartnerFileNotKept, result.reason);
   };
-  static_cast<void>(thread_.put(std::move(queued)));
+  static_cast<void>(thread_.put(std::move(kept)));
 }
 
-QueuedCommand PartnerStates::for_both(QueuedCommand command) {
-  command.answer = [this, is_dry = command.command.dry_run,
-                    answer = std::move(command.answer)](const CommandResult& result) {
+GivenCommand PartnerStates::for_both(GivenCommand given) {
+  given.answer = [this, is_dry = given.command.dry_run,
+                  answer = std::move(given.answer)](const CommandResult& result) {
     answer(is_dry || !result.done() ? result : of_both(result));
   };
-  return command;
+  return given;
 }
 
 // If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost. A

@@ -8,6 +8,7 @@
 
 #include "config/cell/share_topics.hpp"
 #include "monitor/app/log_lines.hpp"
+#include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
@@ -138,11 +139,10 @@ void ShareScenes::take_over(const Heard& heard) {
 }
 
 // By its turn this daemon may have the scene.
-QueuedCommand ShareScenes::command() {
+MadeCommand ShareScenes::command() {
   const auto doing = std::make_shared<Wanted>();
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.make = [this, doing](const Cell& cell, const AskPose&) {
+  MadeCommand made;
+  made.make = [this, doing](const Cell& cell, const AskPose&) {
     const std::lock_guard lock(mutex_);
     is_queued_ = false;
     *doing = std::move(wanted_);
@@ -150,13 +150,13 @@ QueuedCommand ShareScenes::command() {
     return has_it || !actions_.changes() ? Command{}
                                          : Command{.changes = {ReplaceCell{doing->text}}};
   };
-  queued.answer = [this, doing](const CommandResult& result) {
+  made.answer = [this, doing](const CommandResult& result) {
     const bool is_taken = result.done() && result.scene_revision == doing->revision;
     if (is_taken || std::exchange(refused_, doing->revision) == doing->revision) return;
     log_line(lines::kShareSceneRefused, names_[doing->share], doing->revision,
              result.done() ? "files or options differ" : result.reason);
   };
-  return queued;
+  return made;
 }
 
 }  // namespace clearance

@@ -16,7 +16,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/scene_changes/command_queue.hpp"
+#include "monitor/scene_changes/scene_task.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -68,7 +68,7 @@ class SceneToFollow {
 class ShareScenes {
  public:
   struct Actions {
-    std::function<bool(QueuedCommand)> put;   // the way in for changes of the cell
+    std::function<bool(SceneTask)> put;       // the entry for changes of the cell
     std::function<std::uint64_t()> revision;  // of the scene in force
     std::function<bool()> changes;            // false: a partner makes the changes of this share
     std::function<void()> look;               // every 10 ms
@@ -105,7 +105,7 @@ class ShareScenes {
   void run();
   void hear();
   void take_over(const Heard& heard);
-  [[nodiscard]] QueuedCommand command();
+  [[nodiscard]] MadeCommand command();
 
   const std::uint32_t own_;
   const std::vector<std::string> names_;
