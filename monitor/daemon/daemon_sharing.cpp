@@ -38,7 +38,7 @@ void Daemon::share_moveit() {
                                    return !partner_ ||
                                           partner_->ticks.standing() == PartnerStanding::kLeading;
                                  },
-                             .look = [this] { moveit_.look(); }});
+                             .update_lead = [this] { moveit_.update_lead(); }});
   }
   if (!partner_ && !shares_) return;
   MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};
@@ -60,7 +60,7 @@ PartnerPort::Actions Daemon::partner_actions() {
   PartnerPort::Actions actions = partner_states_->actions();
   if (!now_.cell->ros.moveit.any()) return actions;
   actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
-  actions.look = [this] { moveit_.look(); };
+  actions.update_lead = [this] { moveit_.update_lead(); };
   return actions;
 }
 

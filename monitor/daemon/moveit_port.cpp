@@ -81,7 +81,7 @@ void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
   heard_ = {{changes.begin(), changes.end()}, {bytes.begin(), bytes.end()}, true};
 }
 
-void MoveItPort::look() {
+void MoveItPort::update_lead() {
   const std::lock_guard lock(mutex_);
   if (!sharing_ || !put_) return;
   const bool led = std::exchange(leads_, leads());

@@ -45,7 +45,7 @@ class MoveItPort {
   void hear(const clearance_msg_PartnerScene& scene);
   // Has to be called every few milliseconds, by any thread but that of the tick: this daemon may
   // begin to lead, or have the leader's scene.
-  void look();
+  void update_lead();
 
  private:
   static constexpr std::size_t kMostChanges = 64;  // kMaxSceneChanges in idl/partners.idl

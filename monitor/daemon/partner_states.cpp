@@ -16,7 +16,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::chrono::microseconds kLook{100};
+constexpr std::chrono::microseconds kPoll{100};
 // A leader that was held up for a moment knows after this time whether it still leads.
 constexpr std::chrono::milliseconds kLeadsAgain{100};
 // The partner takes some ms for a changed cell, and longer while it is busy.
@@ -102,7 +102,7 @@ void PartnerStates::join(const PartnerStateView& state) {
   }
   if (recording_ != nullptr) recording_->note_state(state);
   if (!loop_.offer(joined)) return;
-  while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
+  while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kPoll);
 }
 
 // By its turn this daemon may lead, or have the cell.
@@ -131,7 +131,7 @@ bool PartnerStates::takes_requests() const {
   while (ticks_.standing() == PartnerStanding::kLeading && !loop_ended_) {
     if (port_.leads()) return true;
     if (std::chrono::steady_clock::now() > end) break;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPoll);
   }
   return false;
 }
@@ -179,7 +179,7 @@ CommandResult PartnerStates::of_both(CommandResult result) {
                                   port_.partner());
       break;
     }
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPoll);
   }
   return result;
 }

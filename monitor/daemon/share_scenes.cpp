@@ -14,7 +14,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kLookNs = 10'000'000;
+constexpr std::int64_t kPollNs = 10'000'000;
 constexpr std::int64_t kAgainNs = 1'000'000'000;
 // The first share waits so long before it takes a scene: it may come to have the same one itself.
 constexpr std::int64_t kFirstWaitsNs = 200'000'000;
@@ -48,7 +48,7 @@ std::optional<std::size_t> SceneToFollow::share_that_counts(std::uint64_t in_for
   return most;
 }
 
-std::optional<std::size_t> SceneToFollow::look(std::uint64_t in_force, bool has_changed,
+std::optional<std::size_t> SceneToFollow::find(std::uint64_t in_force, bool has_changed,
                                                std::int64_t now_ns) {
   const auto share = share_that_counts(in_force, has_changed);
   const std::int64_t age_ns = now_ns - start_ns_;
@@ -107,13 +107,13 @@ void ShareScenes::run() {
   name_thread("shares");
   SystemClock clock;
   while (!stop_) {
-    wait_->wait(kLookNs);
+    wait_->wait(kPollNs);
     hear();
     const std::uint64_t in_force = actions_.revision();
-    const auto share = to_follow_.look(in_force, has_changed_, clock.monotonic_ns());
+    const auto share = to_follow_.find(in_force, has_changed_, clock.monotonic_ns());
     if (share) take_over(*std::ranges::find(heard_, *share, &Heard::share));
     does_messages_ = is_first() && to_follow_.is_settled();
-    actions_.look();
+    actions_.update_lead();
   }
 }
 

@@ -99,7 +99,7 @@ class PoseReader final : public PoseSource {
 
   void open(Participant& participant, TopicKind kind);
   void run();
-  void look();
+  void poll();
   void note_writers();
   void take_all(const Now& now);
   bool hand_over(PoseBatch& batch) noexcept;

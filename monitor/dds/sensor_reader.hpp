@@ -66,7 +66,7 @@ class SensorReader {
 
  private:
   void run();
-  void look();
+  void poll();
   void take_all();
   void build();
   void build_own();

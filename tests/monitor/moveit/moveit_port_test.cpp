@@ -112,12 +112,12 @@ class SharedMoveItPort : public MoveItPortTest {
     std::memcpy(sample->bytes._buffer, bytes.data(), bytes.size());
     sample->bytes._length = static_cast<std::uint32_t>(bytes.size());
     port_.hear(*sample);
-    port_.look();
+    port_.update_lead();
   }
   // Until the scene thread has done what waits.
   void finish() {
     for (int i = 0; i < 3; ++i) {
-      port_.look();
+      port_.update_lead();
       std::promise<void> done;
       ASSERT_TRUE(thread_->put(OtherWork{[&] { done.set_value(); }}));
       done.get_future().get();
