@@ -23,7 +23,7 @@ using test::kTick;
 using State = Successor::State;
 
 // Balls that move, all pairs published, and a zone that they enter and leave.
-Scene balls(const std::vector<std::string>& names, std::uint64_t revision) {
+Scene bodies_of(const std::vector<std::string>& names, std::uint64_t revision) {
   std::vector<Object> objects;
   for (const std::string& name : names) {
     objects.push_back(test::moving(name, {test::ball(0.1), test::capsule(0.3, 0.05)}));
@@ -64,7 +64,7 @@ class TickStates : public testing::Test {
     return {checksum_of(report), checksum_of_rest(report, state.monitor().checksum())};
   }
 
-  const Scene first = balls({"a", "b", "c", "d"}, 7), second = balls({"d", "b", "new", "a"}, 8);
+  const Scene first = bodies_of({"a", "b", "c", "d"}, 7), second = bodies_of({"d", "b", "new", "a"}, 8);
   TickRecords records, no_records{TickRecords::kNoRoom};
 };
 
