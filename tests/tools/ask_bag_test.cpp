@@ -87,7 +87,7 @@ TEST_F(AskOfABag, ReadsJointStatesByTheTopicAndThePrefixOfARobot) {
              "robots: [{name: arm, prefix: left_, urdf: scara.urdf, joint_states: /left/state}]\n"
              "objects:\n"
              "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
-             "pairs: [{between: [arm, pin]}]\n");
+             "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n");
   const JointStateText elsewhere{{"left_elbow", "left_push", "left_shoulder"}, {1.0, 0.1, 2.0}};
   ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest, "/left/state"),
                  joint_state(kSecondNs, kSecondNs, elsewhere, "/right/state"),
