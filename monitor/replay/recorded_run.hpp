@@ -54,7 +54,7 @@ class RecordedRun {
   // The daemon went on from a state of its partner, and this is the number of that state in the
   // recording. 0: it went on from its own.
   [[nodiscard]] std::uint64_t joined() const noexcept { return joins_ ? joined_ : 0; }
-  // That state; null: it cannot be read.
+  // Returns that state; null: it cannot be read.
   [[nodiscard]] const clearance_msg_PartnerState* state();
   // Frames that the daemon built up to this tick and after the one before. One that no tick was
   // shown stands before another one that was.

@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// They are in file order. A tick's time is its own, so that it tells which tick they belong to.
+// Keeps them in file order. A tick's time is its own, so that it tells which tick they belong to.
 template <class Message>
 class TickMessages {
  public:

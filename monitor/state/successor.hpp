@@ -7,7 +7,7 @@
 //   preparing thread    catch_up(): runs the ticks that the loop has run since, from its records
 //   tick thread         TickState::succeed(): between two ticks, once both stand at the same cycle
 //
-// So a change costs the tick thread a copy of the objects' states and of a few ticks' samples. The
+// A change costs the tick thread a copy of the objects' states and of a few ticks' samples. The
 // bounds of pairs are found in the other thread. Which ticks the successor runs follows from the
 // cycles of begin() and succeed() alone: a replay that is told both gets the same bits.
 #pragma once

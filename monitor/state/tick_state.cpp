@@ -55,7 +55,7 @@ void TickState::give_up() noexcept {
   if (pace_ != nullptr) pace_->successor_gave_up();
 }
 
-// A successor that is under way has taken over from the monitor that would go.
+// A successor that catches up has taken over from the monitor that would go.
 bool TickState::may_join(const JoinedState& joined) const noexcept {
   return next_ == nullptr && joined.revision() == ids_.revision() &&
          (pace_ == nullptr || pace_->may_join()) &&

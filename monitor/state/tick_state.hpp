@@ -88,11 +88,11 @@ class TickState {
   // The one that has begun; null: there is none.
   [[nodiscard]] const Successor* successor() const noexcept { return next_; }
 
-  // True if join() may take over this state now: it is of the scene in force, no successor is under
-  // way, the pace agrees, and the frames of sensors that the state rests on have come.
+  // True if join() may take over this state now: it is of the scene in force, no successor has
+  // begun, the pace agrees, and the frames of sensors that the state rests on have come.
   [[nodiscard]] bool may_join(const JoinedState& joined) const noexcept;
   // The next tick goes on from this state, which must be of the scene in force, while no successor
-  // is under way. Frames that it rests on and that have not come stay awaited
+  // has begun. Frames that it rests on and that have not come stay awaited
   // (Monitor::awaited_frame).
   void join(JoinedState& joined) noexcept;
 

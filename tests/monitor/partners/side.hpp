@@ -117,7 +117,7 @@ class Side {
     next_ = std::make_unique<Successor>(state, scene_, records_);
     ASSERT_TRUE(state.begin(*next_));
   }
-  // It is the one that ticks.
+  // Ticks that one from now on.
   void succeed() {
     state.succeed();
     if (recorder_ != nullptr) recorder_->change(*cell_, next_->in_force());

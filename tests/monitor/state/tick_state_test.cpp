@@ -64,7 +64,8 @@ class TickStates : public testing::Test {
     return {checksum_of(report), checksum_of_rest(report, state.monitor().checksum())};
   }
 
-  const Scene first = bodies_of({"a", "b", "c", "d"}, 7), second = bodies_of({"d", "b", "new", "a"}, 8);
+  const Scene first = bodies_of({"a", "b", "c", "d"}, 7),
+              second = bodies_of({"d", "b", "new", "a"}, 8);
   TickRecords records, no_records{TickRecords::kNoRoom};
 };
 
