@@ -46,6 +46,20 @@ TEST_F(SceneProgram, WritesACellThatIsGood) {
   EXPECT_TRUE(std::filesystem::exists(file("cell.yaml")));
 }
 
+TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoBothKindsOfCell) {
+  for (const std::vector<std::string>& kind : {std::vector<std::string>{}, {"--joints"}}) {
+    std::vector<std::string> words = {"import",          file("robot.urdf"), "-o",
+                                      file("cell.yaml"), "--force",          "--mesh-tolerance",
+                                      "0.002",           "--max-parts",      "7"};
+    words.insert(words.end(), kind.begin(), kind.end());
+    EXPECT_EQ(run(words), 0) << output_;
+    std::ifstream written(file("cell.yaml"));
+    const std::string text((std::istreambuf_iterator<char>(written)), {});
+    EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
+    EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
+  }
+}
+
 // Three balls in a row on two joints.
 std::string chain_urdf() {
   std::string urdf = "<robot name=\"chain\">\n";
@@ -290,42 +304,6 @@ TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
   EXPECT_NE(text.find("- {between: [\"post\", \"far\"], reason: \"Never: in contact in 0 of 500 "),
             std::string::npos)
       << text;
-}
-
-// Before there were subcommands, an option selected the action.
-TEST_F(SceneProgram, FormerSpellingsDoTheSameAndNameThePresentOnes) {
-  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
-                                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  ASSERT_EQ(run({"warehouse", "60", "-o", file("cell.yaml")}), 0) << output_;
-  struct Spellings {
-    std::vector<std::string> former, present;
-    std::string note;
-  };
-  std::ofstream(directory_ / "crane.urdf") << crane_urdf();
-  const std::string urdf = file("crane.urdf"), obj = file("tent.obj"), cell = file("cell.yaml");
-  const Spellings all[] = {
-      {{"--from-urdf", urdf, "-o", file("a.yaml"), "--force"},
-       {"import", urdf, "-o", file("a.yaml"), "--force"},
-       "clearance-scene import " + urdf + " -o"},
-      {{"--samples=50", "--from-urdf=" + urdf, "--allow"},
-       {"allow", urdf, "--samples=50"},
-       "clearance-scene allow " + urdf + " --samples=50'"},
-      {{"--warehouse", "60", "-o", file("a.yaml"), "--force"},
-       {"warehouse", "60", "-o", file("a.yaml"), "--force"},
-       "clearance-scene warehouse 60 -o"},
-      {{"--report", cell, "--json"}, {"report", cell, "--json"}, "clearance-scene report " + cell},
-      {{"--reduce", obj, obj, "--tolerance", "10"},
-       {"reduce", obj, obj, "--tolerance", "10"},
-       "clearance-scene reduce " + obj + " " + obj + " --tolerance 10'"},
-  };
-  for (const Spellings& spelling : all) {
-    ASSERT_EQ(run(spelling.present), 0) << output_;
-    const std::string expected = output_;
-    ASSERT_EQ(run(spelling.former), 0) << output_;
-    EXPECT_EQ(output_.find("clearance-scene: note: '"), 0u) << output_;
-    EXPECT_LT(output_.find(spelling.note), output_.find('\n')) << output_;
-    EXPECT_EQ(output_.substr(output_.find('\n') + 1), expected);
-  }
 }
 
 }  // namespace

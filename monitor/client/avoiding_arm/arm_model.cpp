@@ -9,6 +9,8 @@
 namespace clearance::avoid {
 namespace {
 
+constexpr const char* kEndLink = "hand";
+
 const Robot& only_robot(const Scene& scene) {
   if (scene.robots.size() == 1) return scene.robots.front();
   throw std::invalid_argument(
@@ -17,12 +19,12 @@ const Robot& only_robot(const Scene& scene) {
 
 }  // namespace
 
-ArmModel::ArmModel(const Scene& scene, const std::string& end_link)
+ArmModel::ArmModel(const Scene& scene)
     : robot_(only_robot(scene)), states_(scene.variables.size()), kinematics_(scene.robots) {
-  const auto end = std::ranges::find(robot_.links, end_link, &RobotLink::name);
+  const auto end = std::ranges::find(robot_.links, kEndLink, &RobotLink::name);
   if (end == robot_.links.end()) {
-    throw std::invalid_argument(fmt::format(
-        "the robot has no link '{}'; --end-link names the one that follows the path", end_link));
+    throw std::invalid_argument(
+        fmt::format("the robot has no link '{}', which follows the path", kEndLink));
   }
   end_ = static_cast<std::uint32_t>(end - robot_.links.begin());
   for (std::uint32_t link = end_; link > 0; link = robot_.joints[link - 1].parent) {

@@ -13,9 +13,9 @@ namespace clearance::avoid {
 
 class ArmModel {
  public:
-  // The end point is the origin of this link. The scene must have one robot and must outlive this.
-  // Throws std::invalid_argument if there is no such link.
-  ArmModel(const Scene& scene, const std::string& end_link);
+  // The end point is the origin of the link `hand`. The scene must have one robot and must outlive
+  // this. Throws std::invalid_argument if there is no such link.
+  explicit ArmModel(const Scene& scene);
 
   // The positions that move the end point: indices into Scene::variables, from the base outwards.
   [[nodiscard]] const std::vector<std::uint32_t>& variables() const noexcept { return variables_; }

@@ -43,8 +43,6 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--keep", arguments.run.controller.keep_m, "Distance that is kept, m")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  app.add_option("--end-link", arguments.run.end_link, "Link whose origin follows the path")
-      ->capture_default_str();
   arguments.dds.add_to(app);
   app.footer(kFooter);
 }

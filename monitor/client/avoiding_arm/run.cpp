@@ -126,7 +126,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
               const std::function<bool()>& go_on) {
   RunResult result;
   const Scene& scene = cell.scene;
-  ArmModel arm(scene, options.end_link);
+  ArmModel arm(scene);
   std::vector<double> positions = home_of(scene), velocities(positions.size(), 0.0);
   const Controller controller(scene, arm, positions, options.controller);
   arm.place(positions);

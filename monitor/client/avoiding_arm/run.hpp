@@ -12,7 +12,6 @@ namespace clearance::avoid {
 
 struct RunOptions {
   double seconds = 10.0;  // duration of the motion; a run takes longer if the machine stalls
-  std::string end_link = "hand";
   ControllerOptions controller;
 };
 
