@@ -1,4 +1,4 @@
-#include "monitor/client/avoiding_arm/run.hpp"
+#include "monitor/examples/avoiding_arm/run.hpp"
 
 #include <algorithm>
 #include <chrono>

@@ -1,4 +1,4 @@
-#include "monitor/client/picking_arm/run.hpp"
+#include "monitor/examples/picking_arm/run.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "monitor/client/picking_arm/motion.hpp"
+#include "monitor/examples/picking_arm/motion.hpp"
 
 namespace clearance::pick {
 namespace {

@@ -1,4 +1,4 @@
-#include "monitor/client/jogging_arm/run.hpp"
+#include "monitor/examples/jogging_arm/run.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "monitor/client/picking_arm/motion.hpp"
+#include "monitor/examples/picking_arm/motion.hpp"
 
 namespace clearance::jog {
 namespace {

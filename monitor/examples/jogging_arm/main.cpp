@@ -8,9 +8,9 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/client/jogging_arm/run.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/examples/jogging_arm/run.hpp"
 
 namespace clearance {
 namespace {

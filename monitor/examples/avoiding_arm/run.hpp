@@ -5,8 +5,8 @@
 #include <functional>
 
 #include "config/cell/cell.hpp"
-#include "monitor/client/avoiding_arm/controller.hpp"
 #include "monitor/client/client.hpp"
+#include "monitor/examples/avoiding_arm/controller.hpp"
 
 namespace clearance::avoid {
 

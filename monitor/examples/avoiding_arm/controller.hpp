@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/client/avoiding_arm/arm_model.hpp"
 #include "monitor/client/client.hpp"
+#include "monitor/examples/avoiding_arm/arm_model.hpp"
 
 namespace clearance::avoid {
 

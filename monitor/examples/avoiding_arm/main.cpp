@@ -10,10 +10,10 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/client/avoiding_arm/run.hpp"
 #include "monitor/client/client.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/examples/avoiding_arm/run.hpp"
 
 namespace clearance {
 namespace {
