@@ -15,7 +15,6 @@
 #include "tests/shared/curved_oracle.hpp"
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/exact_oracle.hpp"
-#include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tools/bench/suite/cases.hpp"
 #include "tools/bench/suite/plain_body.hpp"
@@ -203,7 +202,7 @@ TEST(SuitePlanarFaces, MergeHalvesOfQuadrilateralsAndKeepTheirSense) {
 
 TEST(SuiteProgram, WritesTableFiguresAndPicture) {
   const test::ScratchFolder folder;
-  test::ChildProcess bench(test::places::programs() + "/clearance-bench",
+  test::ChildProcess bench(CLEARANCE_BENCH_BIN "/clearance-bench",
                            {"--suite", "--out", (folder / "out").string(), "--class", "boxes",
                             "--class", "deep", "--passes", "1", "--motions", "2", "--steps", "3"});
   ASSERT_EQ(bench.wait(), 0) << bench.output();
@@ -221,7 +220,7 @@ TEST(SuiteProgram, RefusesWhatItDoesNotKnow) {
         {"--suite", "--rival", "solid_9"},
         {"--suite", "--steps", "1"},
         {"--suite", "--faster"}}) {
-    test::ChildProcess bench(test::places::programs() + "/clearance-bench", words);
+    test::ChildProcess bench(CLEARANCE_BENCH_BIN "/clearance-bench", words);
     EXPECT_EQ(bench.wait(), 2) << words.back() << "\n" << bench.output();
   }
 }

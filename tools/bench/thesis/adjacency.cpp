@@ -1,4 +1,4 @@
-#include "tools/thesis/adjacency.hpp"
+#include "tools/bench/thesis/adjacency.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "tools/bench/bodies.hpp"
+#include "tools/bench/thesis/facet_walk.hpp"
 #include "tools/bench/workload.hpp"
-#include "tools/thesis/facet_walk.hpp"
 
 namespace clearance::bench {
 namespace {

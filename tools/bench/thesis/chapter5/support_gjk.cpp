@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/support_gjk.hpp"
+#include "tools/bench/thesis/chapter5/support_gjk.hpp"
 
 #include <Eigen/LU>
 #include <array>

@@ -7,7 +7,7 @@
 #include "core/convex_body.hpp"
 #include "core/distance_result.hpp"
 #include "tools/bench/crossed_ellipsoids.hpp"
-#include "tools/thesis/variant_loop.hpp"
+#include "tools/bench/thesis/variant_loop.hpp"
 
 namespace clearance::bench {
 

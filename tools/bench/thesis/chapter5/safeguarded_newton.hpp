@@ -12,7 +12,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tools/thesis/chapter5/nearest_point.hpp"
+#include "tools/bench/thesis/chapter5/nearest_point.hpp"
 
 namespace clearance::bench {
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "tools/bench/crossed_ellipsoids.hpp"
-#include "tools/thesis/chapter5/nearest_point.hpp"
+#include "tools/bench/thesis/chapter5/nearest_point.hpp"
 
 namespace clearance::bench {
 

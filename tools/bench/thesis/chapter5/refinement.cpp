@@ -1,14 +1,14 @@
 // The quadratic programme is solved by peers/active_set_qp.hpp, the same active-set method in
 // orthonormal bases. DQP3 would need the adjacency of facets, which would have to be made in every
 // cycle.
-#include "tools/thesis/chapter5/refinement.hpp"
+#include "tools/bench/thesis/chapter5/refinement.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "tools/bench/peers/active_set_qp.hpp"
-#include "tools/thesis/chapter5/safeguarded_newton.hpp"
+#include "tools/bench/thesis/chapter5/safeguarded_newton.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/methods.hpp"
+#include "tools/bench/thesis/chapter5/methods.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,15 +7,15 @@
 
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
-#include "tools/thesis/chapter5/alternating.hpp"
-#include "tools/thesis/chapter5/dominant_term.hpp"
-#include "tools/thesis/chapter5/facet_ball.hpp"
-#include "tools/thesis/chapter5/free_margin.hpp"
-#include "tools/thesis/chapter5/hybrid.hpp"
-#include "tools/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
-#include "tools/thesis/chapter5/refinement.hpp"
-#include "tools/thesis/chapter5/safeguarded_newton.hpp"
-#include "tools/thesis/chapter5/support_gjk.hpp"
+#include "tools/bench/thesis/chapter5/alternating.hpp"
+#include "tools/bench/thesis/chapter5/dominant_term.hpp"
+#include "tools/bench/thesis/chapter5/facet_ball.hpp"
+#include "tools/bench/thesis/chapter5/free_margin.hpp"
+#include "tools/bench/thesis/chapter5/hybrid.hpp"
+#include "tools/bench/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
+#include "tools/bench/thesis/chapter5/refinement.hpp"
+#include "tools/bench/thesis/chapter5/safeguarded_newton.hpp"
+#include "tools/bench/thesis/chapter5/support_gjk.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -13,7 +13,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "tools/thesis/chapter5/nearest_point.hpp"
+#include "tools/bench/thesis/chapter5/nearest_point.hpp"
 
 namespace clearance::bench {
 

@@ -7,7 +7,7 @@
 #include "core/active_set/alpha_step_length.hpp"
 #include "core/active_set/delta_step.hpp"
 #include "core/active_set/lambda_multipliers.hpp"
-#include "tools/thesis/whole_scan.hpp"
+#include "tools/bench/thesis/whole_scan.hpp"
 
 namespace clearance::bench {
 

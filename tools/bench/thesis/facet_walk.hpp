@@ -2,7 +2,7 @@
 // searches all half-spaces.
 #pragma once
 
-#include "tools/thesis/adjacency.hpp"
+#include "tools/bench/thesis/adjacency.hpp"
 
 namespace clearance::bench {
 

@@ -1,12 +1,12 @@
-#include "tools/thesis/rows.hpp"
+#include "tools/bench/thesis/rows.hpp"
 
 #include <fmt/format.h>
 
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 #include "tools/bench/solver_rows.hpp"
-#include "tools/thesis/moved_body.hpp"
-#include "tools/thesis/variant_loop.hpp"
+#include "tools/bench/thesis/moved_body.hpp"
+#include "tools/bench/thesis/variant_loop.hpp"
 
 namespace clearance::bench {
 namespace {

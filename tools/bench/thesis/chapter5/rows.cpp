@@ -1,4 +1,4 @@
-#include "tools/thesis/rows.hpp"
+#include "tools/bench/thesis/rows.hpp"
 
 #include <fmt/format.h>
 
@@ -10,11 +10,11 @@
 #include <string>
 
 #include "tools/bench/measure.hpp"
-#include "tools/thesis/chapter5/alternating.hpp"
-#include "tools/thesis/chapter5/digits50.hpp"
-#include "tools/thesis/chapter5/facet_ball.hpp"
-#include "tools/thesis/chapter5/methods.hpp"
-#include "tools/thesis/chapter5/point_families.hpp"
+#include "tools/bench/thesis/chapter5/alternating.hpp"
+#include "tools/bench/thesis/chapter5/digits50.hpp"
+#include "tools/bench/thesis/chapter5/facet_ball.hpp"
+#include "tools/bench/thesis/chapter5/methods.hpp"
+#include "tools/bench/thesis/chapter5/point_families.hpp"
 
 namespace clearance::bench {
 namespace {

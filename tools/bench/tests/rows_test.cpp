@@ -17,8 +17,8 @@
 namespace clearance {
 namespace {
 
-const std::string kBench = test::places::programs() + "/clearance-bench";
-const std::string kThesis = test::places::programs() + "/clearance-thesis";
+const std::string kBench = CLEARANCE_BENCH_BIN "/clearance-bench";
+const std::string kThesis = CLEARANCE_BENCH_BIN "/clearance-thesis";
 
 std::set<std::string> names(const std::string& program) {
   test::ChildProcess bench(program, {"--benchmark_list_tests"});

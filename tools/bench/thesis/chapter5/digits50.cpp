@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/digits50.hpp"
+#include "tools/bench/thesis/chapter5/digits50.hpp"
 
 #include <algorithm>
 #include <array>

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tools/thesis/adjacency.hpp"
+#include "tools/bench/thesis/adjacency.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -9,8 +9,8 @@
 #include "monitor/files/build_info.hpp"
 #include "tools/bench/peers/peers.hpp"
 #include "tools/bench/rows.hpp"
-#include "tools/thesis/adjacency.hpp"
-#include "tools/thesis/rows.hpp"
+#include "tools/bench/thesis/adjacency.hpp"
+#include "tools/bench/thesis/rows.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/facet_ball.hpp"
+#include "tools/bench/thesis/chapter5/facet_ball.hpp"
 
 #include <algorithm>
 #include <cmath>

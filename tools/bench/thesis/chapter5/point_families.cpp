@@ -1,9 +1,9 @@
-#include "tools/thesis/chapter5/point_families.hpp"
+#include "tools/bench/thesis/chapter5/point_families.hpp"
 
 #include <cmath>
 
 #include "tools/bench/random.hpp"
-#include "tools/thesis/chapter5/digits50.hpp"
+#include "tools/bench/thesis/chapter5/digits50.hpp"
 
 namespace clearance::bench {
 namespace {

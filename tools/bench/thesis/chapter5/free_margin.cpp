@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/free_margin.hpp"
+#include "tools/bench/thesis/chapter5/free_margin.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>

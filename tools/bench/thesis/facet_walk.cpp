@@ -1,4 +1,4 @@
-#include "tools/thesis/facet_walk.hpp"
+#include "tools/bench/thesis/facet_walk.hpp"
 
 #include <Eigen/LU>
 #include <vector>

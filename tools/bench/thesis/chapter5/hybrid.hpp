@@ -1,9 +1,9 @@
 // §5.5.2: DQP3 on facet-balls first, alternating points (§5.2) from where it ends.
 #pragma once
 
-#include "tools/thesis/chapter5/alternating.hpp"
-#include "tools/thesis/chapter5/facet_ball.hpp"
-#include "tools/thesis/chapter5/safeguarded_newton.hpp"
+#include "tools/bench/thesis/chapter5/alternating.hpp"
+#include "tools/bench/thesis/chapter5/facet_ball.hpp"
+#include "tools/bench/thesis/chapter5/safeguarded_newton.hpp"
 
 namespace clearance::bench {
 

@@ -10,15 +10,15 @@
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "tools/bench/random.hpp"
+#include "tools/bench/thesis/chapter5/alternating.hpp"
+#include "tools/bench/thesis/chapter5/digits50.hpp"
+#include "tools/bench/thesis/chapter5/facet_ball.hpp"
+#include "tools/bench/thesis/chapter5/free_margin.hpp"
+#include "tools/bench/thesis/chapter5/methods.hpp"
+#include "tools/bench/thesis/chapter5/point_families.hpp"
+#include "tools/bench/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
+#include "tools/bench/thesis/chapter5/support_gjk.hpp"
 #include "tools/bench/workload.hpp"
-#include "tools/thesis/chapter5/alternating.hpp"
-#include "tools/thesis/chapter5/digits50.hpp"
-#include "tools/thesis/chapter5/facet_ball.hpp"
-#include "tools/thesis/chapter5/free_margin.hpp"
-#include "tools/thesis/chapter5/methods.hpp"
-#include "tools/thesis/chapter5/point_families.hpp"
-#include "tools/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
-#include "tools/thesis/chapter5/support_gjk.hpp"
 
 namespace clearance::bench {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
+#include "tools/bench/thesis/chapter5/polyhedron_to_ellipsoid.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
@@ -6,7 +6,7 @@
 
 #include "core/active_set/alpha_step_length.hpp"
 #include "core/active_set/lambda_multipliers.hpp"
-#include "tools/thesis/chapter5/safeguarded_newton.hpp"
+#include "tools/bench/thesis/chapter5/safeguarded_newton.hpp"
 
 namespace clearance::bench {
 namespace {

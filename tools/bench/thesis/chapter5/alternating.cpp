@@ -1,4 +1,4 @@
-#include "tools/thesis/chapter5/alternating.hpp"
+#include "tools/bench/thesis/chapter5/alternating.hpp"
 
 #include <cmath>
 
