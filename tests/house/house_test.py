@@ -36,7 +36,7 @@ TREE = {
     "tools/program.cpp": PROGRAM,
     "config/cell/reader.cpp": READER,
     "README.md": "# A page\n\n`--speed` sets the speed.\n\n```\nin code a line may be as long as it has to be" + " or longer" * 20 + "\n```\n",
-    "config/KEYS.md": "# Keys\n\n| key | |\n|---|---|\n| `margin` | " + "word " * 25 + "|\n",
+    "config/KEYS.md": "# Keys\n\n## Index\n\n- [All](#all): `margin`\n\n## All\n\n| key | |\n|---|---|\n| `margin` | " + "word " * 25 + "|\n",
     "idl/FIELDS.md": "# Fields\n\n" + "a word\n" * 3000,
     "tools/script": "#!/usr/bin/env python3\n# Prints nothing.\ndef nothing():\n    pass\n",
     "tests/a_test.cpp": "TEST(Distance, OfAPointToItselfIsZero) { EXPECT_EQ(distance_of(p, p), 0.0); }\n",
@@ -133,7 +133,16 @@ class House(unittest.TestCase):
         self.expect("page-line", "core/README.md", 1, "a" * 60 + " " + "b" * 60 + "\n")
 
     def test_a_cell_of_the_keys_has_at_most_25_words(self):
-        self.expect("cell", "config/KEYS.md", 5, TREE["config/KEYS.md"].replace("word |", "word word |"))
+        self.expect("cell", "config/KEYS.md", 11, TREE["config/KEYS.md"].replace("word |", "word word |"))
+
+    def test_a_page_that_is_searched_has_an_index(self):
+        self.expect("index", "config/KEYS.md", 1, TREE["config/KEYS.md"].replace("## Index", "## Content"))
+        self.expect("index", "config/KEYS.md", 1, TREE["config/KEYS.md"] + "| `size` | |\n")
+        self.write("monitor/FAULTS.md", "# Faults\n\n## Index\n\n## It's late\n\n| it | code |\n|---|---|\n| 1 | `[late]`, `[later]` |\n")
+        self.assertEqual(self.found(), [("index", "monitor/FAULTS.md", 1)])
+        subprocess.run([HERE / "reflow", self.root / "monitor/FAULTS.md"], check=True)
+        self.assertIn("\n- [It's late](#its-late): `late`, `later`\n", (self.root / "monitor/FAULTS.md").read_text())
+        self.assertEqual(self.found(), [])
 
     def test_each_option_and_key_is_named(self):
         self.expect("option", "tools/program.cpp", 1, 'app.add_flag("--spee", x);  // for --speed-limit\n')
@@ -205,8 +214,8 @@ class Reflow(unittest.TestCase):
 
 class Sources(unittest.TestCase):
     def test_lines_of_a_comment_are_one_text(self):
-        code = "int a;  // the first\n        // line\nint b;  // another\n// Apart.\n"
-        self.assertEqual([comment.text for comment in sources.CppSource(code).comments], ["the first line", "another", "Apart."])
+        code = "int a;  // the first\n        // line\nint b;  // another\n// Apart.\n//\n// It goes on.\n\n// Alone.\n"
+        self.assertEqual([comment.text for comment in sources.CppSource(code).comments], ["the first line", "another", "Apart. It goes on.", "Alone."])
 
 
 if __name__ == "__main__":

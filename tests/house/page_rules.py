@@ -1,6 +1,7 @@
 """Rules about pages: words, lengths, columns, cells of the tables of keys, and the commits of measured pages."""
 import re
 
+import index
 import source_rules
 from tree import Fault
 
@@ -9,6 +10,7 @@ FENCE = re.compile(r"^\s*(```|~~~)")
 COMMIT = re.compile(r"\b(?:commit|Made from [^,\s]+,) ([0-9a-f]{7,40})\b")
 TOKEN = re.compile(r"(?:`[^`]*`|[^\s`]|`)+")  # what stays in one line: a word, or code
 KEYS = "config/KEYS.md"
+INDEXED = (KEYS, "monitor/FAULTS.md")  # are searched
 
 
 def prose(text):
@@ -53,6 +55,8 @@ def check(tree):
             for cell in cells(line) if path == KEYS else ():
                 if len(cell.split()) > MOST_CELL_WORDS:
                     yield Fault("cell", path, number, f"a cell has {len(cell.split())} words; {MOST_CELL_WORDS} at most: '{cell[:40]}...'")
+        if path in INDEXED and not index.is_right(tree.text(path)):
+            yield Fault("index", path, 1, f"'## Index' is not what the page holds (tests/house/reflow {path} writes it)")
     for path in sorted(references - set(tree.paths)):
         yield Fault("page-length", path, 1, "is in tests/house/references.txt and does not exist")
     yield from measured(tree)

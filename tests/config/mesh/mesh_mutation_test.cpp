@@ -14,6 +14,7 @@
 #include "tests/config/cells.hpp"
 #include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -22,7 +23,7 @@ namespace {
 class MeshMutation : public testing::TestWithParam<BoxMesh> {};
 
 // Each mutation needs a child process: 2 to 5 ms, and 15 ms if assimp reads OBJ. All formats take
-// several seconds. A crash can be detected in no other way.
+// several seconds. A crash can be detected only so.
 std::uint32_t mutations_of(const BoxMesh& mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return mesh.extension == "obj" ? 10 : 50;
@@ -33,7 +34,7 @@ std::uint32_t mutations_of(const BoxMesh& mesh) {
 
 TEST_P(MeshMutation, IsRefusedByNameOrWithinTheLimits) {
   const BoxMesh& mesh = GetParam();
-  const std::uint32_t mutations = mutations_of(mesh);
+  const auto mutations = static_cast<std::uint32_t>(repeats(mutations_of(mesh)));
   test::ScratchFolder folder;
   const std::string cell = cell_text("objects:\n  - {name: a, mesh: {file: mesh." + mesh.extension +
                                      ", max_parts: 1}}\n  - {name: b, sphere: {radius: 1}}\n"
