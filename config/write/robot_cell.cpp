@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <system_error>
 
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -18,14 +17,23 @@ namespace {
 
 // An identity pose is not written: the default of a cell file is the same.
 bool is_identity(const UrdfOrigin& origin) {
-  return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero();
+  return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero() && !origin.quaternion;
+}
+
+void emit_quaternion(YAML::Emitter& out, const Eigen::Quaterniond& q) {
+  out << YAML::Key << "quaternion" << YAML::Value;
+  emit_list(out, shortest(q.x()), shortest(q.y()), shortest(q.z()), shortest(q.w()));
 }
 
 // Emits one cell, section by section, into one YAML emitter.
 class RobotCellWriter {
  public:
   RobotCellWriter(const RobotCellOptions& options, UrdfRobot robot, std::optional<Srdf> srdf)
-      : options_(options), robot_(std::move(robot)), srdf_(std::move(srdf)) {}
+      : options_(options),
+        robot_(std::move(robot)),
+        srdf_(std::move(srdf)),
+        meshes_({options.urdf, options.packages}, PackagesFrom::kCommandLine),
+        notes_(robot_.notes) {}
 
   std::variant<RobotCell, UrdfFaults> write();
 
@@ -35,35 +43,22 @@ class RobotCellWriter {
   void emit_shape(const UrdfCollision& collision);
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
-  void fail(int line, const std::string& text);
 
   const RobotCellOptions& options_;
   UrdfRobot robot_;
   std::optional<Srdf> srdf_;
   LinkNames shaped_;  // links with collision shapes
   YAML::Emitter out_;
+  MeshFinder meshes_;
   std::vector<std::string> notes_;
   // Faults are kept and not thrown, as the emitter is in the middle of a document.
   UrdfFaults faults_;
 };
 
-void RobotCellWriter::fail(int line, const std::string& text) {
-  faults_.push_back({line, fmt::format("{}:{}: {}", options_.urdf.string(), line, text)});
-}
-
 // Returns the path of the mesh, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
-  const RobotFiles files{options_.urdf, options_.packages};
-  const auto path = files.find(mesh.file);
-  if (!path) {
-    fail(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file,
-                                files.why_not_found(mesh.file, PackagesFrom::kCommandLine)));
-    return mesh.file;
-  }
-  if (std::error_code fault; !std::filesystem::is_regular_file(*path, fault)) {
-    fail(mesh.line,
-         fmt::format("found the mesh '{}', and no file '{}'", mesh.file, path->string()));
-  }
+  const auto path = meshes_.find(mesh, faults_);
+  if (!path) return mesh.file;
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
   return path->lexically_relative(directory).string();
 }
@@ -123,8 +118,12 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
       out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
       out_ << YAML::Key << "xyz" << YAML::Value;
       emit(out_, collision.link_from_shape.xyz);
-      out_ << YAML::Key << "rpy" << YAML::Value;
-      emit(out_, collision.link_from_shape.rpy);
+      if (const auto& q = collision.link_from_shape.quaternion) {
+        emit_quaternion(out_, *q);
+      } else {
+        out_ << YAML::Key << "rpy" << YAML::Value;
+        emit(out_, collision.link_from_shape.rpy);
+      }
       out_ << YAML::EndMap;
     }
     out_ << YAML::EndMap;
@@ -188,6 +187,7 @@ std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   if (srdf_) faults_ = faults_of(*srdf_, options_.srdf, robot_, options_.urdf);
   // Frames such as tool0 have no shapes; the note tells that they are not watched.
   std::string without;
+  note_visuals(robot_, notes_);
   out_ << YAML::BeginMap;
   emit_head();
   out_ << YAML::Key << "objects" << YAML::Value << YAML::BeginSeq;
