@@ -123,7 +123,8 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
                               {.stamp_ns = frame->stamp_ns,
                                .sent_ns = message.sent_ns,
                                .writer = message.writer,
-                               .is_stamped = stamp != 0},
+                               .is_stamped = stamp != 0,
+                               .frame = frame->frame},
                               frame->map);
     // A changed cell has no frame yet: the map that is sent again has the time of the first one.
     if (fault == FrameFault::kFrozen && state.status.frames == 0 && state.waiting.empty()) {
@@ -134,7 +135,11 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   } else {
     frame->stamp_ns = stamp_ns(sample->header);
     frame->frame = frame_name(sample->header.frame_id);
-    fault = state.stream.take(*sample, {frame->stamp_ns, message.sent_ns, message.writer},
+    fault = state.stream.take(*sample,
+                              {.stamp_ns = frame->stamp_ns,
+                               .sent_ns = message.sent_ns,
+                               .writer = message.writer,
+                               .frame = frame->frame},
                               frame->view(static_cast<const Message*>(nullptr)));
   }
   if constexpr (std::is_same_v<Message, sensor_msgs_msg_dds__Image_>)
