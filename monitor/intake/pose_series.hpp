@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/pose.hpp"
-#include "monitor/sensors/stamped_series.hpp"
+#include "monitor/inputs/stamped_series.hpp"
 
 namespace clearance {
 

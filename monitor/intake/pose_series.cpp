@@ -1,4 +1,4 @@
-#include "monitor/sensors/pose_series.hpp"
+#include "monitor/intake/pose_series.hpp"
 
 #include <algorithm>
 
