@@ -21,7 +21,7 @@ constexpr double kLeastShare = 0.005;  // of the surface: smaller walls are not 
 // Relative to the size: coordinates have single precision, so the vertices of a flat face are not
 // quite in one plane.
 constexpr double kOnPlane = 2e-7;
-constexpr double kBeside = 1e-4;
+constexpr double kStepBeside = 1e-4;
 constexpr double kSameNormal = 1e-4, kSameOffset = 1e-5;
 // The grid's points have distances from samples of the mesh; relative to their spacing.
 constexpr double kNearMesh = 0.75;
@@ -122,7 +122,7 @@ std::vector<Vec3> corners_in_solid(const ConvexCell& cell, const OpenSpace& spac
   Vec3 middle = Vec3::Zero();
   for (const Vec3& point : points) middle += point / static_cast<double>(points.size());
   // A vertex often lies on the mesh: a point beside it tells on which side the solid is.
-  const double step = kBeside * size_of(*cell.mesh);
+  const double step = kStepBeside * size_of(*cell.mesh);
   std::erase_if(corners, [&](const Vec3& corner) {
     return !winds_around(*cell.mesh, corner + step * (middle - corner).normalized());
   });

@@ -20,7 +20,7 @@ constexpr std::size_t kBatches = 256;
 // The longest wait, ns, so that batches do not fill their ring; and while a frame waits for joints.
 constexpr std::int64_t kIdleNs = 5'000'000, kFrameWaitsNs = 500'000;
 // A sensor without a frame for this long after the start is reported once.
-constexpr std::int64_t kSilentNs = 5'000'000'000;
+constexpr std::int64_t kSensorSilentNs = 5'000'000'000;
 
 }  // namespace
 
@@ -251,7 +251,7 @@ void SensorReader::log_news() {
 }
 
 void SensorReader::tell_of_silence() {
-  if (now_ns_ - started_ns_ < kSilentNs) return;
+  if (now_ns_ - started_ns_ < kSensorSilentNs) return;
   for (std::uint32_t i = 0; i < silence_said_.size(); ++i) {
     const SensorStatus status = sensors_->status(i);
     if (silence_said_[i] || status.frames > 0) continue;

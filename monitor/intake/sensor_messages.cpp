@@ -12,32 +12,33 @@
 namespace clearance {
 namespace {
 
-using Type = RawSensorMessage::Type;
+using MessageType = RawSensorMessage::Type;
 
 // A row a kind of topic: the key of a sensor that names it.
-struct Input {
+struct SensorInput {
   std::string Sensor::*topic;
   SensorKind of;
   std::string_view type;
   const RosType* delivery;
-  Type message;
+  MessageType message;
 };
-constexpr std::array<Input, 5> kInputs = {{
-    {&Sensor::topic, SensorKind::kDepthImage, "sensor_msgs/msg/Image", &kRosImage, Type::kImage},
+constexpr std::array<SensorInput, 5> kSensorInputs = {{
+    {&Sensor::topic, SensorKind::kDepthImage, "sensor_msgs/msg/Image", &kRosImage,
+     MessageType::kImage},
     {&Sensor::camera_info, SensorKind::kDepthImage, "sensor_msgs/msg/CameraInfo", &kRosCameraInfo,
-     Type::kCameraInfo},
+     MessageType::kCameraInfo},
     {&Sensor::topic, SensorKind::kPoints, "sensor_msgs/msg/PointCloud2", &kRosPointCloud2,
-     Type::kPoints},
+     MessageType::kPoints},
     {&Sensor::topic, SensorKind::kOctomap, "octomap_msgs/msg/Octomap", &kRosOctomap,
-     Type::kOctomap},
+     MessageType::kOctomap},
     {&Sensor::topic, SensorKind::kOctomap, "moveit_msgs/msg/PlanningScene", &kRosPlanningScene,
-     Type::kPlanningScene},
+     MessageType::kPlanningScene},
 }};
 
 }  // namespace
 
 bool is_frame_type(SensorKind kind, std::string_view type) noexcept {
-  return std::ranges::any_of(kInputs, [&](const Input& input) {
+  return std::ranges::any_of(kSensorInputs, [&](const SensorInput& input) {
     return input.of == kind && input.topic == &Sensor::topic && input.type == type;
   });
 }
@@ -49,7 +50,7 @@ bool needs_transforms(const Scene& scene) noexcept {
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
   if (!use_) return std::nullopt;
   if (topic.type == kTransformsType) return wants_transforms(topic.name);
-  for (const Input& input : kInputs) {
+  for (const SensorInput& input : kSensorInputs) {
     if (topic.type != input.type) continue;
     const auto sensor = std::ranges::find_if(scene_->sensors, [&](const Sensor& each) {
       return each.kind == input.of && each.*input.topic == topic.name;
@@ -69,8 +70,9 @@ std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
 
 std::optional<Decoder::Wanted> SensorMessages::wants_transforms(const std::string& name) {
   if (!needs_transforms(*scene_)) return std::nullopt;
-  if (name == "/tf") return Wanted{port_of({Type::kTransforms, name}), &kRosTf};
-  if (name == "/tf_static") return Wanted{port_of({Type::kStaticTransforms, name}), &kRosTfStatic};
+  if (name == "/tf") return Wanted{port_of({MessageType::kTransforms, name}), &kRosTf};
+  if (name == "/tf_static")
+    return Wanted{port_of({MessageType::kStaticTransforms, name}), &kRosTfStatic};
   return std::nullopt;
 }
 

@@ -15,7 +15,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::string_view kMark = "sent:";
+constexpr std::string_view kSentFileMark = "sent:";
 
 bool is_of_name(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -131,12 +131,13 @@ std::string with_paths(const std::string& yaml, const std::map<std::string, std:
   std::string text;
   std::size_t at = 0;
   for (;;) {
-    const std::size_t mark = yaml.find(kMark, at);
+    const std::size_t mark = yaml.find(kSentFileMark, at);
     if (mark == std::string::npos) break;
-    std::size_t end = mark + kMark.size();
+    std::size_t end = mark + kSentFileMark.size();
     while (end < yaml.size() && is_of_name(yaml[end])) ++end;
     const bool begins = mark == 0 || !is_of_name(yaml[mark - 1]);
-    const auto path = paths.find(yaml.substr(mark + kMark.size(), end - mark - kMark.size()));
+    const auto path =
+        paths.find(yaml.substr(mark + kSentFileMark.size(), end - mark - kSentFileMark.size()));
     text += yaml.substr(at, mark - at);
     text += begins && path != paths.end() ? path->second : yaml.substr(mark, end - mark);
     at = end;

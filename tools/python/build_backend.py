@@ -44,7 +44,7 @@ def build():
     if given and not (folder / "CMakeCache.txt").exists():
         raise SystemExit(f"clearance: CLEARANCE_BUILD={given} is no folder of a build by CMake")
     if not given:
-        options = ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON", "-DCLEARANCE_PYTHON=ON"]
+        options = ["-DCMAKE_BUILD_TYPE=Release", "-DCLEARANCE_PYTHON=ON"]
         options += ["-DCLEARANCE_TESTS=OFF", "-DCLEARANCE_BENCH=OFF"]
         run("cmake", "-S", PROJECT, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}", *options)
     run("cmake", "--build", folder, "--target", "clearance_python", "--parallel", os.cpu_count() or 1)

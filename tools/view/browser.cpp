@@ -25,7 +25,7 @@ namespace {
 namespace bp = boost::process;
 
 // A first page on a busy machine without a graphics card takes half a minute.
-constexpr auto kPatience = std::chrono::seconds(180);
+constexpr auto kBrowserPatience = std::chrono::seconds(180);
 // The descriptors of --remote-debugging-pipe.
 constexpr int kBrowserReads = 3, kBrowserWrites = 4;
 
@@ -111,7 +111,7 @@ Browser::Browser(int width, int height, std::function<void()> meanwhile)
     : meanwhile_(std::move(meanwhile)) {
   if (!profile_.error().empty()) throw std::runtime_error(profile_.error());
   process_ = std::make_unique<Process>(command(profile_.path(), width, height));
-  deadline_ = std::chrono::steady_clock::now() + kPatience;
+  deadline_ = std::chrono::steady_clock::now() + kBrowserPatience;
   const nlohmann::json page = call("Target.createTarget", {{"url", "about:blank"}});
   session_ = call("Target.attachToTarget", {{"targetId", page.at("targetId")}, {"flatten", true}})
                  .at("sessionId");
@@ -128,12 +128,12 @@ void Browser::fail(const std::string& what) const {
 }
 
 void Browser::open(const std::string& url) {
-  deadline_ = std::chrono::steady_clock::now() + kPatience;
+  deadline_ = std::chrono::steady_clock::now() + kBrowserPatience;
   call("Page.navigate", {{"url", url}});
 }
 
 void Browser::wait_for(const std::string& expression) {
-  deadline_ = std::chrono::steady_clock::now() + kPatience;
+  deadline_ = std::chrono::steady_clock::now() + kBrowserPatience;
   for (;;) {
     const nlohmann::json answer =
         call("Runtime.evaluate",
@@ -144,7 +144,7 @@ void Browser::wait_for(const std::string& expression) {
 }
 
 void Browser::screenshot(const std::filesystem::path& png) {
-  deadline_ = std::chrono::steady_clock::now() + kPatience;
+  deadline_ = std::chrono::steady_clock::now() + kBrowserPatience;
   const nlohmann::json answer = call("Page.captureScreenshot", {{"format", "png"}});
   std::ofstream file(png, std::ios::binary);
   file << from_base64(answer.at("data"));

@@ -15,7 +15,7 @@ Bytes shared(std::span<const std::byte> bytes) {
   return std::make_shared<const std::vector<std::byte>>(bytes.begin(), bytes.end());
 }
 
-nlohmann::json point(const Vec3& at) {
+nlohmann::json json_of(const Vec3& at) {
   return {{"x", number(at.x())}, {"y", number(at.y())}, {"z", number(at.z())}};
 }
 
@@ -85,8 +85,8 @@ std::string Frame::distance_json(std::uint32_t a, std::uint32_t b) {
                         {"distance", number(found.distance)},
                         {"lower", number(found.lower)},
                         {"upper", number(found.upper)},
-                        {"witness_a", point(found.witness_a)},
-                        {"witness_b", point(found.witness_b)},
+                        {"witness_a", json_of(found.witness_a)},
+                        {"witness_b", json_of(found.witness_b)},
                         {"age_a_ns", age(a)},
                         {"age_b_ns", age(b)}}
       .dump();

@@ -19,7 +19,7 @@ namespace http = boost::beast::http;
 using Local = boost::asio::local::stream_protocol;
 using Error = boost::system::error_code;
 
-constexpr std::chrono::seconds kPatience{1};
+constexpr std::chrono::seconds kRelayPatience{1};
 constexpr std::uint64_t kLongestText = 64 << 20;
 
 // One question to the daemon. It lives as long as its handlers.
@@ -39,7 +39,7 @@ class Question : public std::enable_shared_from_this<Question> {
     } catch (const boost::system::system_error& too_long) {
       return fail(too_long.code());
     }
-    stream_.expires_after(kPatience);
+    stream_.expires_after(kRelayPatience);
     stream_.async_connect(endpoint, [self = shared_from_this()](const Error& error) {
       if (error) return self->fail(error);
       self->write();

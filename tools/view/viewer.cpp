@@ -5,7 +5,7 @@
 namespace clearance::view {
 namespace {
 
-constexpr std::size_t kMostRequestBytes = 1 << 16;
+constexpr std::size_t kMostMessageBytes = 1 << 16;
 // The kernel may hold about two frames of a large cell for a viewer, so that a slow viewer does not
 // see old ones.
 constexpr int kSendBuffer = 1 << 18;
@@ -14,7 +14,7 @@ constexpr int kSendBuffer = 1 << 18;
 
 void Viewer::accept(const http::request<http::empty_body>& request) {
   socket_.set_option(websocket::stream_base::timeout::suggested(beast::role_type::server));
-  socket_.read_message_max(kMostRequestBytes);
+  socket_.read_message_max(kMostMessageBytes);
   const std::string asked(request[http::field::sec_websocket_protocol]);
   for (const std::string_view known : kSubprotocols) {
     if (asked.find(known) == std::string::npos) continue;

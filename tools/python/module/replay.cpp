@@ -249,11 +249,11 @@ py::object replay(const CellObject& cell, const std::filesystem::path& recording
   return records.take().attr("view")(py::module_::import("numpy").attr("recarray"));
 }
 
-OfflineReplay check(const CellObject& cell, const std::filesystem::path& recording,
-                    std::optional<double> min_distance, std::vector<std::string> no_zone,
-                    double start_s, double end_s, std::optional<double> tick_hz,
-                    std::vector<std::string> joint_topics, std::map<std::string, double> joints,
-                    bool evaluate_all) {
+OfflineReplay check_replay(const CellObject& cell, const std::filesystem::path& recording,
+                           std::optional<double> min_distance, std::vector<std::string> no_zone,
+                           double start_s, double end_s, std::optional<double> tick_hz,
+                           std::vector<std::string> joint_topics,
+                           std::map<std::string, double> joints, bool evaluate_all) {
   if (min_distance && !std::isfinite(*min_distance))
     throw py::value_error("min_distance: expected a finite distance, m, or None");
   const ReplayArguments arguments{start_s,           end_s,       tick_hz, std::move(joint_topics),
@@ -314,7 +314,7 @@ status (PairStatus); by zone, zone_active. m, m/s. Unknown bounds are infinite, 
 
 Raises ReplayError if it cannot be run; warns of a damaged recording. Releases the interpreter's lock;
 Ctrl-C ends it.)");
-  module.def("check_replay", &check, py::arg("cell"), py::arg("recording"),
+  module.def("check_replay", &check_replay, py::arg("cell"), py::arg("recording"),
              py::arg("min_distance") = py::none(), py::arg("no_zone") = std::vector<std::string>(),
              py::kw_only(), py::arg("start_s") = 0.0, py::arg("end_s") = kInfinity,
              py::arg("tick_hz") = py::none(), py::arg("joint_topics") = std::vector<std::string>(),

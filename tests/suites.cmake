@@ -1,0 +1,33 @@
+# Writes FILE, which declares a test of ctest for each suite of PROGRAM: what clearance_suites() in CMakeLists.txt runs.
+execute_process(COMMAND ${PROGRAM} --gtest_list_tests "--gtest_filter=${FILTER}" OUTPUT_VARIABLE listed
+                COMMAND_ERROR_IS_FATAL ANY)
+string(REGEX REPLACE "[][;]" "" listed "${listed}") # in values of parameters; they would part a list
+string(REPLACE "\n" ";" lines "${listed}")
+set(suite "")
+set(declared "")
+set(exclude "")
+if(FILTER MATCHES "(-.*)$") # A filter's excluded part counts in each suite, too.
+  set(exclude "${CMAKE_MATCH_1}")
+endif()
+foreach(line ${lines})
+  if(line MATCHES "^([^ ]+)\\.( |$)")
+    set(suite "${CMAKE_MATCH_1}")
+  elseif(line MATCHES "^  ([^ ]+)" AND NOT line MATCHES "^  DISABLED_")
+    list(APPEND cases_${suite} ${CMAKE_MATCH_1})
+    list(APPEND suites ${suite})
+  endif()
+endforeach()
+list(REMOVE_DUPLICATES suites)
+foreach(suite ${suites})
+  list(LENGTH cases_${suite} count)
+  if(exclude STREQUAL "")
+    list(TRANSFORM cases_${suite} PREPEND "${suite}.")
+    list(JOIN cases_${suite} ":" filter) # only those of FILTER
+  else()
+    set(filter "${suite}.*${exclude}")
+  endif()
+  string(APPEND declared "add_test([==[${PREFIX}/${suite}]==] ${PROGRAM} [==[--gtest_filter=${filter}]==])\n"
+                         "set_tests_properties([==[${PREFIX}/${suite}]==] PROPERTIES TIMEOUT 900 COST ${count} "
+                         "RUN_SERIAL ${ALONE})\n")
+endforeach()
+file(WRITE ${FILE} "${declared}")
