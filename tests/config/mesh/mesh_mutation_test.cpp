@@ -14,6 +14,7 @@
 #include "tests/config/cells.hpp"
 #include "tests/config/mesh/box_meshes.hpp"
 #include "tests/shared/mutation.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -33,7 +34,7 @@ std::uint32_t mutations_of(const BoxMesh& mesh) {
 
 TEST_P(MeshMutation, IsRefusedByNameOrWithinTheLimits) {
   const BoxMesh& mesh = GetParam();
-  const std::uint32_t mutations = mutations_of(mesh);
+  const auto mutations = static_cast<std::uint32_t>(repeats(mutations_of(mesh)));
   test::ScratchFolder folder;
   const std::string cell = cell_text("objects:\n  - {name: a, mesh: {file: mesh." + mesh.extension +
                                      ", max_parts: 1}}\n  - {name: b, sphere: {radius: 1}}\n"

@@ -9,6 +9,7 @@
 #include "tests/core/construction/made_shapes.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
@@ -23,7 +24,7 @@ using ::testing::IsEmpty;
 TEST(ExactShapes, RowsOnALatticeGiveExactlyTheEnumeratedBody) {
   Random random(7);
   int accepted = 0;
-  for (int round = 0; round < 150; ++round) {
+  for (int round = 0; round < static_cast<int>(repeats(150)); ++round) {
     std::vector<HalfSpace> rows;
     const int count = random.integer(4, 14);
     for (int i = 0; i < count; ++i) {
@@ -40,12 +41,12 @@ TEST(ExactShapes, RowsOnALatticeGiveExactlyTheEnumeratedBody) {
     expect_as_enumerated(*body, rows);
     if (HasFailure()) FAIL() << "round " << round;
   }
-  EXPECT_GT(accepted, 80);
+  EXPECT_GT(accepted, static_cast<int>(repeats(80)));
 }
 
 TEST(ExactShapes, HardBodiesGiveExactlyTheEnumeratedBody) {
   Random random(11);
-  for (int round = 0; round < 40; ++round) {
+  for (int round = 0; round < static_cast<int>(repeats(40)); ++round) {
     std::vector<oracle::Body> bodies = {
         hard::random_polytope(random, random.integer(4, 16)),
         hard::with_duplicate_rows(hard::random_polytope(random, 8), random),

@@ -9,6 +9,7 @@
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
@@ -17,7 +18,7 @@ namespace {
 using Quat = Eigen::Quaterniond;
 using test::turned;
 
-constexpr std::uint64_t kSeeds = 40;
+const std::uint64_t kSeeds = repeats(40);
 
 // B above A, which is a box, and moving along it.
 struct ParallelPair {

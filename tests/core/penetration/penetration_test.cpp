@@ -12,6 +12,7 @@
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/tied_cases.hpp"
 
 namespace clearance {
@@ -68,7 +69,7 @@ Overlap random_overlap(Random& random) {
 }
 
 void for_each_overlap(std::uint64_t seeds, const std::function<void(Overlap&, Random&)>& visit) {
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+  for (std::uint64_t seed = 0; seed < repeats(seeds); ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Random random(seed);
     Overlap overlap = random_overlap(random);
@@ -198,7 +199,7 @@ TEST(Penetration, HoldsAgainstTheExactTruthColdAndTrackedAndWithNonsense) {
       }
     }
   });
-  EXPECT_GT(overlapping, 100);
+  EXPECT_GT(overlapping, static_cast<int>(repeats(100)));
 }
 
 TEST(Penetration, SwappingTheBodiesTurnsTheNormal) {

@@ -14,11 +14,12 @@
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint64_t kContactSeeds = 60;
+const std::uint64_t kContactSeeds = repeats(60);
 constexpr int kContactSteps = 60;
 
 struct TouchingBoxes {
@@ -76,7 +77,7 @@ TEST(CornerContacts, AreCertifiedByTheirFeatures) {
       }
     }
   }
-  EXPECT_GT(all, 0.9 * kContactSeeds * kContactSteps);
+  EXPECT_GT(all, 0.9 * static_cast<double>(kContactSeeds * kContactSteps));
   EXPECT_GT(at_once, 0.95 * all);
   for (const FeaturePair kind : {FeaturePair::kVertexVertex, FeaturePair::kVertexEdge,
                                  FeaturePair::kEdgeVertex, FeaturePair::kEdgeEdge}) {

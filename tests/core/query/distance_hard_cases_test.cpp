@@ -9,6 +9,7 @@
 
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace hard {
@@ -29,7 +30,7 @@ std::string joined(const std::vector<std::string>& faults) {
 class DistanceOfPairs : public testing::TestWithParam<hard::CaseFamily> {};
 
 TEST_P(DistanceOfPairs, HoldsAgainstTheExactTruth) {
-  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+  for (std::uint64_t seed = 0; seed < repeats(20); ++seed) {
     Random random(seed);
     const hard::HardCase c = GetParam().make(random);
     DistanceJudge judge(c.a, c.b);
@@ -218,7 +219,7 @@ TEST(HardCases, OfAFamilyThatDoesNotExistAreAnError) {
 class DistanceAlongMotions : public testing::TestWithParam<hard::MotionFamily> {};
 
 TEST_P(DistanceAlongMotions, HoldsAgainstTheExactTruthAtEveryStep) {
-  for (std::uint64_t seed = 0; seed < 3; ++seed) {
+  for (std::uint64_t seed = 0; seed < repeats(3); ++seed) {
     Random random(seed);
     const hard::HardMotion m = GetParam().make(random, 40);
     DistanceJudge judge(m.a, m.b);

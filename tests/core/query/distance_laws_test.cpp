@@ -9,6 +9,7 @@
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/nonsense_state.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 using test::cold;
 using test::made;
 
-constexpr std::uint64_t kLawSeeds = 8;
+const std::uint64_t kLawSeeds = repeats(8);
 
 struct Example {
   std::string name;

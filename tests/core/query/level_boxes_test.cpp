@@ -14,6 +14,7 @@
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
@@ -22,7 +23,7 @@ namespace {
 using Quat = Eigen::Quaterniond;
 using test::turned;
 
-constexpr std::uint64_t kSeeds = 40;
+const std::uint64_t kSeeds = repeats(40);
 constexpr int kBoxSteps = 120;
 constexpr double kStep = 0.01, kTurn = 0.013;  // m, rad
 
@@ -130,7 +131,7 @@ TEST(LevelBoxes, ThatRestOnEachOtherTouchAndTheirFeaturesCertifyIt) {
     }
   }
   // The others are the first query of each motion, and those whose features change.
-  EXPECT_GT(all, 10'000);
+  EXPECT_GT(all, static_cast<int>(repeats(10'000)));
   EXPECT_GT(at_once, 0.8 * all);
 }
 
@@ -214,7 +215,7 @@ TEST(LevelBoxes, ThatOverlapDeeplyHaveTheDepthOfTheirPrisms) {
       }
     }
   }
-  EXPECT_GT(all, 1'000);
+  EXPECT_GT(all, static_cast<int>(repeats(1'000)));
   EXPECT_GT(by_features, all / 2);
 }
 

@@ -9,13 +9,15 @@
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/poses.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
 
 using Quat = Eigen::Quaterniond;
 
-constexpr int kTrackedSteps = 1'000'000, kJudgedEvery = 31'250;
+const int kTrackedSteps = static_cast<int>(repeats(1'000'000));
+constexpr int kJudgedEvery = 31'250;
 
 struct PairOfPoses {
   Pose a, b;

@@ -17,6 +17,7 @@
 #include "tests/shared/made.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
@@ -96,7 +97,7 @@ TEST(NearestElement, BoundsAreThoseOfBruteForceForEveryKindOfPart) {
   const char* const asked = std::getenv("CLEARANCE_CLOUD_SEEDS");
   const int seeds = asked == nullptr ? 40 : std::atoi(asked);
   const std::vector<ConvexBody> all = parts();
-  for (int seed = 0; seed < seeds; ++seed) {
+  for (int seed = 0; seed < static_cast<int>(repeats(static_cast<std::uint64_t>(seeds))); ++seed) {
     Random random(static_cast<std::uint64_t>(seed) * 1000003);
     const Points points = drawn(random, static_cast<std::size_t>(random.integer(1, 300)));
     const PointCloud cloud = built(points);
