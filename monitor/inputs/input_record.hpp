@@ -66,22 +66,15 @@ struct SampleOrigin {
   switch (cause) {
     case Reject::kBackwards:
       return elapsed(stamp_ns, in_use_ns) > age_limit_ns;
-    case Reject::kFuture:
-    case Reject::kTooFast:
-    case Reject::kFrozen:
-    case Reject::kOtherWay:
-    case Reject::kDisputed:
-    case Reject::kOutsideLimits:
-      return true;
     case Reject::kUnknownObject:
     case Reject::kNonFinite:
     case Reject::kNotUnit:
     case Reject::kWrongRevision:
     case Reject::kOtherSource:
-    case Reject::kCount:
       return false;
+    default:
+      return true;
   }
-  return false;
 }
 
 // After a dispute of two sources, one of them must be silent for this long.

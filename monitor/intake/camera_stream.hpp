@@ -28,7 +28,7 @@ struct FrameOrigin {
   std::int64_t stamp_ns = 0;  // of the header
   std::int64_t sent_ns = 0;   // the sender's clock at sending; in a log, the time of recording
   std::uint64_t writer = 0;
-  bool is_stamped = true;  // false: the header has none, and `stamp_ns` is the time of sending
+  bool is_stamped = true;       // false: the header has none, and `stamp_ns` is the time of sending
   std::string_view frame = {};  // in which it was measured
 };
 

@@ -31,8 +31,8 @@ MessageForm form_of(std::string_view frame, const DepthImage& image) noexcept {
 
 MessageForm form_of(std::string_view frame, const PointsView& points) noexcept {
   const std::uint64_t width = points.height > 1 ? points.width : 0;
-  return {digest_of_frame(frame), digest_of({width, points.height, points.point_step, points.x,
-                                             points.y, points.z})};
+  return {digest_of_frame(frame),
+          digest_of({width, points.height, points.point_step, points.x, points.y, points.z})};
 }
 
 MessageForm form_of(std::string_view frame, const OctomapView& map) noexcept {

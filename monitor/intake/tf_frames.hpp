@@ -10,9 +10,9 @@
 // means the same at every start. Among claims of one kind the first one that was heard is used, as
 // long as its publisher exists. A publisher on tf must also not be silent for a second or more.
 //
-// Between two transforms to one parent, a frame is on the straight way between them. It is taken to
-// be within the ball whose diameter is that way, since tf states no speed: it may begin to move, or
-// stop, at any time in between. After the last transform, its place is not known.
+// Between two transforms to one parent, a frame is on the straight line between them. It is taken
+// to be within the ball whose diameter is that line, since tf states no speed: it may begin to
+// move, or stop, at any time in between. After the last transform, its place is not known.
 #pragma once
 
 #include <cstdint>

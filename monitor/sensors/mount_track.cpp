@@ -37,10 +37,10 @@ bool may_have_been(const PoseSeries& values, const Pose& pose, std::int64_t stam
     const auto& earlier = values.at(values.size() - 2);
     const double ratio = static_cast<double>(elapsed(last.stamp_ns, stamp_ns)) /
                          static_cast<double>(elapsed(earlier.stamp_ns, last.stamp_ns));
-    error.shift = ratio * way_between(earlier.value, last.value);
+    error.shift = ratio * distance_between(earlier.value, last.value);
     error.turn = ratio * angle_between(earlier.value, last.value);
   }
-  return way_between(at, pose) <= error.shift + kSame &&
+  return distance_between(at, pose) <= error.shift + kSame &&
          angle_between(at, pose) <= error.turn + kSame;
 }
 
@@ -49,7 +49,7 @@ bool may_have_been(const PoseSeries& values, const Pose& pose, std::int64_t stam
 bool PathMetric::stay_within(double limit, const CarriedPose& from,
                              const CarriedPose& to) const noexcept {
   return from.carrier == to.carrier &&
-         way_between(from.pose, to.pose) <= speed.shift * limit + kRounding &&
+         distance_between(from.pose, to.pose) <= speed.shift * limit + kRounding &&
          angle_between(from.pose, to.pose) <= speed.turn * limit + kRounding;
 }
 
@@ -132,7 +132,7 @@ MountTrack::Excess MountTrack::excess(std::int64_t last_ns) const {
   for (i = std::max<std::size_t>(i, 1); i < values.size(); ++i) {
     const auto &a = values.at(i - 1), &b = values.at(i);
     const double time_s = seconds(elapsed(a.stamp_ns, b.stamp_ns));
-    const double way = way_between(a.value, b.value), angle = angle_between(a.value, b.value);
+    const double way = distance_between(a.value, b.value), angle = angle_between(a.value, b.value);
     const double shift = way - speed.shift * time_s, turn = angle - speed.turn * time_s;
     if (limits_.speed.is_stated()) {
       found.shift = std::max(found.shift, shift);

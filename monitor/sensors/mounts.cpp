@@ -127,7 +127,7 @@ std::string Mounts::robot_elsewhere(const Sensor& sensor, const std::string& fra
     if (!found) continue;
     const Pose& by_tf = found->place.world_from_body;
     const Pose& by_cell = root.world_from_root;
-    const double shift = way_between(by_tf, by_cell), turned = angle_between(by_tf, by_cell);
+    const double shift = distance_between(by_tf, by_cell), turned = angle_between(by_tf, by_cell);
     if (shift > kSameBase + found->place.shift_error ||
         turned > kSameBase + found->place.turn_error) {
       return fmt::format("tf has '{}' {:.1f} mm and {:.1f} mrad from where the cell has it",
@@ -140,7 +140,7 @@ std::string Mounts::robot_elsewhere(const Sensor& sensor, const std::string& fra
         by_cell.orientation.normalized() * by_tf.orientation.conjugate();
     const Pose moved{by_cell.position + turn * (at.position - by_tf.position),
                      turn * at.orientation};
-    most.shift = std::max(most.shift, way_between(moved, at));
+    most.shift = std::max(most.shift, distance_between(moved, at));
     most.turn = std::max(most.turn, angle_between(moved, at));
   }
   place.shift_error = rounded_up(place.shift_error + most.shift);
@@ -285,22 +285,21 @@ std::optional<MountTrack::Excess> Mounts::deviation_in_gap(const MountSpeed& spe
                until = seconds(elapsed(stamp_ns, after_ns));
   const PastPose& a = before->place;
   if (!after) {
-    return MountTrack::Excess{
-        .shift =
-            rounded_up(way_between(a.world_from_body, pose) + a.shift_error + speed.shift * since),
-        .turn =
-            rounded_up(angle_between(a.world_from_body, pose) + a.turn_error + speed.turn * since)};
+    return MountTrack::Excess{.shift = rounded_up(distance_between(a.world_from_body, pose) +
+                                                  a.shift_error + speed.shift * since),
+                              .turn = rounded_up(angle_between(a.world_from_body, pose) +
+                                                 a.turn_error + speed.turn * since)};
   }
   const PastPose& b = after->place;
   const Pose line = pose_between(a.world_from_body, b.world_from_body, since / (since + until));
   const double ends_shift = std::max(a.shift_error, b.shift_error);
-  const double way = way_between(a.world_from_body, b.world_from_body);
+  const double way = distance_between(a.world_from_body, b.world_from_body);
   const double angle = angle_between(a.world_from_body, b.world_from_body);
   const double shift = deviation_in_space(since, until, speed.shift,
                                           std::max(0.0, way - 2.0 * ends_shift) / (since + until));
   const double turn = deviation_of_turn(since, until, speed.turn, angle / (since + until));
   return MountTrack::Excess{
-      .shift = rounded_up(shift + 2.0 * ends_shift + way_between(line, pose)),
+      .shift = rounded_up(shift + 2.0 * ends_shift + distance_between(line, pose)),
       .turn = rounded_up(turn + std::max(a.turn_error, b.turn_error) + angle_between(line, pose))};
 }
 

@@ -195,7 +195,7 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   const double until = seconds_between(stamp_ns, after->stamp_ns), gap = seconds(gap_ns);
   const Pose &a = before->value, &b = after->value;
   if (gap_ns > kLongGapNs || !same_pose(a, b)) {
-    const double shift = deviation_in_space(since, until, speed, way_between(a, b) / gap);
+    const double shift = deviation_in_space(since, until, speed, distance_between(a, b) / gap);
     past.shift_error = rounded_up(shift + past.shift_error);
   }
   if (gap_ns > kLongGapNs) {

@@ -33,7 +33,7 @@ TEST(PastValues, AreNotKnownFromTheValueBeforeAContradictionUntilTheNextOne) {
   EXPECT_TRUE(past.values().empty());
 }
 
-// It keeps only a few times, and joins the oldest ones.
+// Few times are kept, and the oldest ones are joined.
 TEST(PastValues, ForgetNoTimeAtWhichTheyWereContradicted) {
   Random random(3);
   for (int run = 0; run < 200; ++run) {

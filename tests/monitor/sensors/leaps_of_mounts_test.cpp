@@ -56,36 +56,36 @@ class LeapsOfMounts : public MountedCamera {
 
 // The lie of an object with another parent is found, and so is that of a camera's frame.
 TEST_F(LeapsOfMounts, ByAnotherParentAreTakenWhenTheFrameCanHaveGotThere) {
-  constexpr double kWay = 3.1;
+  constexpr double kDistance = 3.1;
   for (const auto& [mount, speed] : kSpeeds) {
     SCOPED_TRACE(mount);
     make_with_info(mount);
-    add_static("map", "other", kWay, kStart);
-    const int there_ms = 1000 + static_cast<int>(1e3 * kWay / speed) - kAgeMs;
+    add_static("map", "other", kDistance, kStart);
+    const int there_ms = 1000 + static_cast<int>(1e3 * kDistance / speed) - kAgeMs;
     send(0, 1000, "map", 0.0);
     send(1000, there_ms + 2500, "other", 0.0);
     expect(90, 850, 0.0);
     expect(990, there_ms - 20, std::nullopt);
-    // Where no speed is stated, the error is the whole way for a second.
-    expect(there_ms + 120, there_ms + 900, kWay, speed > 1.0 ? kWay : 0.0);
-    expect(there_ms + 1300, there_ms + 2400, kWay);
+    // Where no speed is stated, the error is the whole distance for a second.
+    expect(there_ms + 120, there_ms + 900, kDistance, speed > 1.0 ? kDistance : 0.0);
+    expect(there_ms + 1300, there_ms + 2400, kDistance);
   }
 }
 
 TEST_F(LeapsOfMounts, AreTakenWhenTheFrameCanHaveGotThereAtItsSpeedAndNotAfterASecond) {
-  constexpr double kWay = 3.2;
+  constexpr double kDistance = 3.2;
   for (const auto& [mount, speed] : kSpeeds) {
     SCOPED_TRACE(mount);
     make_with_info(mount);
-    const int there_ms = 1000 + static_cast<int>(1e3 * kWay / speed) - kAgeMs;
+    const int there_ms = 1000 + static_cast<int>(1e3 * kDistance / speed) - kAgeMs;
     send(0, 1000, "map", 0.0);
-    send(1000, there_ms + 2500, "map", kWay);
+    send(1000, there_ms + 2500, "map", kDistance);
     expect(990, there_ms - 20, std::nullopt);
-    expect(there_ms + 1300, there_ms + 2400, kWay);
+    expect(there_ms + 1300, there_ms + 2400, kDistance);
   }
 }
 
-// It is known again an age limit after the last wrong transform.
+// The frame is known again an age limit after the last wrong transform.
 TEST_F(LeapsOfMounts, ThatEndKeepNoImageFromItsPlaceAnyLonger) {
   for (const auto& [mount, speed] : kSpeeds) {
     SCOPED_TRACE(mount);
