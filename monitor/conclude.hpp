@@ -33,7 +33,8 @@ struct Published {
 // Decides for every pair with a contact whether that is as allowed.
 void judge(const TickView& view, const ZoneCrossings& crossings, Contacts& contacts) noexcept;
 
-// Also advances the zones to this tick. `reports` are those of the published pairs, in their order.
+// Concludes the tick, and advances the zones to it. `reports` are those of the published pairs, in
+// their order.
 [[nodiscard]] Conclusion conclude(const Published& published, const Displacements& displaced,
                                   const Culling& culling, const ZoneCrossings& crossings,
                                   const TickView& view, Zones& zones,

@@ -22,8 +22,9 @@ enum class PairStatus : std::uint8_t {
   kTouching = 1,        // evaluated: in contact, to within rounding
   kOverlapping = 2,     // evaluated: the objects share a point
   kIterationLimit = 3,  // evaluated: the bounds hold but are wider than rounding
-  // Not evaluated this tick: the motion bound carries the bounds over. A pair that has never been
-  // evaluated (evaluated_cycle 0) has bounds from bounding spheres, and NaN for the rest.
+  // The pair was not evaluated this tick: the motion bound carries the bounds over. A pair that has
+  // never been evaluated (evaluated_cycle 0) has bounds from bounding spheres, and NaN for the
+  // rest.
   kCarried = 4,
   kStale = 5,  // a pose is older than its limit: the stated maximum speed widens the bounds
   // An object was never heard of, is late without a stated maximum speed, or is contradicted. All

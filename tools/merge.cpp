@@ -72,7 +72,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-// Logs what becomes of each share, once a change.
+// Logs what becomes of each share, once per change.
 class ShareLog {
  public:
   void note(const client::SharedCell& whole) {

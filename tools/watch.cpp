@@ -57,7 +57,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
   app.footer(kFooter);
 }
 
-// Shows the feed ten times a second on a screen, or once a second in plain lines.
+// Shows the feed ten times a second on a screen, or once per second in plain lines.
 class Display {
  public:
   Display(bool plain, std::string where) : where_(std::move(where)) {

@@ -68,7 +68,8 @@ std::optional<ConvexBody> with_fewer_facets(ConvexBody hull, double tolerance) {
   const PlacedShape placed{&hull, {}};
   const auto fewer = enclosing_polyhedron(
       {&placed, 1}, {.facets = kFacets, .tolerance = kSimplified * tolerance / size});
-  // Its vertices are rounded once more than its planes, so the body is the hull of the vertices.
+  // A body's vertices are rounded once more than its planes, so this one is the hull of the
+  // vertices.
   auto body = fewer ? body_of(vertices_of(*fewer)) : std::nullopt;
   if (!body) return std::nullopt;
   const double worth = kWorthFewer * static_cast<double>(body->facets.size());
@@ -272,7 +273,7 @@ std::vector<Vec3> PartSearch::points_of(const Piece& piece) const {
   return points;
 }
 
-// The hull of whole shells stays as it is, as long as it has few facets. Any other hull does where
+// The hull of whole shells stays as it is if it has few facets. Any other hull stays as it is where
 // a body around it would save little.
 std::optional<ConvexBody> PartSearch::body_of_piece(const Piece& piece,
                                                     const std::vector<Vec3>& points) const {

@@ -33,13 +33,13 @@ class Sets {
     while (parent_[i] != i) i = parent_[i];
     return i;
   }
-  // Tells whether the triangle faces the other way than the set's first one.
+  // Tells whether the triangle faces away from the set's first one.
   [[nodiscard]] bool is_turned(std::uint32_t i) const {
     bool turned = false;
     for (; parent_[i] != i; i = parent_[i]) turned ^= turned_[i];
     return turned;
   }
-  // `turned`: the two face different ways. A ring that cannot be made to agree stays as it is.
+  // `turned`: the two face different sides. A ring that cannot be made to agree stays as it is.
   void join(std::uint32_t a, std::uint32_t b, bool turned) {
     turned ^= is_turned(a) ^ is_turned(b);
     a = of(a);

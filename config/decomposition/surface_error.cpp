@@ -172,7 +172,7 @@ class Judge {
     const Vec3& to = t[(edge + 1) % 3];
     const double twice_area = (to - from).cross(t[(edge + 2) % 3] - from).norm();
     if (twice_area <= kSliver * size_ * (to - from).norm()) {
-      // Its edge stands for a sliver, whose halves would overlap.
+      // The edge stands for a sliver, whose halves would overlap.
       add(piece.part, {from, middle, middle});
       add(piece.part, {middle, to, to});
       return;

@@ -1,4 +1,4 @@
-// Changes a cell while programs run: the one way in of this room.
+// Changes a cell while programs run: the one entry point of this room.
 //
 // A change is an edit of the cell's text, and the ordinary reader reads the result. Nothing is
 // accepted that a cell file could not say.

@@ -5,7 +5,7 @@
 
 namespace clearance {
 
-// Which time counts: that of the message's header, or that of its sending, by the clock of the
+// The time that counts: that of the message's header, or that of its sending, by the clock of the
 // machine that sent it.
 enum class RosStamps : std::uint8_t { kMessage, kSent };
 

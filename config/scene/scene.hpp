@@ -109,7 +109,7 @@ struct Scene {
       contacts;  // their pairs are published, and in no zone with `separation`
 };
 
-// Counts the zones with `separation`, and their pairs, each once a zone.
+// Counts the zones with `separation`, and their pairs, each once per zone.
 struct SeparatedCount {
   std::size_t zones = 0, pairs = 0;
 };

@@ -1,4 +1,4 @@
-// Which objects, joints and zones of a changed scene are those of the scene before the change.
+// Tells which objects, joints and zones of a changed scene are those of the scene before it.
 #pragma once
 
 #include <cstdint>

@@ -63,7 +63,7 @@ const YamlNode* MapReader::required(std::string_view key) {
   return value;
 }
 
-// Otherwise a misspelt optional key would silently mean a default.
+// A misspelt optional key would otherwise silently mean a default.
 void MapReader::refuse_unknown_keys() {
   for (const YamlEntry& entry : node_.entries) {
     if (entry.key.kind != YamlNode::Kind::kScalar) continue;

@@ -22,7 +22,7 @@ struct CellArguments {
   // required. With `from_ros`, --robot-description is a third choice.
   void add_to(CLI::App& app, bool from_ros = false);
   [[nodiscard]] CellResult read() const;
-  // The options of read(), for reading a changed text in the same way.
+  // The options of read(), to read a changed text as the first one.
   [[nodiscard]] CellOptions reading() const;
   // The text of a cell for the URDF, as its files say now.
   [[nodiscard]] std::string robot_text() const { return single_robot_cell(robot); }

@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-// Differs from CLI11's formatter in three ways. The usage line names required arguments before
+// Differs from CLI11's formatter in three respects. The usage line names required arguments before
 // "[OPTIONS]". Arguments, groups of options that require exactly one of them, and subcommands
 // stand before options. In each list, required options come first, --help and --version last.
 class HelpFormatter : public CLI::Formatter {

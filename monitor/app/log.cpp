@@ -140,8 +140,8 @@ class QueueSink final : public Sink {
     ++posted_;
     logger_->log(message.time, message.source, message.level, message.payload);
   }
-  // Polls once a millisecond, which suffices: it is called only at the end of a program and before
-  // a message.
+  // Polls once per millisecond, which suffices: it is called only at the end of a program and
+  // before a message.
   bool drain() const {
     const auto end = std::chrono::steady_clock::now() + kLogPatience;
     const std::uint64_t posted = posted_;

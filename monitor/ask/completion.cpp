@@ -145,7 +145,7 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
         missing.add(fmt::format("that sensor '{}' has no frame of this scene", name));
         continue;
       }
-      // Not younger than it is: the frame in use is not newer than the last one.
+      // The age is not too low: the frame in use is not newer than the last one.
       frame->age = present.age;
       question.seen.push_back(std::move(*frame));
       continue;

@@ -23,7 +23,7 @@ struct ObjectState {
   Vec3 velocity = Vec3::Zero();
   double shift = 0.0;  // no farther does its origin move from its place at the instant, m
   double turn = 0.0;   // nor does it rotate by more, rad
-  // Its angular velocity, constant like the other one, rad/s in the world.
+  // The object's angular velocity, constant like the other one, rad/s in the world.
   Vec3 angular = Vec3::Zero();
 };
 

@@ -41,7 +41,7 @@ struct Directed {
   std::uint32_t base, tip;
   bool swapped, base_is_link, base_carries_tip;
 
-  // Those that are not of one kind have a chain of their own.
+  // Pairs that are not of one kind have a chain of their own.
   [[nodiscard]] bool is_of_a_kind() const noexcept { return !base_is_link && !base_carries_tip; }
 };
 

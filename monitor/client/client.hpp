@@ -177,8 +177,8 @@ class Object {
   Object(Catalogue& catalogue, std::string name) : catalogue_(catalogue), name_(std::move(name)) {}
 
   [[nodiscard]] const std::string& name() const noexcept { return name_; }
-  // Its id in messages with this `scene_revision`. Nothing: that scene lacks it, or its catalogue
-  // has not come. Reads the catalogue when the revision is a new one.
+  // Returns its id in messages with this `scene_revision`. Nothing: that scene lacks it, or its
+  // catalogue has not come. Reads the catalogue when the revision is a new one.
   [[nodiscard]] std::optional<std::uint32_t> id(std::uint64_t revision);
 
  private:
@@ -212,7 +212,7 @@ class Pair {
   std::optional<std::uint32_t> id_;
 };
 
-// The daemon's health at the last update(); it comes once a second. Two partners have one
+// The daemon's health at the last update(); it comes once per second. Two partners have one
 // health, that of the leader.
 class Health {
  public:

@@ -35,7 +35,7 @@ struct ShareView {
 // A hash of the division of a scene: the names of the shares, and the share of each pair.
 [[nodiscard]] std::uint64_t division_of(const clearance_msg_Catalogue& catalogue);
 
-// Which pairs and zones of a scene depend on which share.
+// Knows which pairs and zones of a scene depend on which share.
 class ShareMap {
  public:
   ShareMap() = default;

@@ -101,7 +101,7 @@ class SharedCell {
   // met has not been heard.
   [[nodiscard]] bool waits_for_first() const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
-  // Its last report is not late.
+  // Returns true if the share's last report is not late.
   [[nodiscard]] bool is_here(const OfShare& share) const;
   [[nodiscard]] std::uint64_t scene_of_most() const;
   [[nodiscard]] std::uint64_t division_of_most(std::uint64_t revision) const;

@@ -19,7 +19,7 @@ struct BlindShell {
 };
 
 // The true place of a ball's point is within the stated error of its centre. The rest of the radius
-// spans the way to its neighbours, and may be far longer.
+// spans the distance to its neighbours, and may be far longer.
 struct CentreLimit {
   double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
   DepthError error;

@@ -17,8 +17,8 @@ namespace clearance {
 // Places that a frame cannot show, near a body whose own image was left out, at the frame's stamp.
 struct HiddenNear {
   std::uint32_t object = 0;  // the caller's number of the body
-  // Its thickness includes the error of the body's pose: anything that close to the exact body may
-  // be left out.
+  // The shell's thickness includes the error of the body's pose: anything that close to the exact
+  // body may be left out.
   BlindShell shell;
   // A lower bound of the distance to the nearest unseen place, and about where it is, in the world,
   // m. -infinity and NaN: not known.

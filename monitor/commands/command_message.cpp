@@ -152,7 +152,7 @@ std::optional<MalformedField> take_change(const clearance_msg_Change& message, s
   return fault;
 }
 
-// They become names of files, below a folder of the daemon.
+// A plain name becomes that of a file below a folder of the daemon.
 bool is_plain_name(std::string_view name) {
   return !name.empty() && name.size() <= kLongestName && name.front() != '.' &&
          std::ranges::all_of(name, [](char c) {

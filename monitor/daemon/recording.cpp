@@ -217,8 +217,8 @@ void Recording::note_state(const PartnerStateView& state) {
   if (states_.size() > kMostStates) states_.pop_front();
 }
 
-// Those before it were not taken over. One that is missing here, since the disk is too slow for the
-// reports between, is missing for a replay as well.
+// States before it were not taken over. One that is missing here, since the disk is too slow for
+// the reports between, is missing for a replay as well.
 void Recording::record_state(std::uint64_t lineage) {
   const std::lock_guard lock(mutex_);
   const auto state = std::ranges::find(states_, lineage, [](const auto& one) { return one.first; });
@@ -270,7 +270,7 @@ std::uint64_t Recording::missing() const {
   return reports + inputs + unwritten_;
 }
 
-// Logs a failure once, and a slow disk once a second while messages are lost.
+// Logs a failure once, and a slow disk once per second while messages are lost.
 void Recording::watch() {
   health_.set_missing(missing());
   if (health_.failed()) {

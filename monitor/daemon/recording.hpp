@@ -52,9 +52,10 @@ class Recording {
   // reports of kMostWaiting cells wait for it: the recording then ends with those. The preparing
   // thread calls these three.
   [[nodiscard]] ReportSink* prepare(std::shared_ptr<const Cell> cell);
-  // It has changed: what comes into that sink follows in the file. Does not wait for the disk.
+  // The cell has changed: what comes into that sink follows in the file. Does not wait for the
+  // disk.
   void follow(const SceneInForce& since);
-  // It has not.
+  // The cell has not changed.
   void abandon() { prepared_ = nullptr; }
   // The loop may go on from this state of a partner: it then stands in the file in front of the
   // first report that does. To be called before the loop has it, by any one thread.

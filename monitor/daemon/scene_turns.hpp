@@ -21,7 +21,7 @@ using DoneSceneChange = clearance_msg_SceneChange;
 class SceneTurns {
  public:
   using Message = std::shared_ptr<const moveit::RawScene>;
-  // So many messages may wait, and so many bytes; then the oldest one goes.
+  // Limits of the messages that wait: if one is exceeded, the oldest message goes.
   static constexpr std::size_t kMost = 256, kMostBytes = 128 << 20;
 
   // A message came. Returns how many others had to go.
@@ -29,15 +29,15 @@ class SceneTurns {
   // The next message that is not yet in the queue of commands, in order; null: all are. It counts
   // as put there.
   [[nodiscard]] Message to_queue(std::uint64_t& identity);
-  // Its turn in that queue has come. False: it is not to be done now, and counts as not put there,
-  // because another one has to come before it.
+  // The message's turn in that queue has come. False: it is not to be done now, and counts as not
+  // put there, because another one has to come before it.
   [[nodiscard]] bool begins(std::uint64_t identity);
-  // It could not be put into the queue, or its turn came while this daemon does not lead.
+  // The message could not be put into the queue, or its turn came while this daemon does not lead.
   void put_back(std::uint64_t identity);
   // The messages whose files are to be kept, each once.
   [[nodiscard]] std::vector<Message> to_keep();
   [[nodiscard]] bool has_to_keep() const noexcept;
-  // It is done, or refused.
+  // The message is done, or refused.
   void end(std::uint64_t identity);
   // Drops what another leader has done, if the scene in force is of this revision: its messages up
   // to the last change that led to it, and what came before those here.

@@ -12,8 +12,8 @@
 
 namespace clearance {
 
-// Allocates: called once a second, in the thread that publishes or records. `dropped_reports` never
-// reached DDS or the file.
+// Allocates: called once per second, in the thread that publishes or records. `dropped_reports`
+// never reached DDS or the file.
 [[nodiscard]] Sample<clearance_msg_Health> make_health(const Scene& scene,
                                                        const LoopStatistics& statistics,
                                                        const PoseReader& poses,

@@ -17,7 +17,7 @@ namespace {
 // Events without a message are noticed this often.
 constexpr std::int64_t kLookNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
-// A daemon whose notices were heard for the last time longer ago does not lead any more.
+// A daemon does not lead any more if its last notice was heard longer ago than this.
 constexpr std::int64_t kLeaderHeardNs = 100'000'000;
 // A thread that hears takes no longer from one look to the next, unless it is held up.
 constexpr std::int64_t kHeldUpNs = 50'000'000;

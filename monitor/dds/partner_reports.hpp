@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// Any thread. Differences are told in the log, each kind at most once a second, and counted.
+// Any thread. Differences are told in the log, each kind at most once per second, and counted.
 class PartnerReports {
  public:
   // A report that this daemon published, or that its partner did.
@@ -22,13 +22,14 @@ class PartnerReports {
   void note_corrupt(const clearance_msg_Distances& report);
   // The partner has published in the last tenth of a second.
   [[nodiscard]] bool hears_any();
-  // It has published once, and since then the two have not agreed, or do so no longer.
+  // True: the partner has published once, and since then the two have not agreed, or do so no
+  // longer.
   [[nodiscard]] bool disagrees();
   [[nodiscard]] std::string name();  // of the partner that was heard last; empty: none
   // A partner of another name than this has published in the last tenth of a second: a third one is
   // not let in.
   [[nodiscard]] bool hears_another(const std::string& partner);
-  // Fills the fields that compare the two; called once a second.
+  // Fills the fields that compare the two; called once per second.
   void fill(clearance_msg_PartnerHealth& out);
 
  private:

@@ -18,7 +18,7 @@ namespace clearance {
 class RefusalLog {
  public:
   // Logs up to `most` of the lines that are due, and returns how many were. The others are due in
-  // the next second. Called once a second, with every health sample.
+  // the next second. Called once per second, with every health sample.
   std::size_t update(const clearance_msg_Health& health, std::size_t most);
   // The counts of the next sample begin at zero.
   void begin_counts_anew() { before_.clear(); }

@@ -47,7 +47,7 @@ class PublishedSamples {
 // tick thread never waits for DDS.
 class ReportWriter {
  public:
-  // Is called once a second, in the thread that writes. May be empty.
+  // Is called once per second, in the thread that writes. May be empty.
   using OnHealth = std::function<void(const MetricsSource&)>;
 
   // Publishes the catalogue at once. Everything given must outlive this. `also` may be null, and so

@@ -136,7 +136,7 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   ++tally->batches;
 }
 
-// Also counts the batches that are missing before this one.
+// Counts the batches that are missing before this one, too.
 SourceTally* Intake::admit(PoseBatch& batch, std::uint64_t writer, std::size_t size) {
   Admission admission = sources_.admit(batch.source, writer, size, monotonic_ns_);
   tell_of(admission, batch, writer);

@@ -93,7 +93,7 @@ class Intake final : public Outlet {
     return routes_[topic].counts;
   }
   [[nodiscard]] const PoseSources& sources() const noexcept { return sources_; }
-  // Not with IntakeOptions::only_sensors.
+  // Call this only without IntakeOptions::only_sensors.
   [[nodiscard]] const RosJointStates& joint_states() const noexcept { return *joint_states_; }
   [[nodiscard]] const RosTransforms& transforms() const noexcept { return *transforms_; }
 

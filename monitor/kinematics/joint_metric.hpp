@@ -15,7 +15,7 @@ class JointMetric {
   // `wraps`: positions that differ by full turns are the same.
   explicit JointMetric(bool wraps) noexcept : wraps_(wraps) {}
 
-  // Returns to - from, the shorter way round if positions wrap.
+  // Returns to - from, by the shorter turn if positions wrap.
   [[nodiscard]] double difference(double from, double to) const noexcept {
     constexpr double kTurn = 6.283185307179586;
     const double difference = to - from;

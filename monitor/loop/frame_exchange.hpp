@@ -67,7 +67,7 @@ class FrameExchange {
 
   // All frames that the monitor awaits have come (Monitor::awaited_frame).
   [[nodiscard]] bool has_awaited(const Monitor& monitor) noexcept;
-  // Then: shows them to the monitor, which takes the place of the one before.
+  // Shows these frames to the monitor, which takes the place of the one before.
   void show_awaited(Monitor& monitor, std::span<ReportSink* const> sinks) noexcept;
 
  private:

@@ -25,7 +25,7 @@ void use_precise_timers() noexcept;
 // Keeps the memory of the process in place, so that no page fault delays a tick.
 [[nodiscard]] Refusal lock_memory();
 
-// The calling thread then gives way to the threads with ordinary scheduling: Linux gives it a tenth
+// The calling thread then yields to the threads with ordinary scheduling: Linux gives it a tenth
 // of their share of a processor that is busy.
 void lower_priority() noexcept;
 

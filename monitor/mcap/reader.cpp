@@ -42,7 +42,7 @@ void McapReader::begin() {
   metadata_ = summary_->metadata;
 }
 
-// A file can fail in three ways to be MCAP at all, and each has its own message.
+// A file can be no MCAP at all for three causes, and each has its own message.
 bool McapReader::read_magic() {
   std::array<std::byte, kMcapMagic.size()> magic{};
   done_ = true;

@@ -1,4 +1,4 @@
-// PlanningScene, and the ways in.
+// PlanningScene, and the entry points.
 #include "monitor/moveit/scene_translator.hpp"
 
 #include <fmt/format.h>

@@ -96,7 +96,7 @@ struct alignas(64) TrackedObject {
     return interpolated_motion(moved ? pose_before : pose, pose);
   }
 
-  // Like `displacement`, but 0 if the object was not known at the last tick, m.
+  // Returns `displacement`, but 0 if the object was not known at the last tick, m.
   [[nodiscard]] double known_displacement() const noexcept {
     return newly_known ? 0.0 : displacement;
   }

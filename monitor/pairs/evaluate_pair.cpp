@@ -131,7 +131,7 @@ struct PartPairs {
 };
 
 // Brings a part pair up to date by displacement alone, if that proves that it is not the closest.
-// Bounds carried in this way hold at every instant since they were found.
+// Bounds that are carried so hold at every instant since they were found.
 inline bool rule_out(std::uint32_t part_pair, PartPairs& part_pairs, PairTable& table) noexcept {
   const double lower = rounded_down(table.lower[part_pair] - part_pairs.displacement);
   if (!(lower >= part_pairs.smallest_upper)) return false;

@@ -40,8 +40,8 @@ enum class PartnerStanding : std::uint8_t {
   kStarting = 1,  // it publishes nothing until it has the partner's state, or hears no partner
   kLeading = 2,   // it decides when both tick, and on which inputs
   kFollowing = 3,
-  // It could not follow, and ticks what it has: its reports are true, and rest on other inputs than
-  // the partner's. It asks for the partner's state.
+  // The daemon could not follow, and ticks what it has: its reports are true, and rest on other
+  // inputs than the partner's. It asks for the partner's state.
   kApart = 4,
 };
 [[nodiscard]] constexpr const char* name(PartnerStanding standing) noexcept {

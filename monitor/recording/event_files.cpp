@@ -21,7 +21,7 @@ namespace {
 
 // A file may begin so often.
 constexpr std::int64_t kStartEveryNs = 50'000'000;
-// Ages are looked at every so many calls of check(), which come once a second.
+// Ages are looked at every so many calls of check(), which come once per second.
 constexpr int kChecksALook = 60;
 
 constexpr std::size_t kStampLength = 20;  // 20261124T104512.003Z

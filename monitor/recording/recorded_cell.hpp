@@ -49,7 +49,7 @@ struct FormerScene {
   std::vector<std::string> objects;  // their names by id
 };
 
-// Those that the file states at its head, in their order.
+// Returns the scenes that the file states at its head, in their order.
 [[nodiscard]] std::vector<FormerScene> former_scenes(const std::filesystem::path& file);
 
 // Reads the cell of a description, as recorded_cell does.

@@ -42,7 +42,7 @@ class ReportCsv {
   bool all_pairs_;
   std::unique_ptr<std::FILE, Close> file_;
   std::vector<std::string> names_;     // of the objects, quoted where needed
-  std::vector<std::string> contacts_;  // their names, in the same way
+  std::vector<std::string> contacts_;  // their names, quoted as well
   std::string revision_;
   std::string rows_;  // not written yet
   std::string error_;

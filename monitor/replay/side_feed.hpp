@@ -26,7 +26,7 @@ class SideFeed {
  public:
   // The next message; null at the end or the damage. Valid until pop() or take().
   [[nodiscard]] const Message* front();
-  // Its log time, ns.
+  // The log time of front(), ns.
   [[nodiscard]] std::int64_t front_ns() const noexcept { return log_ns_; }
   void pop() noexcept { is_there_ = false; }
   // The front, which goes.

@@ -28,7 +28,7 @@ struct DiagnosticText {
   }
 };
 
-// Their names get "clearance CELL: " before them. Allocates.
+// Names of statuses get "clearance CELL: " before them. Allocates.
 [[nodiscard]] Sample<DiagnosticArray> diagnostic_array(const std::string& cell,
                                                        std::span<const DiagnosticText> statuses,
                                                        std::int64_t stamp_ns);

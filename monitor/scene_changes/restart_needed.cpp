@@ -37,7 +37,7 @@ bool same_moveit_inputs(const Cell& before, const Cell& now) {
          });
 }
 
-// Their readers and the memory of their clouds are made at the start.
+// Readers of sensors and the memory of their clouds are made at the start.
 bool same_sensors(const Scene& before, const Scene& now) {
   return std::ranges::equal(before.sensors, now.sensors, [](const Sensor& a, const Sensor& b) {
     return a.name == b.name && a.kind == b.kind && a.topic == b.topic &&

@@ -1,4 +1,4 @@
-// Frames that were built, on their way from the building thread into a recording, and as messages.
+// Frames that were built, on their path from the building thread into a recording, and as messages.
 #pragma once
 
 #include <cstddef>

@@ -28,8 +28,8 @@ class InfoPairing {
   }
 
  private:
-  // So many pairs show that infos belong to images. So many infos without an image show the
-  // opposite: a few images are lost now and then.
+  // Pairs that show that infos belong to images, and infos without an image that show the opposite:
+  // a few images are lost now and then.
   static constexpr int kPairs = 2, kAlone = 8;
 
   void pair() noexcept {

@@ -27,8 +27,8 @@ namespace clearance {
 // Two points are on one surface if the ranges differ, beyond both errors, by at most this times the
 // distance of the rays at the nearer one: an incidence of 80 degrees.
 inline constexpr double kSteepest = 6.0;
-// And by at most this times the nearer range. The rays of a cell are at most as far apart at a
-// range of 1. Sensor::extent() rests on both.
+// Ranges differ by at most this times the nearer range, too. The rays of a cell are at most as far
+// apart at a range of 1. Sensor::extent() rests on both.
 inline constexpr double kWidestNeighbour = 0.1;
 
 class OrganisedPoints {

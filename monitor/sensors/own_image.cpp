@@ -69,7 +69,7 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
       const double error = place_error + past.error(radius_of(part));
       const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
       const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
-      // The way of an organised point to its neighbours says nothing about whose image it is.
+      // The distance of an organised point to its neighbours says nothing about whose image it is.
       limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
       const RelativePose part_from_cloud = relative_pose(world_from_part, place.world_from_body);
       const BlindShell blind = cloud.shelve(part.shape, part_from_cloud, shell, limit, body);

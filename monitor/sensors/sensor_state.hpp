@@ -22,7 +22,8 @@ inline SeenCloud cloud_of(const Sensor& sensor) {
                                                 : SeenCloud::of_points(sensor.most_points);
 }
 
-// Which kind of sensor sends such messages; CameraInfo and transforms count as those of images.
+// Returns the kind of sensor that sends such messages; CameraInfo and transforms count as those of
+// images.
 inline SensorKind kind_of(RawSensorMessage::Type type) noexcept {
   using Type = RawSensorMessage::Type;
   switch (type) {

@@ -61,10 +61,10 @@ struct SensorStatus {
   std::uint64_t frames = 0;   // built
   std::uint64_t skipped = 0;  // good ones that a newer one overtook
   std::int64_t stamp_ns = 0;  // of the last frame that was built
-  std::size_t elements = 0;   // of it
-  std::size_t hidden = 0;     // of it, since too few frames had them (persist)
-  std::size_t cropped = 0;    // of it, since they are beyond the links' reach
-  double pose_error = 0.0;    // m, of it
+  std::size_t elements = 0;   // of that frame
+  std::size_t hidden = 0;     // elements of it that too few frames had (persist)
+  std::size_t cropped = 0;    // elements of it beyond the links' reach
+  double pose_error = 0.0;    // m, of that frame
   double largest_pose_error = 0.0;
   std::int64_t longest_build_ns = 0;
   // Messages that were used (kNoFault) or refused, by cause.

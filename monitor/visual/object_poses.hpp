@@ -49,7 +49,7 @@ class ObjectPoses {
     const TrackedObject& state = inputs_->objects[object];
     return state.input.has_value ? &state.pose : nullptr;
   }
-  // Its age at the latest report, ns: 0 for a fixed object, -1 without a pose.
+  // The pose's age at the latest report, ns: 0 for a fixed object, -1 without a pose.
   [[nodiscard]] std::int64_t age_ns(std::size_t object) const {
     return inputs_->objects[object].input.age_ns(inputs_->time.now_ns);
   }

@@ -16,8 +16,8 @@ struct ReportCheck {
   std::int64_t age_ns = 0;
   bool is_old = false;           // it describes the past, not the present
   bool clocks_disagree = false;  // published later than now: its age means nothing
-  // Not of the daemon of the report before, or of its partner: it was started again, or two daemons
-  // publish.
+  // The report is not of the daemon of the one before, or of its partner: that was started again,
+  // or two daemons publish.
   bool other_daemon = false;
   // The report is of another scene than the one before it, with other ids.
   bool other_scene = false;

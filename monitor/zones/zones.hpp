@@ -43,7 +43,7 @@ class Zones {
   // while one of its objects is absent.
   void count_absent(std::span<const TrackedObject> objects) noexcept;
 
-  // Adds an updated pair. Call it once a tick for each.
+  // Adds an updated pair. Call it once per tick for each.
   void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
 
   // Ends the tick. A pair that was not added is in one of three states. It is absent or unknown; or

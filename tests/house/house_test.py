@@ -214,8 +214,8 @@ class Reflow(unittest.TestCase):
 
 class Sources(unittest.TestCase):
     def test_lines_of_a_comment_are_one_text(self):
-        code = "int a;  // the first\n        // line\nint b;  // another\n// Apart.\n"
-        self.assertEqual([comment.text for comment in sources.CppSource(code).comments], ["the first line", "another", "Apart."])
+        code = "int a;  // the first\n        // line\nint b;  // another\n// Apart.\n//\n// It goes on.\n\n// Alone.\n"
+        self.assertEqual([comment.text for comment in sources.CppSource(code).comments], ["the first line", "another", "Apart. It goes on.", "Alone."])
 
 
 if __name__ == "__main__":

@@ -7,7 +7,7 @@ from tree import Fault
 MOST_LINES, MOST_FUNCTION_LINES = 400, 80
 # A comment that begins with one of these has neither a noun nor a verb there, and no sentence before it to lean on. That
 # the rest has a verb cannot be decided by a list, so it is not.
-NO_BEGINNING = set("""also and again because but else however hence it its like nor not or otherwise so than that their them
+NO_BEGINNING = set("""also and again because but else hence it its like nor not or otherwise so than that their them
 then therefore they those thus too which who whom whose yet""".split())
 _PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 

@@ -133,11 +133,12 @@ def _blocks(comments):
             words = " ".join(part.strip(" *") for part in text[2:-2].split("\n")).strip()
         else:
             words = text.lstrip("/").strip()
-        if last == (line - 1, column) and is_alone and words:
-            blocks[-1] = blocks[-1]._replace(text=f"{blocks[-1].text} {words}".strip())
+        goes_on = last == (line - 1, column) and is_alone  # an empty line separates paragraphs of one comment
+        if goes_on and words:
+            blocks[-1] = blocks[-1]._replace(text=f"{blocks[-1].text} {words}")
         elif words:
             blocks.append(Comment(line, words, is_alone))
-        last = (line, column) if words and blocks else None
+        last = (line, column) if words or goes_on else None
     return blocks
 
 

@@ -205,7 +205,7 @@ TEST(AttachedObjects, FollowAMovingObjectWithItsVelocityAndItsAge) {
   EXPECT_NEAR(load.distance, std::sqrt(5.0) - 0.3, 1e-12);
   EXPECT_LE(load.lower, std::sqrt(5.0) - 0.3);
   EXPECT_GE(load.upper, std::sqrt(5.0) - 0.3);
-  // Its centre moves by (-0.1, 0, 0) + (0, 0, 0.5) x (-1, 0, 1) = (-0.1, -0.5, 0).
+  // The centre moves by (-0.1, 0, 0) + (0, 0, 0.5) x (-1, 0, 1) = (-0.1, -0.5, 0).
   EXPECT_NEAR(load.closing_speed, 0.1 * 2.0 / std::sqrt(5.0), 1e-9);
 }
 

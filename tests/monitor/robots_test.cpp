@@ -165,7 +165,7 @@ TEST(RobotsInTheTick, LateJointsWidenTheBoundsOfWhatTheyCarry) {
               1e-9);
 }
 
-// Which of the two is the driver cannot be told, unless the cell says so.
+// Nothing tells which of the two is the driver, unless the cell says so.
 TEST(RobotsInTheTick, APublisherOfZerosThatWasLeftRunningMakesTheRobotUnknown) {
   for (const bool is_stated : {false, true}) {
     Scene cell = test::scara_cell();

@@ -1,4 +1,4 @@
-// Which slip of tests/mutants/*.slips is made: the number in the environment variable
+// The slip of tests/mutants/*.slips that is made: the number in the environment variable
 // CLEARANCE_SLIP, or none. Only builds with -DCLEARANCE_MUTANTS=ON include this.
 #pragma once
 

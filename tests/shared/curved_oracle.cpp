@@ -12,8 +12,9 @@ using RealMatrix = std::array<RealVec, 3>;  // stored by rows
 
 // The iteration limit of the ellipsoid method. About forty iterations gain one digit of the bounds.
 constexpr int kMostRounds = 20000;
-// The limit of a cut's depth, as a fraction of the way from the centre to the surface. A deeper cut
-// would leave a disc-like ellipsoid, and after a few of them fewer digits than doubles have.
+// The limit of a cut's depth, as a fraction of the distance from the centre to the surface. A
+// deeper cut would leave a disc-like ellipsoid, and after a few of them fewer digits than doubles
+// have.
 constexpr double kDeepestCut = 0.5;
 
 Real dot(const RealVec& a, const RealVec& b) {

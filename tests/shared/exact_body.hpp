@@ -2,7 +2,7 @@
 // direction.
 //
 // It is slow and simple, and shares nothing with core/ but the plain structs of the input. It is
-// therefore unlikely that both are wrong in the same way. Linear programs are solved by the simplex
+// therefore unlikely that both have one mistake. Linear programs are solved by the simplex
 // method with Bland's rule (R. G. Bland, "New finite pivoting rules for the simplex method", 1977),
 // which cannot cycle. The arithmetic is GMP's, which does not round.
 #pragma once

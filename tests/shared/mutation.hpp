@@ -10,9 +10,9 @@ namespace clearance::test {
 // result is never empty.
 [[nodiscard]] std::string mutated(std::string text, std::mt19937& random);
 
-// Like mutated(), with additional edits that are dangerous for formats with counts and indices. An
-// integer is replaced by another, four bytes are replaced by an extreme integer or float, or the
-// end is cut off.
+// Returns a text as mutated() does, with additional edits that are dangerous for formats with
+// counts and indices. An integer is replaced by another, four bytes are replaced by an extreme
+// integer or float, or the end is cut off.
 [[nodiscard]] std::string mutated_numbers(std::string bytes, std::mt19937& random);
 
 }  // namespace clearance::test

@@ -19,7 +19,7 @@ inline const std::string kImage =
     "depth_image: /cam/image, size: [65, 49], depth_error: {constant: 0.002}, range: [0.3, 4]";
 inline const std::string kPoints =
     "points: /cam/points, most_points: 4000, depth_error: {constant: 0.002}, range: [0.3, 4]";
-// It looks down along the z axis of the world.
+// The camera looks down along the z axis of the world.
 inline const std::string kAbove =
     ", mount: {pose: {xyz: [0, 0, 3], rpy: [3.141592653589793, 0, 0]}}";
 

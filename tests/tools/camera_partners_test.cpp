@@ -99,7 +99,7 @@ class CameraPartners : public testing::Test {
     }
     return false;
   }
-  // Once a frame has come, the camera is never unknown again, and no distance is wrong.
+  // After a frame has come, the camera is never unknown again, and no distance is wrong.
   void note() {
     states[reports.partner().state]++;
     const clearance_msg_PairDistance* const pair = seen.in(*reports);

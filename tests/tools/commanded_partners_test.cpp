@@ -74,8 +74,8 @@ class CommandedPartners : public Partners {
     return revisions;
   }
   static std::string text_of(std::uint64_t revision) { return fmt::format("{:016x}", revision); }
-  // Those of these revisions. A client is told busy, and makes another revision, if its change was
-  // taken back.
+  // Changes that led to one of these revisions. A client is told busy, and makes another revision,
+  // if its change was taken back.
   std::vector<std::string> changes_of(const std::string& name,
                                       const std::vector<std::uint64_t>& told) {
     std::set<std::string> those;

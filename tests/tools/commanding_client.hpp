@@ -23,7 +23,7 @@ class CommandingClient {
   CommandingClient(const CommandingClient&) = delete;
   CommandingClient& operator=(const CommandingClient&) = delete;
 
-  // Waits until the daemon hears this client and the other way round.
+  // Waits until the daemon hears this client and vice versa.
   void meet() {
     EXPECT_TRUE(eventually([&] { return matched_readers(writer_) > 0; }));
     EXPECT_TRUE(eventually([&] { return matched_writers(reader_) > 0; }));

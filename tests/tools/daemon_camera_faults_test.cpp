@@ -95,7 +95,7 @@ TEST_F(CameraFaults, OfFrozenImagesAndOtherPublishersAndCamerasAreRefusedByCause
   Participant other{dds};
   RosCamera second(other, {});
   ASSERT_TRUE(second.is_heard());
-  // It takes over where a busy machine holds the first one up for half a second.
+  // The second one takes over where a busy machine holds the first one up for half a second.
   const MadeScene nearer{.wall = 2.3, .ball = {}};
   const auto two = [&] {
     camera.send_image(scene_of_wall);

@@ -266,7 +266,8 @@ TEST_F(DaemonCommands, OfTwoClientsThatKnowOneRevisionIsOneDone) {
   EXPECT_TRUE(logged_refusal({"other-revision"}));
 }
 
-// It is cut off behind the client's name, in the middle and in its last byte. Cyclone drops it.
+// The message is cut off behind the client's name, in the middle and in its last byte. Cyclone
+// drops it.
 TEST_F(DaemonCommands, ThatAreCutOffAreCountedAndTheNextOneIsDone) {
   start();
   const auto planner = client("planner");

@@ -300,7 +300,8 @@ TEST_F(DaemonQuestions, OfAClientThatIsNotNamedAreRefusedAndOneOnTheCommandLineI
   EXPECT_TRUE(answer_of(tool, swing(-1.0, 0.6)).done());
 }
 
-// It is cut off behind the client's name, in the middle and in its last byte. Cyclone drops it.
+// The message is cut off behind the client's name, in the middle and in its last byte. Cyclone
+// drops it.
 TEST_F(DaemonQuestions, ThatAreCutOffAreCountedAndTheNextOneIsAnswered) {
   start();
   send(-1.0);

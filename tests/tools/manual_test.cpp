@@ -140,7 +140,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Manual,
                            return name;
                          });
 
-// It reads its options, and stops at the cell that is not there, before it builds anything.
+// tools/demo reads its options, and stops at the cell that is not there, before it builds anything.
 TEST(Demo, TakesEachOfItsOptionsAndOneOfThemOnly) {
   const std::string demo = places::sources() + "/tools/demo";
   for (const char* option : {"--avoid", "--pick", "--ask", "--camera"}) {

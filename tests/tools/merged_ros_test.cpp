@@ -73,7 +73,7 @@ TEST_F(MergedForRos, NumbersAreThoseOfTheWholeCell) {
 
 TEST_F(MergedForRos, AShareThatIsNotHeardIsUnknownAndNamedAsAnError) {
   start_joined();
-  // The daemons tell their health once a second.
+  // The daemons tell their health once per second.
   ASSERT_TRUE(eventually([&] {
     if (!diagnostics.take()) return false;
     const auto found = levels(diagnostics.last());

@@ -38,7 +38,7 @@ class RecordReplay : public RunsPrograms {
     write_text(folder / "cell.yaml", kBenchCell);
     write_text(folder / "log.csv", descending_log());
   }
-  // Like run(), with a signal that is pending before the program begins.
+  // Runs a program as run() does, with a signal that is pending before the program begins.
   int run_stopped(int signal, const std::string& program,
                   const std::vector<std::string>& arguments) {
     sigset_t both, before;

@@ -91,7 +91,7 @@ TEST_F(SharedCells, AKilledOneIsUnknownByNameAndComesBack) {
     } else {
       start("boxes");
     }
-    // Its first tick may come before its first poses.
+    // The first tick may come before its first poses.
     EXPECT_TRUE(read_until(whole, [&] {
       return whole.is_whole() && status(whole, boxes) != kUnknown;
     })) << logs();
@@ -195,7 +195,7 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
       << logs();
   EXPECT_TRUE(reports.check().fresh());
   EXPECT_EQ(reports->pairs._length, 3u);
-  // The daemons tell their health once a second.
+  // The daemons tell their health once per second.
   ASSERT_TRUE(hears([&] {
     return health.message() != nullptr && health.message()->inputs._length == 2 &&
            zones.states().contains(0);

@@ -1,4 +1,5 @@
-// Whom clearance-view answers, and what it does when the machine gives it no more connections.
+// Programs that clearance-view answers, and what it does when the machine gives it no more
+// connections.
 #include <arpa/inet.h>
 #include <fmt/format.h>
 #include <gmock/gmock.h>

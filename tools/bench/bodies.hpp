@@ -21,9 +21,9 @@ namespace clearance::bench {
 // Half extents from 0.05 to 0.5 m.
 [[nodiscard]] ConvexBody random_box(Random& random);
 
-// Like the hull of a robot's link: 0.2 to 0.5 m long, with four rings of `around` vertices. The
-// outer rings are narrower, and the ends differ in width. With twelve it has 48 vertices and about
-// 40 facets.
+// A body like the hull of a robot's link: 0.2 to 0.5 m long, with four rings of `around` vertices.
+// The outer rings are narrower, and the ends differ in width. With twelve it has 48 vertices and
+// about 40 facets.
 [[nodiscard]] ConvexBody random_link(Random& random, int around = 12);
 
 }  // namespace clearance::bench

@@ -2,7 +2,7 @@
 //
 // A Solver is
 //   struct Solver {
-//     using Shape = ...;                              // its own form of a body, made once a body
+//     using Shape = ...;                              // its own form of a body, made once per body
 //     static Shape shape(const ConvexBody&);
 //     Solver(const Shape& a, const Shape& b);         // one a pair; may remember the last query
 //     void forget();                                  // the next query is cold

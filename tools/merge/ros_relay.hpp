@@ -18,8 +18,8 @@
 
 namespace clearance::merge {
 
-// It writes all outputs but `messages`, which WholeWriter writes. After a change of the cell it
-// writes nothing until another thread has read the changed cell.
+// A relay writes all outputs but `messages`, which WholeWriter writes. After a change of the cell
+// it writes nothing until another thread has read the changed cell.
 class RosRelay {
  public:
   // The keys of `asked` are outputs in addition to those of the cell (monitor/app/ros_outputs.hpp).

@@ -29,7 +29,7 @@ class WholeWriter {
   WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon, OnHealth on_health);
 
   // Writes the report at hand, and what has changed with it: catalogue, separations, zones. Health
-  // goes out once a second.
+  // goes out once per second.
   void write(client::SharedCell& whole);
   // Another program that started first publishes this cell.
   [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }

@@ -95,7 +95,7 @@ void Person::add(Action action, double length_s, const Vec3& from, const Vec3& t
   period_s_ += length_s;
 }
 
-// It turns at corners, on the spot.
+// A person turns at corners, on the spot.
 void Person::add_walk(const WalkingPath& path) {
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double heading = heading_of(path[i], path[i + 1]);

@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// Which part of which recording is replayed.
+// The part of a recording that is replayed.
 struct RecordedSpan {
   std::vector<std::string> recordings;  // at least one
   double start_s = 0.0;                 // after the first message

@@ -71,7 +71,7 @@ class CameraTruth {
   [[nodiscard]] std::optional<Frame> frame_of(std::uint32_t sensor, std::int64_t stamp_ns);
   // The points of the frame that are not in the blind shell of the robots at its stamp.
   [[nodiscard]] std::vector<Vec3> outside_of_shells(const Frame& frame, const Shells& reported);
-  // Those of the report for the object of a sensor.
+  // Shells of the report for the object of a sensor.
   [[nodiscard]] Shells shells_of(std::uint32_t seen, const clearance_msg_Distances& report) const;
   [[nodiscard]] static bool is_in_shell(std::span<const OwnPart> parts, const Vec3& point,
                                         double size);

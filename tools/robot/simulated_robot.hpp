@@ -21,8 +21,8 @@ struct SimulatedRobotOptions {
   std::string ros_topic = {};
 };
 
-// It follows a daemon that changes its cell: objects have the ids that the latest catalogue gives
-// their names, and what that cell lacks is not sent.
+// A robot follows a daemon that changes its cell: objects have the ids that the latest catalogue
+// gives their names, and what that cell lacks is not sent.
 class SimulatedRobot {
  public:
   // The cell and the connection must outlive this. `joints` is not called in a cell without

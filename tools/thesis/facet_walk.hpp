@@ -6,8 +6,8 @@
 
 namespace clearance::bench {
 
-// It takes O(N^2) in doubles. At a vertex of more than three facets the tie is decided by index, so
-// it finds neighbours there that share only a point.
+// The walk takes O(N^2) in doubles. At a vertex of more than three facets the tie is decided by
+// index, so it finds neighbours there that share only a point.
 [[nodiscard]] Neighbours walk_facets(std::span<const HalfSpace> rows);
 
 }  // namespace clearance::bench

@@ -8,7 +8,7 @@ namespace clearance::bench {
 //   all-facets                           base with alpha over all facets, as in §3.3
 //   moved                                base on tables that are moved to the poses first
 // and for facet-balls variant/moved-before/tracked/f2 ..., the same without the time for moving,
-// and variant/base-repeated/tracked/f2 ..., base measured in the same way.
+// and variant/base-repeated/tracked/f2 ..., base measured likewise.
 void register_variants();
 
 // Chapter 5:

@@ -1,4 +1,4 @@
-// Whom clearance-view answers: programs, its own page, and pages of stated hosts.
+// Clients that clearance-view answers: programs, its own page, and pages of stated hosts.
 //
 // A browser names the host that was asked (Host) and the page that asks (Origin). The page of
 // another server has another Origin. A foreign name that was rebound to this machine's address (DNS

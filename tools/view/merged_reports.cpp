@@ -7,7 +7,7 @@ namespace {
 
 // A person can read what was so for a moment.
 constexpr std::int64_t kToldForNs = 1'000'000'000;
-// Health comes once a second.
+// Health comes once per second.
 constexpr std::int64_t kNoLeaderNs = 3'000'000'000;
 
 bool is_recent(std::int64_t then_ns, std::int64_t now_ns, std::int64_t limit_ns) {

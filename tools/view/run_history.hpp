@@ -59,7 +59,7 @@ class RunHistory {
  private:
   using Names = std::pair<std::string, std::string>;  // of two objects, in ascending order
   [[nodiscard]] static Names names_of(const Scene& scene, const ObjectPair& pair);
-  // Those of the stretches from `first` up to, but not including, `last`; not known, if the pair
+  // Extremes of the stretches from `first` up to, but not including, `last`; not known, if the pair
   // was not published.
   [[nodiscard]] Extremes extremes_of(std::uint32_t column, std::size_t first,
                                      std::size_t last) const;

@@ -19,8 +19,8 @@ using nlohmann::json;
 // With more parts than these, a group makes no clear picture of a zone.
 constexpr std::size_t kMostShells = 120;
 
-// So many round parts are drawn as finely as one alone. More are drawn more coarsely, down to steps
-// of kCoarsest (rad), so that the number of triangles stays about the same.
+// Number of round parts that are drawn as finely as one alone. More are drawn more coarsely, down
+// to steps of kCoarsest (rad), so that the number of triangles stays about the same.
 constexpr double kMostFine = 30.0, kCoarsest = 0.6;
 // Steps of the arcs of zones' shells (rad). A shell is faint, and its facets are not seen; a
 // plate's shell has arcs at all edges and corners, so that fine ones cost ten times the cell's

@@ -120,7 +120,7 @@ void Scan::take_zone(std::int64_t log_ns) {
   }
 }
 
-// Health comes once a second: the moment is that of the message.
+// Health comes once per second: the moment is that of the message.
 void Scan::take_health(std::int64_t log_ns) {
   if (overruns_ && health_->overruns > *overruns_) {
     add(log_ns, "overrun",

@@ -99,7 +99,7 @@ void Viewer::set_parameters(const Request& request) {
   }
 }
 
-// One message is under way at a time; later ones wait in the outbox or replace others there.
+// One message is in progress at a time; later ones wait in the outbox or replace others there.
 void Viewer::write_next() {
   if (writing_ || !open_) return;
   if (auto text = outbox_.take_text()) {

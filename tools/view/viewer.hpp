@@ -12,7 +12,7 @@
 
 namespace clearance::view {
 
-// One WebSocket. It lives while an operation of it is under way.
+// One WebSocket. It lives while an operation of it is in progress.
 class Viewer : public std::enable_shared_from_this<Viewer> {
  public:
   Viewer(tcp::socket socket, ServerState& server) : socket_(std::move(socket)), server_(server) {}

@@ -75,8 +75,8 @@ class Feed {
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
   // While no report has come: the shares of a cell whose daemons are there (SHARES.md).
   [[nodiscard]] std::set<std::string> shares() const;
-  // The daemons are partners, whose reports are merged; and whether the two agree. The worst state
-  // of a second is shown for as long, since a screen shows few reports.
+  // Says whether the daemons are partners, whose reports are merged, and whether the two agree. The
+  // worst state of a second is shown for as long, since a screen shows few reports.
   [[nodiscard]] bool has_partner() const noexcept { return *reports_->partner != '\0'; }
   [[nodiscard]] const client::PartnerCheck& partner() const noexcept { return partner_; }
   [[nodiscard]] const PartnerCounts& partner_counts() const noexcept { return partner_counts_; }
@@ -104,7 +104,7 @@ class Feed {
   client::PartnerCheck partner_;
   PartnerCounts partner_counts_{};
   std::int64_t partner_ns_ = 0;                 // when partner_ came
-  std::unique_ptr<client::ShareNames> shares_;  // null once a report has come
+  std::unique_ptr<client::ShareNames> shares_;  // null after a report has come
   std::set<std::uint64_t> daemons_;             // daemons whose reports have come
   std::int64_t last_ns_ = 0;
 };

@@ -23,8 +23,8 @@ using Positions = std::array<double, kJoints>;
 // 0.78 m from the second joint, less the hand.
 [[nodiscard]] Positions positions_at(const HandPoint& point);
 
-// The point on the way between two points, and its rates of change, after this share of the motion,
-// 0 to 1. The motion begins and ends at rest.
+// The point on the path between two points, and its rates of change, after this share of the
+// motion, 0 to 1. The motion begins and ends at rest.
 struct Step {
   Positions positions, rates;  // rates: for each second
 };

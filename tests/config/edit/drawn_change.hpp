@@ -21,7 +21,7 @@ inline constexpr std::size_t kChangeKinds = std::variant_size_v<CellChange>;
 
 // The names that changes are drawn from. Some of them may be missing in the cell.
 struct DrawnNames {
-  // Those of the cell, and some that it lacks; those that changes add.
+  // Names of the cell, and some that it lacks; names that changes add.
   std::vector<std::string> objects, added;
   std::vector<std::string> attached = {};  // objects that are attached, as far as that is known
   std::vector<std::string> carriers;       // what only carries: links

@@ -23,7 +23,7 @@ namespace {
 class MeshMutation : public testing::TestWithParam<BoxMesh> {};
 
 // Each mutation needs a child process: 2 to 5 ms, and 15 ms if assimp reads OBJ. All formats take
-// several seconds. A crash can be detected in no other way.
+// several seconds. A crash can be detected only so.
 std::uint32_t mutations_of(const BoxMesh& mesh) {
 #if defined(__SANITIZE_ADDRESS__)
   return mesh.extension == "obj" ? 10 : 50;

@@ -150,7 +150,7 @@ TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
   }
 }
 
-// Somebody else wrote the file, with a correct checksum.
+// Another program wrote the file, with a correct checksum.
 TEST_F(PartsOfMeshes, AreMadeAnewWhereThoseThatAreKeptDoNotContainTheMesh) {
   const Scene first = read();
   const auto file = only_file(folder_ / "clearance.parts");

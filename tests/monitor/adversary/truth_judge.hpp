@@ -1,5 +1,5 @@
 // Compares reports with the true motion: bounds of pairs, the minimum, zones, and what separation
-// says. It knows the faults only to allow the time and the error that nobody can notice.
+// says. It knows the faults only to allow the time and the error that no program can notice.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace clearance::test::lies {
 
-// The ways in which a report can be false.
+// The kinds of false statements of a report.
 enum class Claim : std::uint8_t {
   kLower,       // a pair's lower bound is above the truth
   kUpper,       // its upper bound is below the truth

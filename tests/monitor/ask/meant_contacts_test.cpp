@@ -80,7 +80,7 @@ TEST(MeantContacts, EndByTime) {
 
 TEST(MeantContacts, EndWhenTheObjectsHaveBeenFarApart) {
   const Scene scene = scene_with("0.1, until: {distance: 0.02}");
-  // It begins in contact and leaves.
+  // The finger begins in contact and leaves.
   Question question = swing(0.0, 0.6);
   question.margins = {0.0, 0.019, 0.05};
   const Answer leaves = answered(scene, question);
@@ -89,7 +89,7 @@ TEST(MeantContacts, EndWhenTheObjectsHaveBeenFarApart) {
   ASSERT_EQ(leaves.margins[2].verdict, Verdict::kBelow) << "then it is nearer than the margin";
   const double end = angle_at(0.02) / 0.3;
   EXPECT_NEAR(leaves.margins[2].below_at, end, kNear);
-  // It comes back.
+  // The finger comes back.
   question.motion.times = {0.0, 1.0, 2.0};
   question.motion.positions = {0.0, 0.3, 0.0};
   question.margins = {0.0};
@@ -98,7 +98,7 @@ TEST(MeantContacts, EndWhenTheObjectsHaveBeenFarApart) {
   EXPECT_NEAR(returns.margins[0].below_at, 2.0 - angle_at(0.0) / 0.3, kNear);
   question.motion.positions = {0.0, 0.9 * angle_at(0.02), 0.0};
   EXPECT_EQ(answered(scene, question).margins[0].verdict, Verdict::kFree) << "not so far";
-  // It begins far away.
+  // The finger begins far away.
   EXPECT_EQ(answered(scene, swing(-1.0, 0.6)).margins[0].verdict, Verdict::kBelow);
 }
 
@@ -115,7 +115,7 @@ TEST(MeantContacts, OfTheQuestionTakeThePlaceOfThoseOfTheScene) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
 }
 
-// Each of these takes another way through the search.
+// Each of these takes another path through the search.
 TEST(MeantContacts, CountInVerdictsAloneAndBesidePayloads) {
   const Scene allowed = scene_with("0.051"), deep = scene_with("0.04");
   Question question = swing(-1.0, 0.6);

@@ -37,7 +37,7 @@ TEST(Payloads, AnObjectOfTheCellNeedsNoPoseWhenItIsCarried) {
                         .link = "finger",
                         .link_from_object = {.position = {0.15, 0.0, 0.0}},
                         .touch = {}}};
-  // It is 0.13 m in front of the forearm's end, which is 0.1 m behind the finger's centre.
+  // The load is 0.13 m in front of the forearm's end, which is 0.1 m behind the finger's centre.
   EXPECT_NEAR(answered(scene, question).lower, 0.23, 1e-3);
   question.payloads[0].touch = {"lower"};
   EXPECT_GT(answered(scene, question).lower, 0.3);

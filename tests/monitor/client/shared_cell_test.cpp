@@ -61,7 +61,7 @@ class Daemon {
     check_dds(dds_write(catalogue_, &*catalogue), "writing");
   }
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
-  // Its reports say from now on that it has so many pairs, or they have these bits.
+  // Reports say from now on that it has so many pairs, or they have these bits.
   void set_pairs(std::uint32_t pairs) { pairs_ = pairs; }
   void set_bits(std::uint64_t state) { state_ = state; }
   // The clock of its machine is ahead of this one's by this time from now on.
@@ -280,7 +280,7 @@ TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
       std::chrono::seconds(10)));
 }
 
-// Its clock is ahead, or was set back, by more than a report may be old: its reports come on time,
+// The clock is ahead, or was set back, by more than a report may be old: its reports come on time,
 // and say that the zones are clear.
 TEST_F(ASharedCell, HasAShareUnknownByNameWhoseTimesAreOfTheFutureOrOfThePast) {
   Daemon left(dds, cell, "left", 1);
@@ -384,7 +384,7 @@ TEST_F(ASharedCell, TellsOnceThatPartnersDifferedAlthoughTheyAgreeAgain) {
   EXPECT_EQ(reports.partner().state, PartnerState::kAgrees);
 }
 
-// Its clock was set back, or ahead and back, by less. What it says then counts, although the state
+// The clock was set back, or ahead and back, by less. What it says then counts, although the state
 // that it wrote before has a later time.
 TEST_F(ASharedCell, HasTheZonesThatAShareWritesAfterItsClockWasSetBack) {
   Daemon left(dds, cell, "left", 1);

@@ -99,7 +99,7 @@ class FalseStops : public testing::Test {
 
   // The part at a random orientation on the camera's side of a pixel's surface point, moved along
   // the surface's normal until its distance from all bodies is `wanted`. False: another body is in
-  // the way.
+  // between.
   bool place_part(const RenderedPixel& pixel, double wanted, Pose& out) {
     const RenderedBody& of = bodies[static_cast<std::size_t>(pixel.number)];
     const Vec3 local =

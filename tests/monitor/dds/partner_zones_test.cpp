@@ -94,7 +94,7 @@ TEST_F(APartner, ThatTicksApartLeavesNoInactiveZoneButWritesActiveOnes) {
   EXPECT_EQ(latched(2), (Active{{kNear, false}, {kWide, false}}));
 }
 
-// Its ids and names are those of another scene than the partner's.
+// Ids and names are those of another scene than the partner's.
 TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   client::Connection connection(dds, cell.topics);
   Participant& of_partner = connection.participant();
@@ -138,7 +138,7 @@ TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   port.stop();
 }
 
-// It may have another scene than its partner, which it has not heard yet.
+// A daemon that starts may have another scene than its partner, which it has not heard yet.
 TEST_F(APartner, ThatStartsLeavesNoZonesAndNoCatalogue) {
   tick(0.3, kStarting);
   client::Connection late(dds, cell.topics);

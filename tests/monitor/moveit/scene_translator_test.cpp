@@ -220,7 +220,7 @@ TEST_F(MoveItCell, AnObjectWithShapesIsAttachedWhereTheMessageHasIt) {
   ASSERT_NE(carried("tool"), nullptr);
   expect_at(compose(test::at(-1, 0, 0), carried("tool")->base_from_root),
             Eigen::Translation3d(-2, 0, 0) * matrix(kPlace));
-  // Again at another place, then with one more part in the frame of the object.
+  // The same at another place, then with one more part in the frame of the object.
   message.object.pose = kInObject;
   message.object.frame_id = "tip";
   send(message);

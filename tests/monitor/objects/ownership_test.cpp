@@ -1,4 +1,4 @@
-// Which sources may send an object's pose, tested through the tick.
+// Sources that may send an object's pose, tested through the tick.
 #include <gtest/gtest.h>
 
 #include "config/scene/source_name.hpp"

@@ -49,7 +49,7 @@ TEST_F(LapsedWritersTest, AreThoseWhoseLeaseHasEndedUntilTheyAreHeardAgain) {
   }));
 }
 
-// Those that come, live on or leave afterwards are not taken for lapsed ones.
+// Writers that come, live on or leave afterwards are not taken for lapsed ones.
 TEST_F(LapsedWritersTest, AreNoOthers) {
   write(writer(kLeaseNs));
   EXPECT_TRUE(eventually([&] { return matched_writers(reader) == 1; }));

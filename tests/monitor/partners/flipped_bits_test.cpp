@@ -72,7 +72,7 @@ class MonitorMemory {
       add("witness_a", evaluation->closest.witness_a);
       add("witness_b", evaluation->closest.witness_b);
       add("normal", evaluation->closest.normal);
-      // Its other bits make no value of the type.
+      // Other bits of it make no value of the type.
       add("status", reinterpret_cast<std::uint8_t&>(evaluation->status), 2);
     }
     return std::move(fields_);
@@ -258,7 +258,7 @@ class FlippedBits : public testing::Test {
   std::uint64_t number = 0;
 };
 
-// So a flip that stays where it is for eight ticks is found, whatever reads it.
+// A flip that stays where it is for eight ticks is found, whatever reads it.
 TEST_F(FlippedBits, OfEveryFieldChangeTheChecksumOfATickOutOfEight) {
   MonitorMemory memory(*one);
   const auto before = memory.checksums(*one);

@@ -101,7 +101,7 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (pixels[i].number < 10 || std::isnan(depth[i])) continue;
       const double z = depth[i], e = kError.at(z);
-      // Its corners are at most a pixel apart across, 1.4 m a metre along the corner ray.
+      // Corners of a pixel are at most a pixel apart across, 1.4 m a metre along the corner ray.
       const double size = 1.3 * (2.0 * e + 1.5 * (z + e) / kView.fx);
       frames[stamp].push_back({pixels[i].in_world, size});
     }

@@ -114,7 +114,7 @@ TEST_F(MoveItBag, ChangesTheSceneTwoTicksAfterEachMessage) {
   EXPECT_TRUE(std::isnan(at(210, "finger-part"))) << "the carrier may touch it";
   EXPECT_NEAR(at(800, "part-wall"), 5 - 2.3 * std::cos(0.3) - 0.1, 1e-9);
   EXPECT_NEAR(at(800, "finger-wall"), 5 - 2.1 * std::cos(0.3) - 0.05, 1e-9);
-  // It stays where the arm was in the tick of the message.
+  // The part stays where the arm was in the tick of the message.
   const Vec2 part = 2.3 * Vec2(std::cos(0.4), std::sin(0.4)),
              finger = 2.1 * Vec2(std::cos(0.5), std::sin(0.5));
   EXPECT_NEAR(at(1000, "finger-part"), (part - finger).norm() - 0.15, 1e-9);

@@ -17,7 +17,7 @@
 
 namespace clearance::test {
 
-// Its robot has the URDF kScaraUrdf, in the file scara.urdf.
+// The cell's robot has the URDF kScaraUrdf, in the file scara.urdf.
 inline const std::string kRandomCommandsCell = R"(name: campaign
 units: {length: m, angle: rad}
 rate_hz: 500
@@ -112,7 +112,7 @@ inline bool is_sent(const Scene& scene, std::uint32_t object) {
   });
 }
 
-// One batch for each sender a tick, on the way from one place to the next.
+// One batch per sender and tick, on the path from one place to the next.
 class RandomSenders final : public PoseSource {
  public:
   static constexpr int kTicksOfMotion = 40;

@@ -334,7 +334,7 @@ TEST_F(SceneCommands, ThatAttachAndDetachAgainAndAgainKeepTheSendersOfPosesInUse
   EXPECT_LT((object("part").world_from_object.position - Vec3(0.7, 0, 0.2)).norm(), 1e-12);
 }
 
-// Two objects whose names a change and its successors give in turn.
+// Adds and removes one object again and again, with a refused change in between.
 TEST_F(SceneCommands, GoOnAfterARefusalWhereTheyWere) {
   start();
   for (int i = 0; i < 10; ++i) {

@@ -29,7 +29,7 @@ TEST_F(LeftOutTest, SpeckleIsHiddenUntilEnoughFramesHaveIt) {
   put(speckled, 20, 700);
   EXPECT_EQ(elements(speckled), 47u);
   EXPECT_EQ(sensors->status(0).hidden, 1u);
-  // It is there again after one frame without it: two of three.
+  // The element is there again after one frame without it: two of three.
   EXPECT_EQ(elements(flat(3, 1503)), 48u);
   ImageText again = flat(4, 1504);
   put(again, 20, 701);

@@ -84,7 +84,7 @@ Nearest nearest_on(const std::string& link, const Place& place, const LongVec& p
                              on_box.z())};
 }
 
-// The way in which a link comes near to the nearest of all points.
+// The path on which a link comes near to the nearest of all points.
 struct Approach {
   double distance = kInfinity, speed = 0.0;
   bool is_unique = false;  // it is apart, and no other point is as near

@@ -71,7 +71,7 @@ class OrganisedOwnImage : public SensorsTest {
 };
 
 // Rows 5 and 6 see the arm. Those beside it see what is 7 cm lower than its lower side: near enough
-// to be neighbours, and half of the way to the arm's points is 9 cm.
+// to be neighbours, and half of the distance to the arm's points is 9 cm.
 TEST_F(OrganisedOwnImage, APointBesideTheArmIsKeptAndItsBallDoesNotReachTowardsTheArm) {
   make(kPoints + ", spacing: neighbours" + kAbove);
   std::vector<double> depths(std::size_t{kRows} * kColumns, 2.12);

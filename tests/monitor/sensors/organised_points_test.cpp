@@ -185,7 +185,8 @@ TEST(OrganisedPoints, DoNotSpanTheEdgesOfBodies) {
   OrganisedPoints organised;
   ASSERT_EQ(organised.widen(picture.width, picture.height, picture.points), FrameFault::kNoFault);
   for (const MeasuredPoint& p : picture.points) {
-    // Half of a pixel's diagonal, the error, and what the errors add to the way to a neighbour.
+    // Half of a pixel's diagonal, the error, and what the errors add to the distance to a
+    // neighbour.
     EXPECT_LE(p.radius, 0.75 * 0.013 + 0.008 + 0.5 * 0.017) << p.z;
     EXPECT_GE(p.radius, 0.005 + 0.7 * 0.0098) << p.z;
   }

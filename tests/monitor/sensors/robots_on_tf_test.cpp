@@ -84,7 +84,7 @@ TEST_F(RobotsOnTf, WidenTheErrorOfItsPlaceByASmallDifference) {
   }
 }
 
-// It is where its joints and the cell have the link.
+// The camera is where the robot's joints and the cell have the link.
 TEST_F(RobotsOnTf, DoNotMatterToACameraOnOneOfTheirLinks) {
   const Pose foot = turned(0.5, 0.0);
   make_on(kMast);
@@ -104,7 +104,7 @@ TEST_F(RobotsOnTf, AreNotComparedIfTfHasThemNowhere) {
   EXPECT_EQ(see(nullptr).size(), 1u);
 }
 
-// Its transforms are late, or have ended: the last one counts.
+// Transforms are late, or have ended: the last one counts.
 TEST_F(RobotsOnTf, AreWhereTheirLastTransformHasThem) {
   const Pose foot = turned(0.5, 0.0);
   make_on(kMast);

@@ -41,7 +41,7 @@ inline const std::string kImage =
     "depth_image: /cam/image, size: [8, 6], depth_error: {constant: 0.01}, range: [0.3, 4]";
 inline const std::string kPoints =
     "points: /cam/points, depth_error: {constant: 0.01}, range: [0.3, 4]";
-// It looks down from 2 m above the origin of the world.
+// The camera looks down from 2 m above the origin of the world.
 inline const std::string kAbove =
     ", mount: {pose: {xyz: [0, 0, 2], rpy: [3.141592653589793, 0, 0]}}";
 
@@ -62,7 +62,7 @@ inline void put(ImageText& image, std::size_t pixel, std::uint16_t depth) {
   image.data[2 * pixel + 1] = static_cast<std::uint8_t>(depth >> 8);
 }
 
-// Its pixels are a fortieth as wide: at 2 m, 5 mm.
+// Pixels are a fortieth as wide: at 2 m, 5 mm.
 inline InfoText narrow() {
   InfoText info;
   info.k = {400, 0, 3.5, 0, 400, 2.5, 0, 0, 1};

@@ -52,7 +52,7 @@ function viewer(address) {
 
 async function measure(count) {
   const daemon = start("clearanced"), view = start("clearance-view", "--port", "0");
-  // Not the daemon's own rate: every phase between the two is met.
+  // A rate that is not the daemon's own: every phase between the two is met.
   const robot = start("clearance-robot", "--rate", "997", "--latency");
   const [address] = await says(view, /http:\S+/);
   const viewers = Array.from({ length: count }, () => viewer(address));

@@ -73,7 +73,7 @@ async function recording() {
   const closest = timeline.moments.find(({ kind }) => kind === "closest");
   await page.click("#worst");
   await settled(closest.time);
-  // The least distance is a report's own, so that report is the one to be shown.
+  // The least distance was found in one report. Waits until the page shows that report.
   await page.waitForFunction(() => Math.abs(window.clearance.stands().report - window.clearance.stands().time) < 1e6);
   await settled(closest.time);
   const worst = await minimum();
@@ -81,7 +81,7 @@ async function recording() {
   // A report further; back, where the worst is the last.
   const further = closest.time < timeline.duration - 1e-6 ? 1 : -1;
   await page.keyboard.press(further > 0 ? "ArrowRight" : "ArrowLeft");
-  // Not always the next cycle: a busy machine leaves reports out of a recording.
+  // The cycle that is shown next may be a later one: a busy machine leaves reports out of a recording.
   await page.waitForFunction(([cycle, by]) => (Number(document.getElementById("minimum").dataset.cycle) - cycle) * by > 0, [worst.cycle, further]);
   await page.click("#pair-table tbody tr:first-child");
   const box = await (await page.$("#track")).boundingBox();
@@ -89,7 +89,7 @@ async function recording() {
   await page.mouse.down();
   await page.mouse.move(box.x + 0.75 * box.width, box.y + 20, { steps: 4 });
   await page.mouse.up();
-  // Places on the way are shown as well, and one of them may stand still for a moment: the last one is near 0.73 of the recording.
+  // Places in between are shown as well, and one of them may stand still for a moment: the last one is near 0.73 of the recording.
   await page.waitForFunction(([time, near]) => Math.abs(parseFloat(document.getElementById("time").textContent) - time) < near,
     [0.73 * timeline.duration, 0.05 * timeline.duration]);
   await standsStill();

@@ -92,7 +92,7 @@ class Bullet {
       made->setMargin(0.0);
       return made;
     }
-    // Their radius is their margin, which GJK leaves out and query() takes off.
+    // The radius is the margin of these shapes, which GJK leaves out and query() takes off.
     if (body.vertices.size() == 1) return std::make_shared<btSphereShape>(body.radius);
     if (body.vertices.size() == 2) {
       return std::make_shared<btCapsuleShapeZ>(body.radius, body.edges.front().end);

@@ -109,7 +109,7 @@ class FclPostures {
       }
     }
   }
-  // The pairs whose bounding spheres may meet on the way here from `before`; empty: here. A screw
+  // The pairs whose bounding spheres may meet on the path here from `before`; empty: here. A screw
   // by less than a right angle takes a centre along an arc, which is at most 1.12 times as long as
   // its chord.
   template <class Use>

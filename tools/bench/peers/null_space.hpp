@@ -64,7 +64,7 @@ class NullSpace {
       w.normalize();
       basis.col(rank) = w;
       left -= w * (w.transpose() * left);
-      // Its image under the jacobian, orthogonal to those before: one column of a QR.
+      // The vector's image under the jacobian, orthogonal to those before: one column of a QR.
       Eigen::Vector3d seen = jacobian * w;
       for (int pass = 0; pass < 2; ++pass) {
         for (int i = 0; i < rank; ++i) {

@@ -3,7 +3,7 @@
 // Every distance follows from the construction, not from an algorithm:
 //   riding  A motion of the benchmark's workloads. B is translated along the normal, so that its
 //           distance becomes the one asked for. A translation along the normal keeps both support
-//           points, so it changes the distance by exactly its length. Depths are known in this way
+//           points, so it changes the distance by exactly its length. Depths are known so
 //           for spheres and capsules, whose axes stay disjoint.
 //   level   Boxes of one orientation: the distances along the three axes give the distance.
 //           Spinning boxes and cans stay above the top face, so the vertical distance counts.

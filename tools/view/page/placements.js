@@ -71,7 +71,7 @@ export function trianglesOf(parts, meshes) {
     .setIndex(new THREE.BufferAttribute(concatenated(indices, Uint32Array), 1));
 }
 
-// Their sharp edges, as segments.
+// Sharp edges of parts, as segments.
 export function edgesOf(parts, meshes) {
   return withOwners(parts, ({ mesh }) => meshes[mesh].edges.length / 3)
     .setAttribute("position", attribute(parts.map(({ mesh }) => meshes[mesh].edges)));

@@ -17,7 +17,7 @@ const ROUNDING = 1e-7; // m
 // When frames take longer than this, ms, they are drawn with fewer pixels, down to this share.
 const SLOW_FRAME = 34, LEAST_SHARPNESS = 0.4;
 const FADE_AGAIN_MS = 250; // between searches for bodies that hide moving ones
-// Checks of the first view take at most KEEPING_SHARE of the time. The view grows by GROWTH once a moving body is farther out than
+// Checks of the first view take at most KEEPING_SHARE of the time. The view grows by GROWTH as soon as a moving body is farther out than
 // INSIDE, where 1 is the view's edge.
 const KEEPING_SHARE = 0.05, GROWTH = 1.15, INSIDE = 0.95;
 // A pair fills this share of the view, or less where its gap is small beside its objects or this length, m.

@@ -4,14 +4,14 @@
 #include <vector>
 
 #include "tools/bench/suite/rivals.hpp"
-// Its header has names of std without including all that it needs.
+// V-Clip's header has names of std without including all that it needs.
 using namespace std;  // NOLINT
 #include <vclip.h>
 
 namespace clearance::bench {
 namespace {
 
-// Its faces and edges point into its own lists, so it stays where it is made.
+// Faces and edges point into the hull's own lists, so it stays where it is made.
 class Hull {
  public:
   explicit Hull(const PlainBody& body) {
