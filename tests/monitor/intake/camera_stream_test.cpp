@@ -44,12 +44,10 @@ class CameraStreamTest : public testing::Test {
   }
   FrameFault take(const CloudText& text) {
     if (!decoder.decode(text.cdr(), cloud)) return FrameFault::kUndecodable;
-    return stream.take(*cloud,
-                       {.stamp_ns = text.stamp_ns,
-                        .sent_ns = text.stamp_ns,
-                        .writer = 1,
-                        .frame = text.frame},
-                       points);
+    return stream.take(
+        *cloud,
+        {.stamp_ns = text.stamp_ns, .sent_ns = text.stamp_ns, .writer = 1, .frame = text.frame},
+        points);
   }
   // A frame after so many others, with a depth of its own.
   static ImageText frame(int number) {
@@ -228,14 +226,14 @@ TEST_F(CameraStreamTest, PointsOfAnotherFrameOrFormThanTheFirstAreRefusedUntilTh
             Fault::kFormChanged);
   EXPECT_EQ(with([](CloudText& t) { t.point_step = 16, t.row_step = 80, t.fields.pop_back(); }),
             Fault::kFormChanged);
-  EXPECT_EQ(with([](CloudText& t) {
-              t.height = 5, t.width = 1, t.row_step = 20;
-            }),
+  EXPECT_EQ(with([](CloudText& t) { t.height = 5, t.width = 1, t.row_step = 20; }),
             Fault::kFormChanged);
   EXPECT_EQ(with([](CloudText& t) { t.width = 4, t.row_step = 80; }), Fault::kNoFault)
       << "fewer points in one row";
   EXPECT_EQ(with([](CloudText& t) { t.frame = "/camera"; }), Fault::kNoFault);
-  EXPECT_EQ(with([](CloudText& t) { t.fields.insert(t.fields.begin(), {"ring", 12}); }),
+  EXPECT_EQ(with([](CloudText& t) {
+              t.fields.insert(t.fields.begin(), {"ring", 12});
+            }),
             Fault::kNoFault)
       << "x, y and z are where they were";
   first.height = 5, first.width = 1, first.row_step = 20;
