@@ -12,6 +12,10 @@
 
 namespace clearance {
 
+// Recorders write several topics only nearly in the order of their log times. By this much, ns, a
+// message may stand behind a later one.
+inline constexpr std::int64_t kLogDisorderNs = 2'000'000'000;
+
 struct BagTopic {
   std::string name;      // e.g. /joint_states
   std::string type;      // e.g. sensor_msgs/msg/JointState

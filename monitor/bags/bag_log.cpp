@@ -1,5 +1,4 @@
-// Batches wait until the bag has been read two seconds further. Recorders write the messages of
-// several topics only nearly in the order of their times.
+// Batches wait until the bag has been read further by kLogDisorderNs.
 #include "monitor/bags/bag_log.hpp"
 
 #include <fmt/format.h>
@@ -14,7 +13,6 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kDisorderNs = 2'000'000'000;
 // The largest number of batches that wait, however close their times are.
 constexpr std::size_t kMostWaiting = 1 << 16;
 // 2^62 ns, a time in the year 2116.
@@ -70,7 +68,7 @@ bool BagLog::next(LoggedBatch& batch) {
 
 void BagLog::read_ahead() {
   BagMessage message;
-  while (!ended_ && (waiting_.empty() || (read_to_ns_ < waiting_.begin()->first + kDisorderNs &&
+  while (!ended_ && (waiting_.empty() || (read_to_ns_ < waiting_.begin()->first + kLogDisorderNs &&
                                           waiting_.size() < kMostWaiting))) {
     ended_ = !bag_->next(message);
     if (ended_) break;

@@ -16,10 +16,10 @@ namespace {
 
 constexpr std::size_t kKeptResults = 64;
 constexpr std::int64_t kAgainNs = 1'000'000'000;  // until a request is sent again
-constexpr std::int64_t kLookNs = 5'000'000;       // between two looks for a daemon
+constexpr std::int64_t kPollNs = 5'000'000;       // between two polls for a daemon
 constexpr std::int64_t kLeaseNs = 2'000'000'000;  // a killed program's name is free after this time
 constexpr std::int64_t kAskNs = 50'000'000;       // until the caller is asked again
-constexpr std::int64_t kMeetNs = 20'000'000;      // between two looks for another daemon
+constexpr std::int64_t kMeetNs = 20'000'000;      // between two polls for another daemon
 
 // The daemons' readers of requests, and their writers of results, that this client has met.
 struct Met {
@@ -114,7 +114,7 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
                                                                std::chrono::nanoseconds timeout) {
   const std::int64_t end_ns = monotonic_ns() + timeout.count();
   Stop stop(std::move(ask));
-  while (!is_heard() && monotonic_ns() < end_ns && !stop()) dds_sleepfor(kLookNs);
+  while (!is_heard() && monotonic_ns() < end_ns && !stop()) dds_sleepfor(kPollNs);
   if (!is_heard() || stop()) return std::nullopt;
   const Request request = next(make);
   const std::int64_t alone_ns = monotonic_ns() + kLeaseNs + kAgainNs / 2;

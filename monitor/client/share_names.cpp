@@ -15,7 +15,7 @@ ShareNames::ShareNames(Connection& connection)
 
 ShareNames::~ShareNames() { dds_delete(reader_); }
 
-const std::set<std::string>& ShareNames::look() {
+const std::set<std::string>& ShareNames::poll() {
   for (;;) {
     void* sample = nullptr;
     dds_sample_info_t info;

@@ -18,7 +18,7 @@ class ShareNames {
 
   // Takes what was met since the last time, and returns all names so far. A topic has a share's
   // name but for special characters.
-  const std::set<std::string>& look();
+  const std::set<std::string>& poll();
   [[nodiscard]] const std::set<std::string>& names() const noexcept { return names_; }
   // For a wait on several streams.
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }

@@ -64,7 +64,7 @@ void SharedCell::look_for_names() {
   std::vector<std::string> names;
   for (const auto& share : shares_) names.push_back(share->name);
   const std::size_t before = names.size();
-  for (const std::string& name : discovery_->look()) {
+  for (const std::string& name : discovery_->poll()) {
     if (std::ranges::find(names, name) == names.end()) names.push_back(name);
   }
   if (names.size() != before) open(names);

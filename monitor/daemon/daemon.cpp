@@ -22,8 +22,8 @@ namespace {
 constexpr std::size_t kQueuedReports = 64;
 // The largest delay with which the end after --ticks is noticed.
 constexpr std::int64_t kSignalPollMs = 50;
-// The number of such intervals between two looks at the files of the cell.
-constexpr int kPollsALook = 10;
+// The number of such intervals between two polls of the cell's files.
+constexpr int kPollsAReload = 10;
 // The interval at which a change of the cell checks that the last reports of the former cell are
 // written.
 constexpr std::chrono::milliseconds kReportsPoll{1};
@@ -78,23 +78,22 @@ void warn_of_partition(const Cell& cell, const DaemonOptions& all) {
 // caller keeps the first cell.
 Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
     : options_(options),
-      cell_file_(cell.file.string()),
       service_(fmt::format("cell '{}' at {} Hz", cell.scene.name, cell.scene.rate_hz)),
+      reload_(cell, options.reload, service_, reload_actions()),
       participant_(join(options)),
-      moveit_([this](QueuedCommand command) { return put(std::move(command)); }),
+      moveit_([this](SceneTask task) { return put(std::move(task)); }),
       poses_(cell, participant_,
              [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
       identity_(make_identity(options.partner)),
       partner_(options.partner.empty()
                    ? nullptr
-                   : std::make_unique<OfPartner>(cell, participant_, poses_, clock_, identity_)),
+                   : std::make_unique<Partnership>(cell, participant_, poses_, clock_, identity_)),
       now_(parts_of(std::shared_ptr<const Cell>(std::shared_ptr<const Cell>(), &cell))),
       messages_(cell, participant_),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health,
                &messages_, identity_, partner_ ? &partner_->port : nullptr),
       recording_(open_recording(now_.cell, options, poses_, recording_health_)),
       revision_(cell.scene.revision) {
-  watch_files(cell.files);
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
       .max_samples = kLargestBatchesATick *
@@ -102,50 +101,31 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       .ahead_ns = ahead_ns(),
       .pace = partner_ ? &partner_->ticks : nullptr,
       .frames = poses_.frames()};
-  std::vector<ReportSink*> sinks{now_.queue.get()};
-  if (recording_) sinks.insert(sinks.end(), {&recording_->frames(), &recording_->sink()});
-  if (now_.ros) sinks.push_back(now_.ros.get());
   PoseSource& source = partner_ ? static_cast<PoseSource&>(partner_->ticks) : poses_;
-  loop_ = std::make_unique<TickLoop>(cell.scene, source, std::move(sinks), clock_, loop);
+  loop_ = std::make_unique<TickLoop>(cell.scene, source, first_sinks(), clock_, loop);
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
-  const auto revision = [this] { return revision_.load(); };
-  if (partner_) {
-    partner_states_ = std::make_unique<PartnerStates>(
-        partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
-        recording_.get(), [this](QueuedCommand command) { return put(std::move(command)); },
-        revision);
-  }
+  if (partner_) share_states();
   if (cell.ros.moveit.any()) share_moveit();
-  if (!cell.commands.from.empty()) {
-    commands_ = std::make_unique<CommandPort>(
-        cell, cell.commands.from, participant_, reports_.daemon(),
-        [this](QueuedCommand command) {
-          return put(partner_ ? partner_states_->for_both(std::move(command)) : std::move(command));
-        },
-        revision, partner_ ? share_commands() : CommandPort::Sharing());
-  }
-  const RosTrajectories& trajectories = cell.ros.trajectories;
-  const auto put_question = [this](QueuedQuestion question) {
-    return desk_->put(std::move(question));
-  };
-  if (!cell.questions.from.empty() || !trajectories.topics.empty()) {
-    desk_ = std::make_unique<QuestionDesk>(
-        now_.cell, *loop_, loop_ended_, trajectories.topics.size(),
-        [this](std::uint64_t of_scene) { return poses_.seen(of_scene); });
-  }
-  if (!cell.questions.from.empty()) {
-    QuestionPort::Sharing sharing;
-    if (partner_) sharing.takes = [this] { return partner_states_->takes_requests(); };
-    questions_ =
-        std::make_unique<QuestionPort>(cell, cell.questions.from, participant_, reports_.daemon(),
-                                       put_question, revision, std::move(sharing));
-  }
-  if (!trajectories.topics.empty()) {
-    trajectories_ = std::make_unique<TrajectoryPort>(cell.scene.name, trajectories, participant_,
-                                                     put_question, leads());
-  }
+  clients_ = std::make_unique<ClientPorts>(now_.cell, participant_, reports_.daemon(), *loop_,
+                                           loop_ended_, client_actions());
+}
+
+std::vector<ReportSink*> Daemon::first_sinks() {
+  std::vector<ReportSink*> sinks{now_.queue.get()};
+  if (recording_) sinks.insert(sinks.end(), {&recording_->frames(), &recording_->sink()});
+  if (now_.ros) sinks.push_back(now_.ros.get());
+  return sinks;
+}
+
+// Results do not go through put(): the reload itself notes the change.
+CellReload::Actions Daemon::reload_actions() {
+  return {.followed = [this] { return followed(); },
+          .put = [this](GivenCommand given) { return scene_thread_->put(std::move(given)); },
+          .note_change = [this](const CommandResult& result) { return note_change(result); },
+          .files = [this] { return changer_->cell().files; },
+          .list_mistakes = options_.list_mistakes};
 }
 
 Daemon::~Daemon() {
@@ -191,14 +171,14 @@ void Daemon::run(StopSignal& signal) {
   raise_priorities();
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
-  if (commands_) commands_->start();
-  if (desk_) desk_->start();
-  if (questions_) questions_->start();
-  if (trajectories_) trajectories_->start();
+  clients_->start();
   for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
     ++polls;
-    const bool looks = polls % kPollsALook == 0;
-    if (signal.hung_up() || (looks && (files_changed() || wants_to_read_))) read_again();
+    if (signal.hung_up()) {
+      reload_.read_again();
+    } else if (polls % kPollsAReload == 0) {
+      reload_.poll();
+    }
     if (recording_) recording_->watch();
     service_.notice(reports_.published_cycle());
   }
@@ -238,21 +218,21 @@ void Daemon::tick_thread(std::atomic<bool>& done) {
 void Daemon::end_requests() {
   moveit_.close();
   loop_ended_ = true;
-  if (desk_) desk_->end();
-  questions_.reset();
-  trajectories_.reset();
+  if (clients_) clients_->end_questions();
   if (!scene_thread_ || still_reads_) return;
   still_reads_ = !scene_thread_->end();
-  if (!still_reads_) commands_.reset();
+  if (clients_ && !still_reads_) clients_->end_commands();
 }
 
-bool Daemon::put(QueuedCommand command) {
-  command.answer = [this, answer = std::move(command.answer)](const CommandResult& result) {
-    note_change(result);
-    if (recording_) recording_->note_command();
-    if (answer) answer(result);
-  };
-  return scene_thread_->put(std::move(command));
+bool Daemon::put(SceneTask task) {
+  if (AnswerCommand* const asked = answer_of(task)) {
+    *asked = [this, answer = std::move(*asked)](const CommandResult& result) {
+      note_change(result);
+      if (recording_) recording_->note_command();
+      if (answer) answer(result);
+    };
+  }
+  return scene_thread_->put(std::move(task));
 }
 
 // Returns false if nothing has changed.
@@ -264,63 +244,6 @@ bool Daemon::note_change(const CommandResult& result) {
   revision_ = result.scene_revision;
   log_line(lines::kSceneChanged, result.scene_revision, result.in_force_from, before);
   return true;
-}
-
-// The cell's own file counts even where another text is in force.
-void Daemon::watch_files(const std::vector<std::filesystem::path>& files) {
-  std::vector<std::filesystem::path> all = files;
-  all.emplace_back(cell_file_);
-  files_.watch(all);
-}
-
-// A cell that was read again may name other files.
-bool Daemon::files_changed() {
-  std::optional<std::vector<std::filesystem::path>> read;
-  {
-    const std::lock_guard lock(read_mutex_);
-    read = std::exchange(read_files_, std::nullopt);
-  }
-  if (read) watch_files(*read);
-  return options_.reload && files_.changed();
-}
-
-// Only the daemon that others follow reads the file. The others get the cell from it.
-void Daemon::read_again() {
-  const auto standing = partner_ ? partner_->ticks.standing() : PartnerStanding::kLeading;
-  wants_to_read_ = standing == PartnerStanding::kStarting;
-  if (wants_to_read_) return;
-  log_line(lines::kReading, cell_file_);
-  service_.reloading();
-  const std::string followed = standing != PartnerStanding::kLeading ? "the leading partner"
-                               : shares_ && !shares_->is_first()
-                                   ? fmt::format("the share '{}'", shares_->first())
-                                   : "";
-  if (!followed.empty()) {
-    const std::string counts = fmt::format("the cell of {} counts", followed);
-    log_line(lines::kSceneRefused, counts + ": have that one read it");
-    return service_.reloaded(counts);
-  }
-  const auto answer = [this](const CommandResult& result) {
-    if (result.done()) {
-      {
-        const std::lock_guard lock(read_mutex_);
-        read_files_ = changer_->cell().files;
-      }
-      const bool is_new = note_change(result);
-      if (!is_new) log_line(lines::kSceneUnchanged);
-      service_.reloaded(is_new ? "the changed cell is in force" : "the cell has not changed");
-      return;
-    }
-    const bool has_mistakes = result.status == CommandStatus::kRefused && options_.list_mistakes;
-    if (has_mistakes) options_.list_mistakes();
-    log_line(lines::kSceneRefused, has_mistakes ? "its mistakes are listed above" : result.reason);
-    service_.reloaded("the changed cell was refused: see the log");
-  };
-  wants_to_read_ =
-      !scene_thread_->put({{.client = "", .changes = {ReadCellAgain{}}}, true, answer});
-  if (!wants_to_read_) return;
-  log_line(lines::kSceneRefused, "too many commands wait: it is tried again");
-  service_.reloaded("the cell waits to be read again: see the log");
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
@@ -343,7 +266,7 @@ void Daemon::follow(const SceneInForce& since) noexcept {
   if (now_.ros) now_.ros->finish();
   dropped_before_ += now_.queue->dropped_reports();
   now_ = std::move(next_);
-  if (desk_) desk_->follow(now_.cell);
+  clients_->follow(now_.cell);
 }
 
 void Daemon::end(const LoopStatistics& figures) noexcept {

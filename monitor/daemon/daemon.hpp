@@ -7,26 +7,23 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/daemon/file_watch.hpp"
+#include "monitor/daemon/cell_reload.hpp"
+#include "monitor/daemon/client_ports.hpp"
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/partner_states.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/daemon/share_scenes.hpp"
-#include "monitor/daemon/trajectory_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/dds/report_writer.hpp"
-#include "monitor/dds/request_port.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/questions/question_desk.hpp"
 #include "monitor/ros/ros_messages.hpp"
 #include "monitor/ros/ros_writer.hpp"
 #include "monitor/scene_changes/scene_changer.hpp"
@@ -78,9 +75,9 @@ class Daemon : private CellParts {
   // this object and static ones.
   [[nodiscard]] bool still_reads() const noexcept { return still_reads_; }
 
-  // Any thread while run() runs: the one way in for commands, wherever they come from. Returns
-  // false if too many wait.
-  [[nodiscard]] bool put(QueuedCommand command);
+  // Any thread while run() runs: the one entry for tasks, wherever they come from. Returns false if
+  // too many wait.
+  [[nodiscard]] bool put(SceneTask task);
 
  private:
   // The parts that a change of the cell replaces.
@@ -91,20 +88,23 @@ class Daemon : private CellParts {
   };
   [[nodiscard]] std::int64_t ahead_ns() const noexcept { return partner_ ? 0 : options_.ahead_ns; }
   // The parts of a daemon that has a partner.
-  struct OfPartner {
+  struct Partnership {
     TickPartner ticks;
     PartnerPort port;
-    OfPartner(const Cell& cell, Participant& participant, PoseReader& poses, Clock& clock,
-              const DaemonIdentity& identity);
-    ~OfPartner() { poses_.end_sharing(); }
-    OfPartner(const OfPartner&) = delete;
-    OfPartner& operator=(const OfPartner&) = delete;
+    Partnership(const Cell& cell, Participant& participant, PoseReader& poses, Clock& clock,
+                const DaemonIdentity& identity);
+    ~Partnership() { poses_.end_sharing(); }
+    Partnership(const Partnership&) = delete;
+    Partnership& operator=(const Partnership&) = delete;
 
    private:
     PoseReader& poses_;
   };
   [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
-  [[nodiscard]] CommandPort::Sharing share_commands();
+  void share_states();
+  [[nodiscard]] std::vector<ReportSink*> first_sinks();
+  [[nodiscard]] CellReload::Actions reload_actions();
+  [[nodiscard]] ClientPorts::Actions client_actions();
   [[nodiscard]] PartnerPort::Actions partner_actions();
   void share_moveit();
   void stop_sharing();
@@ -112,9 +112,7 @@ class Daemon : private CellParts {
   void tick_thread(std::atomic<bool>& done);
   void raise_priorities();
   void end_requests();
-  void read_again();
-  [[nodiscard]] bool files_changed();
-  void watch_files(const std::vector<std::filesystem::path>& files);
+  [[nodiscard]] std::optional<std::string> followed() const;
   bool note_change(const CommandResult& result);
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
   void follow(const SceneInForce& since) noexcept override;
@@ -122,18 +120,14 @@ class Daemon : private CellParts {
   void abandon() override;
 
   DaemonOptions options_;
-  std::string cell_file_;
   ServiceManager service_;
-  FileWatch files_;
-  bool wants_to_read_ = false;                                    // the queue was full
-  std::mutex read_mutex_;                                         // guards the next one
-  std::optional<std::vector<std::filesystem::path>> read_files_;  // of the cell that was read again
+  CellReload reload_;
   Participant participant_;
   MoveItPort moveit_;
   PoseReader poses_;
   const DaemonIdentity identity_;
   SystemClock clock_;
-  std::unique_ptr<OfPartner> partner_;  // null: it has none
+  std::unique_ptr<Partnership> partner_;  // null: it has none
   RecordingHealth recording_health_;
   OfCell now_, next_;
   std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
@@ -148,11 +142,8 @@ class Daemon : private CellParts {
   std::atomic<std::uint64_t> revision_;  // in force
   std::unique_ptr<SceneThread> scene_thread_;
   std::unique_ptr<PartnerStates> partner_states_;
-  std::unique_ptr<ShareScenes> shares_;    // null: the cell has none, or no messages of MoveIt
-  std::unique_ptr<CommandPort> commands_;  // null: the cell names no client
-  std::unique_ptr<QuestionDesk> desk_;     // likewise, here and below
-  std::unique_ptr<QuestionPort> questions_;
-  std::unique_ptr<TrajectoryPort> trajectories_;
+  std::unique_ptr<ShareScenes> shares_;  // null: the cell has none, or no messages of MoveIt
+  std::unique_ptr<ClientPorts> clients_;
   bool still_reads_ = false;
   std::atomic<bool> stop_{false};
   double seconds_ = 0.0;

@@ -1,5 +1,7 @@
 // The parts of a daemon that other daemons of the same cell share: its partner, and those of other
 // shares.
+#include <fmt/format.h>
+
 #include <cmath>
 #include <utility>
 
@@ -7,8 +9,8 @@
 
 namespace clearance {
 
-Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseReader& poses,
-                             Clock& clock, const DaemonIdentity& identity)
+Daemon::Partnership::Partnership(const Cell& cell, Participant& participant, PoseReader& poses,
+                                 Clock& clock, const DaemonIdentity& identity)
     : ticks(poses, clock,
             {.period_ns = std::llround(1e9 / cell.scene.rate_hz),
              .daemon = identity.id,
@@ -21,9 +23,40 @@ Daemon::OfPartner::OfPartner(const Cell& cell, Participant& participant, PoseRea
   poses.share_frames(cell.topics, identity, ticks);
 }
 
-CommandPort::Sharing Daemon::share_commands() {
-  return {.takes = [this] { return partner_states_->takes_requests(); },
-          .overhear = [this](Command command) { partner_states_->keep_files(std::move(command)); }};
+void Daemon::share_states() {
+  partner_states_ = std::make_unique<PartnerStates>(
+      partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
+      recording_.get(), [this](SceneTask task) { return put(std::move(task)); },
+      [this] { return revision_.load(); });
+}
+
+ClientPorts::Actions Daemon::client_actions() {
+  ClientPorts::Actions actions{
+      .put = [this](GivenCommand given) { return put(std::move(given)); },
+      .revision = [this] { return revision_.load(); },
+      .frames = [this](std::uint64_t of_scene) { return poses_.seen(of_scene); },
+      .commands = {},
+      .questions = {},
+      .leads = leads()};
+  if (!partner_) return actions;
+  actions.put = [this](GivenCommand given) {
+    return put(partner_states_->for_both(std::move(given)));
+  };
+  actions.commands.takes =
+      actions.questions.takes = [this] { return partner_states_->takes_requests(); };
+  actions.commands.overhear = [this](Command command) {
+    partner_states_->keep_files(std::move(command));
+  };
+  return actions;
+}
+
+// Only the daemon that others follow reads the cell's file.
+std::optional<std::string> Daemon::followed() const {
+  const auto standing = partner_ ? partner_->ticks.standing() : PartnerStanding::kLeading;
+  if (standing == PartnerStanding::kStarting) return std::nullopt;
+  if (standing != PartnerStanding::kLeading) return "the leading partner";
+  if (shares_ && !shares_->is_first()) return fmt::format("the share '{}'", shares_->first());
+  return "";
 }
 
 // In a cell in shares, the daemon of the first share does MoveIt's messages.
@@ -31,14 +64,14 @@ void Daemon::share_moveit() {
   if (now_.cell->shares.is_one()) {
     shares_ = std::make_unique<ShareScenes>(
         *now_.cell, participant_,
-        ShareScenes::Actions{
-            .put = [this](QueuedCommand command) { return put(std::move(command)); },
-            .revision = [this] { return revision_.load(); },
-            .changes =
-                [this] {
-                  return !partner_ || partner_->ticks.standing() == PartnerStanding::kLeading;
-                },
-            .look = [this] { moveit_.look(); }});
+        ShareScenes::Actions{.put = [this](SceneTask task) { return put(std::move(task)); },
+                             .revision = [this] { return revision_.load(); },
+                             .changes =
+                                 [this] {
+                                   return !partner_ ||
+                                          partner_->ticks.standing() == PartnerStanding::kLeading;
+                                 },
+                             .update_lead = [this] { moveit_.update_lead(); }});
   }
   if (!partner_ && !shares_) return;
   MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};
@@ -60,7 +93,7 @@ PartnerPort::Actions Daemon::partner_actions() {
   PartnerPort::Actions actions = partner_states_->actions();
   if (!now_.cell->ros.moveit.any()) return actions;
   actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
-  actions.look = [this] { moveit_.look(); };
+  actions.update_lead = [this] { moveit_.update_lead(); };
   return actions;
 }
 

@@ -38,10 +38,9 @@ void MoveItPort::close() {
 }
 
 // `identity`: 0 if the messages are not shared.
-QueuedCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.bytes_to_make = message->cdr.size();
+MadeCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
+  MadeCommand queued;
+  queued.bytes = message->cdr.size();
   queued.make = [this, message, identity](const Cell& cell, const AskPose& pose) {
     if (identity != 0 && !begins(identity, cell.scene.revision)) return Command{};
     Command made = translated(*message, cell, pose);
@@ -82,7 +81,7 @@ void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
   heard_ = {{changes.begin(), changes.end()}, {bytes.begin(), bytes.end()}, true};
 }
 
-void MoveItPort::look() {
+void MoveItPort::update_lead() {
   const std::lock_guard lock(mutex_);
   if (!sharing_ || !put_) return;
   const bool led = std::exchange(leads_, leads());
@@ -91,12 +90,10 @@ void MoveItPort::look() {
     return keep_files();
   }
   if (!led) {
-    QueuedCommand queued;
-    queued.task = [this] {
+    leads_ = put_(OtherWork{[this] {
       go_on_from_heard(sharing_->revision());
       note(0, sharing_->revision());
-    };
-    leads_ = put_(std::move(queued));
+    }});
   }
   put_waiting();
 }
@@ -112,10 +109,9 @@ void MoveItPort::put_waiting() {
 // The leader names them in the changed cell. A daemon that never leads needs no more of a message.
 void MoveItPort::keep_files() {
   if (keeps_ || !turns_.has_to_keep()) return;
-  QueuedCommand queued;
-  queued.is_own = queued.only_keeps_files = true;
-  queued.make = [this](const Cell& cell, const AskPose&) {
-    Command command;
+  KeptFiles kept;
+  kept.make = [this](const Cell& cell) {
+    std::vector<SentFile> files;
     std::vector<SceneTurns::Message> messages;
     {
       const std::lock_guard lock(mutex_);
@@ -125,14 +121,14 @@ void MoveItPort::keep_files() {
     }
     for (const SceneTurns::Message& message : messages) {
       for (moveit::MeshFile& file : keeper_.files_of(*message, cell))
-        command.files.push_back({std::move(file.name), std::move(file.bytes)});
+        files.push_back({std::move(file.name), std::move(file.bytes)});
     }
-    return command;
+    return files;
   };
-  queued.answer = [](const CommandResult& result) {
+  kept.answer = [](const CommandResult& result) {
     if (!result.done()) log_line(lines::kPartnerFileNotKept, result.reason);
   };
-  keeps_ = put_(std::move(queued));
+  keeps_ = put_(std::move(kept));
 }
 
 // By its turn the partner may lead, or have done the message before it fell silent.

@@ -13,14 +13,14 @@
 
 #include "monitor/daemon/scene_turns.hpp"
 #include "monitor/moveit/scene_keeper.hpp"
-#include "monitor/scene_changes/command_queue.hpp"
+#include "monitor/scene_changes/scene_task.hpp"
 
 namespace clearance {
 
 class MoveItPort {
  public:
   // Puts a command into the queue; returns false if too much waits.
-  using Put = std::function<bool(QueuedCommand)>;
+  using Put = std::function<bool(SceneTask)>;
   // A daemon needs this if other daemons hear the messages, too.
   struct Sharing {
     std::function<bool()> leads;              // this daemon, at the moment; empty: it never leads
@@ -45,7 +45,7 @@ class MoveItPort {
   void hear(const clearance_msg_PartnerScene& scene);
   // Has to be called every few milliseconds, by any thread but that of the tick: this daemon may
   // begin to lead, or have the leader's scene.
-  void look();
+  void update_lead();
 
  private:
   static constexpr std::size_t kMostChanges = 64;  // kMaxSceneChanges in idl/partners.idl
@@ -55,7 +55,7 @@ class MoveItPort {
     bool is_new = false;  // it was heard since this daemon led
   };
 
-  [[nodiscard]] QueuedCommand command(const SceneTurns::Message& message, std::uint64_t identity);
+  [[nodiscard]] MadeCommand command(const SceneTurns::Message& message, std::uint64_t identity);
   [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
                                    const AskPose& pose);
   // With the mutex held.

@@ -16,7 +16,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::chrono::microseconds kLook{100};
+constexpr std::chrono::microseconds kPoll{100};
 // A leader that was held up for a moment knows after this time whether it still leads.
 constexpr std::chrono::milliseconds kLeadsAgain{100};
 // The partner takes some ms for a changed cell, and longer while it is busy.
@@ -45,16 +45,13 @@ PartnerPort::Actions PartnerStates::actions() {
 
 // A full queue drops it; the port asks again.
 void PartnerStates::put(std::function<void()> task) {
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.task = [task = std::move(task)] {
+  static_cast<void>(thread_.put(OtherWork{[task = std::move(task)] {
     try {
       task();
     } catch (const std::exception& error) {
       log_line(lines::kPartnerStateRefused, error.what());
     }
-  };
-  static_cast<void>(thread_.put(std::move(queued)));
+  }}));
 }
 
 // The monitor of a large cell takes long to make: it is made before the state is asked for.
@@ -73,7 +70,7 @@ void PartnerStates::send() {
       const std::uint64_t lineage = ticks_.becoming();
       if (lineage == 0) return;  // it was given up: the partner asks again
       std::vector<std::byte> bytes;
-      save_state(successor.numbers(), loop_.ids(), successor.monitor(), bytes);
+      successor.save(loop_.state().ids(), bytes);
       port_.send_state({.revision = successor.scene().revision,
                         .lineage = lineage,
                         .cycle = successor.began_after(),
@@ -105,27 +102,26 @@ void PartnerStates::join(const PartnerStateView& state) {
   }
   if (recording_ != nullptr) recording_->note_state(state);
   if (!loop_.offer(joined)) return;
-  while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kLook);
+  while (!loop_.has_joined() && !loop_ended_) std::this_thread::sleep_for(kPoll);
 }
 
 // By its turn this daemon may lead, or have the cell.
 void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.bytes_to_make = text.size();
-  queued.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
+  MadeCommand made;
+  made.bytes = text.size();
+  made.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
     const bool has_it = cell.scene.revision == revision;
     if (has_it || ticks_.standing() == PartnerStanding::kLeading) return Command{};
     return Command{.changes = {ReplaceCell{text}}};
   };
-  queued.answer = [this, revision](const CommandResult& result) {
+  made.answer = [this, revision](const CommandResult& result) {
     const bool is_taken = result.done() && result.scene_revision == revision;
     if (is_taken || std::exchange(refused_, revision) == revision) return;
     log_line(lines::kPartnerStateRefused,
              fmt::format("its cell of revision {:016x} is refused here: {}", revision,
                          result.done() ? "files or options differ" : result.reason));
   };
-  static_cast<void>(put_command_(std::move(queued)));
+  static_cast<void>(put_command_(std::move(made)));
 }
 
 // Two daemons may both lead the ticks for a moment, but must not both take a command. A daemon that
@@ -135,7 +131,7 @@ bool PartnerStates::takes_requests() const {
   while (ticks_.standing() == PartnerStanding::kLeading && !loop_ended_) {
     if (port_.leads()) return true;
     if (std::chrono::steady_clock::now() > end) break;
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPoll);
   }
   return false;
 }
@@ -143,21 +139,21 @@ bool PartnerStates::takes_requests() const {
 // The client sends a command again until it has the result.
 void PartnerStates::keep_files(Command command) {
   if (command.dry_run || command.files.empty()) return;
-  QueuedCommand queued{.command = std::move(command), .is_own = true};
-  queued.command.changes.clear();
-  queued.only_keeps_files = true;
-  queued.answer = [](const CommandResult& result) {
+  KeptFiles kept;
+  for (const SentFile& file : command.files) kept.bytes += file.bytes.size();
+  kept.make = [files = std::move(command.files)](const Cell&) { return files; };
+  kept.answer = [](const CommandResult& result) {
     if (!result.done()) log_line(lines::kPartnerFileNotKept, result.reason);
   };
-  static_cast<void>(thread_.put(std::move(queued)));
+  static_cast<void>(thread_.put(std::move(kept)));
 }
 
-QueuedCommand PartnerStates::for_both(QueuedCommand command) {
-  command.answer = [this, is_dry = command.command.dry_run,
-                    answer = std::move(command.answer)](const CommandResult& result) {
+GivenCommand PartnerStates::for_both(GivenCommand given) {
+  given.answer = [this, is_dry = given.command.dry_run,
+                  answer = std::move(given.answer)](const CommandResult& result) {
     answer(is_dry || !result.done() ? result : of_both(result));
   };
-  return command;
+  return given;
 }
 
 // If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost. A
@@ -183,7 +179,7 @@ CommandResult PartnerStates::of_both(CommandResult result) {
                                   port_.partner());
       break;
     }
-    std::this_thread::sleep_for(kLook);
+    std::this_thread::sleep_for(kPoll);
   }
   return result;
 }

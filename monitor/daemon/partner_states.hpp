@@ -24,9 +24,9 @@ namespace clearance {
 // Everything given must outlive this. The actions are called in the threads of the port.
 class PartnerStates {
  public:
-  // `put`: the way in for changes of the cell. `revision` returns that of the scene in force.
+  // `put`: the entry for changes of the cell. `revision` returns that of the scene in force.
   // `recording` gets the states that the loop goes on from; null: there is none.
-  using Put = std::function<bool(QueuedCommand)>;
+  using Put = std::function<bool(SceneTask)>;
   PartnerStates(PartnerPort& port, TickPartner& ticks, TickLoop& loop, SceneChanger& changer,
                 SceneThread& thread, const std::atomic<bool>& loop_ended, Recording* recording,
                 Put put_command, std::function<std::uint64_t()> revision)
@@ -49,7 +49,7 @@ class PartnerStates {
   // Keeps the files of a command that the partner takes.
   void keep_files(Command command);
   // The command of a client. Its answer waits until the partner has the changed cell, too.
-  [[nodiscard]] QueuedCommand for_both(QueuedCommand command);
+  [[nodiscard]] GivenCommand for_both(GivenCommand given);
 
  private:
   void put(std::function<void()> task);

@@ -8,12 +8,13 @@
 
 #include "config/cell/share_topics.hpp"
 #include "monitor/app/log_lines.hpp"
+#include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kLookNs = 10'000'000;
+constexpr std::int64_t kPollNs = 10'000'000;
 constexpr std::int64_t kAgainNs = 1'000'000'000;
 // The first share waits so long before it takes a scene: it may come to have the same one itself.
 constexpr std::int64_t kFirstWaitsNs = 200'000'000;
@@ -47,7 +48,7 @@ std::optional<std::size_t> SceneToFollow::share_that_counts(std::uint64_t in_for
   return most;
 }
 
-std::optional<std::size_t> SceneToFollow::look(std::uint64_t in_force, bool has_changed,
+std::optional<std::size_t> SceneToFollow::find(std::uint64_t in_force, bool has_changed,
                                                std::int64_t now_ns) {
   const auto share = share_that_counts(in_force, has_changed);
   const std::int64_t age_ns = now_ns - start_ns_;
@@ -106,13 +107,13 @@ void ShareScenes::run() {
   name_thread("shares");
   SystemClock clock;
   while (!stop_) {
-    wait_->wait(kLookNs);
+    wait_->wait(kPollNs);
     hear();
     const std::uint64_t in_force = actions_.revision();
-    const auto share = to_follow_.look(in_force, has_changed_, clock.monotonic_ns());
+    const auto share = to_follow_.find(in_force, has_changed_, clock.monotonic_ns());
     if (share) take_over(*std::ranges::find(heard_, *share, &Heard::share));
     does_messages_ = is_first() && to_follow_.is_settled();
-    actions_.look();
+    actions_.update_lead();
   }
 }
 
@@ -138,11 +139,10 @@ void ShareScenes::take_over(const Heard& heard) {
 }
 
 // By its turn this daemon may have the scene.
-QueuedCommand ShareScenes::command() {
+MadeCommand ShareScenes::command() {
   const auto doing = std::make_shared<Wanted>();
-  QueuedCommand queued;
-  queued.is_own = true;
-  queued.make = [this, doing](const Cell& cell, const AskPose&) {
+  MadeCommand made;
+  made.make = [this, doing](const Cell& cell, const AskPose&) {
     const std::lock_guard lock(mutex_);
     is_queued_ = false;
     *doing = std::move(wanted_);
@@ -150,13 +150,13 @@ QueuedCommand ShareScenes::command() {
     return has_it || !actions_.changes() ? Command{}
                                          : Command{.changes = {ReplaceCell{doing->text}}};
   };
-  queued.answer = [this, doing](const CommandResult& result) {
+  made.answer = [this, doing](const CommandResult& result) {
     const bool is_taken = result.done() && result.scene_revision == doing->revision;
     if (is_taken || std::exchange(refused_, doing->revision) == doing->revision) return;
     log_line(lines::kShareSceneRefused, names_[doing->share], doing->revision,
              result.done() ? "files or options differ" : result.reason);
   };
-  return queued;
+  return made;
 }
 
 }  // namespace clearance

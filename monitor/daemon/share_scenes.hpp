@@ -16,7 +16,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/scene_changes/command_queue.hpp"
+#include "monitor/scene_changes/scene_task.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -45,7 +45,7 @@ class SceneToFollow {
   // share is returned at once, but to the first share after 200 ms. After a change of this daemon's
   // own scene, it is returned after a second. While the scenes differ, it is returned again every
   // second. `in_force` is the revision here. `has_changed`: this daemon did not begin with it.
-  [[nodiscard]] std::optional<std::size_t> look(std::uint64_t in_force, bool has_changed,
+  [[nodiscard]] std::optional<std::size_t> find(std::uint64_t in_force, bool has_changed,
                                                 std::int64_t now_ns);
   // True once the first share may apply messages. It then has no scene to take over, and has heard
   // all others or has run for a second. After 3 s it is true in any case.
@@ -68,10 +68,10 @@ class SceneToFollow {
 class ShareScenes {
  public:
   struct Actions {
-    std::function<bool(QueuedCommand)> put;   // the way in for changes of the cell
+    std::function<bool(SceneTask)> put;       // the entry for changes of the cell
     std::function<std::uint64_t()> revision;  // of the scene in force
     std::function<bool()> changes;            // false: a partner makes the changes of this share
-    std::function<void()> look;               // every 10 ms
+    std::function<void()> update_lead;        // every 10 ms
   };
   // The cell is that of one share. The participant must outlive this. Throws DdsError.
   ShareScenes(const Cell& cell, Participant& participant, Actions actions);
@@ -105,7 +105,7 @@ class ShareScenes {
   void run();
   void hear();
   void take_over(const Heard& heard);
-  [[nodiscard]] QueuedCommand command();
+  [[nodiscard]] MadeCommand command();
 
   const std::uint32_t own_;
   const std::vector<std::string> names_;

@@ -33,7 +33,7 @@ OtherDaemons::OtherDaemons(Participant& participant, const std::string& topic, D
 // The reader's listener points into this object.
 OtherDaemons::~OtherDaemons() { dds_delete(reader_); }
 
-void OtherDaemons::look() {
+void OtherDaemons::poll() {
   if (changed_.exchange(false)) note_writers();
   while (take_cdr(reader_, taken_) > 0) {
     for (const CdrSample& sample : taken_) {

@@ -15,7 +15,7 @@ namespace clearance {
 namespace {
 
 // Events without a message are noticed this often.
-constexpr std::int64_t kLookNs = 10'000'000;
+constexpr std::int64_t kPollNs = 10'000'000;
 constexpr std::int64_t kAskAgainNs = 1'000'000'000, kStandAgainNs = 1'000'000'000;
 // A daemon does not lead any more if its last notice was heard longer ago than this.
 constexpr std::int64_t kLeaderHeardNs = 100'000'000;
@@ -132,14 +132,14 @@ void PartnerPort::write_notices() {
 void PartnerPort::hear() {
   name_thread("partner");
   while (!stop_) {
-    wait_.wait(kLookNs);
+    wait_.wait(kPollNs);
     hear_notices();
     ticks_.end_pass();
     hear_states();
     hear_reports();
     hear_scenes();
     hear_catalogues();
-    look();
+    poll();
     look_for_cell();
   }
 }
@@ -249,7 +249,7 @@ void PartnerPort::hear_scenes() {
                          checksum_of(bytes) == its.checksum;
     if (is_good) actions_.hear_scene(its);
   }
-  if (actions_.look) actions_.look();
+  if (actions_.update_lead) actions_.update_lead();
 }
 
 bool PartnerPort::hears_leader() const {
@@ -270,7 +270,7 @@ void PartnerPort::look_for_cell() {
   actions_.take_cell(its.cell_yaml, offered_);
 }
 
-void PartnerPort::look() {
+void PartnerPort::poll() {
   ticks_.set_partner_present(reports_.hears_any());
   const PartnerStanding standing = ticks_.standing();
   const std::int64_t now = SystemClock().monotonic_ns();

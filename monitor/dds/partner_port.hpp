@@ -58,7 +58,7 @@ class PartnerPort {
     std::function<void(std::string text, std::uint64_t revision)> take_cell = {};
     // The leader tells what it has done with MoveIt's messages. Once for each message of it.
     std::function<void(const clearance_msg_PartnerScene&)> hear_scene = {};
-    std::function<void()> look = {};  // every 10 ms, and after each message
+    std::function<void()> update_lead = {};  // every 10 ms, and after each message
   };
   // `identity` names the partner that this daemon is. Everything given must outlive this.
   PartnerPort(Participant& participant, const Topics& topics, const DaemonIdentity& identity,
@@ -103,7 +103,7 @@ class PartnerPort {
   void hear_catalogues();
   void hear_scenes();
   void look_for_cell();
-  void look();
+  void poll();
   [[nodiscard]] bool hears_leader() const;
   static void write(dds_entity_t writer, const void* sample, const char* what);
   void write(Sample<clearance_msg_PartnerState> message, const char* what);

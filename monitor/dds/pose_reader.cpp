@@ -192,7 +192,7 @@ void PoseReader::run() {
     if (stop_) return;
     const std::lock_guard lock(mutex_);
     try {
-      look();
+      poll();
       take_all({.realtime_ns = clock.realtime_ns(), .monotonic_ns = clock.monotonic_ns()});
     } catch (const DdsError& error) {
       log_line(lines::kInputsFailed, error.what());
@@ -202,8 +202,8 @@ void PoseReader::run() {
 }
 
 // Updates the topics that other programs publish, and the writers that still exist.
-void PoseReader::look() {
-  const bool changed = intake_.hears_ros() && ros_.look();
+void PoseReader::poll() {
+  const bool changed = intake_.hears_ros() && ros_.poll();
   if (writers_changed_.exchange(false) || changed) note_writers();
   const std::vector<RosReaders::Reader>& readers = ros_.readers();
   for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);

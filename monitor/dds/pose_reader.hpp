@@ -18,8 +18,8 @@
 #include "monitor/dds/sensor_reader.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/state/spsc_ring.hpp"
 
 namespace clearance {
 
@@ -99,7 +99,7 @@ class PoseReader final : public PoseSource {
 
   void open(Participant& participant, TopicKind kind);
   void run();
-  void look();
+  void poll();
   void note_writers();
   void take_all(const Now& now);
   bool hand_over(PoseBatch& batch) noexcept;

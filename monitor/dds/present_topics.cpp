@@ -52,7 +52,7 @@ PresentTopics::PresentTopics(Participant& participant)
 
 PresentTopics::~PresentTopics() { dds_delete(reader_); }
 
-bool PresentTopics::look() {
+bool PresentTopics::poll() {
   dds_guid_t own{};
   dds_get_guid(participant_, &own);
   bool changed = false;

@@ -30,7 +30,7 @@ class PresentTopics {
   // The reader has samples when writers have changed.
   [[nodiscard]] dds_entity_t reader() const noexcept { return reader_; }
   // Takes the samples. Returns true if writers have come or gone.
-  bool look();
+  bool poll();
   // The writers by instance handle, which is the publication handle of a writer's samples.
   [[nodiscard]] const std::map<std::uint64_t, PresentWriter>& writers() const noexcept {
     return writers_;

@@ -158,7 +158,7 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 // A client keeps one value of a latched topic, that of the last writer. After another daemon has
 // left, our values are written again.
 void ReportWriter::look_for_others() {
-  others_.look();
+  others_.poll();
   if (!others_.have_just_left()) return;
   zones_.write_again();
   catalogue_is_due_ = true;

@@ -53,7 +53,7 @@ QuestionResult malformed(MalformedField fault, QuestionResult of) {
   of.reason = std::move(fault.reason);
   return of;
 }
-QueuedCommand queued(Command command, std::function<void(const CommandResult&)> answer) {
+GivenCommand queued(Command command, AnswerCommand answer) {
   return {std::move(command), false, std::move(answer)};
 }
 QueuedQuestion queued(MotionQuestion question, std::function<void(const QuestionResult&)> answer) {
@@ -61,7 +61,7 @@ QueuedQuestion queued(MotionQuestion question, std::function<void(const Question
 }
 std::string too_many(const CommandTraffic&) {
   return fmt::format("found {} that wait; expected that the same command is sent again later",
-                     counted(CommandQueue::kMost, "command"));
+                     counted(SceneQueue::kMost, "command"));
 }
 std::string too_many(const QuestionTraffic&) {
   return "found as many questions of this client that wait as `questions: queue` of the cell "

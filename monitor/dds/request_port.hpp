@@ -20,7 +20,7 @@
 #include "monitor/participant/lapsed_writers.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/questions/question_desk.hpp"
-#include "monitor/scene_changes/command_queue.hpp"
+#include "monitor/scene_changes/scene_task.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
@@ -31,7 +31,7 @@ struct CommandTraffic {
   using Message = clearance_msg_Command;
   using Request = Command;
   using Result = CommandResult;
-  using Queued = QueuedCommand;
+  using Queued = GivenCommand;
   static constexpr const char* kKey = "commands";  // of the cell, and the name of the thread
   static constexpr TopicKind kRequests = TopicKind::kCommands,
                              kResults = TopicKind::kCommandResults;

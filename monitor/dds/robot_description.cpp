@@ -41,7 +41,7 @@ std::optional<std::string> wait_for_robot_description(Participant& participant,
     dds_sample_info_t info;
     if (dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data && *sample->data != '\0')
       urdf = sample->data;
-    present.look();
+    present.poll();
     if (urdf || polls != kSayAfterPolls) continue;
     log_line(lines::kWaitingForDescription, topic, participant.where(), present.listed());
   }

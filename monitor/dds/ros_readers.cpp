@@ -8,8 +8,8 @@ RosReaders::~RosReaders() {
   for (const Reader& reader : readers_) dds_delete(reader.handle);
 }
 
-bool RosReaders::look() {
-  if (!present_.look()) return false;
+bool RosReaders::poll() {
+  if (!present_.poll()) return false;
   for (const auto& [handle, writer] : present_.writers()) {
     const TopicName name = as_in_ros(writer.topic, writer.type);
     const auto wanted = intake_.topic(name);

@@ -31,7 +31,7 @@ class RosReaders {
   RosReaders& operator=(const RosReaders&) = delete;
 
   // Makes readers for topics that have appeared. Returns true if writers have come or gone.
-  bool look();
+  bool poll();
   [[nodiscard]] const std::vector<Reader>& readers() const noexcept { return readers_; }
   // The topics that other programs publish, and the publication handles of all their writers.
   [[nodiscard]] const PresentTopics& present() const noexcept { return present_; }

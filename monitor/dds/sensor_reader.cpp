@@ -126,7 +126,7 @@ void SensorReader::run() {
     const std::lock_guard lock(mutex_);
     now_ns_ = clock.monotonic_ns();
     try {
-      look();
+      poll();
       take_all();
       build();
       log_news();
@@ -141,8 +141,8 @@ void SensorReader::run() {
 }
 
 // Makes readers for topics that have appeared.
-void SensorReader::look() {
-  if (ros_.look()) {
+void SensorReader::poll() {
+  if (ros_.poll()) {
     std::vector<std::uint64_t> writers = ros_.writers();
     std::ranges::sort(writers);
     sensors_->keep(writers);

@@ -2,7 +2,7 @@
 //
 // A thread takes images, CameraInfo, points and transforms, and builds a frame of the newest of
 // them. It has readers of its own, so that no joint or pose waits behind an image, and ordinary
-// priority. The tick takes a frame when it is built (loop/frame_exchange.hpp).
+// priority. The tick takes a frame when it is built (state/frame_exchange.hpp).
 #pragma once
 
 #include <atomic>
@@ -19,11 +19,11 @@
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/intake/intake.hpp"
-#include "monitor/loop/frame_exchange.hpp"
-#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
+#include "monitor/state/frame_exchange.hpp"
+#include "monitor/state/spsc_ring.hpp"
 
 namespace clearance {
 
@@ -66,7 +66,7 @@ class SensorReader {
 
  private:
   void run();
-  void look();
+  void poll();
   void take_all();
   void build();
   void build_own();

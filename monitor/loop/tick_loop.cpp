@@ -14,17 +14,15 @@ namespace {
 // processor from all other threads, and the kernel would end it at a limit of real-time processor
 // time (RLIMIT_RTTIME). Hence it sleeps this long after this time, in ns.
 constexpr std::int64_t kLongestWithoutSleep = 50'000'000, kShortSleep = 10'000;
-// The time between two looks of another thread for its answer.
-constexpr std::chrono::microseconds kLookForAnswer{50};
+// Another thread asks so often whether its answer has come.
+constexpr std::chrono::microseconds kAnswerPoll{50};
 
 }  // namespace
 
 // All memory of the tick is sized here: the loop itself allocates nothing.
 TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSink*> sinks,
                    Clock& clock, const TickLoopOptions& options)
-    : scene_(&scene),
-      monitor_(std::make_unique<Monitor>(scene)),
-      ids_(scene),
+    : state_(scene, {.room = options.max_samples, .frames = options.frames, .pace = options.pace}),
       source_(source),
       sinks_(std::move(sinks)),
       clock_(clock),
@@ -33,8 +31,6 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))),
       statistics_(scene) {
   options_.ahead_ns = std::min(options_.ahead_ns, period_ns_ / 2);
-  samples_.reserve(options_.max_samples);
-  joints_.reserve(options_.max_samples);
 }
 
 // Measures the delay of the wake-up, and the time until the report was handed over.
@@ -78,7 +74,7 @@ std::int64_t TickLoop::wait(std::int64_t deadline) noexcept {
   }
   clock_.sleep_until(deadline - options_.pace->ahead_ns());
   between_ticks();
-  return options_.pace->decide(deadline, monitor_->cycle() + 1, scene_->revision);
+  return state_.decide(deadline);
 }
 
 // Waits for the deadline without sleeping, because a sleeping thread wakes some time after it.
@@ -105,31 +101,24 @@ void TickLoop::tick_once() noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) between_ticks();
   take_in();
-  if (options_.frames != nullptr) {
-    if (pace == nullptr) options_.frames->choose_all(scene_->revision);
-    options_.frames->show(scene_->revision, *monitor_, sinks_);
-  }
   const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
-  const Report& report = monitor_->tick(samples_, joints_, time);
-  if (Successor* next = offered_.load(std::memory_order_acquire);
-      next != nullptr && next->state() == Successor::State::kCatchingUp) {
-    next->record(samples_, joints_, time, report.minimum_certified);
-  }
+  const Report& report = state_.tick(time);
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
   statistics_.rejected_total = report.rejected;
   note_minimum(report);
-  if (pace != nullptr) {
-    pace->ticked(*monitor_);
-    for (ReportSink* sink : sinks_) sink->lineage(pace->lineage());
+  for (ReportSink* const sink : sinks_) {
+    for (const ShownFrame& frame : state_.shown()) sink->frame(frame.sensor, frame.stamp_ns);
+    if (pace != nullptr) sink->lineage(pace->lineage());
+    sink->report(report, std::span(used_).first(used_count_));
   }
-  for (ReportSink* sink : sinks_) sink->report(report, std::span(used_).first(used_count_));
+  state_.clear();
 }
 
-bool TickLoop::offer(Successor& successor) noexcept {
-  Successor* none = nullptr;
-  return offered_.compare_exchange_strong(none, &successor, std::memory_order_acq_rel);
+bool TickLoop::offer(SceneOffer& offer) noexcept {
+  SceneOffer* none = nullptr;
+  return offered_.compare_exchange_strong(none, &offer, std::memory_order_acq_rel);
 }
 
 bool TickLoop::ask(LoopQuestion& question, const std::atomic<bool>& loop_ended) {
@@ -137,9 +126,9 @@ bool TickLoop::ask(LoopQuestion& question, const std::atomic<bool>& loop_ended) 
   while (!asked_.compare_exchange_strong(none, &question, std::memory_order_acq_rel)) {
     none = nullptr;
     if (loop_ended) return false;
-    std::this_thread::sleep_for(kLookForAnswer);
+    std::this_thread::sleep_for(kAnswerPoll);
   }
-  while (!question.is_answered() && !loop_ended) std::this_thread::sleep_for(kLookForAnswer);
+  while (!question.is_answered() && !loop_ended) std::this_thread::sleep_for(kAnswerPoll);
   if (question.is_answered()) return true;
   LoopQuestion* asked = &question;
   asked_.compare_exchange_strong(asked, nullptr, std::memory_order_acq_rel);
@@ -151,7 +140,7 @@ void TickLoop::answer_question() noexcept {
   LoopQuestion* const question = asked_.load(std::memory_order_acquire);
   if (question == nullptr) return;
   asked_.store(nullptr, std::memory_order_release);
-  question->answer({*scene_, *monitor_, statistics_});
+  question->answer({state_.scene(), state_.monitor(), statistics_});
 }
 
 bool TickLoop::offer(JoinedState& joined) noexcept {
@@ -165,53 +154,48 @@ void TickLoop::between_ticks() noexcept {
   join();
 }
 
-// A successor that is under way has taken over from the monitor that would go.
+// A state that cannot be joined now is let go.
 void TickLoop::join() noexcept {
   JoinedState* const joined = joined_.load(std::memory_order_acquire);
   if (joined == nullptr || busy()) return;
-  FrameExchange* const frames = options_.frames;
-  const bool may_join = options_.pace == nullptr || options_.pace->may_join();
-  if (may_join && (frames == nullptr || joined->has_frames(*frames))) joined->join(monitor_, ids_);
-  if (joined->has_joined()) {
+  if (state_.may_join(*joined)) {
+    state_.join(*joined);
     for (ReportSink* sink : sinks_) sink->joined(joined->lineage());
-    if (frames != nullptr) frames->show_awaited(*monitor_, sinks_);
-    if (options_.pace != nullptr) options_.pace->joined(joined->lineage(), monitor_->cycle());
   }
   joined_.store(nullptr, std::memory_order_release);
 }
 
 // Between two ticks. An offer that has failed is dropped.
 void TickLoop::follow_offer() noexcept {
-  Successor* const next = offered_.load(std::memory_order_acquire);
+  SceneOffer* const next = offered_.load(std::memory_order_acquire);
   if (next == nullptr) return;
   if (next->state() == Successor::State::kOffered) {
-    // This call comes before begin(), after which another thread reads the pace's lineage of it.
-    if (options_.pace != nullptr)
-      options_.pace->successor_begins(next->scene().revision == scene_->revision);
-    next->begin(*monitor_, ids_.sources());
-  } else if (next->has_caught_up(monitor_->cycle())) {
+    state_.begin(*next);
+  } else if (next->has_caught_up(state_.cycle())) {
     change_scene(*next);
   }
-  if (next->failed() && options_.pace != nullptr) options_.pace->successor_gave_up();
+  if (next->failed()) state_.give_up();
   if (next->state() != Successor::State::kCatchingUp)
     offered_.store(nullptr, std::memory_order_release);
 }
 
-void TickLoop::change_scene(Successor& successor) noexcept {
-  scene_ = &successor.scene();
-  successor.succeed(monitor_, statistics_, sinks_, ids_);
-  if (options_.pace != nullptr) options_.pace->successor_followed();
+// The figures are exchanged first: another thread reads those of the former scene as soon as the
+// successor has succeeded.
+void TickLoop::change_scene(SceneOffer& offer) noexcept {
+  offer.statistics_.continue_from(statistics_);
+  std::swap(offer.statistics_, statistics_);
+  std::swap(offer.sinks_, sinks_);
+  state_.succeed();
 }
 
 // Batches are used whole: a batch that does not fit waits for the next tick.
 void TickLoop::take_in() noexcept {
-  samples_.clear();
-  joints_.clear();
   used_count_ = 0;
   for (;;) {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
-    if (samples_.size() + joints_.size() + waiting_->size() > options_.max_samples) return;
+    const std::size_t taken = state_.samples().size() + state_.joints().size();
+    if (taken + waiting_->size() > options_.max_samples) return;
     use(*waiting_);
     for (ReportSink* sink : sinks_) sink->input(*waiting_);
     waiting_ = nullptr;
@@ -221,9 +205,9 @@ void TickLoop::take_in() noexcept {
 // Poses for another scene have ids of other objects, so they are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
-  if (ids_.append(batch, samples_, joints_)) return;
+  if (state_.use(batch)) return;
   for (const PoseSample& sample : batch.samples)
-    monitor_->refuse(sample.object, Reject::kWrongRevision);
+    state_.monitor().refuse(sample.object, Reject::kWrongRevision);
 }
 
 // The report names the last batch of each source; this makes a replay exact.
@@ -247,15 +231,18 @@ void TickLoop::note_minimum(const Report& report) noexcept {
 
 // Called once a second. Figures that cover one second are reset afterwards.
 void TickLoop::hand_over_statistics() noexcept {
-  for (std::uint32_t object = 0; object < scene_->objects.size(); ++object) {
-    statistics_.rejected[object] = monitor_->rejected(object);
-    statistics_.ages[object] = monitor_->input_age(object);
+  const Scene& scene = state_.scene();
+  const Monitor& monitor = state_.monitor();
+  for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
+    statistics_.rejected[object] = monitor.rejected(object);
+    statistics_.ages[object] = monitor.input_age(object);
   }
-  for (std::uint32_t variable = 0; variable < scene_->variables.size(); ++variable) {
-    statistics_.rejected_joints[variable] = monitor_->rejected_joints(variable);
-    statistics_.joint_ages[variable] = monitor_->joint_age(variable);
+  for (std::uint32_t variable = 0; variable < scene.variables.size(); ++variable) {
+    statistics_.rejected_joints[variable] = monitor.rejected_joints(variable);
+    statistics_.joint_ages[variable] = monitor.joint_age(variable);
   }
-  for (std::uint32_t i = 0; i < kMaxSources; ++i) statistics_.sources[i] = ids_.sources().name(i);
+  for (std::uint32_t i = 0; i < kMaxSources; ++i)
+    statistics_.sources[i] = state_.ids().sources().name(i);
   statistics_.clock_steps = time_.steps();
   for (ReportSink* sink : sinks_) sink->statistics(statistics_);
   statistics_.tick_second_max_ns = 0;

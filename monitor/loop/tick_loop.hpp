@@ -9,14 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "monitor/inputs/scene_ids.hpp"
-#include "monitor/loop/frame_exchange.hpp"
-#include "monitor/loop/joined_state.hpp"
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
-#include "monitor/loop/successor.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/state/tick_state.hpp"
 
 namespace clearance {
 
@@ -31,6 +27,25 @@ struct TickLoopOptions {
   FrameExchange* frames = nullptr;  // of sensors; null: there are none
 };
 
+// A successor with what else of the loop belongs to one scene.
+class SceneOffer final : public Successor {
+ public:
+  // `sinks` get the reports of the changed scene, from the first one on.
+  SceneOffer(const TickState& running, const Scene& scene, std::vector<ReportSink*> sinks,
+             TickRecords& records)
+      : Successor(running, scene, records), statistics_(scene), sinks_(std::move(sinks)) {}
+
+  // Returns the figures of the former scene. Only the preparing thread calls this, once it has
+  // succeeded.
+  [[nodiscard]] const LoopStatistics& statistics() const noexcept { return statistics_; }
+
+ private:
+  friend class TickLoop;
+
+  LoopStatistics statistics_;
+  std::vector<ReportSink*> sinks_;
+};
+
 // Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an
 // overrun, and the next tick starts at once. Deadlines missed by a whole period or more are skipped
 // and counted, so that the loop returns to its grid. Cycle numbers count ticks and have no gaps.
@@ -42,19 +57,15 @@ class TickLoop {
 
   // Any one thread: offers the monitor of a changed scene. The loop begins with it before its next
   // tick, and ticks it as soon as it has caught up. From then on, SceneIds decides which batches of
-  // former scenes are still used. Returns false while another one is under way. The successor must
+  // former scenes are still used. Returns false while another one is under way. The offer must
   // live until the next one has succeeded, or the loop has ended.
-  bool offer(Successor& successor) noexcept;
+  bool offer(SceneOffer& offer) noexcept;
   // True while an offer is under way.
   [[nodiscard]] bool busy() const noexcept {
     return offered_.load(std::memory_order_acquire) != nullptr;
   }
-  // The preparing thread while the loop is not busy, which passes it to the constructor of a
-  // successor.
-  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
-  // The preparing thread, at any time but while the loop changes the scene: former scenes, but not
-  // the numbers of sources.
-  [[nodiscard]] const SceneIds& ids() const noexcept { return ids_; }
+  // The preparing thread, as TickState says: to construct an offer, and to save what it took over.
+  [[nodiscard]] const TickState& state() const noexcept { return state_; }
 
   // Any one thread: offers the state of a partner, which the loop ticks from its next tick on.
   // Returns false while another one waits. It must live until has_joined(), or the loop has ended.
@@ -83,7 +94,7 @@ class TickLoop {
   [[nodiscard]] std::int64_t wait(std::int64_t deadline) noexcept;
   void get_ready(std::int64_t deadline) noexcept;
   void answer_question() noexcept;
-  void change_scene(Successor& successor) noexcept;
+  void change_scene(SceneOffer& offer) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
   void use(const PoseBatch& batch) noexcept;
@@ -92,12 +103,10 @@ class TickLoop {
   void hand_over_statistics() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;
 
-  const Scene* scene_;
-  std::unique_ptr<Monitor> monitor_;
-  std::atomic<Successor*> offered_{nullptr};
+  TickState state_;
+  std::atomic<SceneOffer*> offered_{nullptr};
   std::atomic<JoinedState*> joined_{nullptr};
   std::atomic<LoopQuestion*> asked_{nullptr};
-  SceneIds ids_;
   SteadyTime time_;
   PoseSource& source_;
   std::vector<ReportSink*> sinks_;
@@ -107,8 +116,6 @@ class TickLoop {
   std::uint64_t ticks_a_second_;
 
   const PoseBatch* waiting_ = nullptr;  // taken from the source, but did not fit into the last tick
-  std::vector<PoseSample> samples_;
-  std::vector<JointSample> joints_;
   std::array<SourceUse, kMaxSources> used_;
   std::size_t used_count_ = 0;
   LoopStatistics statistics_;

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kWaiting = 256;
 // The interval at which a follower looks for a notice or batch that is due.
-constexpr std::int64_t kLookNs = 50'000;
+constexpr std::int64_t kPollNs = 50'000;
 // After a sleep that was too long, the thread that hears the partner gets so much time to take in
 // what came meanwhile.
 constexpr std::int64_t kHearNs = 20'000'000;
@@ -156,7 +156,7 @@ void TickPartner::hear_out(std::int64_t late_ns) noexcept {
   const std::int64_t most = std::min(kHearNs, std::max(late_ns, options_.period_ns));
   const std::int64_t end = clock_.monotonic_ns() + most;
   while (passes_.load(std::memory_order_acquire) < passes && clock_.monotonic_ns() < end) {
-    clock_.sleep_until(clock_.monotonic_ns() + kLookNs);
+    clock_.sleep_until(clock_.monotonic_ns() + kPollNs);
     listen();
   }
   store_.take_in();
@@ -288,7 +288,7 @@ std::int64_t TickPartner::follow(std::int64_t deadline) noexcept {
     const std::int64_t now = clock_.monotonic_ns();
     const std::int64_t due = notice == nullptr ? deadline : notice->due_ns;
     if (now >= std::max({due, deadline, began}) + options_.period_ns / 2) break;
-    clock_.sleep_until(now + kLookNs);
+    clock_.sleep_until(now + kPollNs);
     store_.take_in();
     listen();
   }

@@ -10,13 +10,14 @@
 #include <cstdint>
 #include <vector>
 
-#include "monitor/loop/frame_exchange.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/semaphore.hpp"
-#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/partners/batch_store.hpp"
 #include "monitor/partners/tick_notice.hpp"
+#include "monitor/state/frame_exchange.hpp"
+#include "monitor/state/spsc_ring.hpp"
+#include "monitor/state/tick_pace.hpp"
 
 namespace clearance {
 

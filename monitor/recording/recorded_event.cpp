@@ -29,7 +29,7 @@ const char* name(RecordedEvent::Cause cause) noexcept {
   return "";
 }
 
-std::optional<RecordedEvent> EventWatch::look(const Report& report, const Scene& scene) {
+std::optional<RecordedEvent> EventWatch::find(const Report& report, const Scene& scene) {
   const std::uint64_t total =
       std::accumulate(report.rejected.begin(), report.rejected.end(), std::uint64_t{0});
   const bool refuses = std::exchange(rejected_, total) < total;

@@ -27,7 +27,7 @@ class EventWatch {
 
   // The event of a tick; to be called for each. The first tick of a run is no fault: inputs are yet
   // to come.
-  [[nodiscard]] std::optional<RecordedEvent> look(const Report& report, const Scene& scene);
+  [[nodiscard]] std::optional<RecordedEvent> find(const Report& report, const Scene& scene);
 
   // Another scene is in force.
   void change() noexcept { was_unsure_ = was_too_deep_ = true; }

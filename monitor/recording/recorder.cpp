@@ -137,7 +137,7 @@ void Recorder::write_report(const Report& report, std::span<const SourceUse> sou
 }
 
 std::optional<RecordedEvent> Recorder::event_of(const Report& report) {
-  std::optional<RecordedEvent> event = watch_.look(report, now_->scene);
+  std::optional<RecordedEvent> event = watch_.find(report, now_->scene);
   if (asked_) event = std::exchange(asked_, std::nullopt);
   return event;
 }

@@ -39,8 +39,7 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
     MoveItChanges moveit(first, [&](Scene& scene) { adapt(options, options.gradients, scene); });
     TickFeed feed(open_input_log(recording, first, log), first.scene,
                   options.tick_hz.value_or(first.scene.rate_hz));
-    return ReplayRun(history, std::move(feed), options, {}, log.with_scenes ? &moveit : nullptr)
-        .run(on_tick);
+    return ReplayRun(history, feed, options, {}, log.with_scenes ? &moveit : nullptr).run(on_tick);
   }
   const RecordingOutline outlined = outline(recording);
   if (!outlined.error.empty()) {
@@ -58,7 +57,7 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
   SceneHistory history =
       is_recorded ? SceneHistory(first, files, adapt_scene) : SceneHistory(first);
   TickFeed feed(files, history, outlined, options.tick_hz.value_or(0.0));
-  return ReplayRun(history, std::move(feed), options, outlined).run(on_tick);
+  return ReplayRun(history, feed, options, outlined).run(on_tick);
 }
 
 }  // namespace clearance

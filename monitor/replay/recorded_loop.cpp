@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "monitor/files/build_info.hpp"
-#include "monitor/saved_state.hpp"
 #include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
@@ -32,7 +31,7 @@ void restore_former(const SceneHistory& history, const Cell& cell, SceneIds& ids
 RecordedLoop::RecordedLoop(SceneHistory& history, MoveItChanges* moveit)
     : history_(history), moveit_(moveit) {
   start(history.first(), history.begins_changed());
-  restore_former(history_, *cell_, *ids_);
+  restore_former(history_, *cell_, state_->ids());
 }
 
 void RecordedLoop::start(const Cell& cell, bool followed) {
@@ -41,16 +40,16 @@ void RecordedLoop::start(const Cell& cell, bool followed) {
   next_ = nullptr;
   blind_.clear();
   lacks_state_ = false;
-  monitor_ = std::make_unique<Monitor>(cell.scene);
-  ids_ = std::make_unique<SceneIds>(cell.scene, followed);
+  state_ = std::make_unique<TickState>(cell.scene, TickStateOptions{.followed = followed});
   sensors_ =
       cell.scene.sensors.empty() ? nullptr : std::make_unique<Sensors>(cell, SensorsOptions{true});
-  look_with(cell);
+  exchange_frames_of(cell);
 }
 
-void RecordedLoop::look_with(const Cell& cell) {
+void RecordedLoop::exchange_frames_of(const Cell& cell) {
   names_.emplace(cell.scene);
-  shown_.assign(cell.scene.sensors.size(), {});
+  frames_ = std::make_unique<FrameExchange>(cell.scene.sensors.size());
+  state_->exchange_frames(frames_.get());
 }
 
 // A daemon that was started anew has no history, and may have another cell. If the recording does
@@ -65,17 +64,11 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   if (input.restart) restart(*input.recorded);
   if (input.joined != 0) join(input);
   if (input.recorded != nullptr && !change_before(*input.recorded)) return nullptr;
-  if (moveit_ != nullptr && next_ && monitor_->cycle() > next_->began_after) succeed();
-  poses_.clear();
-  joints_.clear();
-  for (const PoseBatch& batch : input.batches) take(batch);
-  if (sensors_) show_frames(input);
-  const Report& report = monitor_->tick(poses_, joints_, input.time);
-  if (next_) {
-    keep_mapped(next_->map.objects_now, &PoseSample::object, 0, poses_);
-    keep_mapped(next_->map.variables_now, &JointSample::variable, 0, joints_);
-    next_->monitor->tick(poses_, joints_, input.time);
-  }
+  if (moveit_ != nullptr && next_ && state_->cycle() > next_->successor.began_after()) succeed();
+  for (const PoseBatch& batch : input.batches) use(batch);
+  if (sensors_) take_frames(input);
+  const Report& report = state_->tick(input.time);
+  state_->clear();
   const bool goes_on =
       input.recorded == nullptr ? follow_moveit(input) : change_after(*input.recorded);
   return goes_on ? &report : nullptr;
@@ -89,67 +82,57 @@ const char* RecordedLoop::missing() const noexcept {
   return unclear_.empty() ? nullptr : kPosesMissing;
 }
 
-// Makes the same calls as JoinedState and FrameExchange::show_awaited(): the frame of a sensor that
-// the state rests on was shown already, or is recorded with this tick.
+// A frame of a sensor that the state rests on was shown already, or is recorded with this tick.
 void RecordedLoop::join(const TickInput& input) {
   joined_ = input.joined;
   begun_ = true;
   from_ = input.recorded->cycle - 1;
+  if (next_) state_->give_up();
   next_ = nullptr;
   const auto found = input.state == nullptr ? std::nullopt : from_wire(*input.state, kBuild);
-  auto monitor = std::make_unique<Monitor>(cell_->scene);
-  auto ids = std::make_unique<SceneIds>(cell_->scene);
-  lacks_state_ = !found || found->revision != cell_->scene.revision ||
-                 !restore_state(found->bytes, *ids, *monitor);
+  JoinedState joined(cell_->scene);
+  lacks_state_ = !found || found->revision != joined.revision() ||
+                 !joined.restore(found->bytes, found->lineage);
   if (lacks_state_) return;
+  state_->join(joined);
   for (std::uint32_t sensor = 0; sensor < cell_->scene.sensors.size(); ++sensor) {
-    const std::uint64_t awaited = monitor->awaited_frame(sensor);
-    bool is_there = awaited == 0;
-    for (const SensorFrame& frame : {monitor_->frame_in_use(sensor), shown_[sensor]})
-      is_there = is_there || (frame.content == awaited && monitor->show(sensor, frame));
-    if (is_there) {
+    if (monitor().awaited_frame(sensor) == 0) {
       blind_.erase(sensor);
     } else {
       blind_.insert(sensor);
     }
   }
   unclear_.clear();
-  monitor_ = std::move(monitor);
-  ids_ = std::move(ids);
 }
 
 // The joints of this tick come first: they may be those at the stamp of a frame.
-void RecordedLoop::show_frames(const TickInput& input) {
+void RecordedLoop::take_frames(const TickInput& input) {
   const std::int64_t now_ns = input.time.now_ns;
-  if (input.recorded != nullptr) return show_recorded(input);
+  if (input.recorded != nullptr) return rebuild_frames(input);
   const Now now{.realtime_ns = now_ns + input.time.clock_offset_ns, .monotonic_ns = now_ns};
-  sensors_->add(poses_, joints_, now.realtime_ns);
+  sensors_->add(state_->samples(), state_->joints(), now.realtime_ns);
   for (const auto& message : input.sensors) sensors_->add(*message, now);
   sensors_->settle(
-      now_ns, [this](const SeenCloud* cloud) { return is_used(cloud); },
-      [this](std::uint32_t sensor, const SensorFrame& frame) { monitor_->show(sensor, frame); });
+      now_ns, [this](const SeenCloud* cloud) { return state_->uses(cloud); },
+      [this](std::uint32_t sensor, const SensorFrame& frame) {
+        frames_->put(sensor, frame, cell_->scene.revision);
+      });
 }
 
-// A monitor that takes over for the same cell goes on with the frames in use.
-bool RecordedLoop::is_used(const SeenCloud* cloud) const noexcept {
-  return monitor_->uses(cloud) || (next_ && next_->monitor->uses(cloud)) ||
-         std::ranges::find(shown_, cloud, &SensorFrame::cloud) != shown_.end();
-}
-
-// Builds what the daemon built, in the same order: what a frame hides may depend on those before.
-void RecordedLoop::show_recorded(const TickInput& input) {
+// What a frame hides may depend on those before, so each one that the daemon built is built again.
+void RecordedLoop::rebuild_frames(const TickInput& input) {
+  const Scene& scene = cell_->scene;
   for (const auto& [cycle, frame] : input.frames) {
     const bool is_shown = cycle == input.recorded->cycle;
     const bool is_of_cell =
-        frame.sensor < shown_.size() && frame.scene_revision == cell_->scene.revision;
+        frame.sensor < scene.sensors.size() && frame.scene_revision == scene.revision;
     const std::uint64_t content = is_of_cell ? names_->name(frame) : 0;
     const bool is_built = sensors_->rebuild(
-        frame, [this](const SeenCloud* cloud) { return is_used(cloud); },
+        frame, [this](const SeenCloud* cloud) { return state_->uses(cloud); },
         [&](std::uint32_t sensor, SensorFrame built) {
           if (!is_shown) return;
           built.content = content;
-          monitor_->show(sensor, built);
-          shown_[sensor] = built;
+          frames_->put(sensor, built, scene.revision);
         });
     if (is_built && is_shown) blind_.erase(frame.sensor);
     if (!is_built) blind_.insert(frame.sensor);
@@ -161,19 +144,13 @@ bool RecordedLoop::follow_moveit(const TickInput& input) {
   if (moveit_ == nullptr) return true;
   for (const auto& scene : input.scenes) moveit_->add(scene);
   if (next_) return true;
-  const Cell* const cell = moveit_->next(*monitor_);
-  return cell == nullptr || begin(*cell, monitor_->cycle() + 1);
+  const Cell* const cell = moveit_->next(monitor());
+  return cell == nullptr || begin(*cell, state_->cycle() + 1);
 }
 
-void RecordedLoop::take(const PoseBatch& batch) {
-  if (moveit_ != nullptr) {
-    const std::size_t first_pose = poses_.size(), first_joint = joints_.size();
-    ids_->sources().append(batch, poses_, joints_);
-    if (!from_first_) return;
-    keep_mapped(from_first_->objects_now, &PoseSample::object, first_pose, poses_);
-    return keep_mapped(from_first_->variables_now, &JointSample::variable, first_joint, joints_);
-  }
-  if (ids_->append(batch, poses_, joints_)) {
+void RecordedLoop::use(const PoseBatch& batch) {
+  if (moveit_ != nullptr) return state_->use(batch, from_first_ ? &*from_first_ : nullptr);
+  if (state_->use(batch)) {
     if (!unclear_.empty()) unclear_.erase(batch.source.c_str());
     return;
   }
@@ -190,11 +167,11 @@ void RecordedLoop::begin_with(const clearance_msg_Distances& report) {
     for (std::uint32_t i = 0; i < cell_->scene.sensors.size(); ++i) blind_.insert(i);
   }
   const Cell* const cell = history_.cell(report.scene_revision);
-  if (monitor_->cycle() > 0 || cell == nullptr || cell == cell_) return;
+  if (state_->cycle() > 0 || cell == nullptr || cell == cell_) return;
   start(*cell, true);
-  restore_former(history_, *cell, *ids_);
+  restore_former(history_, *cell, state_->ids());
   const Scene& before = history_.first().scene;
-  ids_->restore(before.revision, scene_map(before, cell->scene).objects_now);
+  state_->ids().restore(before.revision, scene_map(before, cell->scene).objects_now);
 }
 
 // The changes that are in force with this report. The first one of a recording begins where it can
@@ -228,32 +205,26 @@ bool RecordedLoop::begin(const DescribedScene& change) {
   return begin(*cell, change.since.from);
 }
 
-// Makes the same calls as Successor, in the same order.
 bool RecordedLoop::begin(const Cell& cell, std::uint64_t from) {
-  next_ = std::make_unique<Next>();
-  next_->cell = &cell;
-  next_->map = scene_map(cell_->scene, cell.scene);
-  next_->monitor = std::make_unique<Monitor>(cell.scene, monitor_.get());
-  next_->from = from;
-  next_->began_after = monitor_->cycle();
-  if (next_->monitor->take_over(*monitor_, next_->map, ids_->sources())) return true;
+  next_.reset(new Next{&cell, from, {*state_, cell.scene, records_}});
+  if (state_->begin(next_->successor)) return true;
   error_ = "the recorded cells name more sources than a daemon has places for";
   return false;
 }
 
 void RecordedLoop::succeed() {
   const bool is_same = std::exchange(cell_, next_->cell) == next_->cell;
-  since_ = {.began_after = next_->began_after, .from = monitor_->cycle() + 1};
-  monitor_ = std::move(next_->monitor);
+  state_->succeed();
+  since_ = next_->successor.in_force();
+  const SourceNumbers& numbers = state_->ids().sources();
   if (cell_->scene.sensors.empty()) {
     sensors_ = nullptr;
   } else if (!sensors_) {
-    sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true}, ids_->sources());
+    sensors_ = std::make_unique<Sensors>(*cell_, SensorsOptions{true}, numbers);
   } else if (!is_same) {
-    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_, ids_->sources());
+    sensors_ = std::make_unique<Sensors>(*cell_, *sensors_, numbers);
   }
-  if (!is_same) look_with(*cell_);
-  ids_->change(cell_->scene.revision, next_->map);
+  if (!is_same) exchange_frames_of(*cell_);
   from_ = next_->from;
   next_ = nullptr;
   if (moveit_ != nullptr) from_first_ = scene_map(history_.first().scene, cell_->scene);

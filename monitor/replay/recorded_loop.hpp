@@ -7,15 +7,14 @@
 #include <optional>
 #include <set>
 #include <string>
-#include <vector>
 
-#include "monitor/inputs/scene_ids.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/replay/moveit_changes.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
+#include "monitor/state/tick_state.hpp"
 
 namespace clearance {
 
@@ -38,7 +37,7 @@ class RecordedLoop {
 
   // The cell of the last tick, and the monitor that ran it.
   [[nodiscard]] const Cell& cell() const noexcept { return *cell_; }
-  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
+  [[nodiscard]] const Monitor& monitor() const noexcept { return state_->monitor(); }
   // Since when that cell is in force, in the cycles of this replay.
   [[nodiscard]] SceneInForce since() const noexcept { return since_; }
   // Says on what the daemon's last tick rested and this one did not; null: on nothing.
@@ -50,23 +49,20 @@ class RecordedLoop {
   [[nodiscard]] std::uint64_t of_other_scenes() const noexcept { return of_other_scenes_; }
 
  private:
-  // The monitor of the changed scene, while another one is still reported.
+  // The changed scene, while another one is still reported.
   struct Next {
     const Cell* cell;
-    SceneMap map;
-    std::unique_ptr<Monitor> monitor;
-    std::uint64_t from;         // the daemon's cycle
-    std::uint64_t began_after;  // the cycle of the replay
+    std::uint64_t from;  // the daemon's cycle
+    Successor successor;
   };
 
   void start(const Cell& cell, bool followed);
   void begin_with(const clearance_msg_Distances& report);
   void join(const TickInput& input);
-  void take(const PoseBatch& batch);
-  void show_frames(const TickInput& input);
-  void show_recorded(const TickInput& input);
-  void look_with(const Cell& cell);
-  [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
+  void use(const PoseBatch& batch);
+  void take_frames(const TickInput& input);
+  void rebuild_frames(const TickInput& input);
+  void exchange_frames_of(const Cell& cell);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
   [[nodiscard]] bool begin(const Cell& cell, std::uint64_t from);
@@ -79,17 +75,15 @@ class RecordedLoop {
   MoveItChanges* moveit_;
   std::optional<SceneMap> from_first_;  // to the present scene, once MoveIt has changed it
   const Cell* cell_ = nullptr;
-  std::unique_ptr<Monitor> monitor_;
-  std::unique_ptr<SceneIds> ids_;
   std::unique_ptr<Sensors> sensors_;
   std::optional<FrameNames> names_;  // of recorded frames
-  std::vector<SensorFrame> shown_;   // by sensor: the last one
+  std::unique_ptr<FrameExchange> frames_;
+  std::unique_ptr<TickState> state_;
+  TickRecords records_{TickRecords::kNoRoom};
   std::unique_ptr<Next> next_;
   SceneInForce since_;
   bool begun_ = false;
   std::uint64_t from_ = 0;  // changes up to this cycle of the daemon are made, or were before
-  std::vector<PoseSample> poses_;
-  std::vector<JointSample> joints_;
   std::set<std::string> unclear_;  // sources whose last batch is of an unknown scene
   std::set<std::uint32_t> blind_;  // sensors whose frame in use is not in the recording
   std::uint64_t joined_ = 0;       // TickInput::joined of the last one

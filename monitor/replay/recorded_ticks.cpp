@@ -1,13 +1,9 @@
-// Reads ahead of a tick, since topics that were recorded over DDS overtake each other.
 #include "monitor/replay/recorded_ticks.hpp"
 
 #include <algorithm>
 
 namespace clearance {
 namespace {
-
-// By this much log time a message may stand behind the report of its tick.
-constexpr std::int64_t kTicksReadAheadNs = 2'000'000'000;
 
 // Batches that no tick has used after this time are forgotten.
 constexpr std::int64_t kUnusedNs = 10'000'000'000;
@@ -35,42 +31,37 @@ Scene scene_of(const clearance_msg_Catalogue& catalogue) {
 
 }  // namespace
 
+RecordedTicks::RecordedTicks(const std::filesystem::path& file)
+    : run_({file}, {}, [this](const RecordedMessage& message) { use(message); }) {}
+
 const RecordedTick* RecordedTicks::front() {
-  for (;;) {
-    // Latched zone states of a recording that began later precede its first report. Reports come in
-    // order, so a tick before one with a report gets none.
-    const auto reported = std::ranges::find_if(
-        ticks_, [](const auto& tick) { return tick.second.report.has_value(); });
-    if (reported != ticks_.end() || ended_) {
-      while (ticks_.begin() != reported) pop();
-    }
-    if (!ticks_.empty() && ticks_.begin()->second.report) {
-      const RecordedTick& tick = ticks_.begin()->second;
-      if (ended_ || read_to_ns_ > tick.log_ns + kTicksReadAheadNs) {
-        for (const clearance_msg_ZoneState& state : tick.zones) zones_[state.zone] = state;
-        return &tick;
-      }
-    }
-    if (ended_) return nullptr;
-    ended_ = !read_one();
+  if (front_) return &*front_;
+  if (!refusal_.empty() || !run_.next()) return nullptr;
+  const clearance_msg_Distances& report = run_.report();
+  if (daemon_.value_or(report.daemon) != report.daemon) {
+    refusal_ = "reports of more than one daemon are in it; expected a recording of one run";
+    return nullptr;
   }
+  daemon_ = report.daemon;
+  while (run_.read_ahead()) {
+  }
+  const std::vector<clearance_msg_ZoneState>& zones = run_.zones();
+  for (; zones_taken_ < zones.size() && zones[zones_taken_].now_ns <= report.now_ns; ++zones_taken_)
+    zones_[zones[zones_taken_].zone] = zones[zones_taken_];
+  return &front_.emplace(RecordedTick{report, run_.separation(), run_.gradients()});
 }
 
 void RecordedTicks::pop() {
-  const RecordedTick& tick = ticks_.begin()->second;
-  for (const clearance_msg_ZoneState& state : tick.zones) zones_[state.zone] = state;
-  if (tick.report) {
-    const auto& uses = (*tick.report)->sources;
-    for (std::uint32_t i = 0; i < uses._length; ++i) {
-      const std::string source = uses._buffer[i].source;
-      batches_.erase(batches_.lower_bound({source, 0}),
-                     batches_.upper_bound({source, uses._buffer[i].sequence_number}));
-    }
+  const auto& uses = front_->report.sources;
+  for (std::uint32_t i = 0; i < uses._length; ++i) {
+    const std::string source = uses._buffer[i].source;
+    batches_.erase(batches_.lower_bound({source, 0}),
+                   batches_.upper_bound({source, uses._buffer[i].sequence_number}));
   }
-  ticks_.erase(ticks_.begin());
+  front_.reset();
   if (++removed_ % kTicksBetweenForgetting == 0) {
     std::erase_if(batches_, [this](const auto& batch) {
-      return batch.second.log_ns + kUnusedNs < read_to_ns_;
+      return batch.second.log_ns + kUnusedNs < run_.read_to_ns();
     });
   }
 }
@@ -80,57 +71,22 @@ const clearance_msg_ZoneState* RecordedTicks::zone(std::uint32_t zone) const {
   return known == zones_.end() ? nullptr : &known->second;
 }
 
-const Scene& RecordedTicks::names(std::uint64_t revision) { return names_[revision]; }
-
 std::string RecordedTicks::error() const {
   if (!refusal_.empty()) return refusal_;
-  return reader_.readable() ? std::string() : reader_.error();
+  return run_.reader().readable() ? std::string() : run_.reader().error();
 }
 
 std::string RecordedTicks::damage() const {
-  return reader_.readable() ? reader_.error() : std::string();
+  return run_.reader().readable() ? run_.reader().error() : std::string();
 }
 
-bool RecordedTicks::read_one() {
-  RecordedMessage message;
-  if (!refusal_.empty() || !reader_.next(message)) return false;
-  read_to_ns_ = message.log_ns;
-  if (message.kind == TopicKind::kDistances) add_report(message);
+void RecordedTicks::use(const RecordedMessage& message) {
   if (message.kind == TopicKind::kPoses) add_batch<clearance_msg_PoseBatch>(message);
   if (message.kind == TopicKind::kJointStates) add_batch<clearance_msg_JointStates>(message);
-  if (message.kind == TopicKind::kSeparation) {
-    Sample<clearance_msg_Separation> separation;
-    if (decoder_.decode(message.cdr, separation))
-      tick_of(*separation).separation = std::move(separation);
-  }
-  if (message.kind == TopicKind::kGradients) {
-    Sample<clearance_msg_Gradients> gradients;
-    if (decoder_.decode(message.cdr, gradients))
-      tick_of(*gradients).gradients = std::move(gradients);
-  }
-  if (message.kind == TopicKind::kZones) {
-    Sample<clearance_msg_ZoneState> zone;
-    if (decoder_.decode(message.cdr, zone)) tick_of(*zone).zones.push_back(*zone);
-  }
-  if (message.kind == TopicKind::kCatalogue) {
-    Sample<clearance_msg_Catalogue> catalogue;
-    if (decoder_.decode(message.cdr, catalogue))
-      names_[catalogue->scene_revision] = scene_of(*catalogue);
-  }
-  return true;
-}
-
-void RecordedTicks::add_report(const RecordedMessage& message) {
-  Sample<clearance_msg_Distances> report;
-  if (!decoder_.decode(message.cdr, report)) return;
-  if (daemon_.value_or(report->daemon) != report->daemon) {
-    refusal_ = "reports of more than one daemon are in it; expected a recording of one run";
-    return;
-  }
-  daemon_ = report->daemon;
-  RecordedTick& tick = tick_of(*report);
-  tick.log_ns = message.log_ns;
-  tick.report = std::move(report);
+  if (message.kind != TopicKind::kCatalogue) return;
+  Sample<clearance_msg_Catalogue> catalogue;
+  if (decoder_.decode(message.cdr, catalogue))
+    names_[catalogue->scene_revision] = scene_of(*catalogue);
 }
 
 template <class Message>

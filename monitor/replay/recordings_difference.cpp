@@ -62,8 +62,8 @@ class TwoRecordings {
  private:
   // False: the comparison is over.
   bool compare(const RecordedTick& a, const RecordedTick& b) {
-    const clearance_msg_Distances& report_a = **a.report;
-    const clearance_msg_Distances& report_b = **b.report;
+    const clearance_msg_Distances& report_a = a.report;
+    const clearance_msg_Distances& report_b = b.report;
     partners_ = are_partners(report_a, report_b);
     if (partners_ && report_a.lineage != report_b.lineage) {
       some_apart_ = true;
@@ -85,7 +85,7 @@ class TwoRecordings {
       tell(a, *found);
       return false;
     }
-    used_ = numbers_of(**a.report);
+    used_ = numbers_of(a.report);
     first_.pop();
     second_.pop();
     return true;
@@ -112,8 +112,8 @@ class TwoRecordings {
   }
 
   Found difference(const RecordedTick& a, const RecordedTick& b) {
-    const clearance_msg_Distances& first = **a.report;
-    const clearance_msg_Distances& second = **b.report;
+    const clearance_msg_Distances& first = a.report;
+    const clearance_msg_Distances& second = b.report;
     if (first.scene_revision != second.scene_revision)
       return Finding{Kind::kScene,
                      both("scene_revision", first.scene_revision, second.scene_revision)};
@@ -199,10 +199,10 @@ class TwoRecordings {
   Found other_result(const RecordedTick& a, const RecordedTick& b) {
     std::set<std::string> not_recorded = first_.not_recorded();
     not_recorded.insert(second_.not_recorded().begin(), second_.not_recorded().end());
-    const Scene& scene = first_.names((*a.report)->scene_revision);
+    const Scene& scene = first_.names(a.report.scene_revision);
     const DifferenceOptions options{
         .not_recorded = &not_recorded, .first = names_[0], .second = names_[1]};
-    if (Found found = other(scene, "", a.report, b.report, options)) return found;
+    if (Found found = other(scene, "", &a.report, &b.report, options)) return found;
     if (Found found = other(scene, "separation.", a.separation, b.separation, options))
       return found;
     if (Found found = other(scene, "gradients.", a.gradients, b.gradients, options)) return found;
@@ -211,10 +211,10 @@ class TwoRecordings {
 
   // Topics that one recording was made without are not compared.
   template <class Message>
-  Found other(const Scene& scene, const char* topic, const std::optional<Sample<Message>>& a,
-              const std::optional<Sample<Message>>& b, const DifferenceOptions& options) const {
-    if (!a || !b) return std::nullopt;
-    Message first = **a, second = **b;  // they share the buffers
+  Found other(const Scene& scene, const char* topic, const Message* a, const Message* b,
+              const DifferenceOptions& options) const {
+    if (a == nullptr || b == nullptr) return std::nullopt;
+    Message first = *a, second = *b;  // they share the buffers
     if (some_without_pairs_ && (first.pairs._length == 0 || second.pairs._length == 0))
       first.pairs._length = second.pairs._length = 0;
     if (const auto found = message_difference(scene, first, second, options))
@@ -249,8 +249,8 @@ class TwoRecordings {
 
   void tell(const RecordedTick& tick, Finding found) {
     result_.kind = found.kind;
-    result_.cycle = (*tick.report)->cycle;
-    result_.now_ns = (*tick.report)->now_ns;
+    result_.cycle = tick.report.cycle;
+    result_.now_ns = tick.report.now_ns;
     result_.what = std::move(found.what);
     if (found.kind != Kind::kResult) return;
     if (without_batches_)

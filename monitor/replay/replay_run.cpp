@@ -26,14 +26,14 @@ std::optional<ReferenceCheck> reference_of(const Scene& scene,
 
 }  // namespace
 
-ReplayRun::ReplayRun(SceneHistory& history, TickFeed feed, const OfflineReplayOptions& options,
+ReplayRun::ReplayRun(SceneHistory& history, TickFeed& feed, const OfflineReplayOptions& options,
                      const RecordingOutline& outline, MoveItChanges* moveit)
     : scene_(&history.first().scene),
       options_(options),
       has_reports_(outline.has_reports),
       some_without_pairs_(outline.some_without_pairs),
       other_build_(other_build(outline.build)),
-      feed_(std::move(feed)),
+      feed_(feed),
       loop_(history, moveit),
       moveit_(moveit),
       expectations_(*scene_, options.expect_min_distance, options.expect_no_zone),
@@ -222,7 +222,7 @@ void ReplayRun::end_tick(const TickInput& input, const Report& report,
 // Only the first difference is reported: later ones are its consequences.
 void ReplayRun::compare(const TickInput& input, const Report& report, const char* missing) {
   const std::optional<std::string> found =
-      difference_->first(input, report, cycle_offset_, feed_.not_recorded());
+      difference_->first(input, report, cycle_offset_, feed_.run()->reader().not_recorded());
   ++result_.compared;
   if (!found) return;
   differs_ = true;
@@ -239,7 +239,7 @@ void ReplayRun::compare_zones() {
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_ || gap_noted_) return;
   // Cycles do not tell the scene of a zone then. The reports list the active zones, too.
   if (result_.joins > 0 && has_changed_) return;
-  if (const auto found = zones_.first(feed_.zones(), feed_.not_recorded())) {
+  if (const auto found = zones_.first(feed_.run()->zones(), feed_.run()->reader().not_recorded())) {
     fail(found->cycle, found->now_ns,
          fmt::format("the replay differs in {}{}", found->what, other_build_));
   }

@@ -27,8 +27,8 @@ namespace clearance {
 
 class ReplayRun {
  public:
-  // History, options and `moveit` must outlive this.
-  ReplayRun(SceneHistory& history, TickFeed feed, const OfflineReplayOptions& options,
+  // History, feed, options and `moveit` must outlive this.
+  ReplayRun(SceneHistory& history, TickFeed& feed, const OfflineReplayOptions& options,
             const RecordingOutline& outline, MoveItChanges* moveit = nullptr);
 
   // Call it once: the result is moved out.
@@ -62,7 +62,7 @@ class ReplayRun {
   const OfflineReplayOptions& options_;
   bool has_reports_, some_without_pairs_;
   std::string other_build_;  // what to add where something differs
-  TickFeed feed_;
+  TickFeed& feed_;
   RecordedLoop loop_;
   const MoveItChanges* moveit_;
   Expectations expectations_;

@@ -3,6 +3,7 @@
 #include "monitor/replay/tick_feed.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -10,65 +11,32 @@
 namespace clearance {
 namespace {
 
-// A batch may stand behind the report that used it by this much log time, because topics recorded
-// over DDS overtake each other.
-constexpr std::int64_t kReadAheadNs = 2'000'000'000;
-
 // After this time without a batch every pose is late, and more ticks show nothing new. A log may
 // have pauses of hours.
 constexpr std::int64_t kSilenceNs = 10'000'000'000;
 
 }  // namespace
 
-template <class Message>
-void TickMessages<Message>::add(std::span<const std::byte> cdr, CdrDecoder& decoder) {
-  if (!wanted_) ++unwanted_;
-  Sample<Message> message;
-  if (!wanted_ || !decoder.decode(cdr, message)) return;
-  waiting_.push_back(std::move(message));
-  expected_ = true;
-}
-
-template <class Message>
-template <class ReadAhead>
-const Message* TickMessages<Message>::of_tick(std::int64_t now_ns, const ReadAhead& read_ahead) {
-  if (!wanted_) return nullptr;
-  const auto has_reached = [&] {
-    for (; !waiting_.empty() && waiting_.front()->now_ns < now_ns; waiting_.pop_front())
-      unmatched_ += matched_ns_ && waiting_.front()->now_ns != *matched_ns_;
-    return !waiting_.empty();
-  };
-  while (!has_reached() && expected_) {
-    if (!read_ahead()) expected_ = false;
-  }
-  const bool found = has_reached() && waiting_.front()->now_ns == now_ns;
-  matched_ns_ = now_ns;
-  return found ? &*waiting_.front() : nullptr;
-}
-
 TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory& history,
                    const RecordingOutline& outline, double tick_hz)
-    : reader_(files),
-      history_(&history),
+    : history_(&history),
       objects_(history.first().scene, outline.catalogue ? &**outline.catalogue : nullptr),
       own_(std::make_unique<OwnBatches>(history.first().scene)),
       own_revision_(history.first().scene.revision),
       by_report_(outline.has_reports),
-      tick_hz_(tick_hz),
-      separations_(history.has_changes() || separated_count(history.first().scene).zones > 0),
-      gradients_(history.has_changes() || history.first().scene.gradients) {
-  if (!by_report_) return;
-  states_.emplace(files);
-  if (!history.first().scene.sensors.empty()) frames_.emplace(files);
+      tick_hz_(tick_hz) {
+  const Scene& scene = history.first().scene;
+  const RecordedRunOptions options{
+      .separations = history.has_changes() || separated_count(scene).zones > 0,
+      .gradients = history.has_changes() || scene.gradients,
+      .frames = by_report_ && !scene.sensors.empty(),
+      .states = by_report_};
+  run_ = std::make_unique<RecordedRun>(
+      files, options, [this](const RecordedMessage& message) { read_message(message); });
 }
 
 TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
-    : log_(std::move(log)),
-      objects_(scene, nullptr),
-      by_report_(false),
-      tick_hz_(tick_hz),
-      separations_(false),
-      gradients_(false) {}
+    : log_(std::move(log)), objects_(scene, nullptr), by_report_(false), tick_hz_(tick_hz) {}
 
 // Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
@@ -89,42 +57,19 @@ bool TickFeed::next(TickInput& tick) {
 }
 
 bool TickFeed::read_one() {
-  if (log_) {
-    LoggedBatch logged;
-    if (!log_->next(logged)) return false;
-    read_to_ns_ = logged.log_ns;
-    batches_waiting_.push_back(std::move(logged));
-    return true;
-  }
-  RecordedMessage message;
-  if (!reader_->next(message)) return false;
-  read_to_ns_ = message.log_ns;
-  if (not_recorded_.size() != reader_->not_recorded().size())
-    not_recorded_ = reader_->not_recorded();
-  read_message(message);
+  if (!log_) return run_->read_one();
+  LoggedBatch logged;
+  if (!log_->next(logged)) return false;
+  read_to_ns_ = logged.log_ns;
+  waiting_.push_back(std::move(logged));
   return true;
 }
 
-// Puts the message into the queue of its kind.
 void TickFeed::read_message(const RecordedMessage& message) {
-  if (message.kind == TopicKind::kPoses || message.kind == TopicKind::kJointStates) {
-    read_inputs(message);
-  }
+  const bool is_input =
+      message.kind == TopicKind::kPoses || message.kind == TopicKind::kJointStates;
+  if (is_input) read_inputs(message);
   if (message.kind == TopicKind::kCatalogue) read_catalogue(message);
-  if (message.kind == TopicKind::kDistances) {
-    WaitingReport waiting{.report = {}, .log_ns = message.log_ns, .joined = reader_->joined()};
-    if (decoder_.decode(message.cdr, waiting.report)) {
-      reports_waiting_.push_back(std::move(waiting));
-    } else {
-      ++undecodable_;
-    }
-  }
-  if (message.kind == TopicKind::kSeparation) separations_.add(message.cdr, decoder_);
-  if (message.kind == TopicKind::kGradients) gradients_.add(message.cdr, decoder_);
-  if (message.kind == TopicKind::kZones) {
-    Sample<clearance_msg_ZoneState> zone;
-    if (decoder_.decode(message.cdr, zone)) zones_.push_back(*zone);
-  }
 }
 
 // Poses that a daemon used get the ids of the cell of the replay, if that is another one. Joints
@@ -143,7 +88,7 @@ void TickFeed::read_inputs(const RecordedMessage& message) {
     batch->samples.clear();
     ++of_other_scenes_;
   }
-  batches_waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
+  waiting_.push_back({.batch = std::move(*batch), .log_ns = message.log_ns});
 }
 
 // The messages after a catalogue were used by its scene.
@@ -161,49 +106,37 @@ void TickFeed::read_catalogue(const RecordedMessage& message) {
 // A report names the last batch of each source that its tick used. In a recording over DDS that
 // batch may stand behind the report, so reading goes on for a while.
 bool TickFeed::next_by_report(TickInput& tick) {
-  while (reports_waiting_.empty()) {
-    if (!read_one()) return false;
-  }
-  current_ = std::move(reports_waiting_.front());
-  reports_waiting_.pop_front();
-  const clearance_msg_Distances& report = *current_.report;
+  if (!run_->next()) return false;
+  const clearance_msg_Distances& report = run_->report();
   tick.recorded = &report;
   tick.time = {report.now_ns, report.clock_offset_ns};
-  take_state(tick);
-  // A daemon that was started again counts from 1.
-  tick.restart = tick.joined == 0 && last_cycle_ != 0 && report.cycle <= last_cycle_;
-  last_cycle_ = report.cycle;
-  if (tick.joined != 0) missing_.clear();
-  if (tick.restart) {
-    consumed_.clear();
-    missing_.clear();
-  }
+  tick.joined = run_->joined();
+  tick.state = run_->state();
+  tick.restart = run_->is_restart();
+  if (tick.restart) consumed_.clear();
+  if (tick.restart || tick.joined != 0) missing_.clear();
   for (std::uint32_t i = 0; i < report.sources._length; ++i) {
     const clearance_msg_SourceUse& use = report.sources._buffer[i];
     tick.sources.push_back({SourceName(use.source), use.sequence_number});
   }
-  while (!all_there(tick.sources) && read_ahead()) {
+  while (!all_there(tick.sources) && run_->read_ahead()) {
   }
-  take_used(tick);
-  take_frames(report.cycle, tick);
-  const auto further = [this] { return read_ahead(); };
-  tick.separation = separations_.of_tick(report.now_ns, further);
-  tick.gradients = gradients_.of_tick(report.now_ns, further);
+  use_up_to(tick);
+  tick.frames = run_->frames();
+  tick.separation = run_->separation();
+  tick.gradients = run_->gradients();
   tick.complete = missing_.empty();
-  forget_unused(current_.log_ns);
+  forget_unused(run_->log_ns());
   return true;
 }
 
-// Reads on after the report of the tick, as far as topics may overtake each other.
-bool TickFeed::read_ahead() { return read_to_ns_ < current_.log_ns + kReadAheadNs && read_one(); }
-
 // Returns the batch's index among the waiting batches, or their number if it is not there.
 std::size_t TickFeed::place_of(const SourceUse& use) const {
-  const auto found = std::ranges::find_if(batches_waiting_, [&use](const Waiting& waiting) {
+  const auto found = std::ranges::find_if(waiting_, [&use](const LoggedBatch& waiting) {
     return waiting.batch.sequence_number == use.sequence_number &&
            waiting.batch.source == use.source;
   });
-  return static_cast<std::size_t>(found - batches_waiting_.begin());
+  return static_cast<std::size_t>(found - waiting_.begin());
 }
 
 // A report may name the batch that an earlier tick used already: then this tick had no new one.
@@ -215,17 +148,17 @@ bool TickFeed::consumed(const SourceUse& use) const {
 // Returns true when the batches that a report names have been read or were used before.
 bool TickFeed::all_there(std::span<const SourceUse> sources) const {
   return std::ranges::all_of(sources, [this](const SourceUse& use) {
-    return place_of(use) < batches_waiting_.size() || consumed(use);
+    return place_of(use) < waiting_.size() || consumed(use);
   });
 }
 
-// Takes everything of each source up to the batch that is named, all sources in file order.
-void TickFeed::take_used(TickInput& tick) {
+// Uses everything of each source up to the batch that is named, all sources in file order.
+void TickFeed::use_up_to(TickInput& tick) {
   const std::vector<SourceUse>& sources = tick.sources;
   std::vector<std::size_t> until;  // by source: one past the place of its last batch
   for (const SourceUse& use : sources) {
     const std::size_t place = place_of(use);
-    const bool found = place < batches_waiting_.size();
+    const bool found = place < waiting_.size();
     if (found) {
       missing_.erase(use.source.c_str());
     } else if (!consumed(use)) {
@@ -237,7 +170,7 @@ void TickFeed::take_used(TickInput& tick) {
   }
   // One pass keeps the order of the file among all sources, which the tick depends on.
   std::size_t place = 0;
-  std::erase_if(batches_waiting_, [&](Waiting& waiting) {
+  std::erase_if(waiting_, [&](LoggedBatch& waiting) {
     const std::size_t here = place++;
     for (std::size_t i = 0; i < sources.size(); ++i) {
       if (here >= until[i] || !(waiting.batch.source == sources[i].source)) continue;
@@ -248,27 +181,6 @@ void TickFeed::take_used(TickInput& tick) {
   });
 }
 
-// A state has the log time of the report after it. The reports of those that are passed are
-// damaged.
-void TickFeed::take_state(TickInput& tick) {
-  if (current_.joined == 0 || current_.joined == joined_) return;
-  tick.joined = joined_ = current_.joined;
-  while (states_->front() != nullptr && states_->front_ns() < current_.log_ns) states_->pop();
-  if (states_->front() == nullptr || states_->front_ns() != current_.log_ns) return;
-  state_ = states_->take();
-  tick.state = &*state_;
-}
-
-// One that no tick was shown stands before another one that was.
-void TickFeed::take_frames(std::uint64_t cycle, TickInput& tick) {
-  if (!frames_) return;
-  for (; const clearance_msg_SensorFrame* const frame = frames_->front(); frames_->pop()) {
-    // Behind a state of a partner, cycles may have lower numbers.
-    if (frame->cycle > cycle || frames_->front_ns() > current_.log_ns) return;
-    tick.frames.push_back({frame->cycle, from_wire(*frame)});
-  }
-}
-
 void TickFeed::add(PoseBatch& batch, TickInput& tick) {
   ++batches_;
   if (!batch.empty()) tick.batches.push_back(std::move(batch));
@@ -277,8 +189,8 @@ void TickFeed::add(PoseBatch& batch, TickInput& tick) {
 // Drops batches that have waited longer than the feed reads ahead. No report has named them, so the
 // daemon did not use them.
 void TickFeed::forget_unused(std::int64_t log_ns) {
-  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns < log_ns - kReadAheadNs) {
-    batches_waiting_.pop_front();
+  while (!waiting_.empty() && waiting_.front().log_ns < log_ns - kLogDisorderNs) {
+    waiting_.pop_front();
   }
 }
 
@@ -291,42 +203,45 @@ std::vector<std::string> TickFeed::notes(bool compared) const {
   note(of_other_scenes_, "batches were made for a scene that the recording does not name");
   note(silences_,
        "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
-  note(undecodable_, "messages do not decode as what their channel says and were left out");
-  if (!compared) return notes;
-  note(gradients_.unwanted(), "messages of gradients were not compared: the cell asks for none");
-  const std::uint64_t unmatched = separations_.unmatched() + gradients_.unmatched();
+  note(undecodable_ + (run_ ? run_->undecodable() : 0),
+       "messages do not decode as what their channel says and were left out");
+  if (!compared || !run_) return notes;
+  note(run_->all_gradients().unwanted(),
+       "messages of gradients were not compared: the cell asks for none");
+  const std::uint64_t unmatched =
+      run_->separations().unmatched() + run_->all_gradients().unmatched();
   if (unmatched == 1) {
     notes.push_back("1 message of gradients or separation belongs to no report");
   } else {
     note(unmatched, "messages of gradients or separation belong to no report");
   }
-  if (!not_recorded_.empty()) {
+  if (const auto& fields = run_->reader().not_recorded(); !fields.empty()) {
     notes.push_back(
         fmt::format("the recording does not have these fields, which were not compared: {}",
-                    fmt::join(not_recorded_, ", ")));
+                    fmt::join(fields, ", ")));
   }
   return notes;
 }
 
 // Makes one tick of all batches with the same log time.
 bool TickFeed::next_by_time(TickInput& tick) {
-  while (batches_waiting_.empty()) {
+  while (waiting_.empty()) {
     if (!read_one()) return false;
   }
-  tick.time.now_ns = batches_waiting_.front().log_ns;
-  while (read_to_ns_ == tick.time.now_ns && read_one()) {
+  tick.time.now_ns = waiting_.front().log_ns;
+  while (read_to_ns() == tick.time.now_ns && read_one()) {
   }
-  take_until_now(tick);
+  use_until_now(tick);
   return true;
 }
 
 // A tick without a batch is made only while a further batch is known: after the last batch there
 // are no more ticks.
 bool TickFeed::next_by_rate(TickInput& tick) {
-  while (batches_waiting_.empty()) {
+  while (waiting_.empty()) {
     if (!read_one()) return false;
   }
-  const std::int64_t next_ns = batches_waiting_.front().log_ns;
+  const std::int64_t next_ns = waiting_.front().log_ns;
   const auto now_at = [this](std::uint64_t number) {
     return began_ns_ + std::llround(static_cast<double>(number) * 1e9 / tick_hz_);
   };
@@ -338,27 +253,27 @@ bool TickFeed::next_by_rate(TickInput& tick) {
     if (silent) ++silences_;
   }
   tick.time.now_ns = now_at(at_rate_++);
-  while (read_to_ns_ <= tick.time.now_ns && read_one()) {
+  while (read_to_ns() <= tick.time.now_ns && read_one()) {
   }
-  take_until_now(tick);
+  use_until_now(tick);
   return true;
 }
 
 // Moves all batches up to the tick's time into the tick, in the order in which they came.
-void TickFeed::take_until_now(TickInput& tick) {
-  while (!batches_waiting_.empty() && batches_waiting_.front().log_ns <= tick.time.now_ns) {
-    last_batch_ns_ = batches_waiting_.front().log_ns;
-    if (auto& scene = batches_waiting_.front().scene) {
+void TickFeed::use_until_now(TickInput& tick) {
+  while (!waiting_.empty() && waiting_.front().log_ns <= tick.time.now_ns) {
+    last_batch_ns_ = waiting_.front().log_ns;
+    if (auto& scene = waiting_.front().scene) {
       tick.scenes.push_back(std::move(scene));
-      batches_waiting_.pop_front();
+      waiting_.pop_front();
       continue;
     }
-    if (auto& sensor = batches_waiting_.front().sensor) {
+    if (auto& sensor = waiting_.front().sensor) {
       tick.sensors.push_back(std::move(sensor));
-      batches_waiting_.pop_front();
+      waiting_.pop_front();
       continue;
     }
-    PoseBatch& batch = batches_waiting_.front().batch;
+    PoseBatch& batch = waiting_.front().batch;
     const SourceUse last{batch.source, batch.sequence_number};
     add(batch, tick);
     const auto use = std::ranges::find(tick.sources, last.source, &SourceUse::source);
@@ -367,7 +282,7 @@ void TickFeed::take_until_now(TickInput& tick) {
     } else if (tick.sources.size() < kMaxSources) {
       tick.sources.push_back(last);
     }
-    batches_waiting_.pop_front();
+    waiting_.pop_front();
   }
 }
 

@@ -16,11 +16,11 @@
 #include "config/cell/cell.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/report_queue.hpp"
-#include "monitor/loop/spsc_ring.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/ros/cell_diagnostics.hpp"
 #include "monitor/ros/monitored_scene.hpp"
 #include "monitor/ros/ros_writes.hpp"
+#include "monitor/state/spsc_ring.hpp"
 #include "monitor/visual/ros_types.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -9,8 +9,8 @@ namespace {
 
 // A successor that was too slow is tried again, since a machine may have been busy.
 constexpr int kAttempts = 3;
-// The preparing thread looks for new ticks so often.
-constexpr std::chrono::microseconds kLook{50};
+// The preparing thread asks for new ticks so often.
+constexpr std::chrono::microseconds kPoll{50};
 
 SceneChanger::Outcome refused(CommandStatus status, std::string why) {
   return {.status = status, .refusal = std::move(why), .in_force_from = 0};
@@ -55,7 +55,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
   Successor::State state = Successor::State::kTooSlow;
   for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
     // It holds what the loop no longer ticks, and is deleted here.
-    Successor successor(cell_->scene, loop_.monitor(), cell->scene, sinks, records_);
+    SceneOffer successor(loop_.state(), cell->scene, sinks, records_);
     state = run(successor, loop_ended, began);
     if (state != Successor::State::kSucceeded) continue;
     std::swap(cell_, cell);
@@ -74,7 +74,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
 }
 
 // Waits until the loop has let go of the successor, too.
-Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>& loop_ended,
+Successor::State SceneChanger::run(SceneOffer& successor, const std::atomic<bool>& loop_ended,
                                    const Began& began) {
   if (!loop_.offer(successor)) return Successor::State::kTooSlow;
   bool is_new = static_cast<bool>(began);
@@ -83,7 +83,7 @@ Successor::State SceneChanger::run(Successor& successor, const std::atomic<bool>
       is_new = false;
       began(successor);
     }
-    if (is_new || successor.catch_up() == 0) std::this_thread::sleep_for(kLook);
+    if (is_new || successor.catch_up() == 0) std::this_thread::sleep_for(kPoll);
   }
   return successor.state();
 }

@@ -11,7 +11,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/command.hpp"
-#include "monitor/loop/successor.hpp"
+#include "monitor/loop/scene_capacity.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/scene_changes/restart_needed.hpp"
 
@@ -75,7 +75,7 @@ class SceneChanger {
   [[nodiscard]] Outcome succeed(std::shared_ptr<const Cell> cell,
                                 const std::vector<ReportSink*>& sinks,
                                 const std::atomic<bool>& loop_ended, const Began& began);
-  [[nodiscard]] Successor::State run(Successor& successor, const std::atomic<bool>& loop_ended,
+  [[nodiscard]] Successor::State run(SceneOffer& successor, const std::atomic<bool>& loop_ended,
                                      const Began& began);
 
   TickLoop& loop_;

@@ -53,8 +53,8 @@ class SceneCommander {
                                       const CompleteChanges& complete = {});
 
   // Keeps the files of a command for a cell that another daemon makes, and this one takes over.
-  [[nodiscard]] CommandResult keep_files(const Command& command) {
-    std::string reason = sent_.keep_awaited(command.files);
+  [[nodiscard]] CommandResult keep_files(const std::vector<SentFile>& files) {
+    std::string reason = sent_.keep_awaited(files);
     const auto status = reason.empty() ? CommandStatus::kDone : CommandStatus::kFileRefused;
     return {.status = status, .reason = std::move(reason)};
   }

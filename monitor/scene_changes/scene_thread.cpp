@@ -1,6 +1,7 @@
 #include "monitor/scene_changes/scene_thread.hpp"
 
 #include <exception>
+#include <variant>
 
 #include "monitor/loop/realtime.hpp"
 
@@ -20,33 +21,50 @@ void SceneThread::run() {
   if (!enter(Phase::kReading)) return;
   commander_.read_ahead();
   if (!enter(Phase::kChanging)) return;
-  while (auto next = queue_.next()) {
-    if (next->task) {
-      next->task();
+  while (auto task = queue_.next()) {
+    if (const auto* const work = std::get_if<OtherWork>(&*task)) {
+      work->run();
       continue;
     }
     if (!enter(Phase::kReading)) return;
-    std::optional<CommandResult> result;
-    if (next->make) result = make(*next);
-    const bool is_empty = next->make && !result && next->command.changes.empty();
-    if (!result && next->only_keeps_files) {
-      result = commander_.keep_files(next->command);
-    } else if (!result && !is_empty) {
-      result = commander_.execute(
-          next->command, next->is_own, [this] { return enter(Phase::kChanging); }, next->complete);
-    }
+    const std::optional<CommandResult> result = std::visit(
+        [this](const auto& each) -> std::optional<CommandResult> {
+          if constexpr (requires { perform(each); }) return perform(each);
+          return std::nullopt;
+        },
+        *task);
     if (!enter(Phase::kChanging)) return;
-    if (result && next->answer) next->answer(*result);
+    const AnswerCommand* const answer = answer_of(*task);
+    if (result && answer != nullptr && *answer) (*answer)(*result);
   }
 }
 
+std::optional<CommandResult> SceneThread::execute(const Command& command, bool is_own,
+                                                  const CompleteChanges& complete) {
+  return commander_.execute(
+      command, is_own, [this] { return enter(Phase::kChanging); }, complete);
+}
+
+std::optional<CommandResult> SceneThread::perform(const GivenCommand& given) {
+  return execute(given.command, given.is_own, {});
+}
+
 // A message of another program may have any size.
-std::optional<CommandResult> SceneThread::make(QueuedCommand& queued) {
+std::optional<CommandResult> SceneThread::perform(const MadeCommand& made) {
+  Command command;
   try {
-    queued.command = queued.make(commander_.cell(), [this](const std::string& name) {
-      return commander_.present_pose(name);
-    });
-    return std::nullopt;
+    command = made.make(commander_.cell(),
+                        [this](const std::string& name) { return commander_.present_pose(name); });
+  } catch (const std::exception& error) {
+    return CommandResult{.status = CommandStatus::kFailed, .reason = error.what()};
+  }
+  if (command.changes.empty()) return std::nullopt;
+  return execute(command, true, made.complete);
+}
+
+std::optional<CommandResult> SceneThread::perform(const KeptFiles& files) {
+  try {
+    return commander_.keep_files(files.make(commander_.cell()));
   } catch (const std::exception& error) {
     return CommandResult{.status = CommandStatus::kFailed, .reason = error.what()};
   }

@@ -1,4 +1,4 @@
-// The thread that does commands: it takes them from its queue, one after another.
+// The thread that does the tasks of its queue, one after another.
 #pragma once
 
 #include <atomic>
@@ -6,8 +6,8 @@
 #include <optional>
 #include <thread>
 
-#include "monitor/scene_changes/command_queue.hpp"
 #include "monitor/scene_changes/scene_commander.hpp"
+#include "monitor/scene_changes/scene_task.hpp"
 
 namespace clearance {
 
@@ -21,9 +21,9 @@ class SceneThread {
   SceneThread& operator=(const SceneThread&) = delete;
 
   void start();
-  // Any thread but that of the tick: the one way in for commands. Returns false if too much waits,
+  // Any thread but that of the tick: the one entry for tasks. Returns false if too much waits,
   // or after end(). Otherwise the answer comes, unless the program ends.
-  [[nodiscard]] bool put(QueuedCommand command) { return queue_.put(std::move(command)); }
+  [[nodiscard]] bool put(SceneTask task) { return queue_.put(std::move(task)); }
 
   // Once `loop_ended` is set: drops what waits, and waits for the change that is under way. Returns
   // false if a cell is still being read, which may take long. The thread then goes on, and the
@@ -33,12 +33,16 @@ class SceneThread {
  private:
   enum class Phase { kReading, kChanging, kEnded };
   void run();
-  // Makes the command of a message. Returns why it failed, or nothing.
-  std::optional<CommandResult> make(QueuedCommand& queued);
+  // Each returns the result; nothing: there is none.
+  std::optional<CommandResult> perform(const GivenCommand& given);
+  std::optional<CommandResult> perform(const MadeCommand& made);
+  std::optional<CommandResult> perform(const KeptFiles& files);
+  std::optional<CommandResult> execute(const Command& command, bool is_own,
+                                       const CompleteChanges& complete);
   // Returns false after end(); then nothing may be read any more.
   bool enter(Phase phase);
 
-  CommandQueue queue_;
+  SceneQueue queue_;
   SceneCommander commander_;
   std::mutex mutex_;
   Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing

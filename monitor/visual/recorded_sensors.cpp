@@ -6,20 +6,13 @@
 #include "monitor/sensors/sensors.hpp"
 
 namespace clearance {
-namespace {
-
-// Frames may be recorded as seldom as once in this time.
-constexpr std::int64_t kLookBackNs = 2'000'000'000;
-
-}  // namespace
-
 RecordedSensors::RecordedSensors(std::filesystem::path file) : file_(std::move(file)) {}
 RecordedSensors::~RecordedSensors() = default;
 
 void RecordedSensors::change(const Cell& cell) {
   cell_ = &cell;
   seen_ = cell.scene.sensors.empty() ? nullptr : std::make_unique<SeenFrames>(cell, true);
-  feed_ = nullptr;
+  place_.forget();
 }
 
 void RecordedSensors::show(std::int64_t time_ns, const SeenFrames::Use& use) {
@@ -29,13 +22,10 @@ void RecordedSensors::show(std::int64_t time_ns, const SeenFrames::Use& use) {
 
 // Speckle that a frame hides depends on the frames before it, so some of each sensor are built.
 std::vector<BuiltFrame> RecordedSensors::frames_until(std::int64_t time_ns) {
-  if (feed_ == nullptr || time_ns < read_ns_ || time_ns > read_ns_ + 2 * kLookBackNs) {
-    const std::int64_t begin_ns = std::max<std::int64_t>(0, time_ns - kLookBackNs);
-    feed_ = std::make_unique<FrameFeed>(
-        std::vector{file_}, McapWindow{.start_ns = static_cast<std::uint64_t>(begin_ns)});
+  if (const auto window = place_.go_to(time_ns)) {
+    feed_ = std::make_unique<FrameFeed>(std::vector{file_}, *window);
     anew_ = true;
   }
-  read_ns_ = time_ns;
   const std::vector<Sensor>& sensors = cell_->scene.sensors;
   std::vector<BuiltFrame> found;
   for (; feed_->front() != nullptr && feed_->front_ns() <= time_ns; feed_->pop()) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/recording/reading_place.hpp"
 #include "monitor/visual/seen_frames.hpp"
 
 namespace clearance {
@@ -33,8 +34,9 @@ class RecordedSensors {
   std::filesystem::path file_;
   const Cell* cell_ = nullptr;
   std::unique_ptr<SeenFrames> seen_;  // null: the cell has no sensors
+  // Frames may be recorded as seldom as once in this time.
+  ReadingPlace place_{2'000'000'000};
   std::unique_ptr<FrameFeed> feed_;
-  std::int64_t read_ns_ = 0;  // all frames before this time were taken
   bool anew_ = false;
 };
 

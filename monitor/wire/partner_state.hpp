@@ -1,4 +1,5 @@
-// The state of a monitor (monitor/saved_state.hpp) as a message: for a partner, and in recordings.
+// The state of a monitor (monitor/state/saved_state.hpp) as a message: for a partner, and in
+// recordings.
 #pragma once
 
 #include <cstddef>

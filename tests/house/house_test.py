@@ -198,9 +198,9 @@ class Reflow(unittest.TestCase):
             return page.read_text(encoding="utf-8")
 
     def test_breaks_long_paragraphs_and_items_and_leaves_all_else(self):
-        kept = "# " + "heading " * 20 + "\n\n```\n" + "code " * 40 + "\n```\n\n| " + "cell " * 40 + "|\n\nshort\nlines\n\n"
+        kept = "# " + "heading " * 20 + "\n\n```\n" + "code " * 40 + "\n```\n\n    " + "code " * 40 + "\n    code\n\n| " + "cell " * 40 + "|\n\nshort\nlines\n\n"
         word = "x" * 9
-        text = kept + " ".join([word] * 13) + "\n\n- " + " ".join([word] * 12 + ["`code that", "stays`"]) + "\n  after\n- next\n"
+        text = kept + " ".join([word] * 13) + "\n\n- " + " ".join([word] * 12 + ["`code\n  that stays`"]) + "\n  after\n- next\n"
         expected = (kept + " ".join([word] * 12) + f"\n{word}\n\n- " + " ".join([word] * 11) +
                     f"\n  {word} `code that stays` after\n- next\n")
         self.assertEqual(self.reflowed(text), expected)

@@ -6,6 +6,7 @@ import source_rules
 from tree import Fault
 
 MOST_WORDS, MOST_COLUMNS, MOST_CELL_WORDS = 2300, 120, 25  # ten minutes at 230 words a minute
+ITEM = re.compile(r"^(\s*(?:[-*+]|\d+[.)])\s+)(.*)$")
 FENCE = re.compile(r"^\s*(```|~~~)")
 COMMIT = re.compile(r"\b(?:commit|Made from [^,\s]+,) ([0-9a-f]{7,40})\b")
 TOKEN = re.compile(r"(?:`[^`]*`|[^\s`]|`)+")  # what stays in one line: a word, or code
@@ -13,14 +14,27 @@ KEYS = "config/KEYS.md"
 INDEXED = (KEYS, "monitor/FAULTS.md")  # are searched
 
 
+def code_lines(lines):
+    """Which lines are code: those between fences, and those that four blanks indent outside of a list."""
+    found, is_fenced, is_item, before, was_code = [], False, False, "", False
+    for line in lines:
+        if FENCE.match(line):
+            is_fenced = not is_fenced
+            was_code = True
+        else:
+            is_indented = line.startswith("    ") and not is_item and (was_code or not before.strip())
+            was_code = is_fenced or is_indented
+        if not line.startswith(" ") and line.strip():
+            is_item = bool(ITEM.match(line)) or (is_item and bool(before.strip()))
+        found.append(was_code)
+        before = line
+    return found
+
+
 def prose(text):
     """The lines outside of code: number and text."""
-    is_code = False
-    for number, line in enumerate(text.split("\n"), 1):
-        if FENCE.match(line):
-            is_code = not is_code
-        elif not is_code:
-            yield number, line
+    lines = text.split("\n")
+    return [(number, line) for number, (line, is_code) in enumerate(zip(lines, code_lines(lines)), 1) if not is_code]
 
 
 def cells(line):

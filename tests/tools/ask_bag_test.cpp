@@ -79,6 +79,24 @@ TEST_F(AskOfABag, HoldsTheOtherJointsWhereTheJointStatesHaveThem) {
   EXPECT_EQ(answers[0]["verdict"]["0.05"], "free");
 }
 
+// A topic of the robot has its names without the prefix. Another one's joint states are not its
+// own.
+TEST_F(AskOfABag, ReadsJointStatesByTheTopicAndThePrefixOfARobot) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\n"
+             "robots: [{name: arm, prefix: left_, urdf: scara.urdf, joint_states: /left/state}]\n"
+             "objects:\n"
+             "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
+             "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n");
+  const JointStateText elsewhere{{"left_elbow", "left_push", "left_shoulder"}, {1.0, 0.1, 2.0}};
+  ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest, "/left/state"),
+                 joint_state(kSecondNs, kSecondNs, elsewhere, "/right/state"),
+                 trajectory(2 * kSecondNs, {"left_shoulder"}, {{2.0, {0.6}}})}),
+            0)
+      << output;
+  EXPECT_NEAR(answers.at(0)["upper"], 0.15, 1e-6);
+}
+
 // The controller swings from -1 rad to the only point.
 TEST_F(AskOfABag, BeginsWhereTheJointsAreIfTheFirstPointIsLater) {
   const RosMessage late = trajectory(2 * kSecondNs, {"shoulder"}, {{2.0, {0.6}}});

@@ -91,6 +91,21 @@ class OfficialRosReader : public testing::Test {
   Participant client{dds};
 };
 
+// One marker by our decoder and by the official one.
+void expect_equal(const visualization_msgs_msg_dds__Marker_& marker, const json& theirs) {
+  ASSERT_EQ(marker.ns, theirs["ns"]);
+  ASSERT_EQ(marker.type, theirs["type"]);
+  ASSERT_EQ(marker.action, theirs["action"]);
+  ASSERT_EQ(marker.text, theirs["text"]);
+  ASSERT_EQ(marker.header.frame_id, theirs["header"]["frame_id"]);
+  ASSERT_EQ(marker.points._length, theirs["points"].size());
+  ASSERT_EQ(static_cast<double>(marker.color.a), theirs["color"]["a"]);
+  ASSERT_EQ(marker.pose.orientation.w, theirs["pose"]["orientation"]["w"]);
+  if (marker.points._length == 0) return;
+  const auto& last = marker.points._buffer[marker.points._length - 1];
+  ASSERT_EQ(Vec3(last.x, last.y, last.z), vector_of(theirs["points"].back()));
+}
+
 // The cell of these tests has two boxes, whose zone is active while they are nearer than 0.3 m.
 TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
   const CellFile cell(small_cell("official") + "ros2: {diagnostics: true, world_frame: map}\n");
@@ -118,18 +133,7 @@ TEST_F(OfficialRosReader, DecodesMarkersDiagnosticsAndNumbersOfTheDaemon) {
     for (std::uint32_t k = 0; k < ours->markers._length; ++k) {
       const auto& marker = ours->markers._buffer[k];
       const json& theirs = arrays[i]["markers"][k];
-      ASSERT_EQ(marker.ns, theirs["ns"]);
-      ASSERT_EQ(marker.type, theirs["type"]);
-      ASSERT_EQ(marker.action, theirs["action"]);
-      ASSERT_EQ(marker.text, theirs["text"]);
-      ASSERT_EQ(marker.header.frame_id, theirs["header"]["frame_id"]);
-      ASSERT_EQ(marker.points._length, theirs["points"].size());
-      ASSERT_EQ(static_cast<double>(marker.color.a), theirs["color"]["a"]);
-      ASSERT_EQ(marker.pose.orientation.w, theirs["pose"]["orientation"]["w"]);
-      if (marker.points._length > 0) {
-        const auto& last = marker.points._buffer[marker.points._length - 1];
-        ASSERT_EQ(Vec3(last.x, last.y, last.z), vector_of(theirs["points"].back()));
-      }
+      ASSERT_NO_FATAL_FAILURE(expect_equal(marker, theirs));
       bodies += theirs["ns"] == "bodies" ? 1 : 0;
       if (theirs["ns"] != "lines" || theirs["points"].empty()) continue;
       ++lines;

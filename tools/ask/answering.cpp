@@ -72,7 +72,7 @@ int Answering::answer_bag(std::ostream& out) {
   if (needs_inputs(cell)) {
     error = answer_with_inputs(cell, out);
   } else {
-    error = for_each_motion(options_.motions, [&](const BagMotion& found) {
+    error = for_each_motion(cell, options_.motions, [&](const BagMotion& found) {
       take(asked(found, *places_.at("")), out);
     });
   }
@@ -91,8 +91,8 @@ AskedMotion Answering::asked(const BagMotion& found, AskedPlace& place) const {
 
 std::string Answering::answer_with_inputs(const Cell& cell, std::ostream& out) {
   std::vector<BagMotion> motions;
-  std::string error =
-      for_each_motion(options_.motions, [&](const BagMotion& found) { motions.push_back(found); });
+  std::string error = for_each_motion(cell, options_.motions,
+                                      [&](const BagMotion& found) { motions.push_back(found); });
   if (!error.empty() || motions.empty()) return error;
   std::size_t done = 0;
   error =

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "monitor/bags/bag.hpp"
+#include "monitor/intake/intake.hpp"
 #include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/wire/cdr.hpp"
 
@@ -18,8 +19,15 @@ constexpr std::string_view kJointStates = "sensor_msgs/msg/JointState";
 
 class Reader {
  public:
+  explicit Reader(const Cell& cell)
+      : scene_(cell.scene), intake_(cell, {.is_log = true}, [this](const PoseBatch& batch) {
+          for (const JointSample& sample : batch.joints)
+            joints_[scene_.variables[sample.variable].name] = {sample.position, sample.stamp_ns};
+          return true;
+        }) {}
+
   // Returns a motion if the message is one.
-  std::optional<BagMotion> take(const BagMessage& message) {
+  std::optional<BagMotion> read(const BagMessage& message) {
     if (!first_ns_) first_ns_ = message.log_ns;
     if (message.topic->type == kJointStates) note_joints(message);
     if (message.topic->type != kTrajectory) return std::nullopt;
@@ -46,36 +54,38 @@ class Reader {
   }
 
  private:
-  void note_joints(const BagMessage& message) {
-    if (!decoder_.decode(message.payload, states_)) return;
-    const std::uint32_t count = std::min(states_->name._length, states_->position._length);
-    const auto& stamp = states_->header.stamp;
-    const std::int64_t stated_ns = 1'000'000'000LL * stamp.sec + stamp.nanosec;
-    const std::int64_t stamp_ns = stated_ns == 0 ? message.log_ns : stated_ns;
-    for (std::uint32_t i = 0; i < count; ++i)
-      joints_[states_->name._buffer[i]] = {states_->position._buffer[i], stamp_ns};
-  }
-
-  std::optional<std::int64_t> first_ns_;
   struct Joint {
     double position;
     std::int64_t stamp_ns;
   };
-  std::map<std::string, Joint> joints_;
+
+  void note_joints(const BagMessage& message) {
+    const auto topic = message.topic->encoding == "cdr"
+                           ? intake_.topic({message.topic->name, message.topic->type})
+                           : std::nullopt;
+    if (!topic) return;
+    static_cast<void>(
+        intake_.take({.topic = topic->number, .cdr = message.payload, .sent_ns = message.log_ns},
+                     {.realtime_ns = message.log_ns, .monotonic_ns = message.log_ns}));
+  }
+
+  std::optional<std::int64_t> first_ns_;
+  const Scene& scene_;
+  std::map<std::string, Joint> joints_;  // by the name of the variable
+  Intake intake_;
   CdrDecoder decoder_;
   Sample<trajectory_msgs_msg_dds__JointTrajectory_> trajectory_;
-  Sample<sensor_msgs_msg_dds__JointState_> states_;
 };
 
 }  // namespace
 
-std::string for_each_motion(const std::filesystem::path& bag,
-                            const std::function<void(const BagMotion&)>& take) {
+std::string for_each_motion(const Cell& cell, const std::filesystem::path& bag,
+                            const std::function<void(const BagMotion&)>& use) {
   const std::unique_ptr<Bag> file = open_bag(bag);
-  Reader reader;
+  Reader reader(cell);
   BagMessage message;
   while (file->next(message)) {
-    if (const auto motion = reader.take(message)) take(*motion);
+    if (const auto motion = reader.read(message)) use(*motion);
   }
   return file->error();
 }

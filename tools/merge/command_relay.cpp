@@ -61,9 +61,9 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
   }
   port_ = std::make_unique<CommandPort>(
       cell, cell.commands.from, connection_.participant(), daemon,
-      [this](QueuedCommand command) {
+      [this](GivenCommand command) {
         const std::lock_guard lock(mutex_);
-        if (stop_ || queue_.size() >= CommandQueue::kMost) return false;
+        if (stop_ || queue_.size() >= SceneQueue::kMost) return false;
         queue_.push_back(std::move(command));
         changed_.notify_one();
         return true;
@@ -95,7 +95,7 @@ void CommandRelay::note(const client::SharedCell& whole) {
 void CommandRelay::run() {
   name_thread("commands");
   for (;;) {
-    QueuedCommand next;
+    GivenCommand next;
     {
       std::unique_lock lock(mutex_);
       changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });

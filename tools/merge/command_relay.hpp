@@ -53,7 +53,7 @@ class CommandRelay {
   std::atomic<std::uint64_t> whole_in_{0};  // the revision that all shares have; 0: not the same
   std::mutex mutex_;                        // guards the queue
   std::condition_variable changed_;
-  std::deque<QueuedCommand> queue_;
+  std::deque<GivenCommand> queue_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
   std::unique_ptr<CommandPort> port_;

@@ -88,7 +88,7 @@ void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
 
 // Before the first catalogue, nothing is known of the cell.
 void WholeWriter::write(client::SharedCell& whole) {
-  others_.look();
+  others_.poll();
   const clearance_msg_Catalogue* const catalogue = whole.catalogue();
   if (catalogue == nullptr) return;
   const bool is_new = catalogue->scene_revision != revision_ || others_.have_just_left();
@@ -123,7 +123,7 @@ void WholeWriter::write(client::SharedCell& whole) {
   }
   write_zones(whole, is_new);
   if (!others_.give_way()) messages_.report_ended();
-  zone_check_.look(whole);
+  zone_check_.check(whole);
   if (client::monotonic_ns() - health_ns_ < kHealthEvery) return;
   health_ns_ = client::monotonic_ns();
   auto health = whole.health();

@@ -10,7 +10,7 @@ namespace clearance::merge {
 ZoneCheck::ZoneCheck(const Cell& cell)
     : cell_(cell), was_doubtful_(cell.scene.zones.size()), was_unheard_(cell.scene.zones.size()) {}
 
-void ZoneCheck::look(const client::SharedCell& whole) {
+void ZoneCheck::check(const client::SharedCell& whole) {
   const Scene& scene = cell_.scene;
   if (whole->scene_revision != scene.revision) return;
   const std::span pairs(whole->pairs._buffer, whole->pairs._length);

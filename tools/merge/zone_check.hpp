@@ -17,7 +17,7 @@ class ZoneCheck {
   // A zone is wrong if it is active because a share is not heard, or if it is inactive in two
   // reports that both have a pair of it nearer than it is entered. The first of these may have come
   // before the state of the zone. Reports of another revision of the cell are left out.
-  void look(const client::SharedCell& whole);
+  void check(const client::SharedCell& whole);
   [[nodiscard]] std::uint64_t wrong() const noexcept { return wrong_; }
 
  private:

@@ -32,7 +32,7 @@ void ChangedCell::read() {
   });
 }
 
-void ChangedCell::look(std::int64_t now_ns) {
+void ChangedCell::poll(std::int64_t now_ns) {
   using namespace std::chrono_literals;
   if (!reading_.valid() || reading_.wait_for(0s) != std::future_status::ready) return;
   std::optional<Cell> cell = reading_.get();

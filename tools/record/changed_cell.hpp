@@ -25,7 +25,7 @@ class ChangedCell {
   // A catalogue was heard.
   void hear(const clearance_msg_Catalogue& catalogue);
   // Called now and then: writes what was read meanwhile.
-  void look(std::int64_t now_ns);
+  void poll(std::int64_t now_ns);
 
  private:
   void read();

@@ -74,7 +74,7 @@ class Subscription {
       for (const CdrSample& taken : taken_) record(topic.kind, now_ns, taken);
       taken_.clear();
     }
-    changed_.look(dds_time());
+    changed_.poll(dds_time());
   }
 
  private:

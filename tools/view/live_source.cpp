@@ -186,7 +186,7 @@ bool LiveSource::is_shown(TopicKind kind, const CdrSample& sample, std::int64_t 
 // the daemon's log has it.
 void LiveSource::take_from_ros(const Now& now) {
   if (!intake_.hears_ros()) return;
-  if (ros_.look()) {
+  if (ros_.poll()) {
     std::vector<std::uint64_t> writers = ros_.writers();
     intake_.keep(writers);
     std::ranges::sort(writers);

@@ -13,9 +13,6 @@
 namespace clearance::view {
 namespace {
 
-// The source reads this long before its new place, to include poses of objects that move seldom,
-// and health, which comes once a second.
-constexpr std::int64_t kLookBackNs = 1'200'000'000;
 constexpr double kSlowest = 0.01, kFastest = 100.0;
 
 }  // namespace
@@ -57,7 +54,7 @@ void RecordingSource::follow_the_time() {
   cell_ = cell == first_.get() ? first_ : std::shared_ptr<const Cell>(first_, cell);
   frame_ = std::make_unique<Frame>(cell_->scene);
   sensors_.change(*cell_);
-  reader_ = nullptr;
+  place_.forget();
   changed_ = true;
 }
 
@@ -139,26 +136,21 @@ void RecordingSource::go_on(std::int64_t steady_ns) {
   changed_ = true;
 }
 
-// Reads on. To go back or far ahead, it begins anew a little before.
 void RecordingSource::read_up_to(std::int64_t time_ns) {
-  if (!reader_ || time_ns < read_ns_ || time_ns > read_ns_ + 2 * kLookBackNs) {
-    begin_reading_at(std::max<std::int64_t>(0, std::min(time_ns - kLookBackNs, timeline_.end_ns)));
-  }
+  if (const auto window = place_.go_to(time_ns)) begin_reading(*window);
   while (has_next_ && next_.log_ns <= time_ns) {
     frame_->take(next_.kind, next_.log_ns, next_.cdr);
     has_next_ = reader_->next(next_);
   }
-  read_ns_ = time_ns;
 }
 
 // A zone's state is recorded only when it changes. So the earlier zone messages are taken first:
-// the last state of each zone is the one that holds at `time_ns`.
-void RecordingSource::begin_reading_at(std::int64_t time_ns) {
-  reader_ = std::make_unique<RecordingReader>(
-      file_, McapWindow{.start_ns = static_cast<std::uint64_t>(time_ns)});
+// the last state of each zone is the one that holds where the window begins.
+void RecordingSource::begin_reading(const McapWindow& window) {
+  reader_ = std::make_unique<RecordingReader>(file_, window);
   frame_->jump();
   for (const ZoneMessage& message : timeline_.zone_messages) {
-    if (message.log_ns >= time_ns) break;
+    if (message.log_ns >= static_cast<std::int64_t>(window.start_ns)) break;
     frame_->take(TopicKind::kZones, message.log_ns, message.cdr);
   }
   has_next_ = reader_->next(next_);

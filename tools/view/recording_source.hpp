@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "monitor/recording/reader.hpp"
+#include "monitor/recording/reading_place.hpp"
 #include "monitor/visual/recorded_sensors.hpp"
 #include "tools/view/frame.hpp"
 #include "tools/view/source.hpp"
@@ -44,7 +45,7 @@ class RecordingSource final : public Source {
   void step(std::int64_t reports);
   void read_up_to(std::int64_t time_ns);
   void follow_the_time();
-  void begin_reading_at(std::int64_t time_ns);
+  void begin_reading(const McapWindow& window);
   void show_what_is_seen(Server& server);
   [[nodiscard]] std::int64_t at(double seconds) const;
   [[nodiscard]] const SceneSince* scene_now() const;  // null: before the first report
@@ -55,11 +56,12 @@ class RecordingSource final : public Source {
   Timeline timeline_;
   std::unique_ptr<Frame> frame_;
   RecordedSensors sensors_;
+  // Poses of objects that move seldom, and health, come once a second.
+  ReadingPlace place_{1'200'000'000};
   std::unique_ptr<RecordingReader> reader_;
   RecordedMessage next_;  // read, but still to come
   bool has_next_ = false;
-  std::int64_t read_ns_ = 0;  // everything before this time has been taken
-  std::int64_t time_ns_;      // time of the view
+  std::int64_t time_ns_;  // time of the view
   std::int64_t steady_ns_ = 0;
   bool playing_ = false, changed_ = true;
   double rate_ = 1.0;

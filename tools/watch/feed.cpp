@@ -35,7 +35,7 @@ void Feed::take(std::int64_t now_ns) {
   }
   any() ? zones_.update(*reports_) : zones_.update();
   if (any()) shares_.reset();
-  if (shares_) shares_->look();
+  if (shares_) shares_->poll();
 }
 
 void Feed::note_report(std::int64_t now_ns) {

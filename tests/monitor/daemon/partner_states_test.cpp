@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
-#include "monitor/loop/joined_state.hpp"
+#include "monitor/state/saved_state.hpp"
 #include "tests/monitor/scene_changes/commanded_cell.hpp"
 #include "tests/shared/loopback.hpp"
 
@@ -76,13 +76,14 @@ class PartnerStatesTest : public testing::Test, private CellParts {
   // Waits until the scene thread has done what it was given.
   void finish() {
     std::atomic<bool> done{false};
-    ASSERT_TRUE(thread.put({.task = [&] { done = true; }}));
+    ASSERT_TRUE(thread.put(OtherWork{[&] { done = true; }}));
     ASSERT_TRUE(test::eventually([&] { return done.load(); }));
   }
   std::uint64_t change(std::vector<CellChange> changes) {
     CommandResult result;
-    EXPECT_TRUE(thread.put({.command = {.client = "planner", .changes = std::move(changes)},
-                            .answer = [&](const CommandResult& of) { result = of; }}));
+    EXPECT_TRUE(
+        thread.put(GivenCommand{.command = {.client = "planner", .changes = std::move(changes)},
+                                .answer = [&](const CommandResult& of) { result = of; }}));
     finish();
     EXPECT_TRUE(result.done()) << result.reason;
     return result.scene_revision;
@@ -130,7 +131,7 @@ class PartnerStatesTest : public testing::Test, private CellParts {
                        thread,
                        loop_ended,
                        nullptr,
-                       [this](QueuedCommand command) { return thread.put(std::move(command)); },
+                       [this](SceneTask task) { return thread.put(std::move(task)); },
                        [this] { return changer.cell().scene.revision; }};
   std::thread ticking;
 

@@ -1,5 +1,5 @@
 // The loop changes from the monitor of one scene to that of another between two ticks.
-#include "monitor/loop/successor.hpp"
+#include "monitor/state/successor.hpp"
 
 #include <gtest/gtest.h>
 
@@ -73,8 +73,8 @@ class Succession : public testing::Test {
     std::atomic<bool> stop{false};
     loop->run(stop);
   }
-  Successor& succeed(const Scene& scene, const TickRecords::Room& room = {}) {
-    return successors.emplace_back(first, loop->monitor(), scene, std::vector<ReportSink*>{&after},
+  SceneOffer& succeed(const Scene& scene, const TickRecords::Room& room = {}) {
+    return successors.emplace_back(loop->state(), scene, std::vector<ReportSink*>{&after},
                                    records.emplace_back(room));
   }
 
@@ -113,7 +113,7 @@ class Succession : public testing::Test {
   std::uint64_t allocated = 0, allocated_later = 0;  // before tick 5 and tick 19
   std::unique_ptr<TickLoop> loop;
   std::list<TickRecords> records;
-  std::list<Successor> successors;
+  std::list<SceneOffer> successors;
 };
 
 TEST_F(Succession, TheNextTickButOneIsThatOfTheChangedSceneAndNoneIsMissing) {
@@ -144,9 +144,8 @@ TEST_F(Succession, BatchesForFormerScenesArePassedOnAndThoseOfOthersRefused) {
       EXPECT_TRUE(loop->offer(succeed(second)));
     }
     if (tick == 15) {
-      EXPECT_TRUE(loop->offer(successors.emplace_back(second, loop->monitor(), third,
-                                                      std::vector<ReportSink*>{&after},
-                                                      records.emplace_back())));
+      EXPECT_TRUE(loop->offer(successors.emplace_back(
+          loop->state(), third, std::vector<ReportSink*>{&after}, records.emplace_back())));
     }
     if (tick >= 5) successors.back().catch_up();
   };
@@ -222,12 +221,11 @@ TEST(SuccessionOfThreads, EveryCycleIsReportedOnceWhileScenesChange) {
   std::atomic<bool> stop{false};
   std::thread ticking([&] { loop.run(stop); });
   TickRecords records;
-  std::unique_ptr<Successor> last;
+  std::unique_ptr<SceneOffer> last;
   constexpr int kChanges = 40;
   for (int change = 1; change <= kChanges; ++change) {
-    const Scene &now = scenes[change % 2], &was = scenes[(change + 1) % 2];
-    auto next = std::make_unique<Successor>(was, loop.monitor(), now,
-                                            std::vector<ReportSink*>{&sinks[change % 2]}, records);
+    auto next = std::make_unique<SceneOffer>(loop.state(), scenes[change % 2],
+                                             std::vector<ReportSink*>{&sinks[change % 2]}, records);
     ASSERT_TRUE(loop.offer(*next));
     while (next->state() != State::kSucceeded) {
       next->catch_up();
@@ -285,7 +283,7 @@ TEST(SuccessionOfThreads, ThePaceKnowsOfASuccessorBeforeOtherThreadsSeeThatItHas
   Kept sinks[2];
   TickLoop loop(scene, poses, {&sinks[0]}, clock, {.pace = &pace});
   TickRecords records;
-  Successor next(scene, loop.monitor(), scene, {&sinks[1]}, records);
+  SceneOffer next(loop.state(), scene, {&sinks[1]}, records);
   pace.successor = &next;
   ASSERT_TRUE(loop.offer(next));
   std::atomic<bool> stop{false};

@@ -33,12 +33,14 @@ moveit::RawScene removal(const std::string& id) {
 class MoveItPortTest : public test::CommandedCell {
  protected:
   MoveItPortTest()
-      : port_([this](QueuedCommand command) {
-          command.answer = [this, answer = std::move(command.answer)](const CommandResult& result) {
-            answer(result);
-            if (auto waiting = std::exchange(result_, std::nullopt)) waiting->set_value(result);
-          };
-          return thread_->put(std::move(command));
+      : port_([this](SceneTask task) {
+          if (AnswerCommand* const asked = answer_of(task)) {
+            *asked = [this, answer = std::move(*asked)](const CommandResult& result) {
+              answer(result);
+              if (auto waiting = std::exchange(result_, std::nullopt)) waiting->set_value(result);
+            };
+          }
+          return thread_->put(std::move(task));
         }) {
     std::string text = test::kCommandedCell;
     text.insert(text.find("commands:"), "ros2: {collision_object: true}\n");
@@ -110,14 +112,14 @@ class SharedMoveItPort : public MoveItPortTest {
     std::memcpy(sample->bytes._buffer, bytes.data(), bytes.size());
     sample->bytes._length = static_cast<std::uint32_t>(bytes.size());
     port_.hear(*sample);
-    port_.look();
+    port_.update_lead();
   }
   // Until the scene thread has done what waits.
   void finish() {
     for (int i = 0; i < 3; ++i) {
-      port_.look();
+      port_.update_lead();
       std::promise<void> done;
-      ASSERT_TRUE(thread_->put({.task = [&] { done.set_value(); }}));
+      ASSERT_TRUE(thread_->put(OtherWork{[&] { done.set_value(); }}));
       done.get_future().get();
     }
   }
@@ -171,7 +173,7 @@ TEST_F(SharedMoveItPort, AMessageThatWasQueuedIsNotDoneOnceTheOtherOneLeads) {
   leads = true;
   finish();
   std::promise<void> begun, may_go_on;
-  ASSERT_TRUE(thread_->put({.task = [&] {
+  ASSERT_TRUE(thread_->put(OtherWork{[&] {
     begun.set_value();
     may_go_on.get_future().get();
   }}));

@@ -133,8 +133,8 @@ TEST_F(JoinedRecordings, OfOneThatPartsAndJoinsAgainReplayToTheSameBits) {
 // The one that counted higher takes over a state that counts lower.
 TEST_F(JoinedRecordings, OfOneThatCountsFewerTicksThanBeforeReplayToTheSameBits) {
   tick_alone(right, 60);
-  right_recorder.change(cell, {.began_after = 60, .from = 61});
-  right.monitor = test::taken_over(*right.monitor, cell.scene, cell.scene, right.ids.sources());
+  right.begin_successor();
+  right.succeed();
   tick_alone(right, 30);
   tick_alone(left, 30);
   ASSERT_GT(right.cycle, left.cycle);

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/loop/joined_state.hpp"
+#include "monitor/state/tick_state.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/scara_cell.hpp"
 #include "tests/monitor/small_cells.hpp"
@@ -60,13 +60,13 @@ TEST_F(SavedState, GivesTheSameBitsInEveryLaterTick) {
     save_state(numbers, SceneIds(scene), *monitor, bytes);
     JoinedState joined(scene);
     ASSERT_TRUE(joined.restore(bytes, 1));
-    SceneIds ids(scene);
-    auto restored = std::make_unique<Monitor>(scene);
-    joined.join(restored, ids);
+    TickState restored(scene);
+    ASSERT_TRUE(restored.may_join(joined));
+    restored.join(joined);
     for (int i = 0; i < 60; ++i, ++ticks) {
       tick(*monitor);
       const std::uint64_t expected = checksum, expected_rest = rest;
-      tick(*restored);
+      tick(restored.monitor());
       ASSERT_EQ(checksum, expected) << round << ' ' << i;
       ASSERT_EQ(rest, expected_rest) << round << ' ' << i;
     }

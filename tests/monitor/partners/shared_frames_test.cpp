@@ -55,11 +55,11 @@ class SharedFrames : public testing::Test {
   }
   // The number of the frame that its last tick used.
   [[nodiscard]] static std::uint64_t used(const Side& side) {
-    return side.monitor->frame_in_use(0).content;
+    return side.state.monitor().frame_in_use(0).content;
   }
   [[nodiscard]] bool is_known(const Side& side) const {
     for (std::uint32_t pair = 0; pair < scene.pairs.size(); ++pair) {
-      const PairReport report = side.monitor->pair(pair);
+      const PairReport report = side.state.monitor().pair(pair);
       if (scene.pairs[pair].second == kSeen && report.status == PairStatus::kUnknown) return false;
     }
     return true;
@@ -237,7 +237,7 @@ TEST_F(SharedFrames, InUseStayInUseAtTheOneThatIsToJoin) {
   for (int i = 0; i < 3; ++i) tick_both();
   ASSERT_EQ(used(left), 1u);
   ASSERT_EQ(used(right), 1u) << "although it is apart";
-  left.ticks.successor_begins(true);
+  left.begin_successor();
   for (std::uint64_t number = 2; number < 5; ++number) {
     for (Side* side : {&left, &right}) build(*side, number, 3.0F);
     left.frames.note_built(0, number);
@@ -245,7 +245,7 @@ TEST_F(SharedFrames, InUseStayInUseAtTheOneThatIsToJoin) {
     EXPECT_EQ(used(left), 1u);
     EXPECT_EQ(used(right), 1u);
   }
-  left.ticks.successor_gave_up();
+  left.state.give_up();
   tick_both();
   EXPECT_EQ(used(left), 4u);
 }
@@ -256,10 +256,10 @@ TEST_F(SharedFrames, InUseStayWhileASuccessorCatchesUp) {
   build(left, 1, 2.0F);
   build(right, 1, 2.0F);
   left.frames.note_built(0, 1);
-  left.ticks.successor_begins(true);
+  left.begin_successor();
   for (int i = 0; i < 50; ++i) tick_both();
   EXPECT_EQ(used(left), 0u);
-  left.ticks.successor_gave_up();
+  left.state.give_up();
   tick_both();
   EXPECT_EQ(used(left), 1u);
   expect_agreement();

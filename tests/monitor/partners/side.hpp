@@ -11,14 +11,13 @@
 #include <vector>
 
 #include "monitor/files/build_info.hpp"
-#include "monitor/loop/joined_state.hpp"
 #include "monitor/partners/tick_partner.hpp"
 #include "monitor/recording/recorder.hpp"
+#include "monitor/state/tick_state.hpp"
 #include "monitor/wire/partner_state.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/small_cells.hpp"
-#include "tests/monitor/taken_over.hpp"
 
 namespace clearance::test {
 
@@ -44,15 +43,14 @@ class Side {
  public:
   Side(const Scene& scene, std::uint64_t daemon)
       : scene_(scene),
-        ids(scene),
-        monitor(std::make_unique<Monitor>(scene)),
         frames(scene.sensors.size()),
         ticks(poses, clock,
               {.daemon = daemon,
                .start_ns = static_cast<std::int64_t>(daemon),
                .batch = {.samples = 16},
                .alone_after_ns = kAloneAfter,
-               .frames = scene.sensors.empty() ? nullptr : &frames}) {}
+               .frames = scene.sensors.empty() ? nullptr : &frames}),
+        state(scene, {.frames = &frames, .pace = &ticks}) {}
 
   // A source sends this, in every tick another pose.
   void get(std::uint64_t number, const char* source = "arm") {
@@ -73,22 +71,19 @@ class Side {
   void tick() {
     deadline_ += kTick;
     clock.sleep_until(deadline_ - ticks.ahead_ns());
-    deadline_ = ticks.decide(deadline_, monitor->cycle() + 1, scene_.revision);
-    poses_.clear();
-    joints_.clear();
+    deadline_ = state.decide(deadline_);
     used.clear();
     std::map<std::string, SourceUse> uses;
     while (const PoseBatch* batch = ticks.next()) {
       used.push_back(batch->sequence_number);
       uses[batch->source.c_str()] = {batch->source, batch->sequence_number};
       if (recorder_ != nullptr) recorder_->poses(*batch);
-      EXPECT_TRUE(ids.append(*batch, poses_, joints_));
+      EXPECT_TRUE(state.use(*batch));
     }
-    frames.show(scene_.revision, *monitor, {});
-    const Report& report = monitor->tick(poses_, joints_, ticks.time());
+    const Report& report = state.tick(ticks.time());
+    state.clear();
     cycle = report.cycle;
     now_ns = report.now_ns;
-    ticks.ticked(*monitor);
     if (recorder_ != nullptr) {
       std::vector<SourceUse> list;
       for (const auto& [source, use] : uses) list.push_back(use);
@@ -117,26 +112,31 @@ class Side {
   void drop_notices() {
     while (ticks.notices().front() != nullptr) ticks.notices().pop();
   }
+  // A monitor of the same scene begins with the state after the last tick.
+  void begin_successor() {
+    next_ = std::make_unique<Successor>(state, scene_, records_);
+    ASSERT_TRUE(state.begin(*next_));
+  }
+  // Ticks that one from now on.
+  void succeed() {
+    state.succeed();
+    if (recorder_ != nullptr) recorder_->change(*cell_, next_->in_force());
+  }
   // The other one joins with the state of this one's successor, which this one ticks from then on.
   void give_state(Side& other) {
-    monitor = taken_over(*monitor, scene_, scene_, ids.sources());
-    ticks.successor_begins(true);
+    begin_successor();
     std::vector<std::byte> bytes;
-    save_state(ids.sources(), ids, *monitor, bytes);
+    next_->save(state.ids(), bytes);
     JoinedState joined(scene_);
     ASSERT_TRUE(joined.restore(bytes, ticks.becoming()));
-    if (!joined.has_frames(other.frames)) return ticks.successor_followed();
-    joined.join(other.monitor, other.ids);
-    ASSERT_TRUE(joined.has_joined());
-    other.frames.show_awaited(*other.monitor, {});
-    other.ticks.joined(joined.lineage(), other.monitor->cycle());
-    if (other.recorder_ != nullptr) {
-      const PartnerStateView state{scene_.revision, joined.lineage(), monitor->cycle(), bytes};
-      other.recorder_->joined(CdrEncoder().encode(*to_wire(state, kBuild)));
+    if (other.state.may_join(joined)) {
+      other.state.join(joined);
+      if (other.recorder_ != nullptr) {
+        const PartnerStateView view{scene_.revision, joined.lineage(), state.cycle(), bytes};
+        other.recorder_->joined(CdrEncoder().encode(*to_wire(view, kBuild)));
+      }
     }
-    ticks.successor_followed();
-    if (recorder_ != nullptr)
-      recorder_->change(*cell_, {.began_after = monitor->cycle(), .from = monitor->cycle() + 1});
+    succeed();
   }
   // The recorder gets its ticks from now on, as that of a daemon. `cell` is that of its scene.
   void record(Recorder& recorder, const Cell& cell) {
@@ -146,8 +146,8 @@ class Side {
 
  private:
   const Scene& scene_;
-  std::vector<PoseSample> poses_;
-  std::vector<JointSample> joints_;
+  TickRecords records_{TickRecords::kNoRoom};
+  std::unique_ptr<Successor> next_;
   std::int64_t deadline_ = 0;
   Recorder* recorder_ = nullptr;
   const Cell* cell_ = nullptr;
@@ -155,10 +155,9 @@ class Side {
  public:
   TurnedClock clock;
   ListedPoses poses;
-  SceneIds ids;
-  std::unique_ptr<Monitor> monitor;
   FrameExchange frames;
   TickPartner ticks;
+  TickState state;
   std::vector<std::uint64_t> used;
   TickTag tag;
   std::uint64_t cycle = 0, checksum = 0, rest = 0;

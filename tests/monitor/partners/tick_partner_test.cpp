@@ -314,7 +314,7 @@ TEST_F(TickPartners, AStateWithoutALineageLetsNoDaemonFollow) {
   run_until_left_leads();
   for (int i = 0; i < 3; ++i) tick_both();
   left.give_state(right);
-  right.ticks.joined(0, right.monitor->cycle());
+  right.ticks.joined(0, right.state.cycle());
   tick_both();
   EXPECT_EQ(right.ticks.standing(), kApart);
 }

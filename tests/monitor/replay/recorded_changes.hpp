@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "monitor/loop/successor.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/recording/recorder.hpp"
+#include "monitor/state/successor.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -35,15 +35,14 @@ class RecordedChanges : public testing::Test {
     TickLoop loop(cells.front().scene, poses, {&sinks.front()}, *clock,
                   {.max_ticks = static_cast<std::uint64_t>(ticks)});
     TickRecords records;
-    std::list<Successor> successors;
+    std::list<SceneOffer> successors;
     clock->while_asleep = [&](int tick) {
       now = tick;
       const std::size_t made = successors.size();
       if (made < offered.size() && tick == offered[made]) {
         sinks.emplace_back(*this, cells[made + 1]);
-        sinks.back().successor =
-            &successors.emplace_back(cells[made].scene, loop.monitor(), cells[made + 1].scene,
-                                     std::vector<ReportSink*>{&sinks.back()}, records);
+        sinks.back().successor = &successors.emplace_back(
+            loop.state(), cells[made + 1].scene, std::vector<ReportSink*>{&sinks.back()}, records);
         ASSERT_TRUE(loop.offer(successors.back()));
       }
       if (made > 0 && tick >= offered[made - 1] + lag) successors.back().catch_up();
@@ -51,7 +50,7 @@ class RecordedChanges : public testing::Test {
     std::atomic<bool> stop{false};
     loop.run(stop);
     EXPECT_TRUE(recorder->close()) << recorder->error();
-    for (const Successor& each : successors) changes.push_back(each.in_force());
+    for (const SceneOffer& each : successors) changes.push_back(each.in_force());
     ASSERT_EQ(changes.size(), offered.size());
     for (const SceneInForce& change : changes)
       EXPECT_GE(change.from, change.began_after + static_cast<std::uint64_t>(lag));

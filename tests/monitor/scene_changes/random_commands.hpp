@@ -101,7 +101,7 @@ class RandomCommands : public testing::Test, private CellParts {
     list_ = std::move(list);
     const Scene before = scene_;
     const std::string text = text_before_ = changer_->cell().yaml;
-    const std::uint64_t began_after = loop_->monitor().cycle();
+    const std::uint64_t began_after = loop_->state().monitor().cycle();
     choose_silent();
     clock_.run(kRest);  // what is silent is late
     const std::set<std::string> usable = usable_names();
@@ -154,7 +154,7 @@ class RandomCommands : public testing::Test, private CellParts {
   [[nodiscard]] std::string refusals() const {
     std::string lines;
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
-      const auto& counts = loop_->monitor().rejected(i);
+      const auto& counts = loop_->state().monitor().rejected(i);
       for (std::size_t cause = 0; cause < kRejects; ++cause) {
         if (counts[cause] == 0) continue;
         lines += fmt::format("{}: {} refused as {}\n", scene_.objects[i].name, counts[cause],
@@ -229,7 +229,7 @@ class RandomCommands : public testing::Test, private CellParts {
   // The objects that are sent, or are links, and are on time.
   [[nodiscard]] std::set<std::string> usable_names() const {
     std::set<std::string> names;
-    const Monitor& monitor = loop_->monitor();
+    const Monitor& monitor = loop_->state().monitor();
     for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
       const bool is_known_object = before_motion_.poses.contains(scene_.objects[i].name);
       if (is_known_object && !is_sent(scene_, i)) continue;
@@ -327,7 +327,7 @@ class RandomCommands : public testing::Test, private CellParts {
   }
   void compare(std::uint64_t began_after) {
     const Report& report = reports_.last;
-    const Monitor& running = loop_->monitor();
+    const Monitor& running = loop_->state().monitor();
     EXPECT_EQ(report.scene_revision, scene_.revision);
     EXPECT_EQ(report.cycle, running.cycle());
     const std::vector<Pose> world = in_world(scene_, senders_.now());

@@ -31,10 +31,11 @@ class SceneThreadTest : public test::CommandedCell {
   }
   // Keeps the result in `to`, and counts it.
   bool put(Command command, CommandResult& to) {
-    return thread->put({.command = std::move(command), .answer = [&](const CommandResult& result) {
-                          to = result;
-                          ++answered;
-                        }});
+    return thread->put(
+        GivenCommand{.command = std::move(command), .answer = [&](const CommandResult& result) {
+                       to = result;
+                       ++answered;
+                     }});
   }
   void await(std::uint64_t count) const {
     while (answered < count) std::this_thread::yield();
@@ -98,13 +99,14 @@ TEST_F(SceneThreadTest, AnswersEachCommandThatItTookOnceHoweverFastTheyCome) {
   for (std::size_t i = 0; i < kCommands; ++i) {
     std::this_thread::sleep_until(next += std::chrono::microseconds(100));
     const double margin = i % 2 == 0 ? 0.01 : 0.02;
-    const bool is_taken = thread->put({.command = {.changes = {SetMargin{"table", margin}}},
-                                       .answer = [&, i](const CommandResult& result) {
-                                         EXPECT_TRUE(result.done()) << result.reason;
-                                         ++answers[i];
-                                         order.push_back(i);
-                                         ++answered;
-                                       }});
+    const bool is_taken =
+        thread->put(GivenCommand{.command = {.changes = {SetMargin{"table", margin}}},
+                                 .answer = [&, i](const CommandResult& result) {
+                                   EXPECT_TRUE(result.done()) << result.reason;
+                                   ++answers[i];
+                                   order.push_back(i);
+                                   ++answered;
+                                 }});
     if (!is_taken) --answers[i];
     taken += is_taken;
   }

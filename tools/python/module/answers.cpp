@@ -47,23 +47,8 @@ py::list profile_pairs(const QuestionResult& result) {
   return pairs;
 }
 
-}  // namespace
-
-void add_answers(py::module_& module) {
-  std::vector<Enumerator> statuses;
-  for (std::size_t i = 0; i < kQuestionStatuses; ++i) {
-    statuses.push_back(
-        {constant_name(name_of(static_cast<QuestionStatus>(i))), static_cast<int>(i)});
-  }
-  // The types are attributes of the module, which outlives its functions.
-  const py::handle status_type =
-      add_enum(module, "QuestionStatus", statuses, "Whether a question was answered.").release();
-  std::vector<Enumerator> words;
-  for (const Verdict verdict : {Verdict::kFree, Verdict::kBelow, Verdict::kUndecided})
-    words.push_back({constant_name(name(verdict)), static_cast<int>(verdict)});
-  const py::handle verdict_type =
-      add_enum(module, "Verdict", words, "Whether a motion keeps a margin.").release();
-
+// The type is an attribute of the module, which outlives its functions.
+void add_margin_answer(py::module_& module, py::handle verdict_type) {
   py::class_<MarginResult>(module, "MarginAnswer", "Whether a motion keeps one margin.")
       .def_readonly("margin", &MarginResult::margin, "m.")
       .def_property_readonly(
@@ -82,6 +67,9 @@ void add_answers(py::module_& module) {
       .def("__repr__", [](const MarginResult& m) {
         return fmt::format("<clearance.MarginAnswer: {} m {}>", m.margin, name(m.verdict));
       });
+}
+
+void add_time_limit(py::module_& module) {
   py::class_<TimeLimit>(module, "TimeLimit", "The speed that zones with `separation` admit.")
       .def_readonly("is_limited", &TimeLimit::is_limited,
                     "Such a zone has a pair with a robot of the motion.")
@@ -94,6 +82,9 @@ void add_answers(py::module_& module) {
           "pair", [](const TimeLimit& t) { return pair_of(t.first, t.second); },
           "Names of the pair that limits it, or None.")
       .def_readonly("zone", &TimeLimit::zone, "The name of the zone that limits it, or ''.");
+}
+
+void add_motion_answer(py::module_& module, py::handle status_type) {
   py::class_<QuestionResult>(module, "MotionAnswer", "What is certain about a motion.")
       .def_property_readonly(
           "status",
@@ -143,6 +134,26 @@ void add_answers(py::module_& module) {
           return fmt::format("<clearance.MotionAnswer: {}: {}>", name_of(r.status), r.reason);
         return fmt::format("<clearance.MotionAnswer: {} - {} m>", r.lower, r.upper);
       });
+}
+
+}  // namespace
+
+void add_answers(py::module_& module) {
+  std::vector<Enumerator> statuses;
+  for (std::size_t i = 0; i < kQuestionStatuses; ++i) {
+    statuses.push_back(
+        {constant_name(name_of(static_cast<QuestionStatus>(i))), static_cast<int>(i)});
+  }
+  const py::handle status_type =
+      add_enum(module, "QuestionStatus", statuses, "Whether a question was answered.").release();
+  std::vector<Enumerator> words;
+  for (const Verdict verdict : {Verdict::kFree, Verdict::kBelow, Verdict::kUndecided})
+    words.push_back({constant_name(name(verdict)), static_cast<int>(verdict)});
+  const py::handle verdict_type =
+      add_enum(module, "Verdict", words, "Whether a motion keeps a margin.").release();
+  add_margin_answer(module, verdict_type);
+  add_time_limit(module);
+  add_motion_answer(module, status_type);
 }
 
 }  // namespace clearance::python

@@ -108,7 +108,7 @@ Each row is the outward unit normal and the offset d, m, of a half-space n.x <= 
       .def("__repr__", &text_of);
 }
 
-void add_factories(py::module_& module) {
+void add_polyhedra(py::module_& module) {
   module.def("polyhedron_from_halfspaces", &from_halfspaces, py::arg("rows"),
              py::arg("radius") = 0.0,
              R"(The intersection of half-spaces, which may be unbounded.
@@ -135,6 +135,9 @@ half_extents: (3,), m, all positive. radius: m. Raises ShapeError.)");
              R"(The hull of the base polygon, extruded along z from z_low to z_high.
 
 base: (n, 2), m, in any order. radius: m. Raises ShapeError.)");
+}
+
+void add_round_bodies(py::module_& module) {
   module.def(
       "point",
       [](const py::object& position, double radius) {
@@ -275,7 +278,8 @@ void add_bodies(py::module_& module) {
   py::register_exception<RefusedShape>(module, "ShapeError", PyExc_ValueError).doc() =
       "A shape was refused: the text says why.";
   add_body_class(module);
-  add_factories(module);
+  add_polyhedra(module);
+  add_round_bodies(module);
   add_poses(module);
 }
 

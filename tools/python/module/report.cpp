@@ -139,9 +139,10 @@ Report report_of(const clearance_msg_Distances& message, const ReportCheck& chec
   return report;
 }
 
-void add_report_class(py::module_& module) {
-  py::class_<Report>(module, "Report", R"(The distances of one tick. It does not change.)")
-      .def_readonly("pairs", &Report::pairs, R"(Records of the published pairs.
+namespace {
+
+void add_records(py::class_<Report>& type) {
+  type.def_readonly("pairs", &Report::pairs, R"(Records of the published pairs.
 
 Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, witness_a,
 witness_b, normal, closing_speed, time_to_contact, age_a_ns, age_b_ns, evaluated_cycle and
@@ -187,8 +188,11 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
           "Names of the columns of `gradients`; None while names have not come.")
       .def_property_readonly(
           "zone_names", [](const Report& r) { return r.all_names(&Names::zones); },
-          "Names of all zones by id; None while names have not come.")
-      .def_readonly("minimum_known", &Report::minimum_known, "False: no pair is known.")
+          "Names of all zones by id; None while names have not come.");
+}
+
+void add_figures(py::class_<Report>& type) {
+  type.def_readonly("minimum_known", &Report::minimum_known, "False: no pair is known.")
       .def_readonly("minimum_certified", &Report::minimum_certified, "No other pair can be closer.")
       .def_readonly("lower_all", &Report::lower_all, "Certified: no pair is closer, m.")
       .def_readonly("swept_lower_all", &Report::swept_lower_all,
@@ -227,6 +231,14 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
                            r.pairs.shape(0), r.minimum_known ? r.minimum.distance : r.lower_all,
                            r.check.fresh() ? "" : ", not fresh");
       });
+}
+
+}  // namespace
+
+void add_report_class(py::module_& module) {
+  py::class_<Report> type(module, "Report", R"(The distances of one tick. It does not change.)");
+  add_records(type);
+  add_figures(type);
 }
 
 }  // namespace clearance::python

@@ -1,7 +1,7 @@
 // Frames go from the building thread to the tick, and their clouds come back.
 //
 // Oracle: the distance to the single point of each cloud.
-#include "monitor/loop/frame_exchange.hpp"
+#include "monitor/state/frame_exchange.hpp"
 
 #include <gtest/gtest.h>
 
@@ -18,16 +18,6 @@ namespace clearance::frame_exchange_test {
 namespace {
 
 constexpr std::uint64_t kRevision = 7;
-
-// Notes the stamps of the frames that ticks are shown.
-class Stamps final : public ReportSink {
- public:
-  void input(const PoseBatch&) noexcept override {}
-  void report(const Report&, std::span<const SourceUse>) noexcept override {}
-  void statistics(const LoopStatistics&) noexcept override {}
-  void frame(std::uint32_t, std::int64_t stamp_ns) noexcept override { last = stamp_ns; }
-  std::int64_t last = 0;
-};
 
 // A ball at the origin, and a sensor that sees one point on the x axis.
 class FrameExchanges : public testing::Test {
@@ -66,7 +56,9 @@ class FrameExchanges : public testing::Test {
   double tick() {
     now += test::kTick;
     exchange.choose_all(kRevision);
-    exchange.show(kRevision, *monitor, sinks);
+    exchange.show(kRevision, *monitor);
+    if (!exchange.shown().empty()) last_stamp_ns = exchange.shown().back().stamp_ns;
+    exchange.forget_shown();
     return monitor->tick(std::vector{test::sample(0, {}, now)}, now).pairs[0].lower;
   }
 
@@ -74,8 +66,7 @@ class FrameExchanges : public testing::Test {
   std::optional<Monitor> monitor;
   std::array<std::optional<SeenCloud>, FrameExchange::kMostUsed + 1> clouds;
   FrameExchange exchange{1};
-  Stamps stamps;
-  std::array<ReportSink*, 1> sinks = {&stamps};
+  std::int64_t last_stamp_ns = 0;  // of the frames that ticks were shown
   std::int64_t now = test::kStart;
 };
 
@@ -84,7 +75,7 @@ TEST_F(FrameExchanges, ShowTheNextTickTheNewestFrame) {
   put(2.0F, now);
   put(3.0F, now);
   EXPECT_NEAR(tick(), 2.9, 1e-9);
-  EXPECT_EQ(stamps.last, now - test::kTick);
+  EXPECT_EQ(last_stamp_ns, now - test::kTick);
   EXPECT_NEAR(tick(), 2.9, 1e-9);
 }
 
@@ -120,7 +111,7 @@ TEST_F(FrameExchanges, GiveBackWhatTheMonitorBeforeUsed) {
   const SeenCloud* const before = put(2.0F, now);
   tick();
   monitor.emplace(scene);
-  exchange.show(kRevision + 1, *monitor, {});
+  exchange.show(kRevision + 1, *monitor);
   EXPECT_FALSE(exchange.is_used(before));
 }
 
@@ -131,7 +122,7 @@ TEST_F(FrameExchanges, AllocateNothing) {
     put(2.0F, now);
     const std::uint64_t before = allocations();
     exchange.choose_all(kRevision);
-    exchange.show(kRevision, *monitor, sinks);
+    exchange.show(kRevision, *monitor);
     EXPECT_EQ(allocations(), before);
     tick();
   }
@@ -152,7 +143,7 @@ TEST_F(FrameExchanges, KeepCloudsWholeBetweenTwoThreads) {
   for (int i = 0; i < 3000 || built < 300; ++i) {
     const double lower = tick();
     time = now;
-    if (stamps.last != 0) {
+    if (last_stamp_ns != 0) {
       ASSERT_NEAR(lower, 1.9 + static_cast<double>(monitor->stamp_ns(1) % 1000 % 32), 1e-5);
     }
   }

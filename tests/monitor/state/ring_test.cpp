@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <thread>
 
-#include "monitor/loop/spsc_ring.hpp"
+#include "monitor/state/spsc_ring.hpp"
 
 namespace clearance {
 namespace {

@@ -15,11 +15,17 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
-#include "monitor/loop/ports.hpp"
 #include "monitor/monitor.hpp"
 
 namespace clearance {
+
+// A frame that the coming tick is shown.
+struct ShownFrame {
+  std::uint32_t sensor = 0;
+  std::int64_t stamp_ns = 0;
+};
 
 class FrameExchange {
  public:
@@ -29,7 +35,9 @@ class FrameExchange {
 
   // Allocates all memory.
   explicit FrameExchange(std::size_t sensors)
-      : sensors_(sensors), of_(std::make_unique<OfSensor[]>(sensors)) {}
+      : sensors_(sensors), of_(std::make_unique<OfSensor[]>(sensors)) {
+    shown_.reserve(2 * sensors);  // an awaited one, and the one that is chosen
+  }
 
   // Building thread: a coming tick of the scene of this revision takes this frame, unless a newer
   // one comes first.
@@ -61,14 +69,17 @@ class FrameExchange {
     of_[sensor].is_chosen = of_[sensor].next != nullptr;
   }
   void choose_all(std::uint64_t scene_revision) noexcept;
-  // Shows the monitor what was chosen, and tells the sinks. `monitor` is that of the scene.
-  void show(std::uint64_t scene_revision, Monitor& monitor,
-            std::span<ReportSink* const> sinks) noexcept;
+  // Shows the monitor of the scene what was chosen.
+  void show(std::uint64_t scene_revision, Monitor& monitor) noexcept;
 
   // All frames that the monitor awaits have come (Monitor::awaited_frame).
   [[nodiscard]] bool has_awaited(const Monitor& monitor) noexcept;
-  // Shows these frames to the monitor, which takes the place of the one before.
-  void show_awaited(Monitor& monitor, std::span<ReportSink* const> sinks) noexcept;
+  // Shows those that have come to the monitor, which takes the place of the one before.
+  void show_awaited(Monitor& monitor) noexcept;
+
+  // All that was shown since forget_shown().
+  [[nodiscard]] std::span<const ShownFrame> shown() const noexcept { return shown_; }
+  void forget_shown() noexcept { shown_.clear(); }
 
  private:
   // One more, which is free for put().
@@ -90,12 +101,13 @@ class FrameExchange {
   };
   static void take_offer(OfSensor& of) noexcept;
   static void give_back(OfSensor& of, const Monitor& monitor) noexcept;
-  static bool show(OfSensor& of, std::uint32_t sensor, Monitor& monitor,
-                   std::span<ReportSink* const> sinks) noexcept;
+  void show(OfSensor& of, std::uint32_t sensor, Monitor& monitor) noexcept;
 
   std::size_t sensors_;
   std::unique_ptr<OfSensor[]> of_;
-  std::uint64_t revision_ = 0;  // tick thread: of the last show()
+  // Tick thread.
+  std::uint64_t revision_ = 0;  // of the last show()
+  std::vector<ShownFrame> shown_;
 };
 
 }  // namespace clearance

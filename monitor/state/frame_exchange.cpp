@@ -1,4 +1,4 @@
-#include "monitor/loop/frame_exchange.hpp"
+#include "monitor/state/frame_exchange.hpp"
 
 #include <algorithm>
 #include <utility>
@@ -82,28 +82,25 @@ void FrameExchange::give_back(OfSensor& of, const Monitor& monitor) noexcept {
   if (of.held[0] == nullptr) std::swap(of.held[0], of.held[1]);
 }
 
-bool FrameExchange::show(OfSensor& of, std::uint32_t sensor, Monitor& monitor,
-                         std::span<ReportSink* const> sinks) noexcept {
+void FrameExchange::show(OfSensor& of, std::uint32_t sensor, Monitor& monitor) noexcept {
   Slot* const slot = std::exchange(of.next, nullptr);
   of.is_chosen = false;
   give_back(of, monitor);
   if (!monitor.show(sensor, slot->frame)) {
     slot->is_used.store(false, std::memory_order_release);
-    return false;
+    return;
   }
   (of.held[0] == nullptr ? of.held[0] : of.held[1]) = slot;
-  for (ReportSink* const sink : sinks) sink->frame(sensor, slot->frame.stamp_ns);
-  return true;
+  if (shown_.size() < shown_.capacity()) shown_.push_back({sensor, slot->frame.stamp_ns});
 }
 
-void FrameExchange::show(std::uint64_t scene_revision, Monitor& monitor,
-                         std::span<ReportSink* const> sinks) noexcept {
+void FrameExchange::show(std::uint64_t scene_revision, Monitor& monitor) noexcept {
   // Another monitor uses none of the clouds that the one before used.
   const bool is_other = std::exchange(revision_, scene_revision) != scene_revision;
   for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
     OfSensor& of = of_[sensor];
     if (is_other || of.held[1] != nullptr) give_back(of, monitor);
-    if (of.is_chosen) static_cast<void>(show(of, sensor, monitor, sinks));
+    if (of.is_chosen) show(of, sensor, monitor);
   }
 }
 
@@ -118,7 +115,7 @@ bool FrameExchange::has_awaited(const Monitor& monitor) noexcept {
   return true;
 }
 
-void FrameExchange::show_awaited(Monitor& monitor, std::span<ReportSink* const> sinks) noexcept {
+void FrameExchange::show_awaited(Monitor& monitor) noexcept {
   for (std::uint32_t sensor = 0; sensor < sensors_; ++sensor) {
     OfSensor& of = of_[sensor];
     const std::uint64_t content = monitor.awaited_frame(sensor);
@@ -127,7 +124,7 @@ void FrameExchange::show_awaited(Monitor& monitor, std::span<ReportSink* const> 
       if (slot != nullptr && slot->frame.content == content)
         static_cast<void>(monitor.show(sensor, slot->frame));
     }
-    if (monitor.awaited_frame(sensor) != 0) static_cast<void>(show(of, sensor, monitor, sinks));
+    if (monitor.awaited_frame(sensor) != 0 && has(sensor, content)) show(of, sensor, monitor);
   }
 }
 

@@ -1,6 +1,8 @@
-#include "monitor/loop/successor.hpp"
+#include "monitor/state/successor.hpp"
 
 #include <utility>
+
+#include "monitor/state/tick_state.hpp"
 
 namespace clearance {
 namespace {
@@ -14,14 +16,11 @@ bool awaits_evaluations(const Report& report) noexcept {
 
 }  // namespace
 
-Successor::Successor(const Scene& before, const Monitor& running, const Scene& scene,
-                     std::vector<ReportSink*> sinks, TickRecords& records)
+Successor::Successor(const TickState& running, const Scene& scene, TickRecords& records)
     : scene_(scene),
-      map_(scene_map(before, scene)),
-      monitor_(std::make_unique<Monitor>(scene, &running)),
+      map_(scene_map(running.scene(), scene)),
+      monitor_(std::make_unique<Monitor>(scene, &running.monitor())),
       numbers_(scene),
-      statistics_(scene),
-      sinks_(std::move(sinks)),
       records_(records) {
   records_.clear();
 }
@@ -39,6 +38,11 @@ void Successor::begin(const Monitor& running, SourceNumbers& numbers) noexcept {
 // Samples come before the tick that has them.
 void Successor::record(std::span<const PoseSample> samples, std::span<const JointSample> joints,
                        const TickTime& time, bool certified) noexcept {
+  if (!records_.has_room) {
+    records_.own_poses.assign(samples.begin(), samples.end());
+    records_.own_joints.assign(joints.begin(), joints.end());
+    return run(time, certified);
+  }
   const auto fill = [](const auto& from, auto& ring) {
     for (const auto& sample : from) {
       auto* slot = ring.back();
@@ -57,37 +61,36 @@ void Successor::record(std::span<const PoseSample> samples, std::span<const Join
   records_.ticks.push();
 }
 
-template <class Sample>
-void Successor::take(SpscRing<Sample>& ring, std::size_t count, std::span<const std::uint32_t> now,
-                     std::uint32_t Sample::*input, std::vector<Sample>& taken) noexcept {
-  taken.clear();
-  for (; count > 0; --count, ring.pop()) taken.push_back(*ring.front());
-  keep_mapped(now, input, 0, taken);
-}
-
 std::size_t Successor::catch_up() noexcept {
+  const auto empty = [](auto& ring, std::size_t count, auto& into) {
+    into.clear();
+    for (; count > 0; --count, ring.pop()) into.push_back(*ring.front());
+  };
   std::size_t count = 0;
   TickRecords& r = records_;
   for (TickRecords::Tick* tick = r.ticks.front(); tick != nullptr && state() == State::kCatchingUp;
        tick = r.ticks.front(), ++count) {
-    take(r.poses, tick->poses, map_.objects_now, &PoseSample::object, r.taken_poses);
-    take(r.joints, tick->joints, map_.variables_now, &JointSample::variable, r.taken_joints);
-    const bool certified = tick->certified;
-    const Report& report = monitor_->tick(r.taken_poses, r.taken_joints, tick->time);
+    empty(r.poses, tick->poses, r.own_poses);
+    empty(r.joints, tick->joints, r.own_joints);
+    run(tick->time, tick->certified);
     r.ticks.pop();
-    uncertified_ = certified && awaits_evaluations(report) ? uncertified_ + 1 : 0;
-    if (uncertified_ == 0 || uncertified_ > kMostUncertified)
-      caught_up_at_.store(report.cycle, std::memory_order_release);
   }
   return count;
 }
 
-void Successor::succeed(std::unique_ptr<Monitor>& monitor, LoopStatistics& statistics,
-                        std::vector<ReportSink*>& sinks, SceneIds& ids) noexcept {
-  statistics_.continue_from(statistics);
-  std::swap(statistics_, statistics);
+// Runs the tick of the samples in own_poses and own_joints, which have the ids of the scene before.
+void Successor::run(const TickTime& time, bool certified) noexcept {
+  TickRecords& r = records_;
+  keep_mapped(map_.objects_now, &PoseSample::object, 0, r.own_poses);
+  keep_mapped(map_.variables_now, &JointSample::variable, 0, r.own_joints);
+  const Report& report = monitor_->tick(r.own_poses, r.own_joints, time);
+  uncertified_ = certified && awaits_evaluations(report) ? uncertified_ + 1 : 0;
+  if (uncertified_ == 0 || uncertified_ > kMostUncertified)
+    caught_up_at_.store(report.cycle, std::memory_order_release);
+}
+
+void Successor::succeed(std::unique_ptr<Monitor>& monitor, SceneIds& ids) noexcept {
   std::swap(monitor_, monitor);
-  std::swap(sinks_, sinks);
   ids.change(scene_.revision, map_);
   in_force_from_ = monitor->cycle() + 1;
   state_.store(State::kSucceeded, std::memory_order_release);
