@@ -57,6 +57,7 @@ class AttachmentReader {
   void leave_out_touching();
   void leave_out_rigid();
   [[nodiscard]] RigidRoot root_of(std::uint32_t object) const;
+  [[nodiscard]] std::optional<std::uint32_t> robot_of(std::uint32_t object) const;
 
   std::vector<Progress> progress_;             // by stated attachment
   std::map<std::string, std::size_t> stated_;  // by name
@@ -208,6 +209,12 @@ void AttachmentReader::attach(StatedAttachment& stated) {
   objects_.emplace(list_.objects.back().name, index);
 }
 
+// The description of a robot says which of its own links matter to each other.
+std::optional<std::uint32_t> AttachmentReader::robot_of(std::uint32_t object) const {
+  const auto link = links_.find(list_.objects[object].name);
+  return link == links_.end() ? std::nullopt : std::optional(link->second.first);
+}
+
 RigidRoot AttachmentReader::root_of(std::uint32_t object) const {
   const auto link = links_.find(list_.objects[object].name);
   if (link == links_.end()) return {true, object, 0};
@@ -215,15 +222,25 @@ RigidRoot AttachmentReader::root_of(std::uint32_t object) const {
 }
 
 void AttachmentReader::leave_out_rigid() {
-  std::vector<RigidRoot> roots;
-  for (std::uint32_t i = 0; i < list_.objects.size(); ++i) roots.push_back(root_of(i));
-  for (const std::uint32_t attached : attached_) {
-    if (list_.objects[attached].fixed) continue;
-    for (std::uint32_t other = 0; other < roots.size(); ++other) {
-      if (other != attached && roots[other] == roots[attached])
-        list_.left_out.push_back(pair_key(attached, other));
+  std::vector<std::pair<RigidRoot, std::uint32_t>> by_root;
+  for (std::uint32_t i = 0; i < list_.objects.size(); ++i)
+    if (!list_.objects[i].fixed) by_root.emplace_back(root_of(i), i);
+  std::ranges::sort(by_root);
+  const auto is_attached = [&](std::uint32_t object) {
+    return std::ranges::binary_search(attached_, object);
+  };
+  for (auto first = by_root.begin(); first != by_root.end(); ++first) {
+    for (auto other = first + 1; other != by_root.end() && other->first == first->first; ++other) {
+      const std::uint32_t a = first->second, b = other->second;
+      if (is_attached(a) || is_attached(b)) {
+        list_.left_out.push_back(pair_key(a, b));
+      } else if (robot_of(a) != robot_of(b)) {
+        list_.left_out.push_back(pair_key(a, b));
+        list_.rigid.push_back(pair_key(a, b));
+      }
     }
   }
+  std::ranges::sort(list_.rigid);
 }
 
 // Names are those of objects, or of groups, whose members may then all be touched. A link without
@@ -270,7 +287,7 @@ void AttachmentReader::attach_all() {
 }  // namespace
 
 void attach_objects(const Quantities& quantities, RobotList& robots, ObjectList& list) {
-  if (list.stated.empty()) return;
+  if (list.stated.empty() && robots.robots.empty()) return;
   AttachmentReader(quantities, robots, list).attach_all();
   if (list.objects.size() <= kMaxObjects) return;
   quantities.diagnostics().add(

@@ -12,7 +12,8 @@ namespace clearance {
 // without a joint (Robot::is_attached). What nothing moves becomes a fixed object.
 //
 // An attached object is also in the groups of its carrier, and absent if its carrier is. Pairs
-// within a rigid assembly, and with what it may `touch`, are added to `left_out`.
+// within a rigid assembly, and with what it may `touch`, are added to `left_out`. So are pairs of
+// what stands on one body, as a cart and the first link of its robot.
 void attach_objects(const Quantities& quantities, RobotList& robots, ObjectList& list);
 
 }  // namespace clearance

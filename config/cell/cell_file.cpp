@@ -18,6 +18,7 @@
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/partner_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
+#include "config/cell/published_pairs.hpp"
 #include "config/cell/robot_reader.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/cell/sensor_places.hpp"
@@ -179,6 +180,11 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (contacts_node != nullptr) {
     cell.scene.contacts =
         read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
+  }
+  if (diagnostics_.empty()) {
+    const std::string note = publish_open_pairs({list.objects, robots.robots, robots.variables},
+                                                cell.scene.zones, pairs);
+    if (!note.empty() && !robots.robots.empty()) robots.robots.front().notes.push_back(note);
   }
   const bool is_complete = pairs.complete && list.names_known;
   if (shares_ != nullptr && is_complete) {

@@ -124,7 +124,7 @@ std::optional<ShapeResult> ConvexShapeReader::read_sphere(const YamlNode& node) 
   map.refuse_unknown_keys();
   std::optional<double> radius;
   std::optional<Vec3> centre = Vec3(Vec3::Zero());
-  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kPositive);
+  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kNotNegative);
   if (centre_node != nullptr) centre = quantities_.lengths(*centre_node, "the sphere's centre");
   if (!radius || !centre) return std::nullopt;
   return point(*centre, *radius);
@@ -141,7 +141,7 @@ std::optional<ShapeResult> ConvexShapeReader::read_capsule(const YamlNode& node)
   std::optional<double> radius;
   if (from_node != nullptr) from = quantities_.lengths(*from_node, "one end of the capsule's axis");
   if (to_node != nullptr) to = quantities_.lengths(*to_node, "the other end of the capsule's axis");
-  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kPositive);
+  if (radius_node != nullptr) radius = quantities_.length(*radius_node, "the radius", kNotNegative);
   if (!from || !to || !radius) return std::nullopt;
   return segment(*from, *to, *radius);
 }

@@ -137,6 +137,16 @@ std::vector<PairKey> GroupIndex::pairs(const Between& between) const {
   return keys;
 }
 
+bool GroupIndex::has_rigid(const Between& between) const {
+  return std::ranges::any_of(list_.rigid, [&](PairKey key) {
+    const auto has = [&](std::size_t side, std::uint32_t object) {
+      return std::ranges::find(*between.objects[side], object) != between.objects[side]->end();
+    };
+    const std::uint32_t a = first_of(key), b = second_of(key);
+    return (has(0, a) && has(1, b)) || (has(0, b) && has(1, a));
+  });
+}
+
 // A misspelt group probably means one that rules name: those are suggested.
 void GroupIndex::refuse_unused_groups() const {
   std::vector<std::string> used;

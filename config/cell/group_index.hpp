@@ -45,6 +45,9 @@ class GroupIndex {
   // sensor sees.
   [[nodiscard]] std::vector<PairKey> pairs(const Between& between) const;
 
+  // Tells whether one of the pairs is of ObjectList::rigid: it may touch anyway.
+  [[nodiscard]] bool has_rigid(const Between& between) const;
+
   // Reports groups that no `between` names: a misspelt group would leave its objects
   // unwatched.
   void refuse_unused_groups() const;

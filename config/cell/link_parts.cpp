@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <string>
-#include <system_error>
 #include <utility>
 #include <variant>
 
@@ -19,7 +18,7 @@ constexpr std::array<const char*, 5> kKinds = {"mesh", "box", "cylinder", "spher
 
 void refuse_robot(const YamlNode& at, const UrdfFaults& faults, Diagnostics& diagnostics) {
   for (const UrdfFault& fault : faults) {
-    diagnostics.add(at, "found a robot that cannot be used", {fault.line, fault.text});
+    diagnostics.add(at, "found a robot that cannot be used", {fault.place.line, fault.text});
   }
 }
 
@@ -27,28 +26,23 @@ PackagesFrom packages_from(const Diagnostics& diagnostics) {
   return diagnostics.is_of_urdf() ? PackagesFrom::kCommandLine : PackagesFrom::kCell;
 }
 
-void LinkParts::refuse(int line, const std::string& text) {
-  refuse_robot(at_, {{line, fmt::format("{}:{}: {}", files_.named_in.string(), line, text)}},
-               diagnostics_);
+void LinkParts::refuse(UrdfPlace place, const std::string& text) {
+  refuse_robot(at_, {fault_at(urdf_, place, text)}, diagnostics_);
 }
 
 // A missing mesh is reported by its name in the URDF.
 std::optional<std::variant<MeshParts, ShapeError>> LinkParts::parts_of(const UrdfMesh& mesh) {
-  const auto path = files_.find(mesh.file);
-  if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) {
-    auto parts =
-        shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_});
-    if (const auto* mistake = std::get_if<MeshMistake>(&parts)) {
-      refuse(mesh.line, mistake->text);
-      return std::nullopt;
-    }
-    if (auto* error = std::get_if<ShapeError>(&parts)) return std::move(*error);
-    return std::get<MeshParts>(std::move(parts));
+  UrdfFaults faults;
+  const auto path = meshes_.find(mesh, faults);
+  refuse_robot(at_, faults, diagnostics_);
+  if (!path) return std::nullopt;
+  auto parts = shapes_.mesh_parts({.file = path->string(), .scale = mesh.scale, .limits = limits_});
+  if (const auto* mistake = std::get_if<MeshMistake>(&parts)) {
+    refuse(mesh.place, mistake->text);
+    return std::nullopt;
   }
-  const std::string missing = path ? fmt::format("no file '{}'", path->string())
-                                   : files_.why_not_found(mesh.file, packages_from(diagnostics_));
-  refuse(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file, missing));
-  return std::nullopt;
+  if (auto* error = std::get_if<ShapeError>(&parts)) return std::move(*error);
+  return std::get<MeshParts>(std::move(parts));
 }
 
 std::optional<std::variant<MeshParts, ShapeError>> LinkParts::shapes_of(
@@ -83,7 +77,7 @@ double LinkParts::add(const UrdfLink& link, Object& object) {
     if (!result) continue;
     const char* kind = kKinds[collision.shape.index()];
     if (const auto* error = std::get_if<ShapeError>(&*result)) {
-      refuse(collision.line,
+      refuse(collision.place,
              fmt::format("found a {} of the link '{}' that is not a solid convex body: {}", kind,
                          link.name, error->reason));
       continue;

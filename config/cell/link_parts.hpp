@@ -24,7 +24,8 @@ class LinkParts {
   // `files` are those of the URDF. The cell names it at `urdf_node`, where mistakes are reported.
   LinkParts(RobotFiles files, const YamlNode& urdf_node, ShapeReader& shapes,
             const PartLimits& limits, Diagnostics& diagnostics)
-      : files_(std::move(files)),
+      : urdf_(files.named_in.string()),
+        meshes_(std::move(files), packages_from(diagnostics)),
         at_(urdf_node),
         shapes_(shapes),
         limits_(limits),
@@ -37,9 +38,10 @@ class LinkParts {
  private:
   std::optional<std::variant<MeshParts, ShapeError>> shapes_of(const UrdfCollision& collision);
   std::optional<std::variant<MeshParts, ShapeError>> parts_of(const UrdfMesh& mesh);
-  void refuse(int line, const std::string& text);
+  void refuse(UrdfPlace place, const std::string& text);
 
-  RobotFiles files_;
+  std::string urdf_;
+  MeshFinder meshes_;
   const YamlNode& at_;
   ShapeReader& shapes_;
   PartLimits limits_;

@@ -59,7 +59,9 @@ struct ObjectList {
   // attach_objects() (attachment_reader.hpp) makes the rest. An object that is attached to a link
   // without shapes has no entry in `attachments`.
   std::vector<Attachment> attachments;  // ascending by object, a carrier before what it carries
-  std::vector<PairKey> left_out;        // ascending: pairs with an attached object, never watched
+  std::vector<PairKey> left_out;  // ascending: of attached objects, and `rigid`; never watched
+  std::vector<PairKey> rigid =
+      {};                   // ascending: of what stands on one body, but for links of one robot
   bool names_known = true;  // false: a name or group could not be read, so others may seem unknown
 };
 

@@ -15,7 +15,10 @@ namespace {
 class PairReader {
  public:
   PairReader(const ObjectList& objects, GroupIndex& group_index, Diagnostics& diagnostics)
-      : objects_(objects), group_index_(group_index), diagnostics_(diagnostics) {}
+      : objects_(objects),
+        group_index_(group_index),
+        diagnostics_(diagnostics),
+        without_motion_(objects.objects.size(), false) {}
 
   void read_rules(const YamlNode& node);
   void allow(const PairExceptions& exceptions);
@@ -23,10 +26,11 @@ class PairReader {
   PairList finish(const YamlNode& rules);
 
  private:
+  enum class Publish : std::uint8_t { kYes, kOpen, kNo };  // the first of two rules counts
   // A watched pair while the exceptions are read.
   struct Candidate {
     PairKey key;
-    bool publish;
+    Publish publish;
     int allowed_line;  // of the exception that removed it; 0: none
   };
 
@@ -34,6 +38,7 @@ class PairReader {
   void read_exception(const YamlNode& node);
   Candidate* find(PairKey key);
   std::string why_nothing(const Between& between, const std::vector<PairKey>& keys);
+  void note_without_motion(const Between& between);
   void refuse_unwatched_objects() const;
 
   const ObjectList& objects_;
@@ -41,6 +46,7 @@ class PairReader {
   Diagnostics& diagnostics_;
   // Sorted by key once the rules have been read.
   std::vector<Candidate> candidates_;
+  std::vector<bool> without_motion_;  // by object: named by a rule that watches others of its group
   // False after a rule that could not be read.
   bool complete_ = true;
 };
@@ -51,9 +57,9 @@ class PairReader {
 void PairReader::read_rule(const YamlNode& node) {
   MapReader map(node, "a rule for pairs", diagnostics_);
   const auto between = group_index_.read_between(map);
-  bool publish = true;
+  Publish publish = Publish::kOpen;
   if (const YamlNode* flag = map.optional("publish")) {
-    publish = read_flag(*flag, diagnostics_).value_or(true);
+    publish = read_flag(*flag, diagnostics_).value_or(true) ? Publish::kYes : Publish::kNo;
   }
   map.refuse_unknown_keys();
   if (!between) {
@@ -66,6 +72,7 @@ void PairReader::read_rule(const YamlNode& node) {
                                        "different objects, one of them moving",
                                        between->names[0], between->names[1]));
   }
+  if (!keys.empty()) note_without_motion(*between);
   for (const PairKey key : keys) candidates_.push_back({key, publish, 0});
 }
 
@@ -77,7 +84,7 @@ void PairReader::read_rules(const YamlNode& node) {
   for (const YamlNode& item : read_list(node, "rules {between: [A, B]}", diagnostics_))
     read_rule(item);
   std::sort(candidates_.begin(), candidates_.end(), [](const Candidate& a, const Candidate& b) {
-    return std::pair(a.key, !a.publish) < std::pair(b.key, !b.publish);
+    return std::pair(a.key, a.publish) < std::pair(b.key, b.publish);
   });
   const auto same = [](const Candidate& a, const Candidate& b) { return a.key == b.key; };
   candidates_.erase(std::unique(candidates_.begin(), candidates_.end(), same), candidates_.end());
@@ -85,9 +92,23 @@ void PairReader::read_rules(const YamlNode& node) {
   if (complete_ && objects_.names_known) refuse_unwatched_objects();
 }
 
+// Such an object of a rule has nothing to meet: its only partners may be fixed, or stand on the
+// same body.
+void PairReader::note_without_motion(const Between& between) {
+  const auto is_rigid = [&](std::uint32_t object) {
+    return std::ranges::any_of(objects_.rigid, [&](PairKey key) {
+      return first_of(key) == object || second_of(key) == object;
+    });
+  };
+  for (const std::vector<std::uint32_t>* side : between.objects) {
+    for (const std::uint32_t object : *side)
+      if (objects_.objects[object].fixed || is_rigid(object)) without_motion_[object] = true;
+  }
+}
+
 // An object that no rule covers could be a robot link without any monitored pair.
 void PairReader::refuse_unwatched_objects() const {
-  std::vector<bool> watched(objects_.objects.size(), false);
+  std::vector<bool> watched = without_motion_;
   for (const Candidate& candidate : candidates_) {
     watched[first_of(candidate.key)] = watched[second_of(candidate.key)] = true;
   }
@@ -122,8 +143,8 @@ std::string PairReader::why_nothing(const Between& between, const std::vector<Pa
         *between.objects[0] == *between.objects[1] && between.objects[0]->size() == 1;
     if (itself) return "an object has no pair with itself";
     return objects_.left_out.empty() ? "two fixed objects never make a pair"
-                                     : "two fixed objects never make a pair, nor does an attached "
-                                       "object with what it is fixed to or may touch";
+                                     : "two fixed objects never make a pair, nor does what "
+                                       "is fixed to another or may touch it";
   }
   for (const PairKey key : keys) {
     if (const Candidate* candidate = find(key)) {
@@ -155,7 +176,7 @@ void PairReader::read_exception(const YamlNode& node) {
     candidate->allowed_line = node.line;
     removed = true;
   }
-  if (!removed && complete_ && !between->may_be_empty) {
+  if (!removed && complete_ && !between->may_be_empty && !group_index_.has_rigid(*between)) {
     diagnostics_.add(
         node,
         fmt::format("found an exception that changes nothing: '{}' against '{}' is not watched "
@@ -182,14 +203,17 @@ PairList PairReader::finish(const YamlNode& rules) {
       list.allowed.push_back(candidate.key);
       continue;
     }
-    list.pairs.push_back({first_of(candidate.key), second_of(candidate.key), candidate.publish});
-    published += candidate.publish ? 1 : 0;
+    const bool publish = candidate.publish == Publish::kYes;
+    if (candidate.publish == Publish::kOpen)
+      list.open.push_back(static_cast<std::uint32_t>(list.pairs.size()));
+    list.pairs.push_back({first_of(candidate.key), second_of(candidate.key), publish});
+    published += publish ? 1 : 0;
   }
   if (published > kMaxPublished) {
     diagnostics_.add(
         rules, fmt::format(
-                   "found {} pairs to publish; expected at most {}, which is what a report can "
-                   "carry: put publish: false on some rules (their pairs are watched all the same)",
+                   "found {} pairs with publish: true; expected at most {}, which is what a report "
+                   "can carry: leave it out at some rules (their pairs are watched all the same)",
                    published, kMaxPublished));
   }
   if (list.pairs.empty() && !candidates_.empty()) {

@@ -14,7 +14,9 @@ namespace clearance {
 struct PairList {
   std::vector<ObjectPair> pairs;  // ascending by first, then second
   std::vector<PairKey> allowed;   // ascending: pairs that an exception removed
-  bool complete = true;           // false: a rule could not be read, and its pairs are missing
+  // Ascending: pairs of rules that do not state `publish`, which are not published yet.
+  std::vector<std::uint32_t> open = {};
+  bool complete = true;  // false: a rule could not be read, and its pairs are missing
 };
 
 // The largest number of pairs that a report can carry (idl/clearance.idl, kMaxPairs).
@@ -28,7 +30,7 @@ inline constexpr std::size_t kMaxPublished = 4096;
 using PairExceptions = std::vector<std::pair<PairKey, int>>;
 
 // `allowed` may be nullptr. Reports rules and exceptions that change nothing, objects without a
-// watched pair, and more published pairs than a report can carry.
+// watched pair, and more pairs with `publish: true` than a report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
                                   const ObjectList& objects, const PairExceptions& exceptions,
                                   GroupIndex& group_index, Diagnostics& diagnostics);

@@ -24,6 +24,7 @@ namespace {
 struct FileMistake {
   int line;  // 0: none
   std::string reason;
+  int column = 0;  // 0: not known
 };
 
 // Gives generated nodes the place of the file's name in the cell.
@@ -140,7 +141,7 @@ PlanningSceneReader::Read PlanningSceneReader::scene_of_yaml(const std::string& 
                                                              const YamlNode& file_node) {
   auto read = moveit::read_scene_yaml(text);
   if (auto* fault = std::get_if<moveit::SceneYamlFault>(&read))
-    return FileMistake{fault->line, std::move(fault->reason)};
+    return FileMistake{fault->line, std::move(fault->reason), fault->column};
   const auto& scene = std::get<moveit::PlanningScene>(read);
   ReadScene made;
   if (auto mistake = add_attached(scene.attached, file_node, made)) return *std::move(mistake);
@@ -196,7 +197,10 @@ ReadScene PlanningSceneReader::scene_of(const YamlNode& file_node) {
   const bool is_yaml = path.extension() == ".yaml" || path.extension() == ".yml";
   auto read = is_yaml ? scene_of_yaml(text, file_node) : scene_of_text(text);
   if (const auto* mistake = std::get_if<FileMistake>(&read)) {
-    const std::string place = mistake->line == 0 ? "" : fmt::format("{}:", mistake->line);
+    const std::string place = mistake->line == 0 ? ""
+                              : mistake->column == 0
+                                  ? fmt::format("{}:", mistake->line)
+                                  : fmt::format("{}:{}:", mistake->line, mistake->column);
     diagnostics_.add(file_node, fmt::format("found a planning scene that cannot be used: {}:{} {}",
                                             *name, place, excerpt(mistake->reason)));
     return {};

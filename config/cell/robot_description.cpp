@@ -7,6 +7,8 @@
 
 #include "config/cell/link_parts.hpp"
 #include "config/text/file_bytes.hpp"
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/yaml/scalar.hpp"
 
@@ -36,6 +38,19 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   return path;
 }
 
+// Refuses a name whose visual shapes did not become collision shapes.
+void refuse_other_links(const YamlNode& name, const UrdfRobot& robot, Diagnostics& diagnostics) {
+  std::vector<std::string> names;
+  for (const UrdfLink& link : robot.links) {
+    if (link.name == name.text && link.has_visual && !link.has_collision) return;
+    if (link.has_visual && !link.has_collision) names.push_back(link.name);
+  }
+  diagnostics.add(
+      name, fmt::format("found '{}'; expected a link with a visual and no collision shape{}{}",
+                        name.text, names.empty() ? ", and there is none" : ": " + one_of(names),
+                        did_you_mean(name.text, names)));
+}
+
 }  // namespace
 
 // Both files are read even if the first has faults, so that one run reports all.
@@ -55,12 +70,16 @@ std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
   }
   if (!urdf || (keys.srdf != nullptr && !srdf)) return std::nullopt;
   description.urdf = *urdf;
-  auto read = read_urdf(*urdf);
+  std::vector<std::string> by_visual;
+  for (const YamlNode* each : keys.visual_as_collision) by_visual.push_back(each->text);
+  auto read = read_urdf(*urdf, by_visual);
   if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
     refuse_robot(*keys.urdf, *faults, diagnostics);
     return std::nullopt;
   }
   description.robot = std::get<UrdfRobot>(std::move(read));
+  for (const YamlNode* each : keys.visual_as_collision)
+    refuse_other_links(*each, description.robot, diagnostics);
   if (description.srdf) {
     refuse_robot(*keys.srdf, faults_of(*description.srdf, *srdf, description.robot, *urdf),
                  diagnostics);

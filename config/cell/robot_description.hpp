@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "config/scene/revision.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -19,6 +20,7 @@ struct DescriptionKeys {
   const YamlNode* srdf = nullptr;  // null: there is none
   RobotFiles files;                // of the cell
   std::string prefix;
+  std::vector<const YamlNode*> visual_as_collision;  // names of links
 };
 
 // A URDF, its SRDF if there is one, and the tree that they describe.

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <set>
@@ -28,6 +30,7 @@ struct RobotKeys {
   const YamlNode* srdf_node = nullptr;
   const YamlNode* base_node = nullptr;
   const YamlNode* joints_node = nullptr;
+  std::vector<const YamlNode*> visual_as_collision;  // names of links
   std::string name, prefix, joint_states;
   RosStamps stamps = RosStamps::kMessage;
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
@@ -54,6 +57,8 @@ class RobotReader {
 
  private:
   RobotKeys read_keys(const YamlNode& node);
+  void read_visual_links(const YamlNode& node, RobotKeys& keys);
+  void refuse_without_speed(const RobotKeys& keys, const RobotModel& model);
   void read_packages(const YamlNode& node, RobotKeys& keys);
   void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
@@ -85,6 +90,22 @@ void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
     const auto path = read_text(entry.value, "the directory of a package", diagnostics_);
     if (name && path)
       keys.packages.emplace_back(*name, path_in(revision_.root(), file_.parent_path(), *path));
+  }
+}
+
+void RobotReader::read_visual_links(const YamlNode& node, RobotKeys& keys) {
+  for (const YamlNode& item : read_list(node, "links whose visual shapes count", diagnostics_)) {
+    if (read_name(item, "a link's name, without the prefix", diagnostics_))
+      keys.visual_as_collision.push_back(&item);
+  }
+}
+
+// A negative limit is one that was not known.
+void RobotReader::refuse_without_speed(const RobotKeys& keys, const RobotModel& model) {
+  for (const auto& [name, fault] : model.without_speed) {
+    const auto variable = std::ranges::find(model.variables, name, &JointVariable::name);
+    if (variable != model.variables.end() && !std::isfinite(variable->max_speed))
+      refuse_robot(*keys.urdf_node, {fault}, diagnostics_);
   }
 }
 
@@ -121,6 +142,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
                       .value_or("");
   }
   if (const YamlNode* packages = map.optional("packages")) read_packages(*packages, keys);
+  if (const YamlNode* links = map.optional("visual_as_collision")) read_visual_links(*links, keys);
   if (const YamlNode* margin = map.optional("margin")) {
     keys.limits.margin =
         quantities_.length(*margin, "the margin", kNotNegative).value_or(defaults_.margin);
@@ -224,6 +246,7 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
     shaped.insert(name);
     objects[name] = link.object;
   }
+  note_visuals(description.robot, robot.notes);
   const std::vector<SrdfDisabled> pairs =
       description.srdf ? exceptions_of(*description.srdf, shaped, fixed, robot.notes)
                        : neighbours_of(description.robot, shaped, fixed, robot.notes);
@@ -250,7 +273,8 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   auto description = read_description({.urdf = keys.urdf_node,
                                        .srdf = keys.srdf_node,
                                        .files = {file_, keys.packages, revision_.root()},
-                                       .prefix = keys.prefix},
+                                       .prefix = keys.prefix,
+                                       .visual_as_collision = keys.visual_as_collision},
                                       diagnostics_, revision_);
   StatedBase stated;
   if (keys.base_node != nullptr) {
@@ -280,6 +304,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   if (!base.frame.empty()) limit_base(stated, variables);
   if (keys.joints_node != nullptr)
     read_joints(*keys.joints_node, keys.prefix, quantities_, variables);
+  refuse_without_speed(keys, description->model);
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);

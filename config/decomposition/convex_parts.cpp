@@ -8,6 +8,7 @@
 
 #include "config/decomposition/exact_parts.hpp"
 #include "config/decomposition/part_search.hpp"
+#include "config/decomposition/plate.hpp"
 #include "config/decomposition/shells.hpp"
 #include "config/decomposition/surface_error.hpp"
 #include "config/decomposition/triangle_tree.hpp"
@@ -28,8 +29,6 @@ constexpr double kBall = 0.75;     // openings narrower than such a ball count a
 constexpr double kPrecise = 2e-3;  // to which errors are found
 constexpr double kExact = 0.1;     // parts that come so near need no search for fewer
 constexpr std::size_t kMostShells = 100;
-// Relative to the size: vertices so near to a plane lie in it, up to single precision.
-constexpr double kInOnePlane = 1e-6;
 
 struct Bodies {
   std::vector<ConvexBody> parts;
@@ -141,26 +140,6 @@ Bodies several_parts(const TriangleMesh& mesh, const TriangleTree& tree, const P
     if (bodies.error <= kExact * limits.tolerance) return bodies;
   }
   return parts_of_pieces(mesh, tree, space, pieces, limits);
-}
-
-// Returns the normal of the plane that all vertices lie in, up to single precision. Returns nothing
-// if they do not, or lie on one line. A solid that is thicker than `plate` is not flat: a plate
-// would not fill it.
-std::optional<Vec3> plane_of(const std::vector<Vec3>& vertices, double plate) {
-  const auto farthest = [&](const auto& distance) {
-    return *std::ranges::max_element(vertices, {}, distance);
-  };
-  const Vec3 a = vertices[0];
-  const Vec3 b = farthest([&](const Vec3& v) { return (v - a).squaredNorm(); });
-  const double size = (b - a).norm();
-  const Vec3 c = farthest([&](const Vec3& v) { return (b - a).cross(v - a).squaredNorm(); });
-  const Vec3 across = (b - a).cross(c - a);
-  if (!(across.norm() > kInOnePlane * size * size)) return std::nullopt;
-  const Vec3 normal = across.normalized();
-  const double most = std::min(kInOnePlane * size, 0.5 * plate);
-  const bool flat = std::ranges::all_of(
-      vertices, [&](const Vec3& v) { return std::abs(normal.dot(v - a)) <= most; });
-  return flat ? std::optional(normal) : std::nullopt;
 }
 
 // Returns a prism around each triangle. Prisms are shells, so no part divides one. If they are too

@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "config/mesh/collada_check.hpp"
+#include "config/mesh/obj_check.hpp"
 #include "config/mesh/ply.hpp"
 
 namespace clearance {
@@ -125,6 +126,9 @@ void refuse_cut_off_stl(const std::string& bytes) {
 std::vector<ColouredTriangles> import_with_assimp(const std::string& bytes,
                                                   const std::string& format) {
   if (format == "stl") refuse_cut_off_stl(bytes);
+  if (format == "obj") {
+    if (const std::string fault = fault_of_obj(bytes); !fault.empty()) throw BadMesh{fault};
+  }
   if (format == "dae") {
     if (const std::string fault = fault_of_collada(bytes); !fault.empty()) throw BadMesh{fault};
   }

@@ -100,6 +100,10 @@ class Reader {
     return 0.0;
   }
 
+  [[nodiscard]] bool is_at_end() const {
+    return rest_.find_first_not_of(std::string_view(" \t\r\n\0", 5)) == std::string_view::npos;
+  }
+
  private:
   static constexpr std::string_view kBlanks = " \t\r\n";
 
@@ -221,6 +225,21 @@ void read_item(const Element& element, Format format, Reader& reader, Mesh& mesh
   if (element.name == "vertex") mesh.vertices.push_back(vertex);
 }
 
+// Elements of scanners and strips have surfaces, too, and a list of another name in a face as well.
+void refuse_other_surfaces(const Header& header) {
+  for (const Element& element : header.elements) {
+    const bool is_surface = element.name == "tristrips" || element.name == "range_grid" ||
+                            element.name == "patch" || element.name == "control_point";
+    const bool has_corners = std::ranges::any_of(element.properties, [](const Property& each) {
+      return each.count_type && each.name.starts_with("vert");
+    });
+    if (is_surface || (has_corners && element.name != "face")) {
+      throw BadPly{fmt::format("its element '{}' is not read and could be a part of the surface",
+                               element.name.substr(0, 40))};
+    }
+  }
+}
+
 const Vec3& vertex_of(const Mesh& mesh, double corner) {
   if (!(corner >= 0.0 && corner < static_cast<double>(mesh.vertices.size())) ||
       corner != std::floor(corner)) {
@@ -244,6 +263,7 @@ std::variant<std::vector<Triangle>, MeshFault> ply_triangles(const std::string& 
   try {
     Reader reader(bytes);
     const Header header = read_header(reader);
+    refuse_other_surfaces(header);
     Mesh mesh;
     for (const Element& element : header.elements) {
       if (element.properties.empty()) continue;
@@ -251,6 +271,7 @@ std::variant<std::vector<Triangle>, MeshFault> ply_triangles(const std::string& 
         read_item(element, *header.format, reader, mesh);
       }
     }
+    if (!reader.is_at_end()) throw BadPly{"it goes on behind the elements of its header"};
     return triangles_of(mesh);
   } catch (const BadPly& fault) {
     return MeshFault{fault.reason};

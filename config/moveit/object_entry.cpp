@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "config/decomposition/part_limits.hpp"
+#include "config/decomposition/plate.hpp"
 #include "config/scene/revision.hpp"
 #include "config/yaml/quantity_nodes.hpp"
 #include "config/yaml/yaml_writer.hpp"
@@ -214,7 +216,7 @@ void PartsWriter::add_mesh(const Mesh& mesh, const Pose& pose, const std::string
 
 YamlNode PartsWriter::hull_of(const Mesh& mesh) const {
   YamlNode vertices = empty(YamlNode::Kind::kSequence);
-  for (const Vec3& vertex : mesh.vertices)
+  for (const Vec3& vertex : with_volume(mesh.vertices, PartLimits{}.plate))
     vertices.items.push_back(lengths_node({vertex.data(), 3}, unit_));
   YamlNode shape = empty(YamlNode::Kind::kMap);
   set(shape, "vertices", std::move(vertices));

@@ -1,14 +1,21 @@
-// One function for each type of message. A field that is missing keeps the default of ROS 2.
+// One function for each type of message. A field that is missing keeps the default of ROS 2; a
+// field of another name would be one that is missing in silence, and is refused.
 #include "config/moveit/scene_yaml.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <charconv>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <string_view>
 #include <utility>
 
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
+#include "config/text/words.hpp"
 #include "config/yaml/scalar.hpp"
 #include "config/yaml/yaml_writer.hpp"
 
@@ -20,12 +27,60 @@ struct ReadingEnds {
   SceneYamlFault fault;
 };
 [[noreturn]] void fail(const YamlNode& at, std::string reason) {
-  throw ReadingEnds{{at.line, std::move(reason)}};
+  throw ReadingEnds{{at.line, at.column, std::move(reason)}};
+}
+
+// The fields of each type of message, separated by blanks, of moveit_msgs and what it is made of.
+struct Fields {
+  std::string_view type, names;
+};
+constexpr std::array<Fields, 22> kFields = {{
+    {"AllowedCollisionEntry", "enabled"},
+    {"AllowedCollisionMatrix", "entry_names entry_values default_entry_names default_entry_values"},
+    {"AttachedCollisionObject", "link_name object touch_links detach_posture weight"},
+    {"CollisionObject",
+     "header pose id type primitives primitive_poses meshes mesh_poses planes plane_poses "
+     "subframe_names subframe_poses operation"},
+    {"Header", "seq stamp frame_id"},
+    {"LinkPadding", "link_name padding"},
+    {"LinkScale", "link_name scale"},
+    {"Mesh", "triangles vertices"},
+    {"MeshTriangle", "vertex_indices"},
+    {"Octomap", "header binary id resolution data"},
+    {"OctomapWithPose", "header origin octomap"},
+    {"Plane", "coef"},
+    {"PlanningScene",
+     "name robot_state robot_model_name fixed_frame_transforms allowed_collision_matrix "
+     "link_padding link_scale object_colors world is_diff"},
+    {"PlanningSceneWorld", "collision_objects octomap"},
+    {"Point", "x y z"},
+    {"Polygon", "points"},
+    {"Pose", "position orientation"},
+    {"Quaternion", "x y z w"},
+    {"RobotState", "joint_state multi_dof_joint_state attached_collision_objects is_diff"},
+    {"SolidPrimitive", "type dimensions polygon"},
+    {"Transform", "translation rotation"},
+    {"TransformStamped", "header child_frame_id transform"},
+}};
+
+// Checks the names of all fields of a message.
+void check_fields(const YamlNode& map, std::string_view type) {
+  if (map.kind != YamlNode::Kind::kMap)
+    fail(map, fmt::format("found {}; expected the fields of a {}", describe(map), type));
+  const auto fields = std::ranges::find(kFields, type, &Fields::type);
+  for (const YamlEntry& entry : map.entries) {
+    if (!has_word(fields->names, entry.key.text)) {
+      const std::vector<std::string> known = words_of(fields->names);
+      fail(entry.key, fmt::format("found '{}' in a {}; expected {}{}", entry.key.text, type,
+                                  one_of(known), did_you_mean(entry.key.text, known)));
+    }
+    if (clearance::find(map, entry.key.text) != &entry.value)
+      fail(entry.key, fmt::format("found '{}' in a {} again", entry.key.text, type));
+  }
 }
 
 const YamlNode* field(const YamlNode& map, const char* name, const char* type) {
-  if (map.kind != YamlNode::Kind::kMap)
-    fail(map, fmt::format("found {}; expected the fields of a {}", describe(map), type));
+  check_fields(map, type);
   return clearance::find(map, name);
 }
 
@@ -218,6 +273,33 @@ std::vector<T> read(const YamlNode& node, const std::vector<T>&) {
   return list;
 }
 
+// A cell states margins, and its URDF the size of a link.
+void refuse_other_sizes(const YamlNode& scene, const char* name, const char* type,
+                        const char* value_name, double neutral) {
+  const YamlNode* list = field(scene, name, "PlanningScene");
+  if (list == nullptr) return;
+  for (const YamlNode& item : items_of(*list)) {
+    double value = neutral;
+    get(item, value_name, type, value);
+    if (value != neutral)
+      fail(item, fmt::format("found a {} of {}, which is not read; expected {} (a cell states "
+                             "'margins')",
+                             value_name, value, neutral));
+  }
+}
+
+// The frame of the octomap would be needed, too.
+void refuse_octomap(const YamlNode& world) {
+  const YamlNode* with_pose = field(world, "octomap", "PlanningSceneWorld");
+  if (with_pose == nullptr) return;
+  const YamlNode* octomap = field(*with_pose, "octomap", "OctomapWithPose");
+  const YamlNode* data = octomap == nullptr ? nullptr : field(*octomap, "data", "Octomap");
+  if (data != nullptr && !data->items.empty())
+    fail(*data,
+         "found an octomap, which is not read; expected none ('sensors' takes octomaps from "
+         "ROS 2)");
+}
+
 PlanningScene read(const YamlNode& node, const PlanningScene&) {
   constexpr const char* kType = "PlanningScene";
   PlanningScene scene;
@@ -240,12 +322,9 @@ PlanningScene read(const YamlNode& node, const PlanningScene&) {
   if (world == nullptr)
     fail(node, "found no 'world'; expected the fields of a moveit_msgs/PlanningScene");
   get(*world, "collision_objects", "PlanningSceneWorld", scene.collision_objects);
-  if (const YamlNode* with_pose = field(*world, "octomap", "PlanningSceneWorld")) {
-    if (const YamlNode* octomap = field(*with_pose, "octomap", "OctomapWithPose")) {
-      const YamlNode* data = field(*octomap, "data", "Octomap");
-      scene.has_octomap = data != nullptr && !data->items.empty();
-    }
-  }
+  refuse_octomap(*world);
+  refuse_other_sizes(node, "link_padding", "LinkPadding", "padding", 0.0);
+  refuse_other_sizes(node, "link_scale", "LinkScale", "scale", 1.0);
   return scene;
 }
 
@@ -254,10 +333,16 @@ PlanningScene read(const YamlNode& node, const PlanningScene&) {
 std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text) {
   constexpr std::string_view kEnd = "\n---";
   const std::size_t length = text.find(kEnd, 1);
+  if (length != std::string::npos) {
+    const std::size_t second = text.find_first_not_of("- \t\r\n.", length);
+    if (second != std::string::npos)
+      return SceneYamlFault{static_cast<int>(1 + std::ranges::count(text.substr(0, second), '\n')),
+                            1, "found a second document; expected one message"};
+  }
   const auto read_text =
       parse_yaml(length == std::string::npos ? text : text.substr(0, length + 1));
   if (const auto* fault = std::get_if<YamlFault>(&read_text))
-    return SceneYamlFault{fault->line, fault->reason};
+    return SceneYamlFault{fault->line, fault->column, fault->reason};
   try {
     return read(std::get<YamlNode>(read_text), PlanningScene());
   } catch (ReadingEnds& end) {

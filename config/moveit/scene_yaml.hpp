@@ -10,13 +10,13 @@
 namespace clearance::moveit {
 
 struct SceneYamlFault {
-  int line;
+  int line, column;
   std::string reason;  // "found ...; expected ..."
 };
 
-// Reads one document; "---" behind it ends the text. Only the attached objects are read of the
-// robot's state. Colours, types, stamps, padding and scale are skipped. The first fault ends the
-// reading.
+// Reads one document; "---" may end it. A field that the message does not have is refused. Only the
+// attached objects are read of the robot's state, and no colours, types and stamps. The first fault
+// ends the reading.
 [[nodiscard]] std::variant<PlanningScene, SceneYamlFault> read_scene_yaml(const std::string& text);
 
 }  // namespace clearance::moveit

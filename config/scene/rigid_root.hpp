@@ -13,7 +13,7 @@ struct RigidRoot {
   bool is_object = true;
   std::uint32_t index = 0;  // of the object, or of the robot
   std::uint32_t link = 0;
-  friend bool operator==(const RigidRoot&, const RigidRoot&) = default;
+  friend auto operator<=>(const RigidRoot&, const RigidRoot&) = default;
 };
 
 [[nodiscard]] inline RigidRoot root_of_link(std::span<const Robot> robots, std::uint32_t robot,

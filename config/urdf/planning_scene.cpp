@@ -9,6 +9,8 @@
 #include <cmath>
 #include <utility>
 
+#include "config/decomposition/part_limits.hpp"
+#include "config/decomposition/plate.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
@@ -99,7 +101,7 @@ class Words {
   int line_ = 1;
 };
 
-// A mesh becomes its convex hull.
+// A mesh becomes its convex hull, and a flat one a plate.
 ShapeResult read_mesh(Words& words) {
   const std::size_t vertices = words.count("how many vertices the mesh has");
   const std::size_t triangles = words.count("how many triangles the mesh has");
@@ -109,7 +111,7 @@ ShapeResult read_mesh(Words& words) {
   }
   for (std::size_t i = 0; i < 3 * triangles; ++i)
     static_cast<void>(words.count("the vertex of a triangle"));
-  return polyhedron_from_vertices(points);
+  return polyhedron_from_vertices(with_volume(points, PartLimits{}.plate));
 }
 
 // Reads a x + b y + c z + d = 0, a half-space that is solid below.
@@ -192,7 +194,12 @@ PlanningScene read(Words& words) {
   scene.name = words.rest_of_line();
   for (;;) {
     const std::string_view mark = words.word();
-    if (mark == ".") break;
+    if (mark == ".") {
+      const std::string_view more = words.word();
+      if (!more.empty())
+        words.fail(fmt::format("found '{}' behind the '.' that ends a scene", more));
+      break;
+    }
     if (mark != "*") {
       words.fail(
           fmt::format("found '{}'; expected '* NAME' of an object, or '.' at the end, as in a "

@@ -2,43 +2,61 @@
 #include "config/urdf/robot_exceptions.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>
 #include <utility>
 
-#include "config/text/printable.hpp"
 #include "config/text/sentences.hpp"
 
 namespace clearance {
 
-// An SRDF of another robot would disable unrelated pairs, and leave neighbours watched.
-UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
-                     const UrdfRobot& robot, const std::filesystem::path& urdf_file) {
+// An SRDF of another robot would disable unrelated pairs, and leave neighbours watched. Another
+// name alone is no fault: MoveIt takes such a file, and vendors ship some.
+UrdfFaults faults_of(Srdf& srdf, const std::filesystem::path& srdf_file, const UrdfRobot& robot,
+                     const std::filesystem::path& urdf_file) {
   UrdfFaults faults;
-  const auto refuse = [&](int line, const std::string& text) {
-    faults.push_back({line, fmt::format("{}:{}: {}", srdf_file.string(), line, excerpt(text))});
+  const auto refuse = [&](UrdfPlace place, const std::string& text) {
+    faults.push_back(fault_at(srdf_file.string(), place, text));
   };
   const std::string urdf = urdf_file.filename().string();
-  if (srdf.robot != robot.name) {
-    refuse(srdf.line, fmt::format("found the robot '{}'; expected '{}', as {} calls it", srdf.robot,
-                                  robot.name, urdf));
-  }
   std::set<std::string> links;
   for (const UrdfLink& link : robot.links) links.insert(link.name);
   // Each name is checked once, at its first place.
-  const auto check = [&](const std::string& link, int line) {
+  const auto check = [&](const std::string& link, UrdfPlace place) {
     if (!links.insert(link).second) return;
-    refuse(line, fmt::format("found the link '{}'; expected one of the links of {}", link, urdf));
+    refuse(place, fmt::format("found the link '{}'; expected one of the links of {}", link, urdf));
   };
   for (const std::vector<SrdfDisabled>* pairs : {&srdf.disabled, &srdf.enabled}) {
     for (const SrdfDisabled& entry : *pairs) {
-      check(entry.link_a, entry.line);
-      check(entry.link_b, entry.line);
+      check(entry.link_a, entry.place);
+      check(entry.link_b, entry.place);
     }
   }
-  for (const SrdfDefault& entry : srdf.disabled_by_default) check(entry.link, entry.line);
+  for (const SrdfDefault& entry : srdf.disabled_by_default) check(entry.link, entry.place);
+  if (srdf.robot == robot.name) return faults;
+  const std::string other = fmt::format("found the robot '{}'; expected '{}', as {} calls it",
+                                        srdf.robot, robot.name, urdf);
+  if (faults.empty()) {
+    srdf.notes.push_back(
+        fault_at(srdf_file.string(), srdf.place, other + ": all its links are there").text);
+  } else {
+    refuse(srdf.place, other);
+    sort_by_place(faults);
+  }
   return faults;
+}
+
+void note_visuals(const UrdfRobot& robot, std::vector<std::string>& notes) {
+  std::vector<std::string> links;
+  for (const UrdfLink& link : robot.links)
+    if (link.collisions.empty() && link.has_visual) links.push_back(fmt::format("'{}'", link.name));
+  if (links.empty()) return;
+  notes.push_back(
+      fmt::format("not watched, since they have a visual and no collision shape: {} "
+                  "(a cell takes their visuals: visual_as_collision: [...])",
+                  fmt::join(links, ", ")));
 }
 
 namespace {
@@ -65,7 +83,7 @@ std::vector<SrdfDisabled> all_disabled(const Srdf& srdf, const LinkNames& shaped
       const LinkPair pair = in_order(entry.link, other);
       if (other == entry.link || enabled.contains(pair) || one_by_one.contains(pair)) continue;
       if (added.insert(pair).second)
-        all.push_back({pair.first, pair.second, "disabled by default in the SRDF", entry.line});
+        all.push_back({pair.first, pair.second, "disabled by default in the SRDF", entry.place});
     }
   }
   if (!added.empty()) {
@@ -84,6 +102,7 @@ std::vector<SrdfDisabled> exceptions_of(const Srdf& srdf, const LinkNames& shape
   std::set<LinkPair> seen;
   std::vector<SrdfDisabled> useful;
   const std::vector<SrdfDisabled> disabled = all_disabled(srdf, shaped, notes);
+  notes.insert(notes.end(), srdf.notes.begin(), srdf.notes.end());
   std::map<std::string, int> left_out;  // by reason
   for (const SrdfDisabled& entry : disabled) {
     if (!shaped.contains(entry.link_a) || !shaped.contains(entry.link_b)) {
@@ -126,7 +145,7 @@ std::vector<SrdfDisabled> neighbours_of(const UrdfRobot& robot, const LinkNames&
     if (above == parents.end()) continue;
     const std::string& parent = above->second;
     if (fixed.contains(link.name) && fixed.contains(parent)) continue;
-    pairs.push_back({parent, link.name, "Adjacent in the URDF", 0});
+    pairs.push_back({parent, link.name, "Adjacent in the URDF"});
     names += fmt::format("{}{} - {}", names.empty() ? "" : ", ", parent, link.name);
   }
   notes.push_back(pairs.empty()

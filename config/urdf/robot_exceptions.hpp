@@ -12,10 +12,13 @@ namespace clearance {
 
 using LinkNames = std::set<std::string>;
 
-// Returns the faults of an SRDF of another robot: a different name, or links that the URDF does not
-// have.
-[[nodiscard]] UrdfFaults faults_of(const Srdf& srdf, const std::filesystem::path& srdf_file,
+// Returns the faults of an SRDF of another robot: links that the URDF does not have. A different
+// name is one of them then, and a note of the SRDF otherwise.
+[[nodiscard]] UrdfFaults faults_of(Srdf& srdf, const std::filesystem::path& srdf_file,
                                    const UrdfRobot& robot, const std::filesystem::path& urdf_file);
+
+// Names the links that have visual shapes only: nothing watches them.
+void note_visuals(const UrdfRobot& robot, std::vector<std::string>& notes);
 
 // Returns the pairs that the SRDF disables and a cell would watch: different links with shapes, not
 // both fixed, each pair once. The notes tell which were left out.

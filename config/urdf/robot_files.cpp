@@ -87,6 +87,10 @@ bool leaves_package(const std::string& name) {
 }  // namespace
 
 std::string RobotFiles::why_not_found(const std::string& name, PackagesFrom from) const {
+  if (name.starts_with(kPackage) && package_of(name).empty()) {
+    return fmt::format("'{}' names no package; expected {}NAME/PATH, or file://PATH", name,
+                       kPackage);
+  }
   if (name.starts_with(kPackage) && leaves_package(name)) {
     return fmt::format("'{}' leads out of its package; expected {}NAME/PATH with a path within it",
                        name, kPackage);
@@ -114,6 +118,18 @@ std::optional<std::filesystem::path> RobotFiles::find(const std::string& name) c
   return path;
 }
 
+std::optional<std::filesystem::path> MeshFinder::find(const UrdfMesh& mesh, UrdfFaults& faults) {
+  const auto path = files_.find(mesh.file);
+  if (std::error_code fault; path && std::filesystem::is_regular_file(*path, fault)) return path;
+  const std::string package = package_of(mesh.file);
+  if (!path && !package.empty() && !missing_.insert(package).second) return std::nullopt;
+  faults.push_back(fault_at(files_.named_in.string(), mesh.place,
+                            fmt::format("found the mesh '{}', and {}", mesh.file,
+                                        path ? fmt::format("no file '{}'", path->string())
+                                             : files_.why_not_found(mesh.file, from_))));
+  return std::nullopt;
+}
+
 std::optional<std::filesystem::path> RobotFiles::path_of(const std::string& name) const {
   std::filesystem::path path;
   if (name.starts_with(kPackage)) {
@@ -132,6 +148,7 @@ std::optional<std::filesystem::path> RobotFiles::path_of(const std::string& name
 
 // In the matrix product, z stands on the left.
 Pose pose_of(const UrdfOrigin& origin) {
+  if (origin.quaternion) return {origin.xyz, *origin.quaternion};
   return {origin.xyz, Eigen::AngleAxisd(origin.rpy.z(), Vec3::UnitZ()) *
                           Eigen::AngleAxisd(origin.rpy.y(), Vec3::UnitY()) *
                           Eigen::AngleAxisd(origin.rpy.x(), Vec3::UnitX())};

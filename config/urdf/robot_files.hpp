@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,10 +40,26 @@ struct RobotFiles {
   [[nodiscard]] std::optional<std::filesystem::path> path_of(const std::string& name) const;
 };
 
+// Finds the meshes of one robot.
+class MeshFinder {
+ public:
+  // `files.named_in` is the URDF.
+  MeshFinder(RobotFiles files, PackagesFrom from) : files_(std::move(files)), from_(from) {}
+
+  // Returns the path of the file, or adds a fault. A package that is missing is told once, with the
+  // first mesh in it.
+  std::optional<std::filesystem::path> find(const UrdfMesh& mesh, UrdfFaults& faults);
+
+ private:
+  RobotFiles files_;
+  PackagesFrom from_;
+  std::set<std::string> missing_;  // packages
+};
+
 // Returns NAME of package://NAME/PATH; empty: the name has none.
 [[nodiscard]] std::string package_of(const std::string& name);
 
-// Converts rpy of URDF: rotations about the fixed axes x, then y, then z.
+// Converts a quaternion, or rpy of URDF: rotations about the fixed axes x, then y, then z.
 [[nodiscard]] Pose pose_of(const UrdfOrigin& origin);
 
 }  // namespace clearance

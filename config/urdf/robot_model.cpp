@@ -11,7 +11,6 @@
 #include <set>
 #include <string_view>
 
-#include "config/text/printable.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/urdf/robot_files.hpp"
@@ -50,7 +49,7 @@ class ModelBuilder {
   void read_limits(const UrdfJoint& joint, JointVariable& variable);
   void resolve_mimics();
   bool follow(const UrdfJoint& mimic, RobotJoint& made);
-  void refuse(int line, const std::string& text);
+  void refuse(UrdfPlace place, const std::string& text);
 
   const UrdfRobot& description_;
   const std::filesystem::path& urdf_;
@@ -62,8 +61,8 @@ class ModelBuilder {
   UrdfFaults faults_;
 };
 
-void ModelBuilder::refuse(int line, const std::string& text) {
-  faults_.push_back({line, fmt::format("{}:{}: {}", urdf_.string(), line, excerpt(text))});
+void ModelBuilder::refuse(UrdfPlace place, const std::string& text) {
+  faults_.push_back(fault_at(urdf_.string(), place, text));
 }
 
 // Returns the link that no joint carries.
@@ -74,9 +73,10 @@ std::optional<std::string> ModelBuilder::root() {
   for (const UrdfLink& link : description_.links) {
     if (carried.contains(link.name)) continue;
     if (found) {
-      refuse(1, fmt::format("found the links '{}' and '{}', which no joint carries; expected one "
-                            "root",
-                            *found, link.name));
+      refuse({1, 1},
+             fmt::format("found the links '{}' and '{}', which no joint carries; expected one "
+                         "root",
+                         *found, link.name));
       return std::nullopt;
     }
     found = link.name;
@@ -107,16 +107,16 @@ void ModelBuilder::add_joint(const UrdfJoint& joint, std::uint32_t parent) {
   if (const auto found = std::ranges::find(kTypes, joint.type); found != kTypes.end()) {
     made.type = static_cast<JointType>(found - kTypes.begin());
   } else {
-    refuse(joint.line, fmt::format("found a joint of type '{}'; expected {}{}", joint.type,
-                                   one_of(kTypes), did_you_mean(joint.type, kTypes)));
+    refuse(joint.place, fmt::format("found a joint of type '{}'; expected {}{}", joint.type,
+                                    one_of(kTypes), did_you_mean(joint.type, kTypes)));
   }
   if (made.type != JointType::kFixed) {
     if (joint.name.empty()) {
-      refuse(joint.line,
+      refuse(joint.place,
              "found a joint that moves without a name; expected one, by which joint "
              "states name it");
     } else if (!by_name_.emplace(joint.name, &joint).second) {
-      refuse(joint.line, fmt::format("found the joint '{}' again", joint.name));
+      refuse(joint.place, fmt::format("found the joint '{}' again", joint.name));
     }
     read_axis(joint, made);
     if (!joint.mimic) add_variables(joint, made);
@@ -130,14 +130,14 @@ void ModelBuilder::add_joint(const UrdfJoint& joint, std::uint32_t parent) {
 void ModelBuilder::read_axis(const UrdfJoint& joint, RobotJoint& made) {
   if (made.type == JointType::kFloating) return;
   if (made.type == JointType::kPlanar && !joint.axis) {
-    refuse(joint.line,
+    refuse(joint.place,
            fmt::format("found the planar joint '{}' without <axis>; expected the normal "
                        "of its plane",
                        joint.name));
   }
   const Vec3 axis = joint.axis.value_or(Vec3::UnitX());
   if (axis.isZero(0.0)) {
-    refuse(joint.line,
+    refuse(joint.place,
            fmt::format("found the axis 0 0 0 of the joint '{}'; expected a direction", joint.name));
     return;
   }
@@ -162,9 +162,9 @@ void ModelBuilder::read_limits(const UrdfJoint& joint, JointVariable& variable) 
   const bool bounded = joint.type == "revolute" || joint.type == "prismatic";
   if (!joint.limit) {
     if (bounded) {
-      refuse(joint.line, fmt::format("found the {} joint '{}' without <limit>; expected its lower "
-                                     "and upper limit",
-                                     joint.type, joint.name));
+      refuse(joint.place, fmt::format("found the {} joint '{}' without <limit>; expected its lower "
+                                      "and upper limit",
+                                      joint.type, joint.name));
     }
     return;
   }
@@ -172,16 +172,19 @@ void ModelBuilder::read_limits(const UrdfJoint& joint, JointVariable& variable) 
     variable.lower = joint.limit->lower;
     variable.upper = joint.limit->upper;
     if (!(variable.lower <= variable.upper)) {
-      refuse(joint.line, fmt::format("found limits from {} to {} of the joint '{}'; expected the "
-                                     "lower one first",
-                                     variable.lower, variable.upper, joint.name));
+      refuse(joint.place, fmt::format("found limits from {} to {} of the joint '{}'; expected the "
+                                      "lower one first",
+                                      variable.lower, variable.upper, joint.name));
     }
   }
   const double velocity = joint.limit->velocity.value_or(0.0);
   if (velocity < 0.0) {
-    refuse(joint.line, fmt::format("found a velocity limit of {} of the joint '{}'; expected a "
-                                   "positive one",
-                                   velocity, joint.name));
+    model_.without_speed.emplace_back(
+        variable.name,
+        fault_at(urdf_.string(), joint.place,
+                 fmt::format("found a velocity limit of {} of the joint '{}'; expected a positive "
+                             "one, here or in a cell: joints: {{{}: {{velocity: 1.5}}}}",
+                             velocity, joint.name, joint.name)));
   } else if (velocity > 0.0) {
     variable.max_speed = velocity;
   } else {
@@ -210,7 +213,7 @@ void ModelBuilder::resolve_mimics() {
     RobotJoint& made = model_.robot.joints[i];
     if (!written_[i]->mimic || made.type == JointType::kFixed) continue;
     if (!follow(*written_[i], made)) {
-      refuse(written_[i]->line,
+      refuse(written_[i]->place,
              fmt::format("found the joint '{}' that mimics '{}'; expected a moving joint with one "
                          "position, that does not follow this one",
                          written_[i]->name, written_[i]->mimic->joint));
@@ -220,14 +223,15 @@ void ModelBuilder::resolve_mimics() {
 
 std::variant<RobotModel, UrdfFaults> ModelBuilder::build() {
   model_.robot.name = description_.name;
+  model_.robot.notes = description_.notes;
   if (const auto name = root()) {
     order_links(*name);
     resolve_mimics();
   } else if (faults_.empty()) {
-    refuse(1, "found no link that no joint carries; expected a root");
+    refuse({1, 1}, "found no link that no joint carries; expected a root");
   }
   if (faults_.empty()) return std::move(model_);
-  std::ranges::stable_sort(faults_, {}, &UrdfFault::line);
+  sort_by_place(faults_);
   return faults_;
 }
 

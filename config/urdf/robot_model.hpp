@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,9 +16,12 @@ namespace clearance {
 struct RobotModel {
   Robot robot;  // of the URDF's name; without a base and without objects
   std::vector<JointVariable> variables;
+  // Variables whose velocity limit is negative, which counts as none, and the fault that this is
+  // unless the cell states another one.
+  std::vector<std::pair<std::string, UrdfFault>> without_speed = {};
 };
 
-// Makes the tree; every name gets the prefix. It refuses, with the line of `urdf`: more than one
+// Makes the tree; every name gets the prefix. It refuses, with the place in `urdf`: more than one
 // root; joints of unknown types, or without the elements of their type. It also refuses axes of
 // length zero, limits in the wrong order, and mimic joints that follow nothing or themselves.
 [[nodiscard]] std::variant<RobotModel, UrdfFaults> robot_model(const UrdfRobot& description,

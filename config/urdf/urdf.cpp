@@ -1,5 +1,4 @@
-// Reads the XML elements that a cell needs and ignores the others (visual, inertial, transmission).
-// A mistake is kept with its line and the reading goes on, so that one run finds all of them. Only
+// A mistake is kept with its place and the reading goes on, so that one run finds all of them. Only
 // XML that cannot be parsed, or that xacro has to expand first, ends it.
 #include "config/urdf/urdf.hpp"
 
@@ -9,7 +8,9 @@
 #include <map>
 #include <set>
 #include <string_view>
+#include <utility>
 
+#include "config/text/printable.hpp"
 #include "config/urdf/shape_element.hpp"
 #include "config/urdf/xml_reader.hpp"
 
@@ -19,47 +20,71 @@ namespace {
 using tinyxml2::XMLElement;
 
 // A robot without shapes would give a cell that watches nothing, and is refused.
-void read_links(XmlReader& xml, UrdfRobot& robot) {
+void read_links(XmlReader& xml, std::span<const std::string> visual_as_collision,
+                UrdfRobot& robot) {
   std::set<std::string> names;
   bool any_shape = false;
-  for (const XMLElement* at : children(*xml.root(), "link")) {
+  for (const XMLElement* at : xml.children(*xml.root(), "link")) {
     UrdfLink link{xml.attribute(*at, "name"), {}};
     if (!link.name.empty() && !names.insert(link.name).second)
       xml.report(*at, fmt::format("found the link '{}' again", link.name));
-    for (const XMLElement* part : children(*at, "collision")) {
-      link.collisions.push_back(read_shape(xml, *part));
+    const auto read = [&](const char* kind) {
+      for (const XMLElement* part : xml.children(*at, kind)) {
+        any_shape = true;
+        if (auto shape = read_shape(xml, *part, link.name, robot.notes))
+          link.collisions.push_back(std::move(*shape));
+      }
+    };
+    read("collision");
+    link.has_collision = at->FirstChildElement("collision") != nullptr;
+    link.has_visual = at->FirstChildElement("visual") != nullptr;
+    if (!link.has_collision &&
+        std::ranges::find(visual_as_collision, link.name) != visual_as_collision.end()) {
+      read("visual");
     }
-    any_shape = any_shape || !link.collisions.empty();
     robot.links.push_back(std::move(link));
   }
   if (!any_shape) {
-    xml.report(*xml.root(), "found no link with a collision shape; expected a robot to keep apart");
+    xml.report(
+        *xml.root(),
+        "found no link with a collision shape; expected a robot to keep apart (a cell can take "
+        "visual shapes: visual_as_collision: [...])");
   }
 }
 
 // Attributes that may be absent keep their defaults.
 void read_number(XmlReader& xml, const XMLElement& element, const char* name, double& value) {
-  if (element.Attribute(name) != nullptr) value = xml.number(element, name);
+  if (xml.optional(element, name) != nullptr) value = xml.number(element, name);
 }
 
-// Reads the whole element, whatever its type needs.
+// Limits of URDF 1.2. They are numbers, and no bound depends on them.
+void check_dynamic_limits(XmlReader& xml, const XMLElement& limit) {
+  double unused = 0.0;
+  for (const char* name : {"acceleration", "deceleration", "jerk"})
+    read_number(xml, limit, name, unused);
+}
+
+// A fixed joint has no axis and no position: what is said of them is not read.
 UrdfJoint read_joint(XmlReader& xml, const XMLElement& element) {
   UrdfJoint joint{.type = xml.attribute(element, "type"),
                   .parent = xml.attribute_of_child(element, "parent", "link"),
                   .child = xml.attribute_of_child(element, "child", "link"),
                   .parent_from_child = xml.origin(element),
-                  .line = element.GetLineNum()};
-  if (const char* name = element.Attribute("name")) joint.name = name;
-  if (const XMLElement* axis = element.FirstChildElement("axis")) {
+                  .place = xml.place_of(element)};
+  if (const char* name = xml.optional(element, "name")) joint.name = name;
+  if (joint.type == "fixed") return joint;
+  if (const XMLElement* axis = xml.optional_child(element, "axis")) {
     joint.axis = xml.vector(*axis, "xyz");
   }
-  if (const XMLElement* limit = element.FirstChildElement("limit")) {
+  if (const XMLElement* limit = xml.optional_child(element, "limit")) {
     UrdfLimit& limits = joint.limit.emplace();
     read_number(xml, *limit, "lower", limits.lower);
     read_number(xml, *limit, "upper", limits.upper);
-    if (limit->Attribute("velocity") != nullptr) limits.velocity = xml.number(*limit, "velocity");
+    if (xml.optional(*limit, "velocity") != nullptr)
+      limits.velocity = xml.number(*limit, "velocity");
+    check_dynamic_limits(xml, *limit);
   }
-  if (const XMLElement* mimic = element.FirstChildElement("mimic")) {
+  if (const XMLElement* mimic = xml.optional_child(element, "mimic")) {
     UrdfMimic& follows = joint.mimic.emplace();
     follows.joint = xml.attribute(*mimic, "joint");
     read_number(xml, *mimic, "multiplier", follows.multiplier);
@@ -84,7 +109,7 @@ void read_joints(XmlReader& xml, UrdfRobot& robot) {
   std::set<std::string> names;
   for (const UrdfLink& link : robot.links) names.insert(link.name);
   std::map<std::string, std::string> parents;  // by child
-  for (const XMLElement* at : children(*xml.root(), "joint")) {
+  for (const XMLElement* at : xml.children(*xml.root(), "joint")) {
     const UrdfJoint joint = read_joint(xml, *at);
     bool known = true;
     for (const std::string& link : {joint.parent, joint.child}) {
@@ -110,36 +135,53 @@ void read_joints(XmlReader& xml, UrdfRobot& robot) {
 // Reads the pairs of one kind of element. The reason is optional in an SRDF but required in a cell.
 std::vector<SrdfDisabled> read_pairs_of(XmlReader& xml, const char* name) {
   std::vector<SrdfDisabled> pairs;
-  for (const XMLElement* at : children(*xml.root(), name)) {
-    const char* reason = at->Attribute("reason");
+  for (const XMLElement* at : xml.children(*xml.root(), name)) {
+    const char* reason = xml.optional(*at, "reason");
     const std::string link_a = xml.attribute(*at, "link1");
     pairs.push_back({link_a, xml.attribute(*at, "link2"),
                      reason == nullptr || *reason == '\0' ? "disabled in the SRDF" : reason,
-                     at->GetLineNum()});
+                     xml.place_of(*at)});
   }
   return pairs;
 }
 
-// Returns the value, or, where the file has faults, all of them by line.
+// Returns the value, or, where the file has faults, all of them by place.
 template <class Value>
-std::variant<Value, UrdfFaults> value_or_faults(Value value, const XmlReader& xml) {
+std::variant<Value, UrdfFaults> value_or_faults(Value value, XmlReader& xml,
+                                                const XmlFormat& format) {
+  if (xml.root() != nullptr) {
+    if (const std::string note = xml.account_for_the_rest(format); !note.empty())
+      value.notes.push_back(note);
+  }
   UrdfFaults faults = xml.faults();
   if (faults.empty()) return value;
-  std::ranges::stable_sort(faults, {}, &UrdfFault::line);
+  sort_by_place(faults);
   return faults;
 }
 
 }  // namespace
 
-std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file) {
+UrdfFault fault_at(const std::string& file, UrdfPlace place, const std::string& text) {
+  return {place, fmt::format("{}:{}:{}: {}", file, place.line, place.column, excerpt(text))};
+}
+
+void sort_by_place(UrdfFaults& faults) {
+  std::ranges::stable_sort(faults, {}, [](const UrdfFault& fault) {
+    return std::pair(fault.place.line, fault.place.column);
+  });
+}
+
+std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file,
+                                              std::span<const std::string> visual_as_collision) {
   XmlReader xml(file);
   UrdfRobot robot;
   if (xml.root() != nullptr) {
+    xml.read_version();
     robot.name = xml.attribute(*xml.root(), "name");
-    read_links(xml, robot);
+    read_links(xml, visual_as_collision, robot);
     read_joints(xml, robot);
   }
-  return value_or_faults(std::move(robot), xml);
+  return value_or_faults(std::move(robot), xml, urdf_format());
 }
 
 std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file) {
@@ -147,13 +189,13 @@ std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file) {
   Srdf srdf;
   if (xml.root() != nullptr) {
     srdf.robot = xml.attribute(*xml.root(), "name");
-    srdf.line = xml.root()->GetLineNum();
+    srdf.place = xml.place_of(*xml.root());
     srdf.disabled = read_pairs_of(xml, "disable_collisions");
     srdf.enabled = read_pairs_of(xml, "enable_collisions");
-    for (const XMLElement* at : children(*xml.root(), "disable_default_collisions"))
-      srdf.disabled_by_default.push_back({xml.attribute(*at, "link"), at->GetLineNum()});
+    for (const XMLElement* at : xml.children(*xml.root(), "disable_default_collisions"))
+      srdf.disabled_by_default.push_back({xml.attribute(*at, "link"), xml.place_of(*at)});
   }
-  return value_or_faults(std::move(srdf), xml);
+  return value_or_faults(std::move(srdf), xml, srdf_format());
 }
 
 }  // namespace clearance

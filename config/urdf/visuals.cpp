@@ -40,20 +40,23 @@ std::vector<UrdfVisual> read_visuals(const std::filesystem::path& urdf) {
   XmlReader xml(urdf);
   if (xml.root() == nullptr) return {};
   Colours colours;
-  for (const Element* material : children(*xml.root(), "material")) {
+  xml.read_version();
+  for (const Element* material : xml.children(*xml.root(), "material")) {
     const char* name = material->Attribute("name");
     const auto colour = colour_of(material);
     if (name != nullptr && colour) colours[name] = *colour;
   }
   std::vector<UrdfVisual> visuals;
-  for (const Element* link : children(*xml.root(), "link")) {
+  for (const Element* link : xml.children(*xml.root(), "link")) {
     const char* name = link->Attribute("name");
-    for (const Element* each : children(*link, "visual")) {
+    for (const Element* each : xml.children(*link, "visual")) {
       const std::size_t before = xml.faults().size();
-      UrdfVisual visual{.link = name == nullptr ? "" : name,
-                        .shape = read_shape(xml, *each),
-                        .colour = colour_of(each->FirstChildElement("material"), colours)};
-      if (xml.faults().size() == before) visuals.push_back(std::move(visual));
+      std::vector<std::string> unused_notes;
+      auto shape = read_shape(xml, *each, "", unused_notes);
+      if (!shape || xml.faults().size() != before) continue;
+      visuals.push_back({.link = name == nullptr ? "" : name,
+                         .shape = std::move(*shape),
+                         .colour = colour_of(each->FirstChildElement("material"), colours)});
     }
   }
   return visuals;

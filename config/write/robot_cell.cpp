@@ -9,7 +9,6 @@
 #include <map>
 #include <optional>
 #include <set>
-#include <system_error>
 
 #include "config/text/file_bytes.hpp"
 #include "config/urdf/planning_scene.hpp"
@@ -23,7 +22,12 @@ namespace {
 
 // An identity pose is not written: the default of a cell file is the same.
 bool is_identity(const UrdfOrigin& origin) {
-  return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero();
+  return origin.xyz == Vec3::Zero() && origin.rpy == Vec3::Zero() && !origin.quaternion;
+}
+
+void emit_quaternion(YAML::Emitter& out, const Eigen::Quaterniond& q) {
+  out << YAML::Key << "quaternion" << YAML::Value;
+  emit_list(out, shortest(q.x()), shortest(q.y()), shortest(q.z()), shortest(q.w()));
 }
 
 // Emits one cell, section by section, into one YAML emitter.
@@ -33,7 +37,9 @@ class RobotCellWriter {
       : options_(options),
         robot_(std::move(robot)),
         srdf_(std::move(srdf)),
-        group_(options.group.empty() ? robot_.name : options.group) {}
+        group_(options.group.empty() ? robot_.name : options.group),
+        meshes_({options.urdf, options.packages}, PackagesFrom::kCommandLine),
+        notes_(robot_.notes) {}
 
   std::variant<RobotCell, UrdfFaults> write();
 
@@ -46,7 +52,6 @@ class RobotCellWriter {
   void emit_pairs();
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
-  void fail(int line, const std::string& text);
 
   const RobotCellOptions& options_;
   UrdfRobot robot_;
@@ -55,14 +60,11 @@ class RobotCellWriter {
   LinkNames shaped_;                   // links with collision shapes
   std::map<std::string, Pose> fixed_;  // links that never move, in the world
   YAML::Emitter out_;
+  MeshFinder meshes_;
   std::vector<std::string> notes_;
   // Faults are kept and not thrown, as the emitter is in the middle of a document.
   UrdfFaults faults_;
 };
-
-void RobotCellWriter::fail(int line, const std::string& text) {
-  faults_.push_back({line, fmt::format("{}:{}: {}", options_.urdf.string(), line, text)});
-}
 
 // Finds the root and all links that fixed joints join to it. The URDF is a tree, so each round
 // fixes the children of the last.
@@ -86,17 +88,8 @@ void RobotCellWriter::find_fixed_links() {
 
 // Returns the path of the mesh, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
-  const RobotFiles files{options_.urdf, options_.packages};
-  const auto path = files.find(mesh.file);
-  if (!path) {
-    fail(mesh.line, fmt::format("found the mesh '{}', and {}", mesh.file,
-                                files.why_not_found(mesh.file, PackagesFrom::kCommandLine)));
-    return mesh.file;
-  }
-  if (std::error_code fault; !std::filesystem::is_regular_file(*path, fault)) {
-    fail(mesh.line,
-         fmt::format("found the mesh '{}', and no file '{}'", mesh.file, path->string()));
-  }
+  const auto path = meshes_.find(mesh, faults_);
+  if (!path) return mesh.file;
   const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
   return path->lexically_relative(directory).string();
 }
@@ -150,13 +143,11 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
   emit_text(out_, group_);
   out_ << YAML::EndSeq;
   if (const auto found = fixed_.find(link.name); found != fixed_.end()) {
-    const Eigen::Quaterniond& q = found->second.orientation;
     out_ << YAML::Key << "fixed" << YAML::Value << true;
     out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
     out_ << YAML::Key << "xyz" << YAML::Value;
     emit(out_, found->second.position);
-    out_ << YAML::Key << "quaternion" << YAML::Value;
-    emit_list(out_, shortest(q.x()), shortest(q.y()), shortest(q.z()), shortest(q.w()));
+    emit_quaternion(out_, found->second.orientation);
     out_ << YAML::EndMap;
   }
   out_ << YAML::Key << "parts" << YAML::Value << YAML::BeginSeq;
@@ -167,8 +158,12 @@ void RobotCellWriter::emit_object(const UrdfLink& link) {
       out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
       out_ << YAML::Key << "xyz" << YAML::Value;
       emit(out_, collision.link_from_shape.xyz);
-      out_ << YAML::Key << "rpy" << YAML::Value;
-      emit(out_, collision.link_from_shape.rpy);
+      if (const auto& q = collision.link_from_shape.quaternion) {
+        emit_quaternion(out_, *q);
+      } else {
+        out_ << YAML::Key << "rpy" << YAML::Value;
+        emit(out_, collision.link_from_shape.rpy);
+      }
       out_ << YAML::EndMap;
     }
     out_ << YAML::EndMap;
@@ -273,6 +268,7 @@ std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   if (srdf_) faults_ = faults_of(*srdf_, options_.srdf, robot_, options_.urdf);
   // Frames such as tool0 have no shapes; the note tells that they are not watched.
   std::string without;
+  note_visuals(robot_, notes_);
   out_ << YAML::BeginMap;
   emit_head();
   out_ << YAML::Key << "objects" << YAML::Value << YAML::BeginSeq;

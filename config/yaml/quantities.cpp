@@ -17,9 +17,6 @@ namespace {
 constexpr double kMaxMilliseconds = 86'400'000.0;  // a day
 constexpr double kRadPerDeg = std::numbers::pi / 180.0;
 
-// A quaternion typed with this many digits is meant to be a unit one; farther off it is a mistake.
-constexpr double kTypedUnitTolerance = 1e-3;
-
 // Reads a list of N numbers, each checked; returns nothing when one of them, or their count, is
 // wrong.
 template <std::size_t N>

@@ -21,6 +21,9 @@ enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 // second. Larger ones are mistakes of units.
 inline constexpr double kMaxLength = 1e6;  // m
 
+// A quaternion typed with this many digits is meant to be a unit one; farther off it is a mistake.
+inline constexpr double kTypedUnitTolerance = 1e-3;
+
 // The `units:` section.
 struct Units {
   LengthUnit length = LengthUnit::kMetre;

@@ -75,8 +75,8 @@ TEST_F(SceneProgram, RefusesTheSrdfOfAnotherRobotAndWritesNothing) {
   EXPECT_EQ(
       run({"import", file("chain.urdf"), "--srdf", file("other.srdf"), "-o", file("cell.yaml")}),
       1);
-  EXPECT_NE(output_.find("other.srdf:1: found the robot 'other'"), std::string::npos) << output_;
-  EXPECT_NE(output_.find("other.srdf:2: found the link 'x'"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("other.srdf:1:1: found the robot 'other'"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("other.srdf:2:1: found the link 'x'"), std::string::npos) << output_;
   EXPECT_FALSE(std::filesystem::exists(file("cell.yaml")));
 }
 

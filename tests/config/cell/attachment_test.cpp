@@ -239,7 +239,7 @@ TEST(Templates, MistakesAreRefusedWhereTheyStand) {
               mistake_at("cell.yaml:10:57", "sphere"));
   EXPECT_THAT(errors("template: ball, parts: []"), mistake_at("cell.yaml:10:56", "parts"));
   const std::string rest = kBoxes;
-  EXPECT_THAT(errors_of(cell_text("templates: [{name: a, sphere: {radius: 0}}]\n" + rest)),
+  EXPECT_THAT(errors_of(cell_text("templates: [{name: a, sphere: {radius: -1}}]\n" + rest)),
               mistake_at("cell.yaml:4:40", "0"))
       << "a template that no object uses is read, too";
   EXPECT_THAT(

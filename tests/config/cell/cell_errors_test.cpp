@@ -98,10 +98,10 @@ const Mistake kMistakes[] = {
     {"TextForNumber", with_shape("sphere: {radius: @big}"),
      "found the text 'big'; expected the radius in m"},
     {"NumberWithUnit", with_shape("sphere: {radius: @12 mm}"),
-     "found the text '12 mm'; expected the radius in m, more than 0 and at most 1000000 (a bare "
+     "found the text '12 mm'; expected the radius in m, from 0 to 1000000 (a bare "
      "number: units are stated once, under 'units')"},
     {"QuotedNumber", with_shape("sphere: {radius: @\"12\"}"),
-     "found the text '12'; expected the radius in m, more than 0 and at most 1000000 (without the "
+     "found the text '12'; expected the radius in m, from 0 to 1000000 (without the "
      "quotes)"},
     {"NumberForName", "objects: [{name: @12, sphere: {radius: 1}}]\n",
      "found the number 12; expected an object's name (if it is meant as text, quote it: "

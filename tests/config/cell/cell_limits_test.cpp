@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "tests/config/cells.hpp"
@@ -9,16 +10,21 @@
 namespace clearance {
 namespace {
 
-TEST(CellLimits, TooManyPublishedPairsAreRefused) {
+TEST(CellLimits, TooManyPairsThatHaveToBePublishedAreRefused) {
   std::string objects = "objects:\n";
   for (int i = 0; i < 92; ++i) {
     objects += "  - {name: o" + std::to_string(i) + ", groups: [g], sphere: {radius: 1}}\n";
   }
-  EXPECT_THAT(
-      errors_of(cell_text(objects + "pairs: [{between: [g, g]}]\n")),
-      testing::HasSubstr("cell.yaml:97:8: found 4186 pairs to publish; expected at most 4096"));
-  const Scene scene = scene_of(cell_text(objects + "pairs: [{between: [g, g], publish: false}]\n"));
-  EXPECT_EQ(scene.pairs.size(), 4186u);
+  EXPECT_THAT(errors_of(cell_text(objects + "pairs: [{between: [g, g], publish: true}]\n")),
+              testing::HasSubstr("cell.yaml:97:8: found 4186 pairs with publish: true; expected at "
+                                 "most 4096"));
+  const auto published = [&](const std::string& rule) {
+    const Scene scene = scene_of(cell_text(objects + "pairs: [{between: [g, g]" + rule + "}]\n"));
+    EXPECT_EQ(scene.pairs.size(), 4186u);
+    return std::ranges::count(scene.pairs, true, &ObjectPair::publish);
+  };
+  EXPECT_EQ(published(", publish: false"), 0);
+  EXPECT_EQ(published(""), 4096);
 }
 
 TEST(CellLimits, TooManyObjectsAndZonesAreRefused) {

@@ -52,6 +52,19 @@ TEST(Pairs, AGroupAgainstItselfIsSelfCollision) {
   }
 }
 
+// The base of a robot beside a post: the rule covers it, and two fixed objects never meet.
+TEST(Pairs, AFixedMemberOfAGroupNeedsNoPairOfItsOwn) {
+  const std::string objects =
+      "objects:\n"
+      "  - {name: base, groups: [arm], fixed: true, sphere: {radius: 1}}\n"
+      "  - {name: tip, groups: [arm], sphere: {radius: 1}}\n"
+      "  - {name: post, fixed: true, sphere: {radius: 1}}\n";
+  EXPECT_EQ(pairs_of(scene_of(cell_text(objects + "pairs: [{between: [arm, post]}]\n"))),
+            (Pairs{{1, 2}}));
+  EXPECT_NE(errors_of(cell_text(objects + "pairs: [{between: [tip, post]}]\n")).find("'base'"),
+            std::string::npos);
+}
+
 TEST(Pairs, APairIsPublishedWhenAnyRuleSaysSo) {
   const Scene scene =
       scene_of(cell_text(kObjects + "pairs:\n" + kNamed + "  - {between: [b0, a1]}\n"));

@@ -142,6 +142,53 @@ TEST_F(MeshFile, ColladaHasItsColoursAndOtherFormatsHaveNone) {
   EXPECT_EQ(std::get<std::vector<ColouredMesh>>(plain)[0].colour, std::nullopt);
 }
 
+// Assimp skips each of these, or takes a default instead.
+TEST_F(MeshFile, WhatTheReadersWouldLeaveOutIsRefused) {
+  const auto fault = [](const std::string& bytes, const char* format) {
+    const auto read = read_mesh(bytes, format);
+    const auto* const found = std::get_if<MeshFault>(&read);
+    return found == nullptr ? std::string() : found->reason;
+  };
+  EXPECT_EQ(fault(kTetrahedronObj + "g x\n# y\nl 1 \\\n 2\n", "obj"), "");
+  for (const char* line : {"ff 1 2 3", "curv 0 1 1 2", "call other.obj", "fo 1 2 3"})
+    EXPECT_THAT(fault(kTetrahedronObj + line, "obj"), HasSubstr("line 10 begins with")) << line;
+
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\n";
+  const std::string numbers = "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(fault(ply + numbers, "ply"), "");
+  EXPECT_THAT(fault(ply + numbers + "3 2 1 0\n", "ply"), HasSubstr("goes on"));
+  EXPECT_THAT(fault(ply + "element tristrips 1\nproperty list int int vertex_indices\n" + numbers +
+                        "3 0 1 2\n",
+                    "ply"),
+              HasSubstr("'tristrips'"));
+
+  const auto dae = [](const std::string& unit, const std::string& node, const std::string& url) {
+    return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit )" +
+           unit + R"(/><up_axis>Z_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 1 0 0 0 2 0 0 0 4</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n">)" +
+           node + R"(<instance_geometry url="#g"/>)" + url +
+           R"(</node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene></COLLADA>)";
+  };
+  EXPECT_EQ(fault(dae("meter=\"1\"", "<translate>1 0 0</translate>", ""), "dae"), "");
+  EXPECT_THAT(fault(dae("metre=\"0.001\"", "", ""), "dae"),
+              HasSubstr("line 3 has the attribute 'metre'"));
+  EXPECT_THAT(fault(dae("meter=\"1\"", "<skew>45 0 1 0 1 0 0</skew>", ""), "dae"),
+              HasSubstr("line 10 has <skew>"));
+  EXPECT_THAT(fault(dae("meter=\"1\"", "", "<instance_geometry url=\"#gone\"/>"), "dae"),
+              HasSubstr("'#gone'"));
+}
+
 TEST_F(MeshFile, RevisionFollowsItsBytes) {
   write("mesh.obj", kTetrahedronObj);
   const std::uint64_t before = scene("file: mesh.obj").revision;

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <variant>
 
@@ -176,8 +177,26 @@ TEST_F(YamlScenes, HaveTheObjectsOfTheSameSceneAsText) {
   EXPECT_EQ(text.pairs.size(), yaml.pairs.size());
 }
 
+// A field of another name would leave the default of the message in its place.
+TEST_F(YamlScenes, AreRefusedForAFieldThatIsNotRead) {
+  const auto refused = [&](const std::string& from, const std::string& to, const std::string& place,
+                           const std::string& word) {
+    EXPECT_THAT(mistakes(from, to), mistake_at(":3:17", "kitchen.yaml:" + place, word)) << to;
+  };
+  refused("primitive_poses:", "primitives_poses:", "", "'primitive_poses'");
+  refused("pose:\n", "poses:\n", "21:5:", "'pose'");
+  refused("{x: 1.0, y: 2.0, z: 0.5}", "{x: 1.0, y: 2.0, Z: 0.5}", "22:34:", "'Z'");
+  refused("z: 0.5}", "x: 0.5}", "22:34:", "again");
+  refused("data: []", "data: [1, 2]", "", "octomap");
+  refused("is_diff: false\n---", "link_padding: [{link_name: a, padding: 0.02}]\n---", "", "0.02");
+  refused("is_diff: false\n---", "link_scale: [{link_name: a, scale: 1.1}]\n---", "", "1.1");
+  refused("is_diff: false\n---\n", "is_diff: false\n---\nname: second\n---\n", "", "second");
+  EXPECT_EQ(mistakes("is_diff: false\n---", "link_scale: [{link_name: a, scale: 1.0}]\n---"), "");
+}
+
 TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
-  EXPECT_THAT(mistakes("world:\n", "worlds:\n"), mistake_at(":3:17", "kitchen.yaml:1", "'world'"));
+  EXPECT_THAT(mistakes("world:\n", "worlds:\n"),
+              mistake_at(":3:17", "kitchen.yaml:18:1:", "'world'"));
   EXPECT_THAT(mistakes("type: 1\n", "type: box\n"), mistake_at(":3:17", "kitchen.yaml:", "'box'"));
   EXPECT_THAT(mistakes("type: 1\n", "type: 7\n"),
               mistake_at(":3:17", "world.collision_objects[0].primitives[0].type", "7"));
@@ -232,6 +251,19 @@ TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   EXPECT_TRUE(watched("tool", "ground"));
   EXPECT_FALSE(watched("tool", "rock")) << "it may touch that";
   EXPECT_FALSE(watched("tool", "hand"));
+}
+
+// A quadrilateral has no volume; a body of a scene is solid.
+TEST_F(YamlScenes, AFlatMeshIsAPlateInBothFormats) {
+  std::string text = kText, yaml = kYaml;
+  text.replace(text.find("0 1 0\n0 0 1\n0 1 2"), 17, "0 1 0\n1 1 0\n0 1 2");
+  yaml.replace(yaml.find("{x: 0.0, y: 0.0, z: 1.0}]"), 24, "{x: 1.0, y: 1.0, z: 0.0}");
+  for (const Scene& scene : {read("kitchen.scene", text), read("kitchen.yaml", yaml)}) {
+    const ConvexBody& rock = scene.objects[2].parts[0].shape;
+    EXPECT_EQ(rock.vertices.size(), 8u);
+    for (const Vertex& vertex : rock.vertices)
+      EXPECT_NEAR(std::abs(vertex.position.z()), 0.0005, 1e-12);
+  }
 }
 
 TEST_F(YamlScenes, CutOffAnywhereAreRefusedOrRead) {

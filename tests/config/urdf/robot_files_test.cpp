@@ -34,11 +34,20 @@ TEST_F(RobotFilesTest, FindAPathWithinItsPackage) {
 
 TEST_F(RobotFilesTest, FindNothingThatLeadsOutOfItsPackage) {
   for (const std::string name :
-       {"package://../other/a.stl", "package://./other/a.stl", "package:///other/a.stl",
-        "package://..", "package://arm/../other/a.stl", "package://arm/meshes/../../other/a.stl",
+       {"package://../other/a.stl", "package://./other/a.stl", "package://..",
+        "package://arm/../other/a.stl", "package://arm/meshes/../../other/a.stl",
         "package://arm//etc/passwd", "package://named/..", "package://named/../arm/a.stl"}) {
     EXPECT_EQ(find(name), std::nullopt) << name;
     EXPECT_NE(files_.why_not_found(name, PackagesFrom::kCell).find("leads out of its package"),
+              std::string::npos)
+        << name;
+  }
+}
+
+TEST_F(RobotFilesTest, SayThatANameHasNoPackage) {
+  for (const std::string name : {"package:///other/a.stl", "package://"}) {
+    EXPECT_EQ(find(name), std::nullopt) << name;
+    EXPECT_NE(files_.why_not_found(name, PackagesFrom::kCell).find("names no package"),
               std::string::npos)
         << name;
   }

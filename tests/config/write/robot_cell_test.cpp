@@ -189,14 +189,14 @@ TEST_F(RobotCellFile, AllFaultsOfBothFilesAreReportedAtOnce) {
         "<robot name=\"little\">\n  <enable_collisions/>\n  <disable_collisions link1=\"foot\"/>\n"
         "</robot>\n");
   const std::string urdf = options_.urdf.string(), srdf = options_.srdf.string();
-  EXPECT_EQ(urdf + ":3: found size=\"0.4 0.4\"; expected 3 numbers above 0\n" +  //
-                urdf + ":7: found radius=\"wide\"; expected 1 number above 0\n" + urdf +
-                ":9: found a geometry of an unknown kind; expected mesh, box, cylinder, sphere or "
-                "capsule\n" +
-                urdf + ":15: found a joint of the link 'farm', which does not exist\n" + srdf +
-                ":2: found <enable_collisions> without 'link1'\n" + srdf +
-                ":2: found <enable_collisions> without 'link2'\n" + srdf +
-                ":3: found <disable_collisions> without 'link2'\n",
+  EXPECT_EQ(urdf + ":3:47: found size=\"0.4 0.4\"; expected 3 numbers of at least 0\n" +  //
+                urdf + ":7:27: found radius=\"wide\"; expected 1 number of at least 0\n" + urdf +
+                ":9:26: found <cone> in <geometry>, which is not read and could change a place or "
+                "a size; expected 'mesh', 'box', 'sphere', 'cylinder' or 'capsule'\n" +
+                urdf + ":15:3: found a joint of the link 'farm', which does not exist\n" + srdf +
+                ":2:3: found <enable_collisions> without 'link1'\n" + srdf +
+                ":2:3: found <enable_collisions> without 'link2'\n" + srdf +
+                ":3:3: found <disable_collisions> without 'link2'\n",
             fault());
 }
 
@@ -227,9 +227,9 @@ TEST_F(RobotCellFile, TheSrdfOfAnotherRobotIsRefused) {
         "  <disable_collisions link1=\"boom\" link2=\"hook\" reason=\"Adjacent\"/>\n"
         "</robot>\n");
   const std::string srdf = options_.srdf.string();
-  EXPECT_EQ(srdf + ":1: found the robot 'large'; expected 'little', as little.urdf calls it\n" +
-                srdf + ":3: found the link 'boom'; expected one of the links of little.urdf\n" +
-                srdf + ":4: found the link 'hook'; expected one of the links of little.urdf\n",
+  EXPECT_EQ(srdf + ":1:1: found the robot 'large'; expected 'little', as little.urdf calls it\n" +
+                srdf + ":3:3: found the link 'boom'; expected one of the links of little.urdf\n" +
+                srdf + ":4:3: found the link 'hook'; expected one of the links of little.urdf\n",
             fault());
 }
 

@@ -37,8 +37,9 @@ class SingleRobot : public testing::Test {
     return texts;
   }
   // Begins with this line of the URDF, and with nothing else.
-  [[nodiscard]] auto at(int line, const std::string& name = "arm.urdf") const {
-    return StartsWith((folder_ / name).string() + ":" + std::to_string(line) + ": found ");
+  [[nodiscard]] auto at(int line, int column, const std::string& name = "arm.urdf") const {
+    return StartsWith((folder_ / name).string() + ":" + std::to_string(line) + ":" +
+                      std::to_string(column) + ": found ");
   }
 
   test::ScratchFolder folder_;
@@ -48,13 +49,13 @@ TEST_F(SingleRobot, MistakesOfTheElementsNameTheLinesOfTheUrdfByNumber) {
   EXPECT_THAT(
       errors(
           kHead +
-          R"(  <link name="b"><collision><geometry><box size="1 1 0"/></geometry></collision></link>)" +
+          R"(  <link name="b"><collision><geometry><box size="1 1 -1"/></geometry></collision></link>)" +
           kBlank +
           R"(
   <joint name="j1" type="fixed"><parent link="a"/><child link="c"/></joint>
   <joint name="j2" type="fixed"><parent link="a"/><child link="d"/></joint>
 </robot>)"),
-      ElementsAre(at(3), at(9), at(10)));
+      ElementsAre(at(3, 44), at(9, 3), at(10, 3)));
 }
 
 TEST_F(SingleRobot, MistakesOfTheJointsNameTheLinesOfTheUrdfByNumber) {
@@ -63,7 +64,7 @@ TEST_F(SingleRobot, MistakesOfTheJointsNameTheLinesOfTheUrdfByNumber) {
                      kBlank + kBlank +
                      R"(<joint name="j2" type="turning"><parent link="a"/><child link="c"/></joint>
 </robot>)"),
-              ElementsAre(at(4), at(14)));
+              ElementsAre(at(4, 3), at(14, 1)));
 }
 
 TEST_F(SingleRobot, MistakesOfMeshesNameTheLinesOfTheUrdfByNumber) {
@@ -73,9 +74,10 @@ TEST_F(SingleRobot, MistakesOfMeshesNameTheLinesOfTheUrdfByNumber) {
            "\"/></geometry></collision></link>\n<joint name=\"of_" + name +
            "\" type=\"continuous\"><parent link=\"a\"/><child link=\"" + name + "\"/></joint>\n";
   };
-  EXPECT_THAT(errors(kHead + link("b", "gone.stl") + kBlank + link("c", "package://nix/c.stl") +
-                     link("d", "damaged.stl") + "</robot>"),
-              ElementsAre(at(3), AllOf(at(10), HasSubstr("--package nix=DIRECTORY")), at(12)));
+  EXPECT_THAT(
+      errors(kHead + link("b", "gone.stl") + kBlank + link("c", "package://nix/c.stl") +
+             link("d", "damaged.stl") + "</robot>"),
+      ElementsAre(at(3, 37), AllOf(at(10, 37), HasSubstr("--package nix=DIRECTORY")), at(12, 37)));
 }
 
 TEST_F(SingleRobot, AFileThatIsMissingIsNamedWithoutALine) {
@@ -91,17 +93,17 @@ TEST_F(SingleRobot, AFileThatXacroHasToExpandGivesOneLineWithTheCommand) {
   <joint name="j1" type="fixed"><parent link="a"/><child link="x_l"/></joint>
   <joint name="j2" type="fixed"><parent link="a"/><child link="y_l"/></joint>
 </robot>)";
-  const auto helps = [&](int line) {
+  const auto helps = [&](int line, int column) {
     return ElementsAre(
-        AllOf(at(line, "arm.urdf.xacro"), HasSubstr("xacro arm.urdf.xacro > arm.urdf")));
+        AllOf(at(line, column, "arm.urdf.xacro"), HasSubstr("xacro arm.urdf.xacro > arm.urdf")));
   };
   const std::string macro =
       R"(<xacro:macro name="m" params="p"><link name="${p}_l"/></xacro:macro>)";
-  EXPECT_THAT(errors(kHead + macro + rest, "arm.urdf.xacro"), helps(3));
+  EXPECT_THAT(errors(kHead + macro + rest, "arm.urdf.xacro"), helps(3, 1));
   const std::string within = R"(<link name="b"><xacro:if value="1"><visual/></xacro:if></link>)";
-  EXPECT_THAT(errors(kHead + within + rest, "arm.urdf.xacro"), helps(3));
+  EXPECT_THAT(errors(kHead + within + rest, "arm.urdf.xacro"), helps(3, 16));
   const std::string value = R"(<link name="b"><inertial><mass value="${m}"/></inertial></link>)";
-  EXPECT_THAT(errors(kHead + "\n" + value + rest, "arm.urdf.xacro"), helps(4));
+  EXPECT_THAT(errors(kHead + "\n" + value + rest, "arm.urdf.xacro"), helps(4, 26));
 }
 
 TEST_F(SingleRobot, WhatIsForOtherProgramsNeedsNoXacro) {
