@@ -38,7 +38,7 @@ constexpr double kRate = 1e-12;
 template <Scan kScan>
 bool step(ActiveFeature& a, ActiveFeature& b) {
   const Delta to = delta(a, b);
-  const Vec3 move_a = to.a - a.point_in_a(), move_b = to.b - b.point_in_a();
+  const Vec3 move_a = to.a - a.point_A(), move_b = to.b - b.point_A();
   const auto alpha_of = [](const ActiveFeature& side, const Vec3& move) {
     return kScan == Scan::kNeighbours ? alpha(side, move) : alpha_over_all(side, move);
   };
@@ -49,13 +49,13 @@ bool step(ActiveFeature& a, ActiveFeature& b) {
 }
 
 inline void let_go(ActiveFeature& side, const Lambda& l) {
-  side.place(l.to, l.index, side.local_point());
+  side.place(l.to, l.index, side.point_L());
 }
 
 // The best release of both bodies, or of each.
 template <Release kRelease>
 bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
-  const Vec3 towards = b.point_in_a() - a.point_in_a();
+  const Vec3 towards = b.point_A() - a.point_A();
   const Lambda of_a = lambda(a, towards), of_b = lambda(b, -towards);
   const bool a_wants = of_a.derivative > least, b_wants = of_b.derivative > least;
   const bool both = kRelease == Release::kDual;
@@ -69,11 +69,11 @@ bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
 inline bool release_all(ActiveFeature& side, const Vec3& towards_in_a, double least) {
   const Lambda best = lambda(side, towards_in_a);
   if (!(best.derivative > least)) return false;
-  const Vec3 towards = side.direction_to_local(towards_in_a);
+  const Vec3 towards = side.direction_A_to_L(towards_in_a);
   if (side.feature() == FeatureKind::kEdge) {
     const bool both = (side.edge().inward * towards).minCoeff() > least;
     if (both)
-      side.place_inside(side.local_point());
+      side.place_inside(side.point_L());
     else
       let_go(side, best);
     return true;
@@ -100,15 +100,15 @@ inline bool release_all(ActiveFeature& side, const Vec3& towards_in_a, double le
   const Edge& f = side.body().edges[other];
   for (const std::int32_t facet : e.facet) {
     if (rising != 2 || (facet != f.facet[0] && facet != f.facet[1])) continue;
-    side.place(FeatureKind::kFacet, facet, side.local_point());
+    side.place(FeatureKind::kFacet, facet, side.point_L());
     return true;
   }
-  side.place_inside(side.local_point());
+  side.place_inside(side.point_L());
   return true;
 }
 
 inline bool release_all(ActiveFeature& a, ActiveFeature& b, double least) {
-  const Vec3 towards = b.point_in_a() - a.point_in_a();
+  const Vec3 towards = b.point_A() - a.point_A();
   const bool from_a = release_all(a, towards, least);
   return release_all(b, -towards, least) || from_a;
 }
@@ -119,7 +119,7 @@ template <Release kRelease, Scan kScan>
 LoopEnd dqp3_variant(ActiveFeature& a, ActiveFeature& b) {
   using namespace variant;
   for (int cycle = 1; cycle <= kCycles; ++cycle) {
-    const double apart = (b.point_in_a() - a.point_in_a()).norm();
+    const double apart = (b.point_A() - a.point_A()).norm();
     if (apart < kContact) return {true, cycle};
     const double least = kRate * apart;
     if constexpr (kRelease == Release::kAggressive) {
@@ -132,7 +132,7 @@ LoopEnd dqp3_variant(ActiveFeature& a, ActiveFeature& b) {
       step<kScan>(a, b);
     } else {
       if (!step<kScan>(a, b)) continue;
-      const double left = (b.point_in_a() - a.point_in_a()).norm();
+      const double left = (b.point_A() - a.point_A()).norm();
       if (left < kContact || !release_best<kRelease>(a, b, kRate * left)) return {true, cycle};
     }
   }

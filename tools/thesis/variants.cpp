@@ -33,7 +33,7 @@ class Variant {
     place(b, tracking_.b);
     const LoopEnd end = dqp3_variant<kRelease, kScan>(a, b);
     tracking_ = {a.tracked(), b.tracked()};
-    return {(b.point_in_a() - a.point_in_a()).norm(), end.ok, end.cycles};
+    return {(b.point_A() - a.point_A()).norm(), end.ok, end.cycles};
   }
 
  private:
@@ -71,7 +71,7 @@ class Moved {
     tracking_ = {a.tracked(), b.tracked()};
     tracking_.a.point = a_.point_of_body(tracking_.a.point);
     tracking_.b.point = b_.point_of_body(tracking_.b.point);
-    return {(b.point_in_a() - a.point_in_a()).norm(), end.ok, end.cycles};
+    return {(b.point_A() - a.point_A()).norm(), end.ok, end.cycles};
   }
 
  private:

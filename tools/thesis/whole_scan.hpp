@@ -21,7 +21,7 @@ namespace clearance::bench {
     return alpha(side, move_in_a);
   }
   const ConvexBody& body = side.body();
-  const Vec3 move = side.direction_to_local(move_in_a);
+  const Vec3 move = side.direction_A_to_L(move_in_a);
   const bool on_edge = side.feature() == FeatureKind::kEdge;
   const std::int32_t active[2] = {on_edge ? side.edge().facet[0] : side.index(),
                                   on_edge ? side.edge().facet[1] : kNone};
@@ -34,7 +34,7 @@ namespace clearance::bench {
     const Facet& facet = body.facets[i];
     const double speed = facet.normal.dot(move);
     if (!(speed > least)) continue;
-    const double gap = facet.offset - facet.normal.dot(side.local_point());
+    const double gap = facet.offset - facet.normal.dot(side.point_L());
     if (gap < best.fraction * speed) best = {alpha_case::fraction(gap, speed), i};
   }
   if (best.blocking == kNone) return best;

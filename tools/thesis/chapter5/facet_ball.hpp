@@ -40,7 +40,7 @@ class FacetBallPair {
     if (!b.place_tracked(tracking_.b)) b.place_inside(b_.interior);
     const LoopEnd end = dqp3_variant<Release::kBase, kScan>(a, b);
     tracking_ = {a.tracked(), b.tracked()};
-    return {a.point_in_a(), b.point_in_a(), end.cycles, end.ok};
+    return {a.point_A(), b.point_A(), end.cycles, end.ok};
   }
 
  private:

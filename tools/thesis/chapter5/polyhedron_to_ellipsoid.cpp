@@ -19,7 +19,7 @@ Vec3 support(const Vec3& axes, const Vec3& direction) {
 // 'Delta': the closest points of the active feature's affine hull and the ellipsoid, relative to
 // its centre. If the feature is the inside, both are the ellipsoid's point nearest to x.
 ClosestPoints delta_to_ellipsoid(const ActiveFeature& side, const Vec3& axes, const Vec3& centre) {
-  const Vec3 x = side.point_in_a() - centre;
+  const Vec3 x = side.point_A() - centre;
   if (side.feature() == FeatureKind::kFacet) {
     return plane_to_ellipsoid(side.facet().normal,
                               side.facet().offset - side.facet().normal.dot(centre), axes);
@@ -80,16 +80,16 @@ ClosestPoints polyhedron_to_ellipsoid(const ConvexBody& a, const Vec3& axes, con
   ClosestPoints found;
   while (found.rounds < kMostCycles) {
     ++found.rounds;
-    const Vec3 move = delta_to_ellipsoid(side, axes, apart).on_a + apart - side.point_in_a();
+    const Vec3 move = delta_to_ellipsoid(side, axes, apart).on_a + apart - side.point_A();
     const Alpha step = alpha(side, move);
     advance(side, move, step);
     if (step.blocking != kNone) continue;
-    found.on_a = side.point_in_a();
+    found.on_a = side.point_A();
     found.on_b = apart + nearest_by_newton<3>(axes, found.on_a - apart).point;
     const Vec3 towards = found.on_b - found.on_a;
     const Lambda release = lambda(side, towards);
     if (!(release.derivative > kRate * towards.norm())) return found;
-    side.place(release.to, release.index, side.local_point());
+    side.place(release.to, release.index, side.point_L());
   }
   found.converged = false;
   return found;
