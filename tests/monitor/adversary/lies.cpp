@@ -11,10 +11,12 @@ constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell sile
 constexpr double kOutOfReach = 8.0;                 // m, of a takeover
 
 std::int64_t age_limit(Channel channel) {
+  if (channel == Channel::kEye) return kEyeAgeLimit;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
 double stated_speed(Channel channel) {
+  if (channel == Channel::kEye) return kEyeSpeed;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseSpeed : kBallSpeed;
 }
 
@@ -154,6 +156,8 @@ std::vector<Fault> drawn_mix(std::uint64_t seed) {
   return mix;
 }
 
+std::int64_t speed_delay(Channel channel) { return 16 * age_limit(channel); }
+
 Admissible admissible(const Fault& fault) {
   switch (fault.lie) {
     // A velocity may be wrong by a sixth, over at most 50 age limits. With the true speed u below
@@ -173,9 +177,10 @@ Admissible admissible(const Fault& fault) {
     // Where an angle passes through zero, it is right in any unit.
     case Lie::kScaled:
       return {0, is_robot(fault.channel) ? 1.0 : 0.0};
-    // Only the lie is heard, until the owner speaks for the first time and its message has come.
+    // Only the lie is heard, until the owner speaks for the first time and its message has come. A
+    // picture that was placed by the lie stays in use until it is old.
     case Lie::kRivalFirst:
-      return {kOwnerStarts + 5 * kMs, 0.0};
+      return {kOwnerStarts + 5 * kMs + (fault.channel == Channel::kEye ? kEyeAgeLimit : 0), 0.0};
     // All others can be noticed in the tick that hears them.
     default:
       return {};

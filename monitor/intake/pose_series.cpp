@@ -1,4 +1,4 @@
-#include "monitor/sensors/pose_series.hpp"
+#include "monitor/intake/pose_series.hpp"
 
 #include <algorithm>
 
@@ -7,7 +7,7 @@
 
 namespace clearance {
 
-double way_between(const Pose& a, const Pose& b) noexcept {
+double distance_between(const Pose& a, const Pose& b) noexcept {
   return rounded_up((a.position - b.position).norm());
 }
 
@@ -33,7 +33,7 @@ PoseSpread spread(const PoseSeries& series, const Pose& pose, std::int64_t first
                   std::int64_t last_ns) noexcept {
   PoseSpread found;
   const auto enclose = [&](const Pose& centre, double shift, double turn) {
-    found.shift = std::max(found.shift, rounded_up(way_between(pose, centre) + shift));
+    found.shift = std::max(found.shift, rounded_up(distance_between(pose, centre) + shift));
     found.turn = std::max(found.turn, rounded_up(angle_between(pose, centre) + turn));
   };
   for (std::size_t i = series.first_from(first_ns); i < series.size(); ++i) {
@@ -43,7 +43,7 @@ PoseSpread spread(const PoseSeries& series, const Pose& pose, std::int64_t first
       const auto& before = series.at(i - 1);
       const Pose &a = before.value, &b = after.value;
       found.longest_ns = std::max(found.longest_ns, elapsed(before.stamp_ns, after.stamp_ns));
-      enclose(pose_between(a, b, 0.5), 0.5 * way_between(a, b), 0.5 * angle_between(a, b));
+      enclose(pose_between(a, b, 0.5), 0.5 * distance_between(a, b), 0.5 * angle_between(a, b));
     }
     if (after.stamp_ns >= last_ns) break;
   }

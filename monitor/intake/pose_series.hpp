@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "core/pose.hpp"
-#include "monitor/sensors/stamped_series.hpp"
+#include "monitor/inputs/stamped_series.hpp"
 
 namespace clearance {
 
@@ -15,13 +15,13 @@ using PoseSeries = StampedSeries<Pose>;
 inline constexpr std::int64_t kLongGapNs = 150'000'000;
 
 // Rounded up, m and rad.
-[[nodiscard]] double way_between(const Pose& a, const Pose& b) noexcept;
+[[nodiscard]] double distance_between(const Pose& a, const Pose& b) noexcept;
 [[nodiscard]] double angle_between(const Pose& a, const Pose& b) noexcept;
 
-// On the straight path from a to b.
+// On the straight line from a to b.
 [[nodiscard]] Pose pose_between(const Pose& a, const Pose& b, double share) noexcept;
 
-// On that path at this time, which is within the series.
+// On that line at this time, which is within the series.
 [[nodiscard]] Pose pose_at(const PoseSeries& series, std::int64_t stamp_ns) noexcept;
 
 struct PoseSpread {
@@ -30,7 +30,7 @@ struct PoseSpread {
 };
 
 // Bounds the differences of all poses from the first time to the last one to this pose. Between two
-// poses, anything is taken to be within the ball whose diameter is the straight path between them:
+// poses, anything is taken to be within the ball whose diameter is the straight line between them:
 // it may begin to move, or stop, at any time in between. Both times are within the series.
 [[nodiscard]] PoseSpread spread(const PoseSeries& series, const Pose& pose, std::int64_t first_ns,
                                 std::int64_t last_ns) noexcept;
