@@ -89,7 +89,7 @@ class Newton {
   NewtonEnd end;
 
  private:
-  // They have no other parts that could become active, and long steps do them no harm.
+  // Ellipsoids have no other parts that could become active, and long steps do them no harm.
   [[nodiscard]] HWY_INLINE bool are_ellipsoids() const {
     return a_.round.count == 1 && b_.round.count == 1;
   }
@@ -168,7 +168,7 @@ class Newton {
       return Next::kIterate;
     }
     end.overlap = ends_at_overlap_ && end.lower < -kOverlap * tolerance_;
-    // Otherwise rounding alone keeps the bounds apart.
+    // Rounding alone otherwise keeps the bounds apart.
     return end.overlap ? Next::kGiveUp : Next::kIterate;
   }
 

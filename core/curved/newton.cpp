@@ -1,5 +1,5 @@
 // Newton's method as a complete query: the fast one of the two efforts in README.md. Compiled once
-// a vector width.
+// per vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/curved/newton.cpp"
 #include "core/numerics/simd_targets.hpp"

@@ -59,7 +59,7 @@ HWY_INLINE Start start_boxes(const Query4& q) {
   unsigned axes = less(zero, gaps) & 7u;
   if (axes == 0) axes = greatest_axis(gaps);
   if ((axes & ~shared) != 0 || (shared != 7u && axes != shared)) return Start::kNone;
-  // The same axes in B's frame. B's features face the other way.
+  // The same axes in B's frame. B's features face the opposite side.
   const auto chosen = [axes](unsigned axis) { return (axes & axis) != 0 ? 1.0 : 0.0; };
   const Vec4 in_b = direction_to_b(q.a_from_b, vec4(chosen(1), chosen(2), chosen(4), 0.0) * up);
   to_farthest(a, axes, less(between, zero), q.state.a);

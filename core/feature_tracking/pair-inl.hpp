@@ -210,8 +210,8 @@ struct EdgeLines {
   double s, t;  // m
 };
 
-// It takes at most four transitions from two vertices to two parallel facets; more of them are a
-// cycle.
+// A pair takes at most four transitions from two vertices to two parallel facets; more of them are
+// a cycle.
 inline constexpr int kMostParallel = 6;
 
 // The end of one transition.

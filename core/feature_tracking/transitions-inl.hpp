@@ -1,5 +1,5 @@
 // One transition of a pair of features, and its repetition until the pair is closest. Compiled once
-// a vector width: see core/numerics/vec4-inl.hpp.
+// per vector width: see core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_TRANSITIONS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_TRANSITIONS
 #undef CLEARANCE_CORE_TRANSITIONS
@@ -164,7 +164,7 @@ inline HWY_NOINLINE void leave_edges(const Edge& first, const Edge& second, Side
     const Vec2 both = facet_derivatives(edge, along);
     return edge.facet[0] == kNone ? -kInfinity : std::max(both[0], both[1]);
   };
-  // Then g is the direction along which no facet approaches by more than rounding.
+  // Now g is the direction along which no facet approaches by more than rounding.
   if (touching && std::max(steepest_of(first, -g), steepest_of(second, -back)) <= -limit) {
     g = -g;
     back = -back;

@@ -42,11 +42,11 @@ template <int i, int j, int k, int l>
 HWY_INLINE Vec4 pick(Vec4 a, Vec4 b) {
   return {__builtin_shufflevector(a.v, b.v, i, j, k, l)};
 }
-// Which lanes of a are less than those of b: a bit each.
+// Tells which lanes of a are less than those of b: a bit each.
 HWY_INLINE unsigned less(Vec4 a, Vec4 b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v < b.v)));
 }
-// Which lanes of a are at least those of b; none of NaN.
+// Tells which lanes of a are at least those of b; none of NaN.
 HWY_INLINE unsigned at_least(Vec4 a, Vec4 b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v >= b.v)));
 }

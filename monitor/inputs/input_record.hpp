@@ -50,7 +50,7 @@ struct InputRecord {
   }
 };
 
-// Who sent a sample, and when its value held in the tick's time.
+// Tells who sent a sample, and when its value held in the tick's time.
 struct SampleOrigin {
   std::uint32_t source = 0;
   std::uint32_t namesake = kNoSource;  // the source whose name it shares

@@ -52,7 +52,7 @@ enum class FrameFault : std::uint8_t {
                     // obstacle
   kNotOrganised,    // points in one row, where the cell says that their neighbours are known
   kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
-  kWideRays,     // of organised points: no ball may span the way from one ray to the next
+  kWideRays,     // of organised points: no ball may span the distance from one ray to the next
   kUnknownRays,  // of organised points: too few show how far apart the rays are
   kRobotElsewhere,  // tf places the camera, and a robot elsewhere than the cell does
 };

@@ -226,7 +226,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
 
 // Own points count as rays from now on: no ball reaches towards them, into the robot. A surface
 // between an own point and a neighbour is in the blind shell, which was found with balls that reach
-// that way, so a whole way is no longer than the diameter of the own point's ball.
+// that far, so the whole distance is no longer than the diameter of the own point's ball.
 void Sensors::narrow(const PointsView& frame, PointCloud& points) {
   for (std::size_t b = 0; b < points.blocks(); ++b) {
     const PointCloud::Block& block = points.block(b);

@@ -138,7 +138,7 @@ MountTrack::Excess MountTrack::excess(std::int64_t last_ns) const {
       found.shift = std::max(found.shift, shift);
       found.turn = std::max(found.turn, turn);
     } else {
-      // The frame may have moved the other way meanwhile.
+      // The frame may have moved back meanwhile.
       if (shift > kRounding) found.shift = rounded_up(found.shift + way + speed.shift * time_s);
       if (turn > kRounding) found.turn = rounded_up(found.turn + angle + speed.turn * time_s);
     }

@@ -23,8 +23,9 @@ struct CarriedPose {
   Pose pose;  // of the frame, in its carrier
 };
 
-// The way and the angle of a path, as the metric of Plausibility. A limit is the time, s, in which
-// the path comes so far. Two carriers are not compared: how far they are apart is known later.
+// The length and the angle of a path, as the metric of Plausibility. A limit is the time, s, in
+// which the path comes so far. Two carriers are not compared: how far they are apart is known
+// later.
 struct PathMetric {
   using Value = CarriedPose;
   using Rate = Twist;
@@ -83,7 +84,7 @@ class MountTrack {
   }
 
   // The excess of the path's motion within the second before this stamp over what the stated speeds
-  // allow. Without them, the whole way of what needs more than 5 m/s or 6.3 rad/s.
+  // allow. Without them, the whole distance of what needs more than 5 m/s or 6.3 rad/s.
   struct Excess {
     double shift = 0.0, turn = 0.0;  // m, rad
   };

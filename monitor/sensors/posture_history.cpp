@@ -19,7 +19,7 @@ double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
 
 // No position of a joint in this time is farther from `position`. Between two values, it is off the
 // line by no more than T (v^2 - u^2) / 2v, with T their time, u their mean speed and v the largest.
-// A point of the line is no farther than half of the way from `position` over it and back.
+// A point of the line is no farther than half of the distance from `position` over it and back.
 double farthest_within(const StampedSeries<double>& values, const JointMetric& metric,
                        double position, std::int64_t first_ns, std::int64_t last_ns,
                        double speed) noexcept {

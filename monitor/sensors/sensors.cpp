@@ -57,7 +57,7 @@ Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers
 Sensors::~Sensors() = default;
 
 // Stamps come again after this machine's clock was set back. Samples from before say nothing about
-// frames from after it, and the other way round.
+// frames from after it, and vice versa.
 void Sensors::note_time(std::int64_t came_ns) {
   if (elapsed(came_ns, std::exchange(now_.realtime_ns, came_ns)) <= kClockSetBackNs) return;
   postures_.forget();

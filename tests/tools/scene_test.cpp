@@ -46,9 +46,23 @@ TEST_F(SceneProgram, WritesACellThatIsGood) {
   EXPECT_TRUE(std::filesystem::exists(file("cell.yaml")));
 }
 
+// Three balls in a row on two joints.
+std::string chain_urdf() {
+  std::string urdf = "<robot name=\"chain\">\n";
+  for (const char* link : {"a", "b", "c"}) {
+    urdf += std::string("<link name=\"") + link +
+            "\"><collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n";
+  }
+  return urdf +
+         "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
+         "<joint name=\"k\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
+         "</robot>\n";
+}
+
 TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoBothKindsOfCell) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   for (const std::vector<std::string>& kind : {std::vector<std::string>{}, {"--joints"}}) {
-    std::vector<std::string> words = {"import",          file("robot.urdf"), "-o",
+    std::vector<std::string> words = {"import",          file("chain.urdf"), "-o",
                                       file("cell.yaml"), "--force",          "--mesh-tolerance",
                                       "0.002",           "--max-parts",      "7"};
     words.insert(words.end(), kind.begin(), kind.end());
@@ -58,19 +72,6 @@ TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoBothKindsOfCell) {
     EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
     EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
   }
-}
-
-// Three balls in a row on two joints.
-std::string chain_urdf() {
-  std::string urdf = "<robot name=\"chain\">\n";
-  for (const char* link : {"a", "b", "c"}) {
-    urdf += std::string("<link name=\"") + link +
-            "\"><collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n";
-  }
-  return urdf +
-         "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
-         "<joint name=\"k\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
-         "</robot>\n";
 }
 
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
@@ -156,29 +157,6 @@ TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   EXPECT_NE(output_.find("2 objects, 1 with a hull"), std::string::npos) << output_;
 }
 
-TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
-  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
-                                            "v 0.9 0.5 1\nv 1.1 0.5 1\n"
-                                            "f 1 2 3\nf 1 3 4\nf 1 2 6\nf 1 6 5\nf 3 4 5\nf 3 5 6\n"
-                                            "f 2 3 6\nf 1 4 5\n";
-  ASSERT_EQ(run({"reduce", file("tent.obj"), "--tolerance", "10", "--json"}), 0) << output_;
-  const auto body = nlohmann::json::parse(output_).at(0);
-  EXPECT_EQ(body["body"], "tent");
-  int chosen = 0;
-  for (const auto& model : body["models"]) {
-    chosen += model["chosen"].get<bool>() ? 1 : 0;
-    EXPECT_GE(model["error"].get<double>(), 0.0);
-  }
-  EXPECT_EQ(chosen, 1);
-  EXPECT_TRUE(body["models"][0]["chosen"]);  // the sphere is the cheapest model
-}
-
-TEST_F(SceneProgram, ReducesNothingThatIsMissing) {
-  EXPECT_EQ(run({"reduce", file("none.obj")}), 2);
-  EXPECT_EQ(run({"reduce", file("robot.urdf"), "-o", file("cell.yaml")}), 2);
-  EXPECT_EQ(run({"reduce", file("robot.urdf"), "--tolerance", "1", "--facets", "8"}), 2);
-}
-
 TEST_F(SceneProgram, ReportsTheErrorsOfACellThatIsNoGood) {
   std::ofstream(directory_ / "cell.yaml") << "name: empty\n";
   EXPECT_EQ(run({"report", file("cell.yaml")}), 3);
@@ -209,10 +187,10 @@ TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
 
 TEST_F(SceneProgram, HelpNamesSubcommandsAndArgumentsBeforeOptions) {
   ASSERT_EQ(run({"--help"}), 0);
-  EXPECT_LT(output_.find("  reduce "), output_.find("Options:")) << output_;
-  ASSERT_EQ(run({"reduce", "--help"}), 0);
-  EXPECT_LT(output_.find("  FILE "), output_.find("Options:")) << output_;
-  EXPECT_LT(output_.find("--tolerance"), output_.find("--help")) << output_;
+  EXPECT_LT(output_.find("  report "), output_.find("Options:")) << output_;
+  ASSERT_EQ(run({"report", "--help"}), 0);
+  EXPECT_LT(output_.find("  CELL "), output_.find("Options:")) << output_;
+  EXPECT_LT(output_.find("--json"), output_.find("--help")) << output_;
 }
 
 // A post, a slide beside it, a tip that the slide moves through the post, and a body far from all

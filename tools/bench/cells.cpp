@@ -34,7 +34,7 @@ struct PartPair {
   Pose a_in_object, b_in_object;
 };
 
-// A cell with its poses at every step and its part pairs, made once a cell.
+// A cell with its poses at every step and its part pairs, made once per cell.
 struct Workload {
   Cell cell;
   std::vector<std::vector<Pose>> world_from_object;  // [step][object]
@@ -114,7 +114,7 @@ void time_queries(benchmark::State& state, const Workload& load, bool tracked) {
                          benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-// All part pairs at once. Each part is placed in the world once a step, not once a pair.
+// All part pairs at once. Each part is placed in the world once per step, not once per pair.
 void time_batch(benchmark::State& state, const Workload& load) {
   std::vector<const ConvexBody*> parts;
   std::vector<std::uint32_t> first_part;  // [object]

@@ -11,7 +11,7 @@ namespace clearance::test::lies {
 namespace {
 
 constexpr double kRounding = 1e-9;  // m
-// Between two ticks a body is taken to move straight from one pose to the next. The way bends: an
+// Between two ticks a body is taken to move straight from one pose to the next. The path bends: an
 // acceleration of 20 m/s2 over 10 ms departs by a quarter of a millimetre.
 constexpr double kBend = 2.5e-4;  // m
 // A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No

@@ -278,7 +278,7 @@ TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePubl
   EXPECT_EQ(take(frame(23), 1), FrameFault::kSecondPublisher);
 }
 
-// Its own clock, or that of this machine in a log.
+// The camera's own clock, or that of this machine in a log.
 TEST_F(CameraStreamTest, AClockThatWasSetBackCostsHalfASecondAndNotTheWholeStep) {
   ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ASSERT_EQ(take(frame(200)), FrameFault::kNoFault);

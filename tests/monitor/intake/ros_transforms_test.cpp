@@ -126,7 +126,7 @@ TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
   }
 }
 
-// Which of two publishers is right cannot be told: the tick gets both, as two sources.
+// Nothing tells which of two publishers is right: the tick gets both, as two sources.
 TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);

@@ -20,7 +20,7 @@ constexpr std::int64_t kMountMs = 1'000'000;
 TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfTheirPlace) {
   Random random(11);
   for (int run = 0; run < 500; ++run) {
-    // It moves on a straight way from one time to another, at any time in between.
+    // The frame moves on a straight path from one time to another, at any time in between.
     const double begins = random.uniform(-0.5, 1.0), ends = begins + random.uniform(0.05, 1.0);
     const double way = random.uniform(0.0, 0.5), turn = random.uniform(0.0, 2.0);
     const auto truth = [&](double s) {

@@ -98,7 +98,7 @@ TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {
   add_map(Type::kPlanningScene, without.bytes(), kStart);
   EXPECT_TRUE(settle(kStart + 30'000'000).empty());
   EXPECT_EQ(count(FrameFault::kOctree), 0u) << "a change of something else";
-  // Its stamp is 0: the time of sending counts.
+  // The stamp is 0: the time of sending counts.
   add_map(Type::kPlanningScene, with_map.bytes(), kStart + kFrame);
   const auto frames = settle(kStart + kFrame + 30'000'000);
   ASSERT_EQ(frames.size(), 1u);

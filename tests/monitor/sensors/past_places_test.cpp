@@ -19,7 +19,7 @@ constexpr std::int64_t kStart = test::kStart, kMs = 1'000'000;
 TEST(PastPlaces, LieWithinTheDeviationThatASpeedAllows) {
   Random random(7);
   for (int path = 0; path < 2000; ++path) {
-    // A path that always goes at full speed, one way and then the other, is the farthest from the
+    // A path that always goes at full speed, forth and then back, is the farthest from the
     // line between its ends.
     const double speed = random.uniform(0.1, 3.0), turn_s = random.uniform(0.0, 1.0);
     const auto value = [&](double s) { return speed * (s < turn_s ? s : 2.0 * turn_s - s); };
