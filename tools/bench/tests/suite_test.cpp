@@ -15,6 +15,7 @@
 #include "tests/shared/curved_oracle.hpp"
 #include "tests/shared/exact_depth.hpp"
 #include "tests/shared/exact_oracle.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tools/bench/suite/cases.hpp"
 #include "tools/bench/suite/plain_body.hpp"
