@@ -77,14 +77,6 @@ struct Ray {
   bool is_line = false;  // its opposite, exactly, is one as well
 };
 
-// Selects the code of a query by one sum: both bodies' classes together are below 4 for the most
-// frequent code, 4 for two points, and more otherwise.
-enum class QueryClass : std::uint32_t {
-  kPlain = 0,  // a bounded polyhedron or a segment
-  kPoint = 2,
-  kOther = 8,  // unbounded or curved
-};
-
 struct ConvexBody {
   std::vector<Facet> facets;
   std::vector<Edge> edges;
@@ -106,7 +98,6 @@ struct ConvexBody {
   // facets on the far sides of `facet_edges`.
   std::vector<std::int32_t> neighbours, facets_beside;
   std::array<std::uint32_t, 3> features{};  // how many vertices, edges, facets
-  QueryClass query_class = QueryClass::kPlain;
   StartTable start;
   BoxFeatures box;
 

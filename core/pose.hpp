@@ -67,7 +67,7 @@ static_assert(sizeof(Twist) == 48 && alignof(Twist) == 8);
 // orientation as well.
 inline constexpr double kPlacingError = 0x1p-47;
 
-// The pose of B in A's frame: x_a = rotation * x_b + translation. It is made once a query. The
+// The pose of B in A's frame: x_a = rotation * x_b + translation. It is made once per query. The
 // errors of both quantities are part of the value, so that bounds can account for them.
 struct RelativePose {
   Mat3 rotation = Mat3::Identity();

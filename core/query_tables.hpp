@@ -40,7 +40,7 @@ class VectorRows {
     for (std::int32_t pad = n; pad < length(n); ++pad) values_[index(first, pad, k)] = to;
   }
   [[nodiscard]] std::size_t bytes() const noexcept { return values_.size() * sizeof(double); }
-  // All numbers are NaN then, and so stays the row of a feature without neighbours.
+  // Sets all numbers to NaN. The row of a feature without neighbours keeps them.
   void resize(std::size_t length) {
     values_.assign(std::max(length, std::size_t{4}) * kNumbers,
                    std::numeric_limits<double>::quiet_NaN());

@@ -121,9 +121,6 @@ int main(int argc, char** argv) {
   app.add_option("--expect-min-distance", options.expected,
                  "A motion that is not certainly this far from everything, m, fails")
       ->check(clearance::number_from_zero());
-  app.add_option("--work-limit", options.work_limit, "Most distance queries for a motion")
-      ->check(CLI::Range(1, 1000000000))
-      ->capture_default_str();
   app.add_flag("--others-still", options.others_still,
                "Objects that are neither fixed nor part of a robot do not move");
   app.add_flag(

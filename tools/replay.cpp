@@ -9,7 +9,6 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "tools/replay/arguments.hpp"
-#include "tools/shared/former_spelling.hpp"
 
 namespace clearance {
 namespace {
@@ -47,8 +46,6 @@ Examples:
   clearance-replay check run.mcap --cell cell.yaml --expect-min-distance 0.05 --expect-no-zone stop
   clearance-replay check run.mcap --cell cell.yaml --csv distances.csv
   clearance-replay check rosbag2_2026_11_22/ --urdf R.urdf --srdf R.srdf --expect-min-distance 0.05
-  clearance-replay check run.mcap --cell cell.yaml --plot run.svg --plot-pair hand table
-  clearance-replay check run.mcap --cell cell.yaml --report run.html --expect-no-zone stop
   clearance-replay check run.mcap --cell cell.yaml --reference distances.csv.gz --tolerance 1e-6
   clearance-replay check run.mcap --cell cell.yaml --balance 3)";
 
@@ -67,7 +64,6 @@ void add_span(CLI::App& app, RecordedSpan& span, const char* files) {
       ->check(number_from_zero());
   app.add_option("--end", span.end_s, "End this many seconds after the first message")
       ->check(number_from_zero());
-  app.add_flag("--progress", span.progress, "Show progress on stderr even if it is no terminal");
 }
 
 CLI::App* add_publish(CLI::App& app, PublishArguments& arguments) {
@@ -143,14 +139,6 @@ void add_outputs(CLI::App& app, CheckArguments& arguments) {
   app.add_flag("--gradients", arguments.gradients,
                "Compute gradients of distances by joint positions for -o, as 'gradients: true' in "
                "the cell does");
-  app.add_option("--plot", arguments.plot,
-                 "Draw distances, bounds, zones and closing speeds over time (SVG, by gnuplot)");
-  app.add_option("--report", arguments.report,
-                 "Write one self-contained page of the run (HTML): summary, expectations, plot, "
-                 "pictures of the nearest moments, zones");
-  app.add_option("--plot-pair", arguments.plot_pairs,
-                 "Draw this published pair of two objects in --plot and --report; repeatable. "
-                 "Default: the four pairs that came nearest");
   add_force(app, arguments.force);
 }
 
@@ -236,28 +224,11 @@ CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
       app.add_subcommand("compare",
                          "Name the first difference of two recordings, such as those of two "
                          "daemons, and whether it is "
-                         "one of their inputs or of their results. 'clearance-replay --compare "
-                         "FILE FILE' is the same");
+                         "one of their inputs or of their results");
   compare->add_option("FIRST", arguments.first, "A recording (MCAP)")->required();
   compare->add_option("SECOND", arguments.second, "The other recording (MCAP)")->required();
   compare->footer(kCompareFooter);
   return compare;
-}
-
-// Before there were subcommands, --offline chose `check`, and `publish` had no name.
-Words present_spelling(Words words) {
-  const bool is_check = has_option(words, "--offline");
-  if (!words.empty() && words[0] == "--compare" && !is_check) words[0] = "compare";
-  const bool has_none =
-      words.empty() || words[0] == "publish" || words[0] == "check" || words[0] == "compare";
-  if (has_none || has_option({words[0]}, "--help") || words[0] == "-h" || words[0] == "--version") {
-    return words;
-  }
-  if (!has_option(words, "--offline")) {
-    return note_former_spelling(kProgram, "FILE", "publish", std::move(words));
-  }
-  take_option(words, "--offline", 0);
-  return note_former_spelling(kProgram, "--offline", "check", std::move(words));
 }
 
 bool is_forwards(const RecordedSpan& span) {
@@ -276,11 +247,7 @@ int run(int argc, char** argv, StopSignal& stop) {
   const CLI::App* const comparing = add_compare(app, compare);
   app.require_subcommand(1);
   app.footer(kExamples);
-  Words words = present_spelling(words_of(argc, argv));
-  std::vector<char*> arguments = arguments_of(argv[0], words);
-  if (const auto done = parse(app, static_cast<int>(arguments.size()), arguments.data())) {
-    return *done;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   if (comparing->parsed()) return compare_two_recordings(compare, stop);
   if (!is_forwards(publishing->parsed() ? publish.span : check.span)) return kUsage;
   return publishing->parsed() ? publish_recording(publish, stop) : check_recording(check, stop);

@@ -76,7 +76,6 @@ struct Arguments {
   bool latency = false;
   SimulatedCameraOptions cameras;
   std::string camera_size = "320x240";
-  bool camera_is_float = false;
   std::vector<std::string> people;  // their paths
   double person_speed = 0.6;
   bool truth = false;
@@ -110,15 +109,6 @@ void add_camera_options(CLI::App& app, Arguments& arguments) {
       })
       ->capture_default_str()
       ->group(kCameras);
-  app.add_option("--camera-view", cameras.view_deg,
-                 "Degrees between the left and the right side of a picture. Points that state a "
-                 "`spacing` have the view that follows from it")
-      ->check(CLI::Range(1.0, 102.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_flag("--camera-float", arguments.camera_is_float,
-               "Send depth images as 32FC1, in m, instead of 16UC1, in mm")
-      ->group(kCameras);
   app.add_option("--camera-noise", cameras.noise_share,
                  "Noise as a share of the depth_error that the cell states")
       ->check(CLI::Range(0.0, 1.0))
@@ -126,9 +116,6 @@ void add_camera_options(CLI::App& app, Arguments& arguments) {
       ->group(kCameras);
   app.add_option("--camera-missing", cameras.missing_share, "Share of the pixels that are missing")
       ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_option("--camera-seed", cameras.seed, "Of noise and missing pixels")
       ->capture_default_str()
       ->group(kCameras);
   app.add_option("--person", arguments.people,
@@ -330,7 +317,6 @@ int run(int argc, char** argv, StopSignal& signal) {
   add_options(app, arguments);
   if (const auto done = parse(app, argc, argv)) return *done;
   std::tie(arguments.cameras.columns, arguments.cameras.rows) = *size_of(arguments.camera_size);
-  if (arguments.camera_is_float) arguments.cameras.format = DepthImage::Format::kMetres32;
   start_log("clearance-robot", arguments.log_level);
   const auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;

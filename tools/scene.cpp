@@ -1,5 +1,5 @@
 // clearance-scene writes cell files of a robot or of a generated warehouse. It also proposes the
-// pairs of a robot's links that may touch, and reports or simplifies the models of objects.
+// pairs of a robot's links that may touch, and reports the models of objects.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
@@ -12,16 +12,13 @@
 #include "monitor/app/program.hpp"
 #include "tools/scene/arguments.hpp"
 #include "tools/scene/send.hpp"
-#include "tools/shared/former_spelling.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr const char* kProgram = "clearance-scene";
-
 constexpr const char* kFooter = R"(Exit status:
   0  done; a cell that was written has no errors
-  1  a file could not be read or written, or no model of 'reduce' is within --tolerance
+  1  a file could not be read or written
   2  wrong usage
   3  the cell that was written or read has errors (printed)
   4, 6  see 'send --help'
@@ -29,12 +26,9 @@ constexpr const char* kFooter = R"(Exit status:
 Examples:
   clearance-scene import panda.urdf --srdf panda.srdf --joints -o panda.yaml
   clearance-scene import panda.urdf --srdf panda.srdf --max-speed 3 -o panda.yaml
-  clearance-scene import panda.urdf --max-speed 3 --add shelf.scene -o panda.yaml
   clearance-scene allow panda.urdf -o panda.srdf
   clearance-scene warehouse 1000 -o warehouse.yaml
   clearance-scene report warehouse.yaml
-  clearance-scene reduce panda.urdf --tolerance 0.005
-  clearance-scene reduce a.stl b.stl --distance 0.1 0.5 --speed 1 --plot models.svg
   clearance-scene send --change 'attach: {object: part, to: left_hand}')";
 
 void add_robot(CLI::App& app, RobotCellOptions& robot, const char* srdf) {
@@ -56,8 +50,6 @@ CLI::App* add_import(CLI::App& app, ImportArguments& arguments) {
       ->add_option("-o,--output", arguments.output,
                    "The cell file to write; mesh paths are relative to it")
       ->required();
-  CLI::Option* const group =
-      import->add_option("--group", robot.group, "Group of all links; default: the robot's name");
   CLI::Option* const max_speed =
       import
           ->add_option(
@@ -80,18 +72,7 @@ CLI::App* add_import(CLI::App& app, ImportArguments& arguments) {
       "--joints", arguments.joints,
       "Write the cell of a robot that joint states drive, as clearanced --urdf runs it, to start "
       "from. Without it, each link is an object, and its pose has to arrive");
-  joints->excludes(group)->excludes(max_speed);
-  import
-      ->add_flag("--fixed-base", robot.fixed_base,
-                 "The root link stands at the world's origin, and no pose arrives for it")
-      ->excludes(joints);
-  import
-      ->add_option("--add", robot.scenes,
-                   "A planning scene of MoveIt (.scene) whose obstacles the robot is watched "
-                   "against; repeatable")
-      ->check(CLI::ExistingFile)
-      ->allow_extra_args(false)
-      ->excludes(joints);
+  joints->excludes(max_speed);
   add_force(*import, arguments.force);
   return import;
 }
@@ -144,105 +125,25 @@ CLI::App* add_report(CLI::App& app, ReportArguments& arguments) {
   return report;
 }
 
-CLI::App* add_reduce(CLI::App& app, ReduceArguments& arguments) {
-  CLI::App* const reduce = app.add_subcommand(
-      "reduce",
-      "Print simpler models around meshes, objects or links, with certified errors: a sphere, "
-      "capsule, box, rounded box, cylinder, ellipsoid, polyhedra of 8, 16, 32, ... facets, the "
-      "hull, and 2, 4, 8 and 16 parts");
-  ReductionOptions& options = arguments.reduction;
-  reduce
-      ->add_option("FILE", options.files,
-                   "Meshes; cells (.yaml) or robots (.urdf), of which each object or link is taken")
-      ->required()
-      ->check(CLI::ExistingFile);
-  reduce->add_option("--object", options.object, "Only this object or link");
-  CLI::Option* const tolerance =
-      reduce
-          ->add_option("--tolerance", options.tolerance,
-                       "Choose the cheapest model whose error is at most this, m")
-          ->check(number_from_zero());
-  reduce
-      ->add_option("--facets", options.facets,
-                   "Choose the best polyhedron of at most this many facets")
-      ->check(CLI::Range(6u, 4096u))
-      ->excludes(tolerance);
-  reduce->add_flag("--time", options.time, "Measure a query against each model, ns");
-  CLI::Option* const distance =
-      reduce
-          ->add_option("--distance", options.distances,
-                       "Distances beyond a zone's threshold at which to compare the costs of "
-                       "models, m; measures queries")
-          ->check(positive_number());
-  reduce
-      ->add_option("--speed", options.speed,
-                   "Sum of the speeds of both objects, m/s; for --distance")
-      ->check(positive_number())
-      ->capture_default_str()
-      ->needs(distance);
-  reduce
-      ->add_option("--plot", arguments.plot,
-                   "Draw error against time (SVG, by gnuplot), and write the tables as Markdown "
-                   "beside the picture")
-      ->needs(distance);
-  reduce->add_flag("--json", arguments.json, "Print JSON");
-  add_force(*reduce, arguments.force);
-  return reduce;
-}
-
-// An option that chose what to do before there were subcommands, with the number of its values.
-struct FormerMode {
-  const char* option;
-  const char* subcommand;
-  std::size_t values;
-};
-constexpr FormerMode kFormerModes[] = {{"--from-urdf", "import", 1},
-                                       {"--warehouse", "warehouse", 1},
-                                       {"--report", "report", 1},
-                                       {"--reduce", "reduce", 1000}};
-
-Words present_spelling(Words words) {
-  if (words.empty() || !words[0].starts_with('-')) return words;
-  for (const FormerMode& mode : kFormerModes) {
-    if (!has_option(words, mode.option)) continue;
-    const Words values = take_option(words, mode.option, mode.values);
-    const bool allows = mode.option == kFormerModes[0].option && has_option(words, "--allow");
-    if (allows) take_option(words, "--allow", 0);
-    words.insert(words.begin(), values.begin(), values.end());
-    return note_former_spelling(kProgram, mode.option, allows ? "allow" : mode.subcommand,
-                                std::move(words));
-  }
-  return words;
-}
-
 int run(int argc, char** argv) {
-  CLI::App app(
-      "Writes cell files, reports or simplifies the models of objects, and changes running "
-      "scenes.");
+  CLI::App app("Writes cell files, reports the models of objects, and changes running scenes.");
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
   ReportArguments report;
-  ReduceArguments reduce;
   SendArguments send;
   const CLI::App* const importing = add_import(app, import);
   const CLI::App* const allowing = add_allow(app, allow);
   const CLI::App* const building = add_warehouse(app, warehouse);
   const CLI::App* const reporting = add_report(app, report);
-  const CLI::App* const reducing = add_reduce(app, reduce);
   add_send(app, send);
   app.require_subcommand(1);
   app.footer(kFooter);
-  Words words = present_spelling(words_of(argc, argv));
-  std::vector<char*> arguments = arguments_of(argv[0], words);
-  if (const auto done = parse(app, static_cast<int>(arguments.size()), arguments.data())) {
-    return *done;
-  }
+  if (const auto done = parse(app, argc, argv)) return *done;
   if (importing->parsed()) return import_robot(std::move(import));
   if (allowing->parsed()) return allow_collisions(allow);
   if (building->parsed()) return make_warehouse(warehouse);
   if (reporting->parsed()) return report_models(report);
-  if (reducing->parsed()) return reduce_bodies(reduce);
   return send_changes(send);
 }
 

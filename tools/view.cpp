@@ -137,7 +137,7 @@ std::unique_ptr<Source> recording_source(const std::shared_ptr<const Cell>& cell
                                          std::optional<TemporaryFolder>& scratch,
                                          StopSignal& stop) {
   std::filesystem::path file = arguments.recording;
-  ProgressBar bar(false);
+  ProgressBar bar;
   if (arguments.offline) {
     scratch.emplace();
     if (!scratch->error().empty()) throw std::runtime_error(scratch->error());

@@ -35,7 +35,7 @@ class ConvexShapeReader {
   const Quantities& quantities_;
 };
 
-// A chain of comparisons serves as well as a table: there are few kinds, each read once a part.
+// A chain of comparisons serves as well as a table: there are few kinds, each read once per part.
 std::optional<ShapeResult> ConvexShapeReader::read(const std::string& kind,
                                                    const YamlNode& node) const {
   if (kind == "box") return read_box(node);

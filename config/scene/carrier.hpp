@@ -11,6 +11,8 @@ struct Carrier {
   RobotBase::Kind kind = RobotBase::Kind::kWorld;
   std::uint32_t object = 0;           // index into Scene::objects; not a link
   std::uint32_t robot = 0, link = 0;  // indices into Scene::robots and Robot::links
+
+  bool operator==(const Carrier&) const = default;
 };
 
 // True if the scene has the carrier.

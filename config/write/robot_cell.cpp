@@ -6,16 +6,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <optional>
-#include <set>
 
-#include "config/text/file_bytes.hpp"
-#include "config/urdf/planning_scene.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
 #include "config/yaml/yaml_emitter.hpp"
-#include "core/pose.hpp"
 
 namespace clearance {
 namespace {
@@ -37,54 +32,28 @@ class RobotCellWriter {
       : options_(options),
         robot_(std::move(robot)),
         srdf_(std::move(srdf)),
-        group_(options.group.empty() ? robot_.name : options.group),
         meshes_({options.urdf, options.packages}, PackagesFrom::kCommandLine),
         notes_(robot_.notes) {}
 
   std::variant<RobotCell, UrdfFaults> write();
 
  private:
-  void find_fixed_links();
   void emit_head();
   void emit_object(const UrdfLink& link);
   void emit_shape(const UrdfCollision& collision);
-  void emit_scenes();
-  void emit_pairs();
   void emit_exceptions();
   std::string mesh_path(const UrdfMesh& mesh);
 
   const RobotCellOptions& options_;
   UrdfRobot robot_;
   std::optional<Srdf> srdf_;
-  std::string group_;
-  LinkNames shaped_;                   // links with collision shapes
-  std::map<std::string, Pose> fixed_;  // links that never move, in the world
+  LinkNames shaped_;  // links with collision shapes
   YAML::Emitter out_;
   MeshFinder meshes_;
   std::vector<std::string> notes_;
   // Faults are kept and not thrown, as the emitter is in the middle of a document.
   UrdfFaults faults_;
 };
-
-// Finds the root and all links that fixed joints join to it. The URDF is a tree, so each round
-// fixes the children of the last.
-void RobotCellWriter::find_fixed_links() {
-  if (!options_.fixed_base) return;
-  std::set<std::string> children;
-  for (const UrdfJoint& joint : robot_.joints) children.insert(joint.child);
-  for (const UrdfLink& link : robot_.links) {
-    if (!children.contains(link.name)) fixed_[link.name] = Pose{};
-  }
-  for (bool grown = true; grown;) {
-    grown = false;
-    for (const UrdfJoint& joint : robot_.joints) {
-      if (joint.type != "fixed" || !fixed_.contains(joint.parent) || fixed_.contains(joint.child))
-        continue;
-      fixed_[joint.child] = compose(fixed_[joint.parent], pose_of(joint.parent_from_child));
-      grown = true;
-    }
-  }
-}
 
 // Returns the path of the mesh, relative to the cell.
 std::string RobotCellWriter::mesh_path(const UrdfMesh& mesh) {
@@ -134,22 +103,13 @@ void RobotCellWriter::emit_shape(const UrdfCollision& collision) {
   out_ << YAML::EndMap;
 }
 
-// Emits one link: its name, its group, its pose if it never moves, and its collision shapes as
-// parts.
+// Emits one link: its name, its group, and its collision shapes as parts.
 void RobotCellWriter::emit_object(const UrdfLink& link) {
   out_ << YAML::BeginMap << YAML::Key << "name" << YAML::Value;
   emit_text(out_, link.name);
   out_ << YAML::Key << "groups" << YAML::Value << YAML::Flow << YAML::BeginSeq;
-  emit_text(out_, group_);
+  emit_text(out_, robot_.name);
   out_ << YAML::EndSeq;
-  if (const auto found = fixed_.find(link.name); found != fixed_.end()) {
-    out_ << YAML::Key << "fixed" << YAML::Value << true;
-    out_ << YAML::Key << "pose" << YAML::Value << YAML::Flow << YAML::BeginMap;
-    out_ << YAML::Key << "xyz" << YAML::Value;
-    emit(out_, found->second.position);
-    emit_quaternion(out_, found->second.orientation);
-    out_ << YAML::EndMap;
-  }
   out_ << YAML::Key << "parts" << YAML::Value << YAML::BeginSeq;
   for (const UrdfCollision& collision : link.collisions) {
     out_ << YAML::BeginMap;
@@ -179,49 +139,10 @@ void emit_between(YAML::Emitter& out, const std::string& a, const std::string& b
   out << YAML::EndSeq;
 }
 
-// Notes of the files are passed on; the reader of the cell reports a file with a fault.
-void RobotCellWriter::emit_scenes() {
-  if (options_.scenes.empty()) return;
-  const auto directory = std::filesystem::absolute(options_.directory).lexically_normal();
-  out_ << YAML::Key << "scenes" << YAML::Value << YAML::BeginSeq;
-  for (const std::filesystem::path& scene : options_.scenes) {
-    const auto path = std::filesystem::absolute(scene).lexically_normal();
-    out_ << YAML::Flow << YAML::BeginMap << YAML::Key << "file" << YAML::Value;
-    emit_text(out_, path.lexically_relative(directory).string());
-    out_ << YAML::Key << "group" << YAML::Value;
-    emit_text(out_, scene.stem().string());
-    out_ << YAML::EndMap;
-    const auto bytes = read_bytes(path.string());
-    if (std::holds_alternative<FileFault>(bytes)) continue;
-    const auto read = read_planning_scene(std::get<std::string>(bytes));
-    if (const auto* planning = std::get_if<PlanningScene>(&read)) {
-      for (const std::string& note : planning->notes)
-        notes_.push_back(fmt::format("{}: {}", scene.filename().string(), note));
-    }
-  }
-  out_ << YAML::EndSeq;
-}
-
-// The group against itself is every pair of links; it also meets each planning scene.
-void RobotCellWriter::emit_pairs() {
-  out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
-  emit_between(out_, group_, group_);
-  out_ << YAML::EndMap;
-  for (const std::filesystem::path& scene : options_.scenes) {
-    out_ << YAML::Flow << YAML::BeginMap;
-    emit_between(out_, group_, scene.stem().string());
-    out_ << YAML::EndMap;
-  }
-  out_ << YAML::EndSeq;
-}
-
 // Emits both kinds of exceptions with their reasons.
 void RobotCellWriter::emit_exceptions() {
-  LinkNames fixed_links;
-  for (const auto& [link, world_from_link] : fixed_) fixed_links.insert(link);
-  const std::vector<SrdfDisabled> exceptions =
-      srdf_ ? exceptions_of(*srdf_, shaped_, fixed_links, notes_)
-            : neighbours_of(robot_, shaped_, fixed_links, notes_);
+  const std::vector<SrdfDisabled> exceptions = srdf_ ? exceptions_of(*srdf_, shaped_, {}, notes_)
+                                                     : neighbours_of(robot_, shaped_, {}, notes_);
   if (exceptions.empty()) return;
   out_ << YAML::Key << "allowed_collisions" << YAML::Value
        << YAML::Comment(srdf_ ? "from the SRDF" : "without an SRDF: links that a joint joins")
@@ -259,12 +180,10 @@ void RobotCellWriter::emit_head() {
   out_ << YAML::EndMap;
 }
 
-// Fixed links come first: objects and exceptions depend on them.
 std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   for (const UrdfLink& link : robot_.links) {
     if (!link.collisions.empty()) shaped_.insert(link.name);
   }
-  find_fixed_links();
   if (srdf_) faults_ = faults_of(*srdf_, options_.srdf, robot_, options_.urdf);
   // Frames such as tool0 have no shapes; the note tells that they are not watched.
   std::string without;
@@ -283,8 +202,10 @@ std::variant<RobotCell, UrdfFaults> RobotCellWriter::write() {
   if (!without.empty()) {
     notes_.push_back(fmt::format("links without collision shapes left out: {}", without));
   }
-  emit_scenes();
-  emit_pairs();
+  // The group against itself is every pair of links.
+  out_ << YAML::Key << "pairs" << YAML::Value << YAML::BeginSeq << YAML::Flow << YAML::BeginMap;
+  emit_between(out_, robot_.name, robot_.name);
+  out_ << YAML::EndMap << YAML::EndSeq;
   emit_exceptions();
   out_ << YAML::EndMap << YAML::Newline;
   if (!faults_.empty()) return faults_;

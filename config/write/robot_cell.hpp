@@ -19,18 +19,11 @@ struct RobotCellOptions {
   std::filesystem::path directory;  // of the cell: mesh paths are written relative to it
   // The same as in RobotFiles: other packages are looked for from the URDF upwards.
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
-  std::string group;       // of all links; empty: the robot's name
   double max_speed = 0.0;  // m/s; 0: not stated
   double age_limit_ms = 20.0;
   // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
   std::optional<double> mesh_tolerance;
   std::optional<unsigned> max_parts;
-  // If true, the root link, and all links that fixed joints join to it, stand fixed at the origin
-  // of the world. Otherwise the pose of every link has to arrive.
-  bool fixed_base = false;
-  // Planning scenes of MoveIt, whose obstacles are watched against the robot; each is a group of
-  // its file's name.
-  std::vector<std::filesystem::path> scenes;
 };
 
 // The text of the cell, and notes for the person who asked for it: omissions and their reasons.

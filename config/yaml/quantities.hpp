@@ -17,7 +17,7 @@ namespace clearance {
 enum class LengthUnit : std::uint8_t { kMetre, kMillimetre };
 enum class AngleUnit : std::uint8_t { kRadian, kDegree };
 
-// The largest coordinate of a cell, and the longest way that a stated speed may cover in one
+// The largest coordinate of a cell, and the longest distance that a stated speed may cover in one
 // second. Larger ones are mistakes of units.
 inline constexpr double kMaxLength = 1e6;  // m
 

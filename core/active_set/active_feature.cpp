@@ -10,10 +10,6 @@ constexpr double kOnFacet = 0x1p-49;
 // A state may contain any numbers: the length of the point has to be finite as well.
 bool is_a_point(const Vec3& v) noexcept { return v.squaredNorm() < kInfinity; }
 
-bool within(std::int32_t index, std::size_t size) noexcept {
-  return index >= 0 && static_cast<std::size_t>(index) < size;
-}
-
 }  // namespace
 
 std::int32_t crossed_limit(const ConvexBody& body, const Facet& facet, const Vec3& p,
@@ -42,29 +38,27 @@ std::int32_t facet_under(const ConvexBody& body, std::int32_t index, const Vec3&
 
 void ActiveFeature::place_cold(const Vec3& other) noexcept {
   if (body_.vertices.empty()) return place_inside(body_.interior);
-  const Vec3 to_other = direction_to_local(other - point_to_a(body_.interior));
+  const Vec3 to_other = direction_A_to_L(other - point_to_a(body_.interior));
   place_at_vertex(body_.start.at(to_other));
 }
 
 bool ActiveFeature::place_tracked(const TrackingState::Side& hint) noexcept {
-  if (hint.kind == FeatureKind::kVertex && within(hint.feature, body_.vertices.size())) {
+  if (!exists(body_, hint)) return false;
+  if (hint.kind == FeatureKind::kVertex) {
     place_at_vertex(hint.feature);
     return true;
   }
   if (!is_a_point(hint.point)) return false;
-  if (hint.kind == FeatureKind::kEdge && within(hint.feature, body_.edges.size())) {
+  if (hint.kind == FeatureKind::kEdge) {
     place_on_edge(hint.feature, hint.point);
     return true;
   }
-  if (hint.kind == FeatureKind::kFacet && within(hint.feature, body_.facets.size())) {
-    const Facet& f = body_.facets[hint.feature];
-    const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
-    const double tolerance = kOnFacet * (body_.bounding_radius + p.norm());
-    if (crossed_limit(body_, f, p, tolerance) != kNone) return false;
-    place(FeatureKind::kFacet, hint.feature, p);
-    return true;
-  }
-  return false;
+  const Facet& f = body_.facets[hint.feature];
+  const Vec3 p = hint.point - (f.normal.dot(hint.point) - f.offset) * f.normal;
+  const double tolerance = kOnFacet * (body_.bounding_radius + p.norm());
+  if (crossed_limit(body_, f, p, tolerance) != kNone) return false;
+  place(FeatureKind::kFacet, hint.feature, p);
+  return true;
 }
 
 // A hint on an unbounded body may come from another pair. Its point may be so far out that rounding
@@ -74,7 +68,7 @@ void ActiveFeature::place_near(const TrackingState::Side& hint, const ActiveFeat
                                double between_origins) noexcept {
   const double farthest =
       body_.bounding_radius + 2.0 * (other.body_.bounding_radius + between_origins);
-  if (place_tracked(hint) && (body_.bounded() || local_point_.norm() <= farthest)) return;
+  if (place_tracked(hint) && (body_.bounded() || point_L_.norm() <= farthest)) return;
   place_cold(other.point_to_a(other.body_.interior));
 }
 

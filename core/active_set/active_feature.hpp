@@ -12,9 +12,7 @@
 #include <cassert>
 #include <cstdint>
 
-#include "core/convex_body.hpp"
-#include "core/distance_result.hpp"
-#include "core/pose.hpp"
+#include "core/model/query.hpp"
 
 namespace clearance {
 
@@ -29,14 +27,6 @@ namespace clearance {
 [[nodiscard]] std::int32_t facet_under(const ConvexBody& body, std::int32_t index,
                                        const Vec3& p) noexcept;
 
-// Does the body have this feature? Every body has an inside.
-[[nodiscard]] inline bool has(const ConvexBody& body, FeatureKind kind,
-                              std::int32_t index) noexcept {
-  if (kind == FeatureKind::kInside) return index == kNone;
-  return kind < FeatureKind::kInside && index >= 0 &&
-         static_cast<std::uint32_t>(index) < body.features[static_cast<std::size_t>(kind)];
-}
-
 class ActiveFeature {
  public:
   // pose: null for body A, whose frame is frame A.
@@ -46,8 +36,8 @@ class ActiveFeature {
   [[nodiscard]] const ConvexBody& body() const noexcept { return body_; }
   [[nodiscard]] FeatureKind feature() const noexcept { return feature_; }
   [[nodiscard]] std::int32_t index() const noexcept { return index_; }
-  [[nodiscard]] const Vec3& local_point() const noexcept { return local_point_; }
-  [[nodiscard]] const Vec3& point_in_a() const noexcept { return point_in_a_; }
+  [[nodiscard]] const Vec3& point_L() const noexcept { return point_L_; }
+  [[nodiscard]] const Vec3& point_A() const noexcept { return point_A_; }
 
   [[nodiscard]] const Facet& facet() const noexcept { return body_.facets[index_]; }
   [[nodiscard]] const Edge& edge() const noexcept { return body_.edges[index_]; }
@@ -57,7 +47,7 @@ class ActiveFeature {
     return pose_ ? Vec3(pose_->rotation * v) : v;
   }
   [[nodiscard]] const RelativePose* pose() const noexcept { return pose_; }
-  [[nodiscard]] Vec3 direction_to_local(const Vec3& v) const noexcept {
+  [[nodiscard]] Vec3 direction_A_to_L(const Vec3& v) const noexcept {
     return pose_ ? Vec3(pose_->rotation.transpose() * v) : v;
   }
   [[nodiscard]] Vec3 point_to_a(const Vec3& p) const noexcept {
@@ -65,11 +55,11 @@ class ActiveFeature {
   }
 
   void place(FeatureKind feature, std::int32_t index, const Vec3& local) noexcept {
-    assert(has(body_, feature, index));
+    assert(has_feature(body_, feature, index));
     feature_ = feature;
     index_ = index;
-    local_point_ = local;
-    point_in_a_ = point_to_a(local);
+    point_L_ = local;
+    point_A_ = point_to_a(local);
   }
   void place_at_vertex(std::int32_t index) noexcept {
     place(FeatureKind::kVertex, index, body_.vertices[index].position);
@@ -98,7 +88,7 @@ class ActiveFeature {
   void place_near(const TrackingState::Side& hint, const ActiveFeature& other,
                   double between_origins) noexcept;
   [[nodiscard]] TrackingState::Side tracked() const noexcept {
-    return {feature_, false, index_, local_point_};
+    return {feature_, false, index_, point_L_};
   }
 
  private:
@@ -106,7 +96,7 @@ class ActiveFeature {
   const RelativePose* pose_;
   FeatureKind feature_ = FeatureKind::kInside;
   std::int32_t index_ = kNone;
-  Vec3 local_point_ = Vec3::Zero(), point_in_a_ = Vec3::Zero();
+  Vec3 point_L_ = Vec3::Zero(), point_A_ = Vec3::Zero();
 };
 
 }  // namespace clearance

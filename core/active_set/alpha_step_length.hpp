@@ -29,7 +29,7 @@ inline Alpha from_inside(const ActiveFeature& side, const Vec3& move) noexcept {
   for (std::size_t i = 0; i < facets.size(); ++i) {
     const double speed = facets[i].normal.dot(move);
     if (!(speed > 0.0)) continue;
-    const double f = fraction(facets[i].offset - facets[i].normal.dot(side.local_point()), speed);
+    const double f = fraction(facets[i].offset - facets[i].normal.dot(side.point_L()), speed);
     if (f < best.fraction) best = {f, static_cast<std::int32_t>(i)};
   }
   return best;
@@ -42,7 +42,7 @@ inline Alpha within_facet(const ActiveFeature& side, const Vec3& move) noexcept 
     const FacetLimit boundary = side.body().limit_of(facet, i);
     const double speed = -boundary.inward.dot(move);
     if (!(speed > 0.0)) continue;
-    const double gap = boundary.inward.dot(side.local_point()) - boundary.offset;
+    const double gap = boundary.inward.dot(side.point_L()) - boundary.offset;
     if (!(gap < best.fraction * speed)) continue;
     best = {fraction(gap, speed), side.body().facet_edges[facet.first_side + i].edge};
   }
@@ -52,7 +52,7 @@ inline Alpha within_facet(const ActiveFeature& side, const Vec3& move) noexcept 
 inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
   const Edge& edge = side.edge();
   const double speed = edge.direction.dot(move);
-  const double at = (side.local_point() - edge.point).dot(edge.direction);
+  const double at = (side.point_L() - edge.point).dot(edge.direction);
   if (at + speed > edge.end && speed > 0.0) return {fraction(edge.end - at, speed), edge.vertex[1]};
   if (at + speed < edge.begin && speed < 0.0) {
     return {fraction(at - edge.begin, -speed), edge.vertex[0]};
@@ -64,7 +64,7 @@ inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
 
 [[nodiscard]] inline Alpha alpha(const ActiveFeature& side, const Vec3& move_in_a) noexcept {
   if (side.feature() == FeatureKind::kVertex) return {};
-  const Vec3 move = side.direction_to_local(move_in_a);
+  const Vec3 move = side.direction_A_to_L(move_in_a);
   if (side.feature() == FeatureKind::kEdge) return alpha_case::along_edge(side, move);
   if (side.feature() == FeatureKind::kFacet) return alpha_case::within_facet(side, move);
   return alpha_case::from_inside(side, move);
@@ -74,7 +74,7 @@ inline Alpha along_edge(const ActiveFeature& side, const Vec3& move) noexcept {
 inline void advance(ActiveFeature& side, const Vec3& move_in_a, const Alpha& step) noexcept {
   assert(!(step.fraction < 0.0) && !(step.fraction > 1.0));
   if (side.feature() == FeatureKind::kVertex) return;
-  const Vec3 to = side.local_point() + step.fraction * side.direction_to_local(move_in_a);
+  const Vec3 to = side.point_L() + step.fraction * side.direction_A_to_L(move_in_a);
   if (side.feature() == FeatureKind::kEdge) {
     if (step.blocking != kNone) return side.place_at_vertex(step.blocking);
     return side.place_on_edge(side.index(), to);

@@ -39,7 +39,7 @@ void add_crossing_edges(Separators& list, const ActiveFeature& a, const ActiveFe
 double support_value(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                      double within) noexcept {
   if (facet != kNone) return s.body().facets[facet].offset;
-  const Vec3 m = s.direction_to_local(normal);
+  const Vec3 m = s.direction_A_to_L(normal);
   return support(s.body(), m).value + support_along_rays(s.body(), m, within);
 }
 
@@ -49,7 +49,7 @@ bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
                 double direction_error) noexcept {
   if (facet != kNone) return true;
   const RecessionCone& cone = s.body().recession_cone;
-  const Vec3 m = s.direction_to_local(normal);
+  const Vec3 m = s.direction_A_to_L(normal);
   return cone.line_count == 0 && std::ranges::all_of(cone.rays, [&](const Vec3& ray) {
            return m.dot(ray) < -(kDerivativeError + direction_error);
          });
@@ -59,10 +59,11 @@ bool ends_along(const ActiveFeature& s, const Vec3& normal, std::int32_t facet,
 
 Separators separators(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Separators list;
-  const Vec3 between = b.point_in_a() - a.point_in_a();
+  const Vec3 between = b.point_A() - a.point_A();
   add_facets(list, a, b);
-  // `between` is at right angles to the active edges but for rounding. The edges are not at right
-  // angles to each other: the projection across the second brings some of the first back.
+  // Rounding leaves a part of `between` along the active edges, which projections across them take
+  // off. The edges are not at right angles to each other. So the projection across the second edge
+  // brings back a part along the first one, which is then projected once more.
   Vec3 direct = between;
   if (a.feature() == FeatureKind::kEdge) direct = across(direct, along(a));
   if (b.feature() == FeatureKind::kEdge) direct = across(direct, along(b));
@@ -85,11 +86,11 @@ double separation(const Separator& s, const ActiveFeature& a, const ActiveFeatur
     if (!ends) return -kInfinity;
   }
   assert(is_unit_or_unknown(s.normal));
-  const double of_a = support_value(a, s.normal, s.facet_of_a, p.extent_a);
-  const double of_b = support_value(b, -s.normal, s.facet_of_b, p.extent_b);
+  const double value_a = support_value(a, s.normal, s.facet_of_a, p.extent_a);
+  const double value_b = support_value(b, -s.normal, s.facet_of_b, p.extent_b);
   // The least n.x over B minus the greatest over A, each from the origin of its body's frame.
   const Vec3 origin_of_b = b.point_to_a(Vec3::Zero());
-  return (s.normal.dot(origin_of_b) - of_b) - of_a;
+  return (s.normal.dot(origin_of_b) - value_b) - value_a;
 }
 
 }  // namespace clearance

@@ -37,45 +37,45 @@ inline Vec3 onto_line(const Vec3& p, const Vec3& on, const Vec3& e) noexcept {
 
 inline void vertex_vertex(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = p.point_in_a();
-  to_q = q.point_in_a();
+  to_p = p.point_A();
+  to_q = q.point_A();
 }
 
 inline void vertex_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                         Vec3& to_q) noexcept {
-  to_p = p.point_in_a();
-  to_q = onto_line(p.point_in_a(), q.point_in_a(), along(q));
+  to_p = p.point_A();
+  to_q = onto_line(p.point_A(), q.point_A(), along(q));
 }
 
 inline void vertex_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
-  to_p = p.point_in_a();
-  to_q = onto_plane(p.point_in_a(), q.point_in_a(), normal(q));
+  to_p = p.point_A();
+  to_q = onto_plane(p.point_A(), q.point_A(), normal(q));
 }
 
 inline void vertex_inside(const ActiveFeature& p, const ActiveFeature&, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = to_q = p.point_in_a();
+  to_p = to_q = p.point_A();
 }
 
 inline void edge_edge(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                       Vec3& to_q) noexcept {
   const Vec3 e = along(p), f = along(q);
-  const Vec3 between = q.point_in_a() - p.point_in_a();
+  const Vec3 between = q.point_A() - p.point_A();
   // The part of f across e: its length is the sine of the angle between them, without cancellation
   // in s.
   const Vec3 across = f - f.dot(e) * e;
   const double sine2 = across.squaredNorm();
   if (sine2 < kParallelSine * kParallelSine) {
-    to_p = p.point_in_a() + 0.5 * between.dot(e) * e;
-    to_q = onto_line(to_p, q.point_in_a(), f);
+    to_p = p.point_A() + 0.5 * between.dot(e) * e;
+    to_q = onto_line(to_p, q.point_A(), f);
     return;
   }
   // `between` is projected across e as well: rounding leaves a part of e in `across`, which would
   // count for a long `between`.
   const double s = -(between - between.dot(e) * e).dot(across) / sine2;
-  to_q = q.point_in_a() + s * f;
-  to_p = onto_line(to_q, p.point_in_a(), e);
+  to_q = q.point_A() + s * f;
+  to_p = onto_line(to_q, p.point_A(), e);
 }
 
 inline void edge_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
@@ -83,16 +83,16 @@ inline void edge_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_
   const Vec3 e = along(p), n = normal(q);
   const double sine = e.dot(n);
   if (std::abs(sine) < kParallelSine) {
-    to_p = 0.5 * (p.point_in_a() + onto_line(q.point_in_a(), p.point_in_a(), e));
-    to_q = onto_plane(to_p, q.point_in_a(), n);
+    to_p = 0.5 * (p.point_A() + onto_line(q.point_A(), p.point_A(), e));
+    to_q = onto_plane(to_p, q.point_A(), n);
     return;
   }
-  to_p = to_q = p.point_in_a() + ((q.point_in_a() - p.point_in_a()).dot(n) / sine) * e;
+  to_p = to_q = p.point_A() + ((q.point_A() - p.point_A()).dot(n) / sine) * e;
 }
 
 inline void edge_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                         Vec3& to_q) noexcept {
-  to_p = to_q = onto_line(q.point_in_a(), p.point_in_a(), along(p));
+  to_p = to_q = onto_line(q.point_A(), p.point_A(), along(p));
 }
 
 inline void facet_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
@@ -102,24 +102,24 @@ inline void facet_facet(const ActiveFeature& p, const ActiveFeature& q, Vec3& to
   const Vec3 m_across = m - m.dot(n) * n;  // in p's plane
   const double sine2 = n_across.squaredNorm();
   if (sine2 < kParallelSine * kParallelSine) {
-    to_p = 0.5 * (p.point_in_a() + onto_plane(q.point_in_a(), p.point_in_a(), n));
-    to_q = onto_plane(to_p, q.point_in_a(), m);
+    to_p = 0.5 * (p.point_A() + onto_plane(q.point_A(), p.point_A(), n));
+    to_q = onto_plane(to_p, q.point_A(), m);
     return;
   }
-  const Vec3 between = q.point_in_a() - p.point_in_a();
-  const Vec3 on_line_p = p.point_in_a() + (between.dot(m) / sine2) * m_across;
-  const Vec3 on_line_q = q.point_in_a() - (between.dot(n) / sine2) * n_across;
+  const Vec3 between = q.point_A() - p.point_A();
+  const Vec3 on_line_p = p.point_A() + (between.dot(m) / sine2) * m_across;
+  const Vec3 on_line_q = q.point_A() - (between.dot(n) / sine2) * n_across;
   to_p = to_q = 0.5 * (on_line_p + on_line_q);
 }
 
 inline void facet_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                          Vec3& to_q) noexcept {
-  to_p = to_q = onto_plane(q.point_in_a(), p.point_in_a(), normal(p));
+  to_p = to_q = onto_plane(q.point_A(), p.point_A(), normal(p));
 }
 
 inline void inside_inside(const ActiveFeature& p, const ActiveFeature& q, Vec3& to_p,
                           Vec3& to_q) noexcept {
-  to_p = to_q = 0.5 * (p.point_in_a() + q.point_in_a());
+  to_p = to_q = 0.5 * (p.point_A() + q.point_A());
 }
 
 }  // namespace delta_case
@@ -137,12 +137,12 @@ inline constexpr std::array<std::array<DeltaCase*, 4>, 4> kDeltaTable = {
 
 [[nodiscard]] inline Delta delta(const ActiveFeature& a, const ActiveFeature& b) noexcept {
   Delta result;
-  const auto of_a = static_cast<std::size_t>(a.feature());
-  const auto of_b = static_cast<std::size_t>(b.feature());
-  if (of_a <= of_b) {
-    kDeltaTable[of_a][of_b](a, b, result.a, result.b);
+  const auto kind_a = static_cast<std::size_t>(a.feature());
+  const auto kind_b = static_cast<std::size_t>(b.feature());
+  if (kind_a <= kind_b) {
+    kDeltaTable[kind_a][kind_b](a, b, result.a, result.b);
   } else {
-    kDeltaTable[of_b][of_a](b, a, result.b, result.a);
+    kDeltaTable[kind_b][kind_a](b, a, result.b, result.a);
   }
   return result;
 }

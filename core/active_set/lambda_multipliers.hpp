@@ -43,7 +43,7 @@ inline Lambda of_vertex(const ActiveFeature& side, const Vec3& direction) noexce
 // be compared. The scaling of (3.4.25) serves the same end.
 [[nodiscard]] inline Lambda lambda(const ActiveFeature& side, const Vec3& direction_in_a) noexcept {
   if (side.feature() == FeatureKind::kInside) return {};
-  const Vec3 direction = side.direction_to_local(direction_in_a);
+  const Vec3 direction = side.direction_A_to_L(direction_in_a);
   if (side.feature() == FeatureKind::kFacet) return lambda_case::of_facet(side, direction);
   return side.feature() == FeatureKind::kEdge ? lambda_case::of_edge(side, direction)
                                               : lambda_case::of_vertex(side, direction);

@@ -56,7 +56,7 @@ inline SeparatingDirection from_facet(const Vec3& normal, const Vec3& between,
 [[nodiscard]] inline SeparatingDirection separating_direction(const ActiveFeature& a,
                                                               const ActiveFeature& b) noexcept {
   using namespace direction_case;
-  const Vec3 between = b.point_in_a() - a.point_in_a();
+  const Vec3 between = b.point_A() - a.point_A();
   const bool a_vertex = a.feature() == FeatureKind::kVertex,
              b_vertex = b.feature() == FeatureKind::kVertex;
   if (a.feature() == FeatureKind::kFacet) return from_facet(a.facet().normal, between, b_vertex);

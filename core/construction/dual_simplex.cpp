@@ -9,14 +9,15 @@ namespace {
 
 constexpr int kNoConstraint = -1;
 
-DepthConstraint from_row(const HalfSpace& row, int unit_exponent) {
+InteriorConstraint from_row(const HalfSpace& row, int unit_exponent) {
   const Vec3& n = row.normal;
   Eigen::Index axis = 0;
   n.cwiseAbs().maxCoeff(&axis);
   const double depth = std::ldexp(1.0, std::ilogb(n[axis]));
-  DepthConstraint result;
+  InteriorConstraint result;
   result.a = integer_multiple({n.x(), n.y(), n.z(), depth});
-  // The offset by the factor that made depth an integer, a power of two or its inverse.
+  // Multiplies the offset by the factor that has made `depth` an integer. That factor is a power of
+  // two or the inverse of one.
   const mpq_class offset = mpq_class(row.offset) * result.a[3] / mpq_class(depth);
   result.b = offset.get_num();
   for (Integer& entry : result.a) entry *= offset.get_den();
@@ -29,8 +30,8 @@ DepthConstraint from_row(const HalfSpace& row, int unit_exponent) {
   return result;
 }
 
-DepthConstraint bound(std::size_t variable, int sign, const Integer& limit) {
-  DepthConstraint result;
+InteriorConstraint bound(std::size_t variable, int sign, const Integer& limit) {
+  InteriorConstraint result;
   result.a[variable] = sign;
   result.b = limit;
   result.rounded.fill(std::numeric_limits<double>::quiet_NaN());
@@ -57,7 +58,7 @@ Integer minor(const std::array<const Integer4*, 4>& m, std::size_t row, std::siz
 
 // By cofactors: A^-1 = adjugate / determinant. The determinant is made positive, so that products
 // with the adjugate have the signs of those with the inverse.
-void DepthBasis::invert(const std::vector<DepthConstraint>& constraints) {
+void InteriorBasis::invert(const std::vector<InteriorConstraint>& constraints) {
   std::array<const Integer4*, 4> m{};
   for (std::size_t i = 0; i < 4; ++i) m[i] = &constraints[at(member[i])].a;
   for (std::size_t i = 0; i < 4; ++i) {
@@ -75,7 +76,7 @@ void DepthBasis::invert(const std::vector<DepthConstraint>& constraints) {
   }
 }
 
-Integer4 DepthBasis::combination(const Integer4& a) const {
+Integer4 InteriorBasis::combination(const Integer4& a) const {
   Integer4 result;
   for (std::size_t i = 0; i < 4; ++i) {
     for (std::size_t j = 0; j < 4; ++j) result[i] += a[j] * adjugate[j][i];
@@ -83,7 +84,7 @@ Integer4 DepthBasis::combination(const Integer4& a) const {
   return result;
 }
 
-Integer4 DepthBasis::solution(const std::vector<DepthConstraint>& constraints) const {
+Integer4 InteriorBasis::solution(const std::vector<InteriorConstraint>& constraints) const {
   Integer4 result;
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t i = 0; i < 4; ++i) result[j] += adjugate[j][i] * constraints[at(member[i])].b;
@@ -91,18 +92,18 @@ Integer4 DepthBasis::solution(const std::vector<DepthConstraint>& constraints) c
   return result;
 }
 
-DepthProgramme::DepthProgramme(std::span<const HalfSpace> rows, const std::array<bool, 3>& free,
-                               int unit_exponent)
+InteriorProgramme::InteriorProgramme(std::span<const HalfSpace> rows,
+                                     const std::array<bool, 3>& free, int unit_exponent)
     : rows_(static_cast<int>(rows.size())), free_(free) {
   constraints_.reserve(rows.size() + 7);
   for (const HalfSpace& row : rows) constraints_.push_back(from_row(row, unit_exponent));
 }
 
-Integer DepthProgramme::ample_box() const {
+Integer InteriorProgramme::ample_box() const {
   // A vertex is a quotient of determinants of integers: at most 24 products of four over at
   // least 1.
   std::size_t bits = 1;
-  for (const DepthConstraint& constraint : constraints_) {
+  for (const InteriorConstraint& constraint : constraints_) {
     bits = std::max(bits, mpz_sizeinbase(constraint.b.get_mpz_t(), 2));
     for (const Integer& entry : constraint.a) {
       bits = std::max(bits, mpz_sizeinbase(entry.get_mpz_t(), 2));
@@ -111,7 +112,7 @@ Integer DepthProgramme::ample_box() const {
   return Integer(1) << (4 * bits + 5);
 }
 
-void DepthProgramme::solve(const Integer& box) {
+void InteriorProgramme::solve(const Integer& box) {
   constraints_.resize(at(rows_));
   // The start is a vertex of the box at t = 1, with all of the objective on the last bound. This
   // start is dual feasible, whatever the rows are.
@@ -135,13 +136,13 @@ void DepthProgramme::solve(const Integer& box) {
   }
 }
 
-bool DepthProgramme::allows(const Integer4& xt, const Integer& denominator) const {
+bool InteriorProgramme::allows(const Integer4& xt, const Integer& denominator) const {
   return std::all_of(
       constraints_.begin(), constraints_.begin() + rows_,
-      [&](const DepthConstraint& row) { return dot(row.a, xt) <= row.b * denominator; });
+      [&](const InteriorConstraint& row) { return dot(row.a, xt) <= row.b * denominator; });
 }
 
-std::optional<NoInterior> DepthProgramme::proof() const {
+std::optional<NoInterior> InteriorProgramme::proof() const {
   // The multipliers with which the members add up to t <= (t of the solution), by Farkas' lemma.
   const Integer4 multiplier = basis_.combination({0, 0, 0, 1});
   NoInterior result{{}, sgn(solution_[3]) == 0};
@@ -157,7 +158,7 @@ std::optional<NoInterior> DepthProgramme::proof() const {
 
 // A constraint that the present solution violates (the most violated one, or the first), or
 // kNoConstraint when all hold exactly.
-int DepthProgramme::violated(bool first) const {
+int InteriorProgramme::violated(bool first) const {
   std::array<double, 4> x{};
   for (std::size_t i = 0; i < 4; ++i) {
     mpq_class quotient(solution_[i], basis_.determinant);
@@ -191,7 +192,7 @@ int DepthProgramme::violated(bool first) const {
   if (worst != kNoConstraint && !first) return worst;
   for (const int c : unsure) {
     if (worst != kNoConstraint && c > worst) break;
-    const DepthConstraint& constraint = constraints_[at(c)];
+    const InteriorConstraint& constraint = constraints_[at(c)];
     if (dot(constraint.a, solution_) > constraint.b * basis_.determinant) return c;
   }
   return worst;
@@ -199,7 +200,7 @@ int DepthProgramme::violated(bool first) const {
 
 // Ratio test: among the members in the entering row's combination, the one whose multiplier is used
 // up first leaves. There is always one, because a small enough t satisfies every row.
-void DepthProgramme::pivot(int entering) {
+void InteriorProgramme::pivot(int entering) {
   const Integer4 multiplier = basis_.combination({0, 0, 0, 1});
   const Integer4 share = basis_.combination(constraints_[at(entering)].a);
   int leaving = kNoConstraint;

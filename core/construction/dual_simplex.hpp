@@ -19,7 +19,7 @@ namespace clearance::exact {
 
 // One constraint a.(x, t) <= b, and its doubles: a and b up to a positive factor, exactly. NaN: use
 // the integers.
-struct DepthConstraint {
+struct InteriorConstraint {
   Integer4 a;
   Integer b;
   std::array<double, 5> rounded;
@@ -27,25 +27,25 @@ struct DepthConstraint {
 };
 
 // Four constraints that hold with equality, and their inverse: `adjugate` / `determinant`.
-struct DepthBasis {
+struct InteriorBasis {
   std::array<int, 4> member{};
   std::array<Integer4, 4> adjugate;
   Integer determinant;  // > 0
 
-  void invert(const std::vector<DepthConstraint>& constraints);
+  void invert(const std::vector<InteriorConstraint>& constraints);
   // The coefficients of `a` as a combination of the members, times `determinant`.
   [[nodiscard]] Integer4 combination(const Integer4& a) const;
   // The point in which the members meet, times `determinant`.
-  [[nodiscard]] Integer4 solution(const std::vector<DepthConstraint>& constraints) const;
+  [[nodiscard]] Integer4 solution(const std::vector<InteriorConstraint>& constraints) const;
 };
 
-class DepthProgramme {
+class InteriorProgramme {
  public:
   // Lengths are in units of 2^unit_exponent m, in which no plane is farther than 1 from the origin.
   // The coordinates that are not `free` stay 0: the free ones must give the normals their full
   // rank.
-  DepthProgramme(std::span<const HalfSpace> rows, const std::array<bool, 3>& free,
-                 int unit_exponent);
+  InteriorProgramme(std::span<const HalfSpace> rows, const std::array<bool, 3>& free,
+                    int unit_exponent);
 
   // Keeps |x| <= box (units) and t <= 1.
   void solve(const Integer& box);
@@ -69,8 +69,8 @@ class DepthProgramme {
 
   int rows_;
   std::array<bool, 3> free_;
-  std::vector<DepthConstraint> constraints_;  // the rows, then the box and the cap of solve()
-  DepthBasis basis_;
+  std::vector<InteriorConstraint> constraints_;  // the rows, then the box and the cap of solve()
+  InteriorBasis basis_;
   Integer4 solution_;
 };
 

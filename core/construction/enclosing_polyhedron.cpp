@@ -35,7 +35,7 @@ class Outline {
       farthest = std::max(farthest, n.dot(sphere.centre) + length * sphere.radius);
     }
     for (const Curved& body : curved_) {
-      const double value = clearance::support_value(*body.shape, body.turn.transpose() * n);
+      const double value = clearance::support_value(*body.shape, body.rotation.transpose() * n);
       farthest = std::max(farthest, n.dot(body.origin) + value + length * body.radius);
     }
     return farthest + 0x1p-49 * size_;  // three roundings of a product, two of the sum
@@ -53,7 +53,7 @@ class Outline {
     }
     for (const Curved& body : curved_) {
       for (const Vec3& p : surface_points(*body.shape, kRound)) {
-        add_sample({body.origin + body.turn * p, body.round, body.radius}, points);
+        add_sample({body.origin + body.rotation * p, body.round, body.radius}, points);
       }
     }
     return points;
@@ -69,7 +69,7 @@ class Outline {
   // A curved body, rotated and then moved.
   struct Curved {
     const CurvedShape* shape;
-    Mat3 turn;
+    Mat3 rotation;
     Vec3 origin;
     double round, radius;  // as of a sphere
   };

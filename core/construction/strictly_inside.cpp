@@ -45,7 +45,7 @@ int unit_exponent(std::span<const HalfSpace> rows) {
 }
 
 // Homogeneous, in units; coordinates rounded to `bits` bits of the largest.
-Integer4 rounded_solution(const DepthProgramme& programme, int bits) {
+Integer4 rounded_solution(const InteriorProgramme& programme, int bits) {
   const auto length = [](const Integer& x) {
     return sgn(x) == 0 ? 0L : static_cast<long>(mpz_sizeinbase(x.get_mpz_t(), 2));
   };
@@ -61,7 +61,7 @@ Integer4 rounded_solution(const DepthProgramme& programme, int bits) {
 }
 
 // Is the homogeneous point at least half as deep as the solution?
-bool deep_enough(const DepthProgramme& programme, const Integer4& point) {
+bool deep_enough(const InteriorProgramme& programme, const Integer4& point) {
   Integer4 xt;
   for (std::size_t i = 0; i < 3; ++i) xt[i] = 2 * point[i] * programme.denominator();
   xt[3] = programme.solution()[3] * point[3];
@@ -95,7 +95,7 @@ NormalSpan normal_span(std::span<const HalfSpace> rows) {
 
 std::variant<Integer4, NoInterior> interior_point(std::span<const HalfSpace> rows) {
   const int unit = unit_exponent(rows);
-  DepthProgramme programme(rows, spanning_axes(rows), unit);
+  InteriorProgramme programme(rows, spanning_axes(rows), unit);
   // A deep point of a body of ordinary proportions is near its planes. A point between planes that
   // are almost parallel may be far away, and an infeasibility proof may not use the box. These
   // cases need a larger box.

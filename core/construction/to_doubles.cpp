@@ -195,7 +195,7 @@ class Assembler {
       body_.vertices.push_back({body_.anchors[v],
                                 static_cast<std::int32_t>(body_.vertex_edges.size()),
                                 static_cast<std::int32_t>(around[v].size())});
-      turn(around[v]);
+      order_around(around[v]);
       fill_row(body_.vertex_edges);
     }
   }
@@ -207,7 +207,7 @@ class Assembler {
 
   // Counter-clockwise as seen from outside: an edge's left facet, leaving the vertex, is the next
   // one's right.
-  void turn(std::vector<EdgeUse>& uses) {
+  void order_around(std::vector<EdgeUse>& uses) {
     const auto right_of = [this](const EdgeUse& use) {
       return body_.edges[at(use.edge)].facet[1 - use.side];
     };

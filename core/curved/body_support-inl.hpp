@@ -1,5 +1,5 @@
 // The support value of a whole body along a direction and the support point of its active parts, in
-// the body's frame. A certificate needs both. Compiled once a vector width: see
+// the body's frame. A certificate needs both. Compiled once per vector width: see
 // core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_BODY_SUPPORT) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_BODY_SUPPORT

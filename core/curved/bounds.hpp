@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "core/curved/body_view.hpp"
-#include "core/distance_result.hpp"
-#include "core/numerics/error_constants.hpp"
+#include "core/model/error_bounds.hpp"
+#include "core/model/finish.hpp"
 
 namespace clearance {
 
@@ -20,21 +20,17 @@ namespace clearance {
 // length.
 inline constexpr double kUlpsOfA = 18, kUlpsOfB = 26, kUlpsOfOffset = 12;
 
-// The errors of B's place, as in RelativePose, and the translation's length, m.
-struct CurvedPlace {
-  double rotation_error, translation_error, offset;
-};
 // Neither bound is off by more than this, m. `upper`: the upper bound, if there is one. `size`:
 // that of the pair.
 [[nodiscard]] inline double rounding_error(const BodyView& a, const BodyView& b,
-                                           const CurvedPlace& at, double upper,
+                                           const PlacePrecision& at, double upper,
                                            double size) noexcept {
   const double farthest = std::max(0.0, std::min(upper, size));
   const double rotated =
-      std::min(b.bounding_radius, a.bounding_radius + at.offset + kStretched * farthest) *
+      std::min(b.bounding_radius, a.bounding_radius + at.translation + kStretched * farthest) *
       kRoundedUp;
   const double ulps =
-      kUlpsOfA * a.bounding_radius + kUlpsOfB * b.bounding_radius + kUlpsOfOffset * at.offset;
+      kUlpsOfA * a.bounding_radius + kUlpsOfB * b.bounding_radius + kUlpsOfOffset * at.translation;
   return kUlp * ulps + a.body->position_error + b.body->position_error + at.translation_error +
          at.rotation_error * rotated + kUnderflow;
 }
@@ -43,7 +39,6 @@ struct CurvedConclusion {
   double lower = -kInfinity, upper = kInfinity;  // signed, as computed
   double error = 0.0;                            // m: neither bound is off by more
   double size = 0.0;                             // m: bounding radii and translation length
-  double radius_a = 0.0, radius_b = 0.0;         // m
   Vec3 normal = Vec3::Zero();                    // unit, from A to B; this and the points: frame A
   Vec3 point_on_a = Vec3::Zero(), point_on_b = Vec3::Zero();  // on the bodies without radii
   bool is_radial = false;  // the normal is that of a closed form, along the gap vector to rounding
@@ -61,32 +56,26 @@ struct CurvedConclusion {
 // Bounds that have converged are within this of each other, times the pair's size.
 inline constexpr double kConvergedCurvedGap = 1e-13;
 
-[[nodiscard]] inline DistanceStatus status_of(double lower, double upper, double size) noexcept {
-  if (!(upper - lower <= kConvergedCurvedGap * size)) return DistanceStatus::kIterationLimit;
-  if (lower > 0.0) return DistanceStatus::kConverged;
-  return upper < 0.0 ? DistanceStatus::kOverlapping : DistanceStatus::kTouching;
-}
-
-[[nodiscard]] inline DistanceResult conclude(const CurvedConclusion& found) noexcept {
-  const double radii = found.radius_a + found.radius_b;
-  // The sum of the radii, the error and their difference from the bound: 2 ulps of each.
-  const auto rounding = [&](double bound) { return 0x1p-51 * (radii + std::abs(bound)); };
+// The result of the bodies with their radii.
+[[nodiscard]] inline DistanceResult conclude(const ConvexBody& a, const ConvexBody& b,
+                                             const CurvedConclusion& found) noexcept {
+  // A difference of a bound and the error is off by at most 2 ulps of the bound.
+  const auto rounding = [](double bound) { return 0x1p-51 * std::abs(bound); };
   // Points give the best estimate of a distance, and directions that of a depth.
   const double best = found.lower < 0.0 ? found.lower : found.upper;
-  DistanceResult r;
-  r.lower = found.lower - found.error - radii - rounding(found.lower);
-  r.upper = found.upper + found.error - radii + rounding(found.upper);
-  r.distance = std::clamp(best - radii, r.lower, r.upper);
+  Answer r;
+  r.lower = found.lower - found.error - rounding(found.lower);
+  r.upper = found.upper + found.error + rounding(found.upper);
+  r.distance = std::clamp(best, r.lower, r.upper);
   r.normal = found.normal;
   r.point_on_a = found.point_on_a;
   r.point_on_b = found.point_on_b;
-  if (radii > 0.0) {
-    const Vec3 radial = radial_direction(found);
-    r.point_on_a += found.radius_a * radial;
-    r.point_on_b -= found.radius_b * radial;
-  }
   r.path = DistancePath::kDirection;
-  r.status = status_of(r.lower, r.upper, found.size + radii);
+  if (r.upper - r.lower <= kConvergedCurvedGap * (found.size + radii(a, b))) {
+    r.status = DistanceStatus::kConverged;
+  }
+  const bool rounded = radii(a, b) > 0.0;
+  finish(a, b, rounded ? radial_direction(found) : found.normal, r);
   return r;
 }
 

@@ -10,27 +10,27 @@ namespace {
 // The cap's disc, and the other body in the cap's frame.
 struct CapView {
   CurvedPair& pair;
-  bool of_a;
+  bool cap_is_of_a;
   Disc disc;
   Vec3 normal;  // frame A, from A to B
 
-  [[nodiscard]] BodyView& other() const noexcept { return of_a ? pair.b : pair.a; }
+  [[nodiscard]] BodyView& other() const noexcept { return cap_is_of_a ? pair.b : pair.a; }
   // Rotates a direction from the cap's frame into that of the other body.
   [[nodiscard]] Vec3 direction_to_other(const Vec3& v) const noexcept {
-    return of_a ? pair.direction_to_b(v) : pair.direction_to_a(v);
+    return cap_is_of_a ? pair.direction_to_b(v) : pair.direction_to_a(v);
   }
   // Projects a point of the other body's frame onto the cap's plane.
   [[nodiscard]] Vec2 in_plane(const Vec3& point) const noexcept {
-    const Vec3 p = of_a ? pair.point_to_a(point) : pair.point_to_b(point);
+    const Vec3 p = cap_is_of_a ? pair.point_to_a(point) : pair.point_to_b(point);
     return {p.x(), p.y()};
   }
   void add(const Vec2& on_cap, const Vec3& on_other) const noexcept {
     const Vec3 at(on_cap.x(), on_cap.y(), disc.height);
-    of_a ? pair.add_points(at, on_other) : pair.add_points(on_other, at);
+    cap_is_of_a ? pair.add_points(at, on_other) : pair.add_points(on_other, at);
   }
   // The point x with the least v.x among the other body's support points along the axis.
   [[nodiscard]] PointOfPart support_set_point(const Vec2& v) const noexcept {
-    const Vec3 m = of_a ? Vec3(-pair.direction_to_b(normal)) : normal;
+    const Vec3 m = cap_is_of_a ? Vec3(-pair.direction_to_b(normal)) : normal;
     const Vec3 towards = direction_to_other(Vec3(-v.x(), -v.y(), 0.0));
     return visit(other(), [&](const auto& body) {
       return body.support_set_point(m, towards, pair.gap_tolerance());
@@ -81,14 +81,14 @@ Nearest nearest_of_support_set(const CapView& view) {
 
 }  // namespace
 
-CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
-  BodyView& body = of_a ? pair.a : pair.b;
-  const double along = of_a ? n.z() : -pair.direction_to_b(n).z();
+CapTest test_cap(CurvedPair& pair, bool cap_is_of_a, const Vec3& n) noexcept {
+  BodyView& body = cap_is_of_a ? pair.a : pair.b;
+  const double along = cap_is_of_a ? n.z() : -pair.direction_to_b(n).z();
   const std::int32_t cap = along > 0.0 ? 1 : 0;
   const Vec3 axis(0.0, 0.0, along > 0.0 ? 1.0 : -1.0);
-  const Vec3 normal = of_a ? axis : Vec3(-pair.direction_to_a(axis));
+  const Vec3 normal = cap_is_of_a ? axis : Vec3(-pair.direction_to_a(axis));
   const Disc& disc = body.body->curved.discs[static_cast<std::size_t>(cap)];
-  const CapView view{pair, of_a, disc, normal};
+  const CapView view{pair, cap_is_of_a, disc, normal};
   const Nearest nearest = nearest_of_support_set(view);
   const double across = nearest.in_plane.norm();
   CapTest test;
@@ -105,7 +105,7 @@ CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept {
   test.support = pair.support(normal);
   test.count = nearest.count;
   for (std::size_t i = 0; i < nearest.count; ++i) {
-    test.parts[i] = of_a ? PartPair{cap, nearest.parts[i]} : PartPair{nearest.parts[i], cap};
+    test.parts[i] = cap_is_of_a ? PartPair{cap, nearest.parts[i]} : PartPair{nearest.parts[i], cap};
   }
   return test;
 }

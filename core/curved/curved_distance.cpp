@@ -1,6 +1,7 @@
 #include "core/curved/curved_distance.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/curved/thorough.hpp"
@@ -53,15 +54,15 @@ double half_space_error(double bounding_radius, double plane, const RelativePose
 DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
                                    const RelativePose& a_from_b,
                                    CurvedTrackingState& state) noexcept {
-  const bool of_a = a.is_half_space();
-  const ConvexBody &plane = of_a ? a : b, &body = of_a ? b : a;
+  const bool plane_is_a = a.is_half_space();
+  const ConvexBody &plane = plane_is_a ? a : b, &body = plane_is_a ? b : a;
   const Facet& facet = plane.facets.front();
   const Mat3& r = a_from_b.rotation;
   const BodyView view{&body, body.bounding_radius};
   const auto nearest = [&](const Vec3& m) { return support_point(view, support_part(view, m), m); };
   CurvedConclusion found;
   Vec3 to_body = facet.normal, point;  // frame A
-  if (of_a) {
+  if (plane_is_a) {
     point = r * nearest(-(r.transpose() * facet.normal)) + a_from_b.translation;
     found.lower = facet.normal.dot(point) - facet.offset;
   } else {
@@ -71,15 +72,13 @@ DistanceResult half_space_distance(const ConvexBody& a, const ConvexBody& b,
   }
   const Vec3 on_plane = point - found.lower * to_body;
   found.upper = found.lower;
-  found.normal = of_a ? to_body : Vec3(-to_body);
-  found.point_on_a = of_a ? on_plane : point;
-  found.point_on_b = of_a ? point : on_plane;
-  found.radius_a = a.radius;
-  found.radius_b = b.radius;
+  found.normal = plane_is_a ? to_body : Vec3(-to_body);
+  found.point_on_a = plane_is_a ? on_plane : point;
+  found.point_on_b = plane_is_a ? point : on_plane;
   found.error = half_space_error(body.bounding_radius, std::abs(facet.offset), a_from_b);
   found.size = body.bounding_radius + std::abs(facet.offset) + a_from_b.translation.norm();
-  state.point_on_b_in_b = r.transpose() * (found.point_on_b - a_from_b.translation);
-  return conclude(found);
+  state.point_on_b_B = r.transpose() * (found.point_on_b - a_from_b.translation);
+  return conclude(a, b, found);
 }
 
 // ---- the search and the depth ----
@@ -93,8 +92,6 @@ CurvedConclusion conclusion_of(const CurvedPair& pair, double depth) noexcept {
   found.upper = std::min(bounds.upper, -depth);
   found.error = pair.error();
   found.size = pair.size;
-  found.radius_a = pair.a.body->radius;
-  found.radius_b = pair.b.body->radius;
   found.normal = bounds.normal;
   const PointPair& points = depth > 0.0 ? bounds.deepest : bounds.points;
   found.point_on_a = points.a;
@@ -126,7 +123,7 @@ class Search {
   void from_start_direction() noexcept {
     CurvedStart start = start_direction(pair_);
     state_.active = start.active;
-    if (!start.meet) supports_ += search_direction(pair_, start.normal, state_.active);
+    if (!start.overlap) supports_ += search_direction(pair_, start.normal, state_.active);
   }
   void measure_depth(const ActiveParts& active) noexcept {
     const DepthBounds found = bound_depth(pair_, active);
@@ -137,8 +134,8 @@ class Search {
   [[nodiscard]] DistanceResult result() noexcept {
     state_.normal = pair_.bounds.normal;
     state_.overlap = deep_ > 0.0 ? Overlap::kLastQuery : Overlap::kNo;
-    state_.point_on_b_in_b = (deep_ > 0.0 ? pair_.bounds.deepest : pair_.bounds.points).b_in_b;
-    DistanceResult r = conclude(conclusion_of(pair_, deep_));
+    state_.point_on_b_B = (deep_ > 0.0 ? pair_.bounds.deepest : pair_.bounds.points).b_B;
+    DistanceResult r = conclude(*pair_.a.body, *pair_.b.body, conclusion_of(pair_, deep_));
     r.iterations = static_cast<std::uint16_t>(supports_);
     return r;
   }
@@ -160,23 +157,22 @@ bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a
   return search.ended() && r.status != DistanceStatus::kIterationLimit;
 }
 
-DistanceResult searched(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                        CurvedTrackingState& state, bool depth) noexcept {
+DistanceResult searched(const Query& q, CurvedTrackingState& state) noexcept {
   if (state.overlap != Overlap::kNo) {
     DistanceResult r;
     CurvedTrackingState hint = state;
-    if (depth && overlapping(a, b, a_from_b, hint, r)) {
+    if (q.depth && overlapping(q.a, q.b, q.a_from_b, hint, r)) {
       state = hint;
       return r;
     }
     if (state.overlap == Overlap::kStationary) state.normal.setZero();
     state.overlap = Overlap::kTried;
-    if (newton_distance(a, b, a_from_b, state, r)) return r;
+    if (newton_distance(q.a, q.b, q.a_from_b, state, r)) return r;
   }
-  Search search(a, b, a_from_b, state);
+  Search search(q.a, q.b, q.a_from_b, state);
   if (!search.ended()) {
     search.from_start_direction();
-    if (depth && !search.ended() && search.overlaps()) search.measure_depth({});
+    if (q.depth && !search.ended() && search.overlaps()) search.measure_depth({});
   }
   return search.result();
 }
@@ -193,9 +189,9 @@ CurvedStart start_direction(CurvedPair& pair) noexcept {
     if (!simplex.add({found, vector_of<double>(found.points.gap())})) break;
     const Vec3 closest = rounded(simplex.reduce().point);
     (void)pair.add_points(simplex.mean([](const StartPoint& p) { return p.at.points.a; }),
-                          simplex.mean([](const StartPoint& p) { return p.at.points.b_in_b; }));
-    start.meet = simplex.holds_origin();
-    if (start.meet || pair.bounds.lower > 0.5 * pair.bounds.upper) break;
+                          simplex.mean([](const StartPoint& p) { return p.at.points.b_B; }));
+    start.overlap = simplex.holds_origin();
+    if (start.overlap || pair.bounds.lower > 0.5 * pair.bounds.upper) break;
     const Vec3 next = unit_along(closest);
     if (!(next.norm() > 0.5)) break;
     start.normal = next;
@@ -205,26 +201,11 @@ CurvedStart start_direction(CurvedPair& pair) noexcept {
   return start;
 }
 
-DistanceResult thorough_distance(const ConvexBody& a, const ConvexBody& b,
-                                 const RelativePose& a_from_b, CurvedTrackingState& state,
-                                 bool depth) noexcept {
-  return a.is_half_space() || b.is_half_space() ? half_space_distance(a, b, a_from_b, state)
-                                                : searched(a, b, a_from_b, state, depth);
-}
-
-DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
-                               const RelativePose& a_from_b, TrackingState& state,
-                               bool depth) noexcept {
-  if (!is_good(a_from_b)) return of_bad_pose(state);
-  DistanceResult r;
-  if (closed_form_distance(a, b, a_from_b, state, r)) return r;
-  CurvedTrackingState tracked = read(state, a, b);
-  if (!newton_distance(a, b, a_from_b, tracked, r)) {
-    r = thorough_distance(a, b, a_from_b, tracked, depth);
-  }
-  if (!depth && !(r.lower > 0.0)) r.status = DistanceStatus::kDepthNotAsked;
-  write(tracked, a, b, state);
-  return r;
+DistanceResult thorough_distance(const Query& q, CurvedTrackingState& state) noexcept {
+  assert(is_good(q.a_from_b));
+  return q.a.is_half_space() || q.b.is_half_space()
+             ? half_space_distance(q.a, q.b, q.a_from_b, state)
+             : searched(q, state);
 }
 
 }  // namespace clearance

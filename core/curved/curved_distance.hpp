@@ -17,9 +17,4 @@ namespace clearance {
                                              const RelativePose& a_from_b, TrackingState& state,
                                              bool depth = true) noexcept;
 
-// The same result, bit for bit, as for relative_pose(world_from_a, world_from_b), but faster.
-[[nodiscard]] DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
-                                             const Pose& world_from_a, const Pose& world_from_b,
-                                             TrackingState& state) noexcept;
-
 }  // namespace clearance

@@ -17,14 +17,14 @@ CurvedPair::CurvedPair(const ConvexBody& body_a, const ConvexBody& body_b,
                        const RelativePose& a_from_b) noexcept
     : a(view_of(body_a, farthest_closest(body_a, body_b, a_from_b))),
       b(view_of(body_b, farthest_closest(body_b, body_a, a_from_b))),
-      size(body_a.bounding_radius + body_b.bounding_radius + a_from_b.translation.norm()),
+      size(size_of(body_a, body_b, a_from_b.translation.norm())),
       pose_(a_from_b) {}
 
 SupportPair CurvedPair::support_of(const PartPair& parts, const Vec3& n) const noexcept {
   SupportPair found{parts, {}, 0.0};
   found.points.a = support_point(a, parts.a, n);
-  found.points.b_in_b = support_point(b, parts.b, -direction_to_b(n));
-  found.points.b = point_to_a(found.points.b_in_b);
+  found.points.b_B = support_point(b, parts.b, -direction_to_b(n));
+  found.points.b = point_to_a(found.points.b_B);
   found.value = n.dot(found.points.gap());
   return found;
 }
@@ -52,9 +52,9 @@ void CurvedPair::prefer(const Vec3& n) noexcept {
   bounds.normal = normal_before;
 }
 
-PointPair CurvedPair::add_points(const Vec3& on_a, const Vec3& b_in_b) noexcept {
-  PointPair points{pulled_inside(a, on_a), pulled_inside(b, b_in_b), {}};
-  points.b = point_to_a(points.b_in_b);
+PointPair CurvedPair::add_points(const Vec3& on_a, const Vec3& b_B) noexcept {
+  PointPair points{pulled_inside(a, on_a), pulled_inside(b, b_B), {}};
+  points.b = point_to_a(points.b_B);
   const double length = points.gap().norm();
   if (length < bounds.upper) {
     bounds.upper = length;

@@ -8,7 +8,7 @@ namespace clearance {
 
 // A point of each body; B's in its own frame, too.
 struct PointPair {
-  Vec3 a = Vec3::Zero(), b_in_b = Vec3::Zero(), b = Vec3::Zero();
+  Vec3 a = Vec3::Zero(), b_B = Vec3::Zero(), b = Vec3::Zero();
   [[nodiscard]] Vec3 gap() const noexcept { return b - a; }
   [[nodiscard]] bool operator==(const PointPair&) const noexcept = default;
 };
@@ -62,7 +62,7 @@ class CurvedPair {
 
   // Two points, pulled inside their bodies, bound the distance from above. Returns the points
   // inside.
-  PointPair add_points(const Vec3& a, const Vec3& b_in_b) noexcept;
+  PointPair add_points(const Vec3& a, const Vec3& b_B) noexcept;
 
   // Doubles cannot bring the bounds closer together.
   [[nodiscard]] bool is_converged() const noexcept {

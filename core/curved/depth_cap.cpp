@@ -124,9 +124,9 @@ class Cap {
     const auto along = [&](const Vec2& t) { return t.dot(k * t); };
     const double at_ends = std::min(along(c * v + s * u), along(c * v - s * u));
     // The form has its minimum within the arc if it descends into it at both ends.
-    const double turn = 2.0 * s * c * (along(u) - along(v)),
+    const double bend = 2.0 * s * c * (along(u) - along(v)),
                  slope = (c - s) * (c + s) * 2.0 * u.dot(k * v);
-    return turn <= std::abs(slope) ? at_ends : least;
+    return bend <= std::abs(slope) ? at_ends : least;
   }
 
   [[nodiscard]] double by_curvature() const noexcept {

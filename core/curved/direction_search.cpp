@@ -164,20 +164,20 @@ class DirectionSearch {
     PointPair points;
     for (std::size_t i = 0; i < count_; ++i) {
       points.a += found.weights[i] * models_[i].at.points.a;
-      points.b_in_b += found.weights[i] * models_[i].at.points.b_in_b;
+      points.b_B += found.weights[i] * models_[i].at.points.b_B;
     }
-    Vec2 turn = found.step;
+    Vec2 step = found.step;
     for (int round = 0;; ++round) {
-      const Vec2 on_a = hessian_a_ * turn, on_b = hessian_b_ * turn;
+      const Vec2 on_a = hessian_a_ * step, on_b = hessian_b_ * step;
       points.a += on_a.x() * tangents_.x + on_a.y() * tangents_.y;
-      points.b_in_b -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
-      points = pair_.add_points(points.a, points.b_in_b);
+      points.b_B -= on_b.x() * tangents_in_b_.x + on_b.y() * tangents_in_b_.y;
+      points = pair_.add_points(points.a, points.b_B);
       if (round >= again || pair_.is_converged()) return points;
       const Vec3 w = points.gap();
       const PlaneFunction rest{
           0.0, Vec2(w.dot(tangents_.x), w.dot(tangents_.y)) - at_.value * found.step};
       if (rest.slope.norm() <= 0x1p-53 * pair_.size) return points;
-      turn = max_min({rest}, 1, regularised(hessian_a_, hessian_b_)).step;
+      step = max_min({rest}, 1, regularised(hessian_a_, hessian_b_)).step;
     }
   }
 
@@ -270,12 +270,12 @@ class DirectionSearch {
   void test_caps_on_axis() noexcept { (void)over_caps(n_); }
 
   // True: the search has ended, or continues from the axis.
-  bool try_cap(bool of_a, const Vec3& towards) noexcept {
-    const double along = of_a ? towards.z() : -pair_.direction_to_b(towards).z();
-    bool& tried = tried_[(of_a ? 0 : 2) + (along > 0.0 ? 1 : 0)];
+  bool try_cap(bool cap_is_of_a, const Vec3& towards) noexcept {
+    const double along = cap_is_of_a ? towards.z() : -pair_.direction_to_b(towards).z();
+    bool& tried = tried_[(cap_is_of_a ? 0 : 2) + (along > 0.0 ? 1 : 0)];
     if (tried) return false;
     tried = true;
-    const CapTest test = test_cap(pair_, of_a, towards);
+    const CapTest test = test_cap(pair_, cap_is_of_a, towards);
     ++supports_;
     if (pair_.is_converged()) {
       done_ = true;

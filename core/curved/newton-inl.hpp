@@ -1,6 +1,6 @@
 // Newton's method on the direction along which the distance of two bodies is greatest, with the
 // parts that are active there: the fast effort. For a tracked pair it starts from the last
-// direction and mostly takes two steps. Compiled once a vector width: see
+// direction and mostly takes two steps. Compiled once per vector width: see
 // core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_NEWTON) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_NEWTON
@@ -38,8 +38,8 @@ inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 // the bodies.
 struct NewtonEnd {
   double lower, upper;
-  Vec4 normal;                 // frame A, unit
-  Vec4 on_a, on_b_in_b, on_b;  // closest points; on_b_in_b: frame B
+  Vec4 normal;              // frame A, unit
+  Vec4 on_a, on_b_B, on_b;  // closest points; on_b_B: frame B
   int supports = 0;
   bool overlap = false;  // the bodies overlap along `normal`, and no small rotation changes that
 };
@@ -89,7 +89,7 @@ class Newton {
   NewtonEnd end;
 
  private:
-  // They have no other parts that could become active, and long steps do them no harm.
+  // Ellipsoids have no other parts that could become active, and long steps do them no harm.
   [[nodiscard]] HWY_INLINE bool are_ellipsoids() const {
     return a_.round.count == 1 && b_.round.count == 1;
   }
@@ -153,7 +153,7 @@ class Newton {
     end.upper = norm(gap);
     end.normal = n;
     end.on_a = a.point;
-    end.on_b_in_b = b.point;
+    end.on_b_B = b.point;
     end.on_b = on_b;
     if (HWY_LIKELY(end.upper - end.lower <= tolerance_)) {
       const Vec4 across = gap - spread(dot(n, gap)) * n;
@@ -168,7 +168,7 @@ class Newton {
       return Next::kIterate;
     }
     end.overlap = ends_at_overlap_ && end.lower < -kOverlap * tolerance_;
-    // Otherwise rounding alone keeps the bounds apart.
+    // Rounding alone otherwise keeps the bounds apart.
     return end.overlap ? Next::kGiveUp : Next::kIterate;
   }
 
@@ -196,18 +196,19 @@ class Newton {
     limit(caps_of_b(), step_.round_b);
     x_ = x_ + part * step;
   }
-  // Tries a cap once a query: the cap of the cone whose axis is nearer to x.
+  // Tries a cap once per query: the cap of the cone whose axis is nearer to x.
   HWY_NOINLINE Next try_cap(Vec4 x) {
     if (cap_tried_) return Next::kGiveUp;
     cap_tried_ = true;
     const Vec4 m = -direction_to_b(a_from_b_, x);
     const auto across = [](Vec4 v)
                             HWY_ATTR { return lane(v, 0) * lane(v, 0) + lane(v, 1) * lane(v, 1); };
-    const bool of_a = caps_of_a() && (!caps_of_b() || across(x) <= across(m));
-    const std::int32_t end_of_axis = lane(of_a ? x : m, 2) > 0.0 ? 1 : 0;
+    const bool cap_is_of_a = caps_of_a() && (!caps_of_b() || across(x) <= across(m));
+    const std::int32_t end_of_axis = lane(cap_is_of_a ? x : m, 2) > 0.0 ? 1 : 0;
     PartPair& pair = active_.pairs[0];
     active_.count = 1;
-    (of_a ? pair.a : pair.b) = first_planar_face(of_a ? a_.body : b_.body) + end_of_axis;
+    (cap_is_of_a ? pair.a : pair.b) =
+        first_planar_face(cap_is_of_a ? a_.body : b_.body) + end_of_axis;
     return try_face();
   }
   HWY_NOINLINE Next try_face() {
@@ -225,32 +226,34 @@ class Newton {
     PartPair& pair = active_.pairs[0];
     std::int32_t &face = kOfA ? pair.a : pair.b, &part = kOfA ? pair.b : pair.a;
     active_.count = 1;
-    const FaceMeeting met = meet_face<kOfA>(side, other, a_from_b_, face, part, tolerance_);
-    if (HWY_UNLIKELY(met.end == FaceEnd::kUnknown)) {
+    const FaceProjection projection =
+        project_on_face<kOfA>(side, other, a_from_b_, face, part, tolerance_);
+    if (HWY_UNLIKELY(projection.end == FaceEnd::kUnknown)) {
       if (end.supports > 1) return Next::kGiveUp;
       forget_face<kOfA>();
       return Next::kIterate;
     }
-    part = met.part;
+    part = projection.part;
     const Vec4 normal = planar_face(side, face).normal;
     end.normal = kOfA ? normal : -direction_to_a(a_from_b_, normal);
-    if (HWY_UNLIKELY(met.end == FaceEnd::kBeside)) {
-      const std::int32_t facing = facing_face(other, met.part, normal_to_other<kOfA>(normal));
+    if (HWY_UNLIKELY(projection.end == FaceEnd::kBeside)) {
+      const std::int32_t facing =
+          facing_face(other, projection.part, normal_to_other<kOfA>(normal));
       if (facing != kNone && !facing_tried_) {
         facing_tried_ = true;
         face = part_of_face(side.body, face);
         part = facing;
         return Next::kOtherFace;
       }
-      leave_face<kOfA>(met);
+      leave_face<kOfA>(projection);
       return Next::kIterate;
     }
     ended_on_face_ = true;
-    end.lower = met.lower;
-    end.upper = met.upper;
-    end.on_a = kOfA ? met.below : met.on_other;
-    end.on_b_in_b = kOfA ? met.on_other : met.below;
-    end.on_b = point_to_a(a_from_b_, end.on_b_in_b);
+    end.lower = projection.lower;
+    end.upper = projection.upper;
+    end.on_a = kOfA ? projection.below : projection.on_other;
+    end.on_b_B = kOfA ? projection.on_other : projection.below;
+    end.on_b = point_to_a(a_from_b_, end.on_b_B);
     return end.upper - end.lower <= tolerance_ ? Next::kCertified : Next::kGiveUp;
   }
   // The other body's planar face at a part that is nearly parallel to a face. `down`: the opposite
@@ -297,20 +300,20 @@ class Newton {
   // Continues from the edge or the rim past which the nearest point lies, or from the direction
   // before, if the bodies are farther apart along that one.
   template <bool kOfA>
-  HWY_NOINLINE void leave_face(const FaceMeeting& met) {
+  HWY_NOINLINE void leave_face(const FaceProjection& projection) {
     const Vec4 last = x_;
     const Side& side = kOfA ? a_ : b_;
     std::int32_t& face = kOfA ? active_.pairs[0].a : active_.pairs[0].b;
     if (side.is_round()) {
       face -= first_planar_face(side.body);
       const Disc& disc = side.round.parts[face];
-      const double x = lane(met.below, 0), y = lane(met.below, 1);
+      const double x = lane(projection.below, 0), y = lane(projection.below, 1);
       const double part = disc.radius / std::sqrt(x * x + y * y);
-      const Vec4 out = met.above - vec4(part * x, part * y, disc.height, 0.0);
+      const Vec4 out = projection.above - vec4(part * x, part * y, disc.height, 0.0);
       x_ = kOfA ? out : -direction_to_a(a_from_b_, out);
       cap_tried_ = true;
     } else {
-      const Edge& edge = side.body.edges[static_cast<std::size_t>(met.edge)];
+      const Edge& edge = side.body.edges[static_cast<std::size_t>(projection.edge)];
       active_.count = 2;
       active_.pairs[1] = active_.pairs[0];
       face = edge.vertex[0];
@@ -326,14 +329,15 @@ class Newton {
   }
   // Replaces three vertices of a facet by the facet.
   HWY_NOINLINE void to_facet() {
-    const bool of_a = !SquaresA::kRound;
-    if (of_a == !SquaresB::kRound) return;
-    const SideParts other = parts_.side(!of_a);
+    const bool facet_is_of_a = !SquaresA::kRound;
+    if (facet_is_of_a == !SquaresB::kRound) return;
+    const SideParts other = parts_.side(!facet_is_of_a);
     if (other.number(0) != other.number(1) || other.number(0) != other.number(2)) return;
-    const std::int32_t facet = facet_of(of_a ? a_.body : b_.body, parts_.side(of_a));
+    const std::int32_t facet =
+        facet_of(facet_is_of_a ? a_.body : b_.body, parts_.side(facet_is_of_a));
     if (facet == kNone) return;
     active_.count = 1;
-    (of_a ? active_.pairs[0].a : active_.pairs[0].b) = facet;
+    (facet_is_of_a ? active_.pairs[0].a : active_.pairs[0].b) = facet;
   }
 
   const Side &a_, &b_;

@@ -1,15 +1,18 @@
 // Newton's method as a complete query: the fast one of the two efforts in README.md. Compiled once
-// a vector width.
+// per vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/curved/newton.cpp"
 #include "core/numerics/simd_targets.hpp"
 // This include must come first.
 #include "core/curved/bounds.hpp"
+#include "core/curved/curved-inl.hpp"
 #include "core/curved/curved_distance.hpp"
 #include "core/curved/newton-inl.hpp"
 #include "core/curved/segment_and_cone-inl.hpp"
 #include "core/curved/tracking.hpp"
 #include "core/model/bad_pose.hpp"
+
+#include <cassert>
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
@@ -39,18 +42,14 @@ HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const Relativ
   CurvedConclusion found;
   found.lower = end.lower;
   found.upper = end.upper;
-  found.error = rounding_error(
-      {&a, a.bounding_radius}, {&b, b.bounding_radius},
-      {a_from_b.rotation_error, a_from_b.translation_error, a_from_b.translation_length}, end.upper,
-      size);
+  found.error = rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius}, place_of(a_from_b),
+                               end.upper, size);
   found.size = size;
-  found.radius_a = a.radius;
-  found.radius_b = b.radius;
   found.normal = vec3(end.normal);
   found.point_on_a = vec3(end.on_a);
   found.point_on_b = vec3(end.on_b);
-  state.point_on_b_in_b = vec3(end.on_b_in_b);
-  r = conclude(found);
+  state.point_on_b_B = vec3(end.on_b_B);
+  r = conclude(a, b, found);
   r.iterations = static_cast<std::uint16_t>(end.supports);
 }
 
@@ -67,7 +66,7 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   // The thorough effort answers bodies whose smooth parts are not round.
   if (a.is_curved() != side_a.is_round() || b.is_curved() != side_b.is_round()) return false;
   if (HWY_UNLIKELY(state.active.count == 0)) x = start(side_a, side_b, a_from_b, x, state.active);
-  const double size = a.bounding_radius + b.bounding_radius + a_from_b.translation_length;
+  const double size = size_of(a, b, a_from_b.translation_length);
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
         newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x,
@@ -88,36 +87,34 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   return run(squares_of_a(side_a), squares_of_b(side_b, a_from_b.rotation));
 }
 
-bool closed_form_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                             TrackingState& state, DistanceResult& r) {
-  return meet_segment_and_cone(a, b, pose4_of(a_from_b), state, r);
-}
-
 bool newton_of_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         CurvedTrackingState& state, DistanceResult& r) {
   return newton(a, b, pose4_of(a_from_b), state, r);
 }
 
-inline HWY_NOINLINE DistanceResult open_distance(const ConvexBody& a, const ConvexBody& b,
-                                                 const RelativePose& a_from_b,
-                                                 CurvedTrackingState& tracked,
-                                                 TrackingState& state) {
-  if (!is_good(a_from_b)) return of_bad_pose(state);
-  const DistanceResult r = thorough_distance(a, b, a_from_b, tracked, true);
-  write(tracked, a, b, state);
-  return r;
+inline HWY_NOINLINE void left_open(const Query4& q, CurvedTrackingState& tracked,
+                                   DistanceResult& r) {
+  const RelativePose a_from_b = pose_of(q.a_from_b);
+  if (!is_good(a_from_b)) {
+    r = of_bad_pose(q.state);
+    return;
+  }
+  r = thorough_distance({q.a, q.b, a_from_b, q.state, q.depth}, tracked);
+  if (!q.depth && !(r.lower > 0.0) && !(r.upper < 0.0)) r.status = DistanceStatus::kDepthNotAsked;
+  write(tracked, q.a, q.b, q.state);
 }
 
-DistanceResult distance_of_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                                 const Pose& world_from_b, TrackingState& state) {
-  const RelativePose4 a_from_b = relative_pose4(world_from_a, world_from_b);
+void curved_distance(const Query4& q, DistanceResult& r) {
+  assert(q.a.is_curved() || q.b.is_curved() || q.a.bounded() || q.b.bounded());
+  if (segment_and_cone_distance(q.a, q.b, q.a_from_b, q.state, r)) return;
+  CurvedTrackingState tracked = read(q.state, q.a, q.b);
+  if (HWY_UNLIKELY(!newton(q.a, q.b, q.a_from_b, tracked, r))) return left_open(q, tracked, r);
+  write(tracked, q.a, q.b, q.state);
+}
+
+DistanceResult distance_of_relative(const Query& q) {
   DistanceResult r;
-  if (meet_segment_and_cone(a, b, a_from_b, state, r)) return r;
-  CurvedTrackingState tracked = read(state, a, b);
-  if (HWY_UNLIKELY(!newton(a, b, a_from_b, tracked, r))) {
-    return open_distance(a, b, pose_of(a_from_b), tracked, state);
-  }
-  write(tracked, a, b, state);
+  curved_distance({q.a, q.b, pose4_of(q.a_from_b), q.state, q.depth}, r);
   return r;
 }
 
@@ -127,21 +124,17 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace clearance {
 
-HWY_EXPORT(closed_form_of_relative);
 HWY_EXPORT(newton_of_relative);
-HWY_EXPORT(distance_of_poses);
+HWY_EXPORT(distance_of_relative);
 
-bool closed_form_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                          TrackingState& state, DistanceResult& result) noexcept {
-  return HWY_DYNAMIC_DISPATCH(closed_form_of_relative)(a, b, a_from_b, state, result);
-}
 bool newton_distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                      CurvedTrackingState& state, DistanceResult& result) noexcept {
   return HWY_DYNAMIC_DISPATCH(newton_of_relative)(a, b, a_from_b, state, result);
 }
-DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state) noexcept {
-  return HWY_DYNAMIC_DISPATCH(distance_of_poses)(a, b, world_from_a, world_from_b, state);
+DistanceResult curved_distance(const ConvexBody& a, const ConvexBody& b,
+                               const RelativePose& a_from_b, TrackingState& state,
+                               bool depth) noexcept {
+  return HWY_DYNAMIC_DISPATCH(distance_of_relative)({a, b, a_from_b, state, depth});
 }
 
 }  // namespace clearance

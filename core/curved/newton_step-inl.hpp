@@ -1,6 +1,6 @@
 // One step of Newton's method on the direction. It evaluates the active parts of two bodies along
 // the direction, and finds the direction that makes the least of their distances greatest. Compiled
-// once a vector width: see core/numerics/vec4-inl.hpp.
+// once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // The step of one active pair solves (K + d I) s' = w. Here w is the gap vector, d is the distance,
 // and K is the sum of the support Hessians. So K n = 0 and w.n = d. Then s' = n + s is already the
@@ -157,7 +157,7 @@ class NewtonStep {
     Symmetric4 m = matrix(parts);
     trace = HWY_NAMESPACE::trace(m);
     if (HWY_UNLIKELY(parts.count() == 3) && meet_all(parts, x, m)) return;
-    if (HWY_UNLIKELY(parts.count() == 2) && meet(parts, x, m)) return;
+    if (HWY_UNLIKELY(parts.count() == 2) && stop_at_kink(parts, x, m)) return;
     const Cofactors c = cofactors(m);
     const double distance = least * per_square_;
     const bool singular = regularisation_ < kNearlySingular * trace;
@@ -186,7 +186,7 @@ class NewtonStep {
     return y >= z ? m * vec4(0.0, 1.0, 0.0, 0.0) : m * vec4(0.0, 0.0, 1.0, 0.0);
   }
   // A direction at which two pairs of parts are equally far apart.
-  struct Meeting {
+  struct Kink {
     Vec4 next;
     double part;  // the weight of the second pair
     [[nodiscard]] HWY_INLINE bool is_between() const { return part > 0.0 && part < 1.0; }
@@ -195,8 +195,8 @@ class NewtonStep {
   // part of the difference of the gap vectors. The first part makes both distances equal, and the
   // second one is Newton's step along the kink. Nothing here is a small difference of large
   // numbers, so a small distance costs no digits.
-  HWY_INLINE Meeting meeting(const PlacedParts& parts, std::size_t i, std::size_t j, Vec4 x,
-                             const Symmetric4& m) const {
+  HWY_INLINE Kink kink(const PlacedParts& parts, std::size_t i, std::size_t j, Vec4 x,
+                       const Symmetric4& m) const {
     const Vec4 w = parts.gap[i], difference = parts.gap[j] - w;
     const double height = dot(difference, x);
     const Vec4 u = difference - spread(height * per_square_) * x, v = cross(x, u);
@@ -206,14 +206,14 @@ class NewtonStep {
     const double part = (to_kink * dot(u, m_u) - dot(u, w)) + along_kink * uv;
     return {x + (spread(to_kink) * u + spread(along_kink) * v), part * per_length};
   }
-  HWY_INLINE void keep(PlacedParts& parts, const Meeting& meeting) {
-    parts.weight[0] = 1.0 - meeting.part;
-    parts.weight[1] = meeting.part;
-    next = meeting.next;
+  HWY_INLINE void keep(PlacedParts& parts, const Kink& kink) {
+    parts.weight[0] = 1.0 - kink.part;
+    parts.weight[1] = kink.part;
+    next = kink.next;
   }
   // False: one pair is left.
-  HWY_INLINE bool meet(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
-    const Meeting both = meeting(parts, 0, 1, x, m);
+  HWY_INLINE bool stop_at_kink(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
+    const Kink both = kink(parts, 0, 1, x, m);
     if (!both.is_between()) {
       parts.drop(both.part < 1.0 ? 1 : 0);
       return false;
@@ -238,19 +238,19 @@ class NewtonStep {
     parts.weight[2] = part_v;
     return true;
   }
-  // Drops the pair that is farther apart than the other two where these meet. `first`: the one that
-  // is tried first.
+  // Drops the pair that is farther apart than the other two where these stop_at_kink. `first`: the
+  // one that is tried first.
   bool drop_one(PlacedParts& parts, std::size_t first, Vec4 x, const Symmetric4& m) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t out = (first + k) % 3, i = out == 0 ? 1 : 0, j = out == 2 ? 1 : 2;
-      const Meeting both = meeting(parts, i, j, x, m);
+      const Kink both = kink(parts, i, j, x, m);
       if (!both.is_between() || dot(parts.gap[out] - parts.gap[i], both.next) < 0.0) continue;
       parts.drop(out);
       keep(parts, both);
       return true;
     }
     parts.drop(first);
-    return meet(parts, x, m);
+    return stop_at_kink(parts, x, m);
   }
 
   const SquaresA squares_a_;

@@ -1,5 +1,5 @@
 // The active pairs of parts of two bodies, placed in A's frame: middles, radii and weights.
-// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_PLACED_PARTS) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_PLACED_PARTS
 #undef CLEARANCE_CORE_PLACED_PARTS

@@ -1,5 +1,5 @@
 // A planar face of a body (facet or cap) and the other body's point that is nearest to its plane.
-// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_PLANAR_FACE) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_PLANAR_FACE
 #undef CLEARANCE_CORE_PLANAR_FACE
@@ -52,7 +52,7 @@ inline HWY_NOINLINE std::int32_t facet_of(const ConvexBody& body, const SidePart
 
 enum class FaceEnd { kClosest, kBeside, kUnknown };
 
-struct FaceMeeting {
+struct FaceProjection {
   FaceEnd end = FaceEnd::kUnknown;
   double lower, upper;  // the distance of the other body from the face's plane
   // The other body's nearest point, in its own frame and in the face's frame, and its projection
@@ -171,8 +171,9 @@ HWY_INLINE bool is_within(const Side& side, std::int32_t number, Vec4 point, std
 // that of the face, which is A's if kOfA. `part`: the nearest part of the other body, as far as it
 // is known. `tolerance`: points whose distances from the plane differ by less are equally near, m.
 template <bool kOfA>
-HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const RelativePose4& a_from_b,
-                                 std::int32_t number, std::int32_t part, double tolerance) {
+HWY_INLINE FaceProjection project_on_face(const Side& side, const Side& other,
+                                          const RelativePose4& a_from_b, std::int32_t number,
+                                          std::int32_t part, double tolerance) {
   const PlanarFace face = planar_face(side, number);
   const Vec4 down =
       -(kOfA ? direction_to_b(a_from_b, face.normal) : direction_to_a(a_from_b, face.normal));
@@ -181,11 +182,11 @@ HWY_INLINE FaceMeeting meet_face(const Side& side, const Side& other, const Rela
   const SupportSet nearest = other.is_round()
                                  ? round_support_set(other, down, middle, tolerance)
                                  : vertex_support_set(other.body, down, middle, part, tolerance);
-  FaceMeeting found;
+  FaceProjection found;
   if (!nearest.known) return found;
   found.part = nearest.part;
   for (int i = 0; i < nearest.count; ++i) {
-    FaceMeeting at = found;
+    FaceProjection at = found;
     at.on_other = nearest.points[i];
     at.above = kOfA ? point_to_a(a_from_b, at.on_other) : point_to_b(a_from_b, at.on_other);
     at.upper = dot(face.normal, at.above) - face.offset;

@@ -1,5 +1,5 @@
 // A point or a segment, and a truncated cone: a sphere or a capsule beside a cylinder or a cone.
-// Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // In the half-plane through a point that the axis bounds, the truncated cone is a trapezoid. The
 // point is beside a cap, the side or a rim, and this gives the closest point and the normal without
@@ -40,10 +40,10 @@ HWY_INLINE double dot(const Section& u, const Section& v) {
 }
 
 // The closest point of the trapezoid and the normal there (unit).
-struct SectionMeeting {
+struct SectionPoint {
   Section closest, normal;
 };
-HWY_INLINE SectionMeeting meet_section(const std::array<Disc, 2>& discs, const Section& p) {
+HWY_INLINE SectionPoint nearest_on_section(const std::array<Disc, 2>& discs, const Section& p) {
   const auto& [low, high] = discs;
   if (p.height > high.height && p.across <= high.radius) {
     return {{p.across, high.height}, {0.0, 1.0}};
@@ -67,16 +67,18 @@ HWY_INLINE SectionMeeting meet_section(const std::array<Disc, 2>& discs, const S
 }
 
 // A point in the cone's frame, and the closest point of the cone.
-struct ConeMeeting {
-  HWY_INLINE ConeMeeting(const std::array<Disc, 2>& discs, Vec4 place)
-      : placed(place), p{across_axis(place), lane(place, 2)}, section(meet_section(discs, p)) {
+struct ConePoint {
+  HWY_INLINE ConePoint(const std::array<Disc, 2>& discs, Vec4 place)
+      : placed(place),
+        p{across_axis(place), lane(place, 2)},
+        section(nearest_on_section(discs, p)) {
     const auto& [closest, normal] = section;
     const bool over_cap = normal.across == 0.0;  // there the point may be on the axis
     const double part = over_cap ? 1.0 : closest.across / p.across;
-    const double turn = over_cap ? 0.0 : normal.across / p.across;
+    const double scale = over_cap ? 0.0 : normal.across / p.across;
     const double x = lane(place, 0), y = lane(place, 1);
     on_cone = vec4(part * x, part * y, closest.height, 0.0);
-    outward = vec4(turn * x, turn * y, normal.height, 0.0);
+    outward = vec4(scale * x, scale * y, normal.height, 0.0);
   }
   static HWY_INLINE double across_axis(Vec4 v) {
     return std::sqrt(lane(v, 0) * lane(v, 0) + lane(v, 1) * lane(v, 1));
@@ -84,7 +86,7 @@ struct ConeMeeting {
 
   Vec4 placed;
   Section p;
-  SectionMeeting section;
+  SectionPoint section;
   Vec4 on_cone, outward;  // the closest point, and the normal there (unit)
 };
 
@@ -98,87 +100,84 @@ inline constexpr double kLevelSlope = 0x1p-49;
 
 // `kConeIsA`: else the segment is A.
 template <bool kConeIsA>
-HWY_INLINE bool meet_segment_and_cone(const ConvexBody& a, const ConvexBody& b,
-                                      const RelativePose4& a_from_b, TrackingState& state,
-                                      DistanceResult& r) {
+HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody& b,
+                                          const RelativePose4& a_from_b, TrackingState& state,
+                                          DistanceResult& r) {
   const ConvexBody &cone = kConeIsA ? a : b, &segment = kConeIsA ? b : a;
   const std::array<Disc, 2>& discs = cone.curved.discs;
-  const Vec4 start = load3_alone(segment.vertices[0].position);
+  const Vec4 start = load3_masked(segment.vertices[0].position);
   const Vec4 placed = kConeIsA ? point_to_a(a_from_b, start) : point_to_b(a_from_b, start);
   Vec4 local = start;
-  ConeMeeting met(discs, placed);
+  ConePoint nearest(discs, placed);
   double behind = 0.0;  // m: an end of the segment is nearer along the normal by this
-  if (segment.query_class != QueryClass::kPoint) {
+  if (!is_point(segment)) {
     const Edge& edge = segment.edges[0];
-    const Vec4 direction = load3_of_4(edge.direction);
+    const Vec4 direction = load3_padded(edge.direction);
     const Vec4 e =
         kConeIsA ? direction_to_a(a_from_b, direction) : direction_to_b(a_from_b, direction);
     const double x = lane(e, 0), y = lane(e, 1), across = x * x + y * y;
     const double to_axis = -(lane(placed, 0) * x + lane(placed, 1) * y);
     double s = to_axis > 0.0 ? (to_axis < across * edge.end ? to_axis / across : edge.end) : 0.0;
-    if (s > 0.0) met = ConeMeeting(discs, placed + s * e);
-    double slope = dot(met.outward, e);
+    if (s > 0.0) nearest = ConePoint(discs, placed + s * e);
+    double slope = dot(nearest.outward, e);
     if (slope > kLevelSlope && s > 0.0) {
       s = 0.0;
-      met = ConeMeeting(discs, placed);
-      slope = dot(met.outward, e);
+      nearest = ConePoint(discs, placed);
+      slope = dot(nearest.outward, e);
       if (slope < -kLevelSlope) return false;
     } else if (slope < -kLevelSlope && s < edge.end) {
       s = edge.end;
-      met = ConeMeeting(discs, placed + s * e);
-      slope = dot(met.outward, e);
+      nearest = ConePoint(discs, placed + s * e);
+      slope = dot(nearest.outward, e);
       if (slope > kLevelSlope) return false;
     }
     behind = std::max(0.0, std::max(s * slope, (s - edge.end) * slope));
     local = start + s * direction;
   }
-  const auto& [closest, normal] = met.section;
+  const auto& [closest, normal] = nearest.section;
   const auto support = [&](const Disc& disc) HWY_ATTR {
     return dot(normal, {disc.radius, disc.height});
   };
-  const Section gap{met.p.across - closest.across, met.p.height - closest.height};
+  const Section gap{nearest.p.across - closest.across, nearest.p.height - closest.height};
   const double offset = a_from_b.translation_length;
-  const double size = a.bounding_radius + b.bounding_radius + offset;
+  const double size = size_of(a, b, offset);
   CurvedConclusion found;
-  found.lower = (dot(normal, met.p) - std::max(support(discs[0]), support(discs[1]))) - behind;
+  found.lower = (dot(normal, nearest.p) - std::max(support(discs[0]), support(discs[1]))) - behind;
   found.upper = std::sqrt(dot(gap, gap));
   const bool known =
       found.lower > 0.0 && normal.across >= 0.0 && found.upper - found.lower <= 0x1p-50 * size;
   if (HWY_UNLIKELY(!known)) return false;
   found.error =
-      rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius},
-                     {a_from_b.rotation_error, a_from_b.translation_error, offset}, found.upper,
-                     size) +
+      rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius}, place_of(a_from_b),
+                     found.upper, size) +
       (kUlpsOfPlacedSegment * kUlp + (kConeIsA ? 0.0 : kRoundedUp * a_from_b.rotation_error)) *
           (segment.bounding_radius + offset);
   found.size = size;
-  found.radius_a = a.radius;
-  found.radius_b = b.radius;
   if constexpr (kConeIsA) {
-    found.normal = vec3(met.outward);
-    found.point_on_a = vec3(met.on_cone);
-    found.point_on_b = vec3(met.placed);
+    found.normal = vec3(nearest.outward);
+    found.point_on_a = vec3(nearest.on_cone);
+    found.point_on_b = vec3(nearest.placed);
   } else {
-    const Vec4 inward = -direction_to_a(a_from_b, met.outward);
+    const Vec4 inward = -direction_to_a(a_from_b, nearest.outward);
     found.normal = vec3((1.5 - 0.5 * dot(inward, inward)) * inward);
     found.point_on_a = vec3(local);
-    found.point_on_b = vec3(point_to_a(a_from_b, met.on_cone));
+    found.point_on_b = vec3(point_to_a(a_from_b, nearest.on_cone));
   }
   found.is_radial = true;
-  r = conclude(found);
+  r = conclude(a, b, found);
   r.iterations = 1;
   state.a = {FeatureKind::kDirection, false, 0, found.normal};
-  state.b = {FeatureKind::kDirection, false, 0, vec3(kConeIsA ? local : met.on_cone)};
+  state.b = {FeatureKind::kDirection, false, 0, vec3(kConeIsA ? local : nearest.on_cone)};
   return true;
 }
 
 // Answers a point or a segment beside a truncated cone. False: it is another pair, or it is left
 // open.
-HWY_INLINE bool meet_segment_and_cone(const ConvexBody& a, const ConvexBody& b,
-                                      const RelativePose4& a_from_b, TrackingState& state,
-                                      DistanceResult& r) {
-  if (are_segment_and_cone(b, a)) return meet_segment_and_cone<true>(a, b, a_from_b, state, r);
-  if (are_segment_and_cone(a, b)) return meet_segment_and_cone<false>(a, b, a_from_b, state, r);
+HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody& b,
+                                          const RelativePose4& a_from_b, TrackingState& state,
+                                          DistanceResult& r) {
+  if (are_segment_and_cone(b, a)) return segment_and_cone_distance<true>(a, b, a_from_b, state, r);
+  if (are_segment_and_cone(a, b)) return segment_and_cone_distance<false>(a, b, a_from_b, state, r);
   return false;
 }
 

@@ -1,5 +1,5 @@
 // The support point and the support Hessian of a body's round parts along a direction. Compiled
-// once a vector width: see core/numerics/vec4-inl.hpp.
+// once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // A part is its middle plus `radius` times D B (RoundParts). Along x, of any length, the support
 // function of D B is sqrt(x.S x), with S = D^2 in the body's axes. Its gradient is S x / sqrt(x.S

@@ -63,7 +63,7 @@ struct SectionCorner {
 class SectionSearch {
  public:
   SectionSearch(const Section& a, const Section& b, double apart, bool opposite) noexcept
-      : a_(a), b_(b), apart_(apart), turn_(opposite ? -1.0 : 1.0) {}
+      : a_(a), b_(b), apart_(apart), sign_(opposite ? -1.0 : 1.0) {}
 
   [[nodiscard]] double run(double tolerance) noexcept {
     std::array<SectionCorner, 3> start{corner({1.0, 0.0}), corner({0.0, 1.0}), corner({-1.0, 0.0})};
@@ -92,8 +92,8 @@ class SectionSearch {
   };
 
   SectionCorner corner(const Vec2& n) noexcept {
-    const Vec2 of_a = a_.support(n), of_b = b_.support({-turn_ * n.x(), n.y()});
-    const SectionCorner found{n, Vec2(of_a.x() - (apart_ + turn_ * of_b.x()), of_a.y() + of_b.y())};
+    const Vec2 on_a = a_.support(n), on_b = b_.support({-sign_ * n.x(), n.y()});
+    const SectionCorner found{n, Vec2(on_a.x() - (apart_ + sign_ * on_b.x()), on_a.y() + on_b.y())};
     best_ = std::min(best_, n.dot(found.point));
     return found;
   }
@@ -111,29 +111,29 @@ class SectionSearch {
   }
 
   Section a_, b_;
-  double apart_, turn_;
+  double apart_, sign_;
   double best_ = kInfinity;
   std::array<Arc, 64> stack_{};
 };
 
 double by_sections(const CurvedPair& pair, double move) noexcept {
   const Section section_a{pair.a}, section_b{pair.b};
-  const int of_a = section_a.axis(), of_b = section_b.axis();
-  if (of_a == kNoAxis || of_b == kNoAxis) return -kInfinity;
+  const int axis_of_a = section_a.axis(), axis_of_b = section_b.axis();
+  if (axis_of_a == kNoAxis || axis_of_b == kNoAxis) return -kInfinity;
   // The axis in frame A. `tilt`: the sine of the angle to B's axis.
   Vec3 axis = pair.translation();
-  if (of_a != kAnyAxis) {
-    axis = Vec3::Unit(of_a);
-  } else if (of_b != kAnyAxis) {
-    axis = pair.rotation().col(of_b);
+  if (axis_of_a != kAnyAxis) {
+    axis = Vec3::Unit(axis_of_a);
+  } else if (axis_of_b != kAnyAxis) {
+    axis = pair.rotation().col(axis_of_b);
   } else if (axis.isZero(0.0)) {
     return -kInfinity;  // by_balls() answers spheres around one centre
   } else {
     axis = unit_along(axis);
   }
   double tilt = 0.0, cosine = 1.0;
-  if (of_b != kAnyAxis) {
-    const Vec3 own = pair.rotation().col(of_b);
+  if (axis_of_b != kAnyAxis) {
+    const Vec3 own = pair.rotation().col(axis_of_b);
     tilt = axis.cross(own).norm();
     cosine = axis.dot(own);
   }

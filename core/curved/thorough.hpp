@@ -12,9 +12,9 @@ int search_direction(CurvedPair& pair, const Vec3& n, ActiveParts& active) noexc
 
 // curved_distance.cpp: a first direction by the algorithm of Gilbert, Johnson and Keerthi.
 struct CurvedStart {
-  Vec3 normal;         // unit, frame A
-  bool meet = false;   // the bodies share a point, up to rounding: bounds.points
-  ActiveParts active;  // those of the simplex that is nearest to the origin
+  Vec3 normal;           // unit, frame A
+  bool overlap = false;  // the bodies share a point, up to rounding: bounds.points
+  ActiveParts active;    // those of the simplex that is nearest to the origin
 };
 // Ends when the lower bound is half of the upper one, or when the simplex holds the origin.
 [[nodiscard]] CurvedStart start_direction(CurvedPair& pair) noexcept;
@@ -30,7 +30,7 @@ struct CapTest {
 };
 // Tests the cap of A (or of B) that faces along n, and sets the rim's azimuth towards the other
 // body.
-[[nodiscard]] CapTest test_cap(CurvedPair& pair, bool of_a, const Vec3& n) noexcept;
+[[nodiscard]] CapTest test_cap(CurvedPair& pair, bool cap_is_of_a, const Vec3& n) noexcept;
 
 // depth.cpp: the least overlap of the bodies over all directions. The overlap along a direction has
 // several minima, so a search from one direction bounds the least one from above only.

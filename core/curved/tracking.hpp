@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "core/curved/body_view.hpp"
-#include "core/distance_result.hpp"
-#include "core/pose.hpp"
+#include "core/model/query.hpp"
 
 namespace clearance {
 
@@ -21,7 +20,7 @@ enum class Overlap : std::uint8_t {
 struct CurvedTrackingState {
   Vec3 normal = Vec3::Zero();  // frame A, of about unit length; 0: none
   ActiveParts active;          // pairs of parts; or one pair with a planar face in place of a part
-  Vec3 point_on_b_in_b = Vec3::Zero();  // the last witness point on B without its radius, frame B
+  Vec3 point_on_b_B = Vec3::Zero();  // the last witness point on B without its radius, frame B
   Overlap overlap = Overlap::kNo;
 };
 
@@ -98,23 +97,17 @@ inline void write(const CurvedTrackingState& from, const ConvexBody& a, const Co
     return static_cast<std::int32_t>(static_cast<std::uint32_t>(bits));
   };
   state.a = {FeatureKind::kDirection, from.overlap == Overlap::kLastQuery, half(all), from.normal};
-  state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_in_b};
+  state.b = {FeatureKind::kDirection, false, half(all >> 32), from.point_on_b_B};
 }
 
-// A closed form, for the pairs that have one (newton.cpp). False: it is another pair, the bodies
-// overlap, or rounding leaves the bounds too wide.
-[[nodiscard]] bool closed_form_distance(const ConvexBody& a, const ConvexBody& b,
-                                        const RelativePose& a_from_b, TrackingState& state,
-                                        DistanceResult& result) noexcept;
 // The fast effort (newton.cpp). False: the bodies overlap or nearly touch, one of them is
 // unbounded, rounding leaves the bounds too wide, or many parts are equally near. The state is then
 // a hint for thorough_distance(). It must have passed forget_nonsense().
 [[nodiscard]] bool newton_distance(const ConvexBody& a, const ConvexBody& b,
                                    const RelativePose& a_from_b, CurvedTrackingState& state,
                                    DistanceResult& result) noexcept;
-// The thorough effort (curved_distance.cpp). `depth`: as in DistanceOptions.
-[[nodiscard]] DistanceResult thorough_distance(const ConvexBody& a, const ConvexBody& b,
-                                               const RelativePose& a_from_b,
-                                               CurvedTrackingState& state, bool depth) noexcept;
+// The thorough effort (curved_distance.cpp). Requires a good pose.
+[[nodiscard]] DistanceResult thorough_distance(const Query& query,
+                                               CurvedTrackingState& state) noexcept;
 
 }  // namespace clearance

@@ -1,4 +1,4 @@
-// Compiled once a vector width.
+// Compiled once per vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/feature_tracking/feature_tracking.cpp"
 #include "core/numerics/simd_targets.hpp"
@@ -8,12 +8,13 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-TrackingEnd track_relative(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                           TrackingState& state, DistanceResult& r) {
-  const RelativePose4 pose4 = pose4_of(a_from_b);
-  TrackedPair pair(a, b, pose4, state);
-  const TrackingEnd end = track(pair);
-  if (are_closest(end)) r = result_of(pair);
+TrackingEnd track_relative(const Query& query, Answer& answer) {
+  const RelativePose4 a_from_b = pose4_of(query.a_from_b);
+  const Query4 query4{query.a, query.b, a_from_b, query.state, query.depth};
+  if (!has_features(query) && begin(query4) == Start::kInContact) return TrackingEnd::kUndecided;
+  TrackedPair pair(query4);
+  const TrackingEnd end = move_to_closest(pair);
+  if (are_closest(end)) write(pair, answer);
   return end;
 }
 
@@ -25,9 +26,8 @@ namespace clearance {
 
 HWY_EXPORT(track_relative);
 
-TrackingEnd track_features(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                           TrackingState& state, DistanceResult& result) noexcept {
-  return HWY_DYNAMIC_DISPATCH(track_relative)(a, b, a_from_b, state, result);
+TrackingEnd track_features(const Query& query, Answer& answer) noexcept {
+  return HWY_DYNAMIC_DISPATCH(track_relative)(query, answer);
 }
 
 }  // namespace clearance

@@ -1,5 +1,5 @@
 // Transitions of penetrating bodies whose depth is between the same features as in the last query,
-// or their neighbours. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// or their neighbours. Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // Let h be the displacement of B along n after which the features touch. It bounds the penetration
 // depth from above, as separating features bound the distance from below. The transitions of
@@ -30,10 +30,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
-// A margin far above rounding, as a part of the pair's size. The test only has to show whether
-// other directions are longer by this margin.
-inline constexpr double kAmple = 1e-9;
-
 // The distance of a point of a facet's plane from the sides of the facet; negative: outside.
 HWY_INLINE double inradius_on_facet(const ConvexBody& body, const Facet& facet, Vec4 point) {
   const double* four = body.facet_limits.row(facet.first_side);
@@ -48,14 +44,14 @@ HWY_INLINE double inradius_on_facet(const ConvexBody& body, const Facet& facet, 
 
 // The radius of the disc, from the features that touch.
 HWY_INLINE double contact_inradius(const TrackedPair& pair) {
-  double inradius = pair.inradius;
+  double inradius = pair.contact.inradius;
   if (pair.on_a.kind == FeatureKind::kFacet) {
-    inradius = std::max(inradius,
-                        inradius_on_facet(pair.a, pair.a.facets[pair.on_a.feature], pair.point_a));
+    inradius = std::max(
+        inradius, inradius_on_facet(pair.a, pair.a.facets[pair.on_a.feature], pair.found.a_A));
   }
   if (pair.on_b.kind == FeatureKind::kFacet) {
-    inradius = std::max(inradius,
-                        inradius_on_facet(pair.b, pair.b.facets[pair.on_b.feature], pair.local_b));
+    inradius = std::max(
+        inradius, inradius_on_facet(pair.b, pair.b.facets[pair.on_b.feature], pair.found.b_B));
   }
   return inradius;
 }
@@ -72,10 +68,10 @@ HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
   const double s = lines.s, t = lines.t;
   const double to_end = std::min(std::min(s, first.end - s), std::min(t, second.end - t));
   const double sine = std::sqrt(lines.sine2), limit = -kDerivativeError * sine,
-               across = std::abs(dot(lines.between, lines.n));
+               across = std::abs(dot(lines.between_A, lines.n_A));
   const double size = size_of(pair);
   const bool near = across <= kNearContact * size * sine;
-  Vec4 g = with_signs(lines.n, spread(std::copysign(0.0, -dot(lines.between, lines.n))));
+  Vec4 g = with_signs(lines.n_A, spread(std::copysign(0.0, -dot(lines.between_A, lines.n_A))));
   const auto is_closest = [&] HWY_ATTR {
     return to_end > 0.0 && both_facets_recede(first, g, limit) &&
            both_facets_recede(second, -direction_to_b(pair.a_from_b, g), limit);
@@ -86,23 +82,23 @@ HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
     if (!near) return Transition::kUndecided;
     if (!is_closest()) return disjoint_transition(pair);
   }
-  pair.normal = over(g, sine);
-  lines.place_witnesses(pair);
-  const double between = norm(pair.point_b - pair.point_a), length = across / sine;
-  pair.distance = overlap ? -length : between;
-  pair.inradius = to_end * sine;
+  pair.found.n_A = over(g, sine);
+  lines.place_witnesses(pair.found);
+  const double between = norm(pair.found.b_A - pair.found.a_A), length = across / sine;
+  pair.found.distance = overlap ? -length : between;
+  pair.contact.inradius = to_end * sine;
   // The exact plane of the edges may also be nearer by the tilt of the normal.
   const double tilt =
-      lines.tilt_error_of_edges(pair.normal, pair.a.bounding_radius, pair.b.bounding_radius);
-  pair.certified = (overlap ? -length : length) - tilt;
-  pair.depth_error = tilt;
+      lines.tilt_error_of_edges(pair.found.n_A, pair.a.bounding_radius, pair.b.bounding_radius);
+  pair.found.certified = (overlap ? -length : length) - tilt;
+  pair.contact.depth_error = tilt;
   // The points of edges that touch are not exactly along the normal.
-  if (length <= kMayTouch * size) pair.depth_error += std::max(0.0, between - length);
+  if (length <= kMayTouch * size) pair.contact.depth_error += std::max(0.0, between - length);
   return Transition::kClosest;
 }
 
 HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
-  pair.inradius = pair.depth_error = 0.0;
+  pair.contact = {};
   switch (pair.features()) {
     case FeaturePair::kVertexVertex:
       return touching_vertices(pair);
@@ -112,84 +108,56 @@ HWY_INLINE Transition penetrating_transition(TrackedPair& pair) {
       return touching_edge(Owner<false>(pair));
     case FeaturePair::kEdgeEdge:
       return penetrating_edges(pair);
+    case FeaturePair::kFacetFacet:
+      return facet_facet(pair);
     default:
-      return transition<Tracking::kFurther>(pair);
+      return disjoint_transition(pair);
   }
 }
 
 // Is the displacement along every other direction longer?
 HWY_INLINE bool is_shortest(const TrackedPair& pair, double size) {
   const Vec4 middles = point_to_a(pair.a_from_b, load3(pair.b.interior)) - load3(pair.a.interior);
-  const double along = dot(middles, pair.normal), off = kAmple * size;
-  const double height = off - pair.distance, radius = contact_inradius(pair) - off, d = along - off;
-  const double l = off + norm(middles - along * pair.normal), k = height / radius;
+  const double along = dot(middles, pair.found.n_A), off = kAmple * size;
+  const double height = off - pair.found.distance, radius = contact_inradius(pair) - off,
+               d = along - off;
+  const double l = off + norm(middles - along * pair.found.n_A), k = height / radius;
   return radius > height && d * (1.0 - k * k) - 2.0 * k * l > height * (1.0 + k * k);
-}
-
-HWY_INLINE bool are_facets_of_boxes(const TrackedPair& pair) {
-  return pair.features() == FeaturePair::kFacetFacet && pair.a.box.exist() && pair.b.box.exist();
-}
-
-// The same for parallel facets of two boxes. A - B is a prism over a polygon whose sides are
-// across the boxes' other axes. So the displacement is the shortest if those along these axes and
-// past the opposite facets are longer.
-inline HWY_NOINLINE bool is_shortest_of_boxes(const TrackedPair& pair, double size) {
-  const BoxFeatures &a = pair.a.box, &b = pair.b.box;
-  const auto magnitude = [](Vec4 v) HWY_ATTR { return where_less(v, spread(0.0), -v, v); };
-  const auto magnitudes = [&](const Diagonals& m) HWY_ATTR {
-    return Diagonals{magnitude(m.main), magnitude(m.next), magnitude(m.last)};
-  };
-  const Diagonals to_a = magnitudes(pair.a_from_b.rotation);
-  const Diagonals to_b = magnitudes(pair.a_from_b.transposed);
-  const Vec4 half_a = load3_of_4(a.half), half_b = load3_of_4(b.half);
-  const Vec4 between = point_to_a(pair.a_from_b, load3_of_4(b.centre)) - load3_of_4(a.centre);
-  const Vec4 gaps_a = magnitude(between) - (half_a + to_a * half_b);
-  const Vec4 gaps_b = magnitude(direction_to_b(pair.a_from_b, between)) - (half_b + to_b * half_a);
-  const auto all_others_longer = [&](Vec4 gaps, const Facet& facet) HWY_ATTR {
-    const Vec4 n = load3_of_4(facet.normal), limit = spread(pair.distance - kAmple * size);
-    return ((less(gaps, limit) | less(spread(0.5), n * n)) & 7u) == 7u;
-  };
-  const Vec4 n = load3_of_4(pair.a.facets[pair.on_a.feature].normal);
-  return dot(n, between) > kAmple * size &&
-         all_others_longer(gaps_a, pair.a.facets[pair.on_a.feature]) &&
-         all_others_longer(gaps_b, pair.b.facets[pair.on_b.feature]);
 }
 
 // The features meet within rounding, so the bodies are neither certainly disjoint nor certainly
 // overlapping. The plane of the features bounds the distance from below, as for all bodies. The
 // points on them are points of the bodies, so their distance bounds it from above.
 HWY_INLINE bool is_contact(const TrackedPair& pair, const Precision& p) {
-  const double between = std::abs(pair.distance);
-  const double gap = between - pair.certified + pair.depth_error;
+  const double between = std::abs(pair.found.distance);
+  const double gap = between - pair.found.certified + pair.contact.depth_error;
   return between <= p.error_bound && gap <= 0.5 * p.error_bound + 5.0 * p.gap_tolerance;
 }
 
-template <bool kBounded = false>
 HWY_INLINE bool certify_penetration(TrackedPair& pair) {
-  const RelativePose4& pose = pair.a_from_b;
-  const PlacePrecision place{pose.rotation_error, pose.translation_error, pose.translation_length};
-  const Precision p = precision<kBounded>(pair.a, pair.b, place, std::abs(pair.distance));
-  pair.error_bound = p.error_bound;
-  pair.touching = is_contact(pair, p);
-  if (!pair.touching) {
-    const double noise = pair.distance - pair.certified;
+  const Precision p =
+      precision(pair.a, pair.b, place_of(pair.a_from_b), std::abs(pair.found.distance));
+  pair.found.error_bound = p.error_bound;
+  pair.contact.touching = is_contact(pair, p);
+  if (!pair.contact.touching) {
+    const double noise = pair.found.distance - pair.found.certified;
     // A tilt of the facets counts for a prism's height, too.
-    if (are_facets_of_boxes(pair)) pair.depth_error = noise;
+    if (are_facets_of_boxes(pair)) pair.contact.depth_error = noise;
     const bool certified =
-        pair.distance > 0.0
-            ? pair.certified > p.error_bound
-            : pair.distance + pair.depth_error < -p.error_bound &&
+        pair.found.distance > 0.0
+            ? pair.found.certified > p.error_bound
+            : pair.found.distance + pair.contact.depth_error < -p.error_bound &&
                   (is_shortest(pair, p.size) ||
                    (are_facets_of_boxes(pair) && is_shortest_of_boxes(pair, p.size)));
-    const double gap = noise + pair.depth_error + 2.0 * p.error_bound;
+    const double gap = noise + pair.contact.depth_error + 2.0 * p.error_bound;
     if (!certified || !(noise <= p.gap_tolerance) ||
-        !converges_with_radii(pair.a, pair.b, p.size, pair.distance, gap)) {
+        !converges_with_radii(pair.a, pair.b, p.size, pair.found.distance, gap)) {
       return false;
     }
   }
-  pair.on_a.penetrating = pair.touching || !(pair.distance > 0.0);
-  pair.on_a.point = vec3(pair.point_a);
-  pair.on_b.point = vec3(pair.local_b);
+  pair.on_a.penetrating = pair.contact.touching || !(pair.found.distance > 0.0);
+  pair.on_a.point = vec3(pair.found.a_A);
+  pair.on_b.point = vec3(pair.found.b_B);
   return true;
 }
 
@@ -202,8 +170,8 @@ HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   const Side before_a = pair.on_a, before_b = pair.on_b;
   pair.penetrating = true;
   Transition result = Transition::kMoved;
-  while (result == Transition::kMoved && pair.transitions < kMostTransitions) {
-    ++pair.transitions;
+  while (result == Transition::kMoved && pair.made.all < kMostTransitions) {
+    ++pair.made.all;
     result = penetrating_transition(pair);
   }
   if (result == Transition::kClosest && certify_penetration(pair)) return true;
@@ -212,19 +180,36 @@ HWY_INLINE bool track_penetrating_features(TrackedPair& pair) {
   return false;
 }
 
-// The result of tracking that has certified the depth, a contact or the distance.
-HWY_INLINE DistanceResult penetration_result_of(const TrackedPair& pair) {
-  DistanceResult r = result_of(pair);
-  r.path = DistancePath::kPenetration;
-  if (pair.touching) {
-    r.upper = (std::abs(pair.distance) + pair.depth_error) + pair.error_bound;
-    if (!(r.lower > 0.0)) r.status = DistanceStatus::kTouching;
-    return r;
-  }
-  if (pair.distance > 0.0) return r;
-  r.upper = (pair.distance + pair.depth_error) + pair.error_bound;
-  r.status = DistanceStatus::kOverlapping;
-  return r;
+// Far below a facet's plane, as a part of the size, features seldom certify a depth.
+inline constexpr double kShallow = 0x1p-5;
+
+// Are the features where tracking ended worth a test for contact?
+HWY_INLINE bool may_touch(const TrackedPair& pair, TrackingEnd end) {
+  if (end == TrackingEnd::kExhausted) return false;
+  return !(pair.found.distance < -kShallow * size_of(pair)) || are_facets_of_boxes(pair);
+}
+
+HWY_INLINE void write_penetration(const TrackedPair& pair, Answer& answer) {
+  write(pair, answer);
+  answer.path = DistancePath::kPenetration;
+  const double distance = pair.found.distance;
+  if (!pair.contact.touching && distance > 0.0) return;
+  const double farthest = pair.contact.touching ? std::abs(distance) : distance;
+  answer.upper = (farthest + pair.contact.depth_error) + pair.found.error_bound;
+}
+
+// Answers bodies that touch or penetrate each other at the features of the state or near them.
+HWY_INLINE bool track_contact(const Query4& q, Answer& answer) {
+  TrackedPair pair(q);
+  if (!track_penetrating_features(pair) || (pair.on_a.penetrating && !q.depth)) return false;
+  write_penetration(pair, answer);
+  return true;
+}
+
+// Level boxes slide from one pair of features to another, and the last one may certify nothing.
+inline HWY_NOINLINE bool restart_contact(const Query4& q, Answer& answer) {
+  return shared_axes(squares_of(q.a_from_b.rotation)) != 0 && start_boxes(q) != Start::kNone &&
+         track_contact(q, answer);
 }
 
 }  // namespace clearance::HWY_NAMESPACE

@@ -1,5 +1,5 @@
 // The closest features of two bodies that are points or segments: spheres and capsules without
-// their radii. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// their radii. Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // The squared distance of x(s) = p + s e and y(t) = q + t f, with unit e and f, is a convex
 // quadratic function of s and t. Its minimum over the rectangle of both segments follows by three
@@ -20,33 +20,29 @@
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-// Two bodies that are points or segments, and a state that has no features of them.
-HWY_INLINE bool are_segments_without_features(const ConvexBody& a, const ConvexBody& b,
-                                              const TrackingState& state) {
-  return a.is_thin() && b.is_thin() && state.a.kind == FeatureKind::kUnknown;
+HWY_INLINE bool are_segments(const ConvexBody& a, const ConvexBody& b) {
+  return a.is_thin() && b.is_thin();
 }
 
-HWY_INLINE void to_only_vertex(Side& side) {
-  side.kind = FeatureKind::kVertex;
-  side.penetrating = false;
-  side.feature = 0;
-}
-
-HWY_INLINE void place_point_of_b(TrackedPair& pair) {
-  pair.local_b = load3_alone(pair.b.vertices[0].position);
-  pair.point_b = point_to_a(pair.a_from_b, pair.local_b);
-}
-// Two points, after B's has been placed. The arithmetic is that of two vertices, so that a batch
-// gives the same bits.
-HWY_INLINE Vec4 meet_points(TrackedPair& pair) {
-  to_only_vertex(pair.on_a);
-  to_only_vertex(pair.on_b);
-  pair.point_a = load3_alone(pair.a.vertices[0].position);
-  return pair.point_b - pair.point_a;
-}
-HWY_INLINE void measure_points(TrackedPair& pair, Vec4 g, double length) {
-  pair.distance = pair.certified = length;
-  pair.normal = over(g, length);
+// Two points, whatever their state holds. False: rounding cannot tell their distance from 0.
+HWY_INLINE bool between_points(const Query4& q, Answer& answer) {
+  for (Side* side : {&q.state.a, &q.state.b}) {
+    side->kind = FeatureKind::kVertex;
+    side->penetrating = false;
+    side->feature = 0;
+  }
+  TrackedPair pair(q);
+  ++pair.made.all;
+  Findings& found = pair.found;
+  found.a_A = load3_masked(q.a.vertices[0].position);
+  found.b_B = load3_masked(q.b.vertices[0].position);
+  found.b_A = point_to_a(q.a_from_b, found.b_B);
+  const Vec4 between = found.b_A - found.a_A;
+  found.distance = found.certified = norm(between);
+  found.n_A = over(between, found.distance);
+  if (HWY_UNLIKELY(certify(pair) != TrackingEnd::kCertified)) return false;
+  write(pair, answer);
+  return true;
 }
 
 // In the body's frame.
@@ -55,9 +51,9 @@ struct Segment {
   double length;          // m
 };
 HWY_INLINE Segment segment_of(const ConvexBody& body) {
-  if (body.features[1] == 0) return {load3_alone(body.vertices[0].position), spread(0.0), 0.0};
+  if (body.features[1] == 0) return {load3_masked(body.vertices[0].position), spread(0.0), 0.0};
   const Edge& edge = body.edges[0];
-  return {load3_of_4(edge.point), load3_of_4(edge.direction), edge.end};
+  return {load3_padded(edge.point), load3_padded(edge.direction), edge.end};
 }
 
 // Branches, not selections: the queries that follow need not wait for the features.
@@ -79,9 +75,10 @@ HWY_INLINE double to_place_on_segment(Side& side, double s, double length) {
 
 // A hint, as any features are: the certificate decides. Parallel segments may have several closest
 // features; the search then starts at their edges.
-HWY_INLINE void start_at_segments(const ConvexBody& body_a, const ConvexBody& body_b,
-                                  const RelativePose4& a_from_b, TrackingState& state) {
-  const Segment a = segment_of(body_a), b = segment_of(body_b);
+HWY_INLINE void start_at_segments(const Query4& q) {
+  const Segment a = segment_of(q.a), b = segment_of(q.b);
+  const RelativePose4& a_from_b = q.a_from_b;
+  TrackingState& state = q.state;
   double s = 0.0, t = 0.0;
   const Vec4 between = point_to_a(a_from_b, b.start) - a.start;
   if (b.length == 0.0) {

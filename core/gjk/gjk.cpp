@@ -19,9 +19,9 @@ Wide wide(const Vec3& v) noexcept { return vector_of<DoubleDouble>(v); }
 
 // A point of the Minkowski difference B - A, and where it comes from.
 struct DifferenceVertex {
-  Vec3 a;       // in frame A
-  Vec3 b_in_b;  // in frame B
-  Wide b;       // the same in frame A
+  Vec3 a;    // in frame A
+  Vec3 b_B;  // in frame B
+  Wide b;    // the same in frame A
   Wide difference;
 
   [[nodiscard]] bool operator==(const DifferenceVertex& other) const noexcept {
@@ -41,7 +41,7 @@ class WideMinkowskiDifference {
   // The support point along -n, with n in frame A.
   [[nodiscard]] DifferenceVertex support_point(const Vec3& n) const noexcept {
     return make(cut_off_support(a_.body(), n, p_.extent_a),
-                cut_off_support(b_.body(), -b_.direction_to_local(n), p_.extent_b));
+                cut_off_support(b_.body(), -b_.direction_A_to_L(n), p_.extent_b));
   }
   [[nodiscard]] DifferenceVertex make(const Vec3& a, const Vec3& b_own) const noexcept {
     DifferenceVertex c{a, b_own, to_a(b_own), {}};
@@ -85,10 +85,10 @@ void improve_upper(ActiveFeature& a, ActiveFeature& b, DistanceResult& r,
                    const WideSimplex& simplex, double length, const Precision& p) noexcept {
   if (length > r.distance + p.gap_tolerance) return;
   a.place(a.feature(), a.index(), simplex.mean([](const DifferenceVertex& c) { return c.a; }));
-  b.place(b.feature(), b.index(), simplex.mean([](const DifferenceVertex& c) { return c.b_in_b; }));
+  b.place(b.feature(), b.index(), simplex.mean([](const DifferenceVertex& c) { return c.b_B; }));
   r.upper = std::min(r.upper, length + p.error_bound);
   r.distance = length;
-  r.point_on_a = a.point_in_a();
+  r.point_on_a = a.point_A();
   r.point_on_b = simplex.mean([](const DifferenceVertex& c) { return rounded(c.b); });
 }
 
@@ -103,8 +103,8 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
   WideSimplex simplex;
   // Far out on an unbounded body, a point is off it by more than the bounds allow for.
   const bool near =
-      a.local_point().norm() <= 4.0 * p.extent_a && b.local_point().norm() <= 4.0 * p.extent_b;
-  (void)simplex.add(near ? body.make(a.local_point(), b.local_point())
+      a.point_L().norm() <= 4.0 * p.extent_a && b.point_L().norm() <= 4.0 * p.extent_b;
+  (void)simplex.add(near ? body.make(a.point_L(), b.point_L())
                          : body.make(a.body().anchors[0], b.body().anchors[0]));
   for (int round = 0; round < kRounds; ++round) {
     const ClosestPoint<DoubleDouble> closest = simplex.reduce();
@@ -118,13 +118,6 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
       r.normal = unit_along(n);  // squares may underflow
     r.lower = std::max(r.lower, separated - p.error_bound);
     if (length - separated <= p.gap_tolerance || !simplex.add(next)) break;
-  }
-  const bool converged = p.converged(r.upper - r.lower);
-  if (r.lower > 0.0) {
-    r.status = converged ? DistanceStatus::kConverged : DistanceStatus::kIterationLimit;
-  } else {
-    r.status = r.upper <= 2.0 * (p.error_bound + p.gap_tolerance) ? DistanceStatus::kTouching
-                                                                  : DistanceStatus::kIterationLimit;
   }
 }
 

@@ -1,5 +1,5 @@
 // The directional derivatives of the neighbours of a vertex or an edge, and the limits of a facet,
-// four at a time. Compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// four at a time. Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // A vertex is the support point of a convex body along g if all its edges recede: every directional
 // derivative along g is negative. An edge orthogonal to g is the support set if both of its facets

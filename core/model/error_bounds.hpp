@@ -27,6 +27,11 @@ struct Precision {
   [[nodiscard]] bool converged(double gap) const noexcept {
     return gap <= std::max(gap_tolerance + 2.0 * error_bound, promised);
   }
+  // The same for bodies that touch within rounding. A penetration by less than the error bound can
+  // be seen from one side only: thrice.
+  [[nodiscard]] bool is_contact(double gap) const noexcept {
+    return gap <= 3.0 * error_bound + 5.0 * gap_tolerance;
+  }
 };
 
 // The errors of B's pose in A's frame, and its distance (m).
@@ -42,13 +47,10 @@ struct PlacePrecision {
 // fixed and the wrong rotation rotates A about B's origin. No point of A is farther from there than
 // extent_a plus the translation. The part of the error that is not a rotation then stretches the
 // distance. Both are bounds, so the smaller one counts.
-//
-// `kBounded`: both bodies are known to be bounded.
-template <bool kBounded = false>
 [[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
                                          const PlacePrecision& b_in_a, double farthest) noexcept {
   assert(!(farthest < 0.0) && !(b_in_a.translation < 0.0));
-  const bool a_bounded = kBounded || a.bounded(), b_bounded = kBounded || b.bounded();
+  const bool a_bounded = a.bounded(), b_bounded = b.bounded();
   Precision p;
   const double translation = b_in_a.translation;
   double ulps = kGapToleranceUlps[0], on_features = a.error_bound_as_a + b.error_bound_as_b;

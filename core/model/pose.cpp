@@ -1,4 +1,4 @@
-// Compiled once a vector width.
+// Compiled once per vector width.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/model/pose.cpp"
 #include "core/numerics/simd_targets.hpp"

@@ -129,11 +129,6 @@ void add_recession_cone(ConvexBody& body) {
   body.recession_cone.inwards = inwards(body, against_normals);
 }
 
-QueryClass query_class(const ConvexBody& body) {
-  if (!body.bounded() || body.is_curved()) return QueryClass::kOther;
-  return body.is_thin() && body.edges.empty() ? QueryClass::kPoint : QueryClass::kPlain;
-}
-
 // The facet across an axis in this direction; kNone: there is none.
 std::int32_t facet_across(const ConvexBody& body, int axis, bool negative) {
   const Vec3 normal = (negative ? -1.0 : 1.0) * Vec3::Unit(axis);
@@ -220,7 +215,6 @@ void add_query_tables(ConvexBody& body) {
   add_recession_cone(body);
   const auto count = [](const auto& all) { return static_cast<std::uint32_t>(all.size()); };
   body.features = {count(body.vertices), count(body.edges), count(body.facets)};
-  body.query_class = query_class(body);
   body.box = box_features(body);
   add_outgoing(body);
   add_neighbours(body);

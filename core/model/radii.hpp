@@ -1,4 +1,4 @@
-// Polyhedra become swept-sphere bodies: a body is its polyhedron plus a sphere of its radius.
+// The radii of swept-sphere bodies: a body is its polyhedron plus a sphere of its radius.
 #pragma once
 
 #include <cmath>
@@ -31,23 +31,6 @@ namespace clearance {
 [[nodiscard]] inline Vec3 on_rounded_b(const Vec3& on_polyhedron, const Vec3& normal,
                                        const ConvexBody& b) noexcept {
   return on_polyhedron - b.radius * normal;
-}
-
-// Witness points move from the polyhedra's surfaces to the rounded bodies'.
-inline void add_radii(DistanceResult& r, const ConvexBody& a, const ConvexBody& b) noexcept {
-  const double sum = radii(a, b);
-  if (sum == 0.0 || r.upper == -kInfinity) return;  // no translation separates these bodies
-  const double rounding = rounding_of_radii(sum, r.upper);
-  r.distance -= sum;
-  r.lower -= sum + rounding;
-  r.upper -= sum - rounding;
-  r.point_on_a += a.radius * r.normal;
-  r.point_on_b = on_rounded_b(r.point_on_b, r.normal, b);
-  if (r.upper < 0.0) {
-    r.status = DistanceStatus::kOverlapping;
-  } else if (r.lower <= 0.0 && r.status == DistanceStatus::kConverged) {
-    r.status = DistanceStatus::kTouching;
-  }
 }
 
 }  // namespace clearance

@@ -1,4 +1,5 @@
-// RelativePose as the queries use it, compiled once a vector width: see core/numerics/vec4-inl.hpp.
+// RelativePose as the queries use it, compiled once per vector width: see
+// core/numerics/vec4-inl.hpp.
 #if defined(CLEARANCE_CORE_RELATIVE_POSE4) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_RELATIVE_POSE4
 #undef CLEARANCE_CORE_RELATIVE_POSE4
@@ -13,6 +14,8 @@
 #include <limits>
 
 #include "core/model/bad_pose.hpp"
+#include "core/model/error_bounds.hpp"
+#include "core/model/query.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/numerics/vec4-inl.hpp"
 #include "core/pose.hpp"
@@ -37,6 +40,8 @@ struct RelativePose4 {
   double rotation_error, translation_error;  // as in RelativePose
   double translation_length;                 // m
 };
+
+using Query4 = QueryAt<RelativePose4>;
 
 HWY_INLINE Vec4 direction_to_a(const RelativePose4& r, Vec4 v) { return r.rotation * v; }
 HWY_INLINE Vec4 direction_to_b(const RelativePose4& r, Vec4 v) { return r.transposed * v; }
@@ -125,7 +130,7 @@ inline HWY_NOINLINE bool is_good(const Pose& world_from_a, const Pose& world_fro
 HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& world_from_b) {
   const Vec4 a = load4(world_from_a.orientation.coeffs().data());
   const Vec4 q = relative(a, world_from_b.orientation.coeffs().data());
-  const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
+  const Vec4 between = load3_masked(world_from_b.position) - load3_masked(world_from_a.position);
   const Vec2 squares = squares_of(a, q);
   const bool unit = both_nearly_unit(squares);
   const Vec2 factors = HWY_LIKELY(unit) ? two_over_unit(squares) : two_over(squares);
@@ -145,22 +150,6 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
   return r;
 }
 
-// The translation and its error alone, for a point of B at the origin of its frame. The errors of a
-// rotation do not move that point. False: the poses are not certainly good, or a product with the
-// rotation could change the sign of a zero.
-HWY_INLINE bool set_place(const Pose& world_from_a, const Pose& world_from_b, RelativePose4& r) {
-  const Vec4 a = load4(world_from_a.orientation.coeffs().data());
-  const Vec4 between = load3_alone(world_from_b.position) - load3_alone(world_from_a.position);
-  const Vec2 squares = squares_of(a, load4(world_from_b.orientation.coeffs().data()));
-  set_translation(a, two_over_unit(squares)[0], between, r);
-  r.rotation_error = 0.0;
-  if (HWY_UNLIKELY(!has_digits(world_from_a.orientation.w())) && permutes_axes(a)) {
-    r.translation_error = kPermutedTranslationError * r.translation_length;
-  }
-  return both_nearly_unit(squares) && r.translation_length <= kLargestCoordinate &&
-         (less(spread(0.0), r.translation * r.translation) & 7u) == 7u;
-}
-
 // The nine numbers of the matrix are followed by the translation in the same object.
 static_assert(offsetof(RelativePose, translation) == sizeof(Mat3));
 
@@ -173,7 +162,7 @@ HWY_INLINE RelativePose4 pose4_of(const RelativePose& pose) {
   RelativePose4 r;
   r.rotation = {d, n, zxy(p)};
   r.transposed = {d, p, zxy(n)};
-  r.translation = load3_of_4(pose.translation);
+  r.translation = load3_padded(pose.translation);
   r.rotation_error = pose.rotation_error;
   r.translation_error = pose.translation_error;
   r.translation_length = norm(r.translation);
@@ -192,6 +181,10 @@ HWY_INLINE RelativePose4 good_pose4_of(const RelativePose& pose) {
     r.translation = spread(r.translation_length);
   }
   return r;
+}
+
+HWY_INLINE PlacePrecision place_of(const RelativePose4& r) {
+  return {r.rotation_error, r.translation_error, r.translation_length};
 }
 
 HWY_INLINE RelativePose pose_of(const RelativePose4& r) {

@@ -17,7 +17,8 @@ constexpr std::size_t kScan = 24;
 struct Climber {
   Vec3 m;
   std::int32_t at;
-  double steepest = kInfinity;  // directional derivative along m of that edge of `at`
+  // The greatest directional derivative along m of the edges that leave the vertex `at`.
+  double steepest = kInfinity;
 };
 
 // Moves along the steepest edge if its derivative is positive by more than rounding, so the climb
@@ -44,7 +45,7 @@ bool climb(const ConvexBody& body, Climber& climber) noexcept {
   return ascends != 0;
 }
 
-// Advances all climbers in turn: while one waits for memory the others go on.
+// Advances all climbers in rotation: while one waits for memory the others go on.
 void climb_together(const ConvexBody& body, Climber* climbers, std::size_t count) noexcept {
   std::array<std::uint8_t, kLookedUpTogether> climbing;
   for (std::size_t i = 0; i < count; ++i) climbing[i] = static_cast<std::uint8_t>(i);
@@ -177,12 +178,12 @@ double support_along_rays(const ConvexBody& body, const Vec3& m, double within) 
   return rate * (within + body.bounding_radius);
 }
 
-void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
+void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& rotation,
                             std::span<const std::uint16_t> facets,
                             std::uint16_t* vertices) noexcept {
   std::array<Climber, kLookedUpTogether> climbers;
   for (std::size_t k = 0; k < facets.size(); ++k) {
-    const Vec3 m = -(turn * body.facets[facets[k]].normal);
+    const Vec3 m = -(rotation * body.facets[facets[k]].normal);
     climbers[k] = {m, other.start.at(m)};
   }
   climb_together(other, climbers.data(), facets.size());

@@ -34,7 +34,7 @@ inline constexpr std::size_t kLookedUpTogether = 16;
 // For each of up to kLookedUpTogether facets of `body`, sets vertices[facet]: a vertex of `other`
 // that is deepest below the facet, or nearly so. `rotation` leads from body's frame to other's.
 // `other`: bounded, with edges.
-void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& turn,
+void look_up_support_points(const ConvexBody& body, const ConvexBody& other, const Mat3& rotation,
                             std::span<const std::uint16_t> facets,
                             std::uint16_t* vertices) noexcept;
 

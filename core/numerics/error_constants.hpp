@@ -19,8 +19,10 @@ inline constexpr double kNearlyUnit = 0x1p-28;
 
 // Error of a rotation matrix R(q) in the 2-norm, for an exact unit quaternion (x, w).
 // - The common factor 2/|q|^2, but for the squares in it: pair sums 1 ulp, their sum 1, the
-//   quotient 1. (Or of nearly unit ones: from 1 on the sum is off by 1 and 2 - |q|^2 exact; below
-//   1, by 1/2 and 1; 2^-55 is 1/4.) That scales R - I, which is 2|x| long: 6|x|.
+//   quotient 1. That scales R - I, which is 2|x| long: 6|x|. The factor of a nearly unit quaternion
+//   has no quotient and no larger error. If the sum is 1 or more, it is off by 1 ulp, and 2 - |q|^2
+//   is exact. If it is below 1, it is off by 1/2 and the difference by 1. The square e^2, below
+//   2^-55, adds 1/4.
 // - The squares, there and on the diagonal 1 - 2p, p = x_j^2 + x_k^2: 4 p (1 - p); beside it
 //   |R_ij|.
 // - The other products beside the diagonal: 2 (|x_i x_j| + |w x_k|).

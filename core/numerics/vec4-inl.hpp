@@ -1,7 +1,8 @@
-// Vectors of three doubles in registers of four, for the code that is compiled once a vector width
-// (hwy/foreach_target.h). There are two registers of two at the x86-64 baseline and on Arm, and one
-// of four with AVX2. The value of the fourth lane never matters. Every operation is elementwise on
-// IEEE doubles, and sums have a fixed order. So the width does not change a bit of a result.
+// Vectors of three doubles in registers of four, for the code that is compiled once per vector
+// width (hwy/foreach_target.h). There are two registers of two at the x86-64 baseline and on Arm,
+// and one of four with AVX2. The value of the fourth lane never matters. Every operation is
+// elementwise on IEEE doubles, and sums have a fixed order. So the width does not change a bit of a
+// result.
 #if defined(CLEARANCE_CORE_VEC4) == defined(HWY_TARGET_TOGGLE)
 #ifdef CLEARANCE_CORE_VEC4
 #undef CLEARANCE_CORE_VEC4
@@ -41,11 +42,11 @@ template <int i, int j, int k, int l>
 HWY_INLINE Vec4 pick(Vec4 a, Vec4 b) {
   return {__builtin_shufflevector(a.v, b.v, i, j, k, l)};
 }
-// Which lanes of a are less than those of b: a bit each.
+// Tells which lanes of a are less than those of b: a bit each.
 HWY_INLINE unsigned less(Vec4 a, Vec4 b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v < b.v)));
 }
-// Which lanes of a are at least those of b; none of NaN.
+// Tells which lanes of a are at least those of b; none of NaN.
 HWY_INLINE unsigned at_least(Vec4 a, Vec4 b) {
   return static_cast<unsigned>(__builtin_ia32_movmskpd256(Doubles(a.v >= b.v)));
 }
@@ -134,10 +135,10 @@ HWY_INLINE Vec4 load4(const double* p) {
   return a;
 }
 // Three doubles that are followed by another one in the same object.
-HWY_INLINE Vec4 load3_of_4(const Vec3& p) { return load4(p.data()); }
+HWY_INLINE Vec4 load3_padded(const Vec3& p) { return load4(p.data()); }
 // Three doubles that are followed by eight bytes of another type in the same object. These bytes
 // are masked: integers would be subnormal doubles, which are slow.
-HWY_INLINE Vec4 load3_alone(const Vec3& p) { return first3(load4(p.data())); }
+HWY_INLINE Vec4 load3_masked(const Vec3& p) { return first3(load4(p.data())); }
 HWY_INLINE void store4(Vec4 a, double* p) { std::memcpy(p, &a, sizeof a); }
 HWY_INLINE Vec3 vec3(Vec4 a) { return {lane(a, 0), lane(a, 1), lane(a, 2)}; }
 HWY_INLINE Vec4 operator*(double s, Vec4 a) { return spread(s) * a; }

@@ -6,8 +6,8 @@
 
 namespace clearance {
 
-// Most arcs are settled by one point that is deep enough below both facets. It is Y's lowest
-// vertex, or its inner sphere if the bodies penetrate deeply.
+// Most arcs are bounded by one point that is deep enough below both facets. It is Y's
+// lowest vertex, or its inner sphere if the bodies penetrate deeply.
 void NormalSearch::arcs(DeepestPoints& of_y) noexcept {
   lower_to(best_.height);
   const bool sphere = of_y.sphere() != nullptr;
@@ -33,14 +33,15 @@ void NormalSearch::arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept {
                            of_y.vertex(other) != DeepestPoints::kNoVertex;
     if (!looked_up && of_y.one_is_below(here, x.facets[other], best_.height)) continue;
     const Vec3 beside = deepest_vertex_below(other, of_y);
-    if (settles(here, vertex, x.facets[other], beside, of_y.sphere())) continue;
+    if (bounds_arc(here, vertex, x.facets[other], beside, of_y.sphere())) continue;
     arc_from(x.facet_edges[k], vertex, beside);
   }
 }
 
 // Returns a vertex of Y below a facet of X. This is usually the one that was looked up for the
-// facet. A facet that a sphere has settled has none. For it, the deepest of the points that were
-// compared with all facets is taken, if it is deep enough. Otherwise a vertex is looked up now.
+// facet. A facet that a sphere has bounded has none. For it, the deepest of the points
+// that were compared with all facets is taken, if it is deep enough. Otherwise a vertex is looked
+// up now.
 Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept {
   if (of_y.vertex(facet) == DeepestPoints::kNoVertex) {
     const Facet& here = body_.x().facets[facet];
@@ -49,9 +50,9 @@ Vec3 NormalSearch::deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y)
       if (&point == of_y.sphere()) continue;
       if (deepest == nullptr || point.below(here) > deepest->below(here)) deepest = &point;
     }
-    if (deepest->below(here) >= goal()) return deepest->at;
+    if (deepest->below(here) >= height_to_reach()) return deepest->at;
     const std::uint16_t list[] = {static_cast<std::uint16_t>(facet)};
-    look_up_support_points(body_.x(), body_.y(), body_.y_from_x().turn, list, of_y.vertices());
+    look_up_support_points(body_.x(), body_.y(), body_.y_from_x().rotation, list, of_y.vertices());
   }
   return body_.point_from_y(body_.y().anchors[of_y.vertex(facet)]);
 }

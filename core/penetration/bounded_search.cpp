@@ -38,14 +38,14 @@ std::int32_t NormalSearch::look_up(const Facing& facing, std::int32_t facet) noe
   return anchor;
 }
 
-// Settles facets that the points leave open. The deepest vertex below the least deep facet is one
+// Bounds facets that the points leave open. The deepest vertex below the least deep facet is one
 // more point to compare with all facets, as long as it makes progress. It makes hardly any if the
 // direction of the last query was the first target. After that the other body's inner sphere is
 // tried, and then vertices again.
 DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
                                                  DeepestPoints& points) noexcept {
-  DeepestPoints::Shallow shallow = points.list_shallow(settled());
-  bool nearer = steady_ == 0.0;
+  DeepestPoints::Shallow shallow = points.list_shallow(sufficient_height());
+  bool nearer = preference_ == 0.0;
   while (shallow.facets.size() > few_of(facing.body) && !ended_early()) {
     if (nearer && points.room_beside_sphere()) {
       const double before = best_.height;
@@ -60,13 +60,13 @@ DeepestPoints::Shallow NormalSearch::narrow_down(const Facing& facing,
     } else {
       break;
     }
-    shallow = points.list_shallow(settled());
+    shallow = points.list_shallow(sufficient_height());
   }
   return shallow;
 }
 
-// Settles the facets that are still open. Any vertex that is deep enough settles a facet; if none
-// is known, the deepest is searched.
+// Bounds the facets that are still open. Any vertex that is deep enough bounds a facet; if
+// none is known, the deepest is searched.
 void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) noexcept {
   const DeepestPoints::Shallow shallow = narrow_down(facing, points);
   if (ended_early()) return;
@@ -74,36 +74,36 @@ void NormalSearch::look_at_facets(const Facing& facing, DeepestPoints& points) n
   if (shallow.facets.size() <= few_of(facing.body)) {
     return look_at_few(facing, shallow.facets, points.vertices());
   }
-  const Mat3 turn = facing.body_from_other.turn.transpose();
+  const Mat3 rotation = facing.body_from_other.rotation.transpose();
   for (std::size_t k = 0; k < shallow.facets.size() && !ended_early(); k += kLookedUpTogether) {
     const auto some =
         shallow.facets.subspan(k, std::min(kLookedUpTogether, shallow.facets.size() - k));
-    look_up_support_points(facing.body, facing.other, turn, some, points.vertices());
+    look_up_support_points(facing.body, facing.other, rotation, some, points.vertices());
     for (const std::uint16_t facet : some) {
       const std::int32_t vertex = points.vertex(facet);
-      if (!is_settled(facing, facet, vertex)) {
+      if (!is_bounded(facing, facet, vertex)) {
         points.vertices()[facet] = static_cast<std::uint16_t>(look_up(facing, facet));
       }
     }
   }
 }
 
-// Settles them one by one: the point found for one facet settles most of its neighbours.
+// Bounds them one by one: the point found for one facet bounds most of its neighbours.
 void NormalSearch::look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
                                std::uint16_t* vertices) noexcept {
   std::int32_t last = kNone;
   for (const std::uint16_t facet : facets) {
-    if (last == kNone || !is_settled(facing, facet, last)) last = look_up(facing, facet);
+    if (last == kNone || !is_bounded(facing, facet, last)) last = look_up(facing, facet);
     if (ended_early()) return;
     vertices[facet] = static_cast<std::uint16_t>(last);
   }
 }
 
 // By a vertex that is deep enough.
-bool NormalSearch::is_settled(const Facing& facing, std::int32_t facet,
+bool NormalSearch::is_bounded(const Facing& facing, std::int32_t facet,
                               std::int32_t vertex) noexcept {
   const double depth = facing.below(facing.body.facets[facet], vertex);
-  if (!(depth >= settled())) return false;
+  if (!(depth >= sufficient_height())) return false;
   lower_to(depth);
   return true;
 }
@@ -116,7 +116,7 @@ void NormalSearch::facets_of_y_bounded() noexcept {
   take_least(facing, DeepestVertices(body_.y(), x.anchors, facing.body_from_other));
 }
 
-// X's support point along the best direction settles most facets of Y, and the sphere in its
+// X's support point along the best direction bounds most facets of Y, and the sphere in its
 // middle those on the far side.
 void NormalSearch::facets_of_y_by_points() noexcept {
   const Facing facing = y_facing_x();
@@ -141,7 +141,7 @@ void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
       const std::int32_t other = x.facets_beside[k];
       if ((other < i && !of_y.main_is(other)) || of_y.one_is(i, other)) continue;
       const Vec3 &below = of_y.deepest(i), &beside = of_y.deepest(other);
-      if (settles(facet, below, x.facets[other], beside, nullptr)) continue;
+      if (bounds_arc(facet, below, x.facets[other], beside, nullptr)) continue;
       arc_from(x.facet_edges[k], below, beside);
     }
   }
@@ -150,8 +150,8 @@ void NormalSearch::arcs(DeepestVertices& of_y) noexcept {
 // Uses the vertices known at the ends of an arc: the lowest vertex of Y there, or one nearly as
 // low. Up to half of the tolerance between bounds is left for the places where one vertex takes
 // over from the other.
-bool NormalSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
-                           const DeepestPoints::Point* sphere) noexcept {
+bool NormalSearch::bounds_arc(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
+                              const DeepestPoints::Point* sphere) noexcept {
   const auto on_arc = [&](const Vec3& p) {
     return OnArc{l.offset - l.normal.dot(p), r.offset - r.normal.dot(p)};
   };
@@ -164,7 +164,7 @@ bool NormalSearch::settles(const Facet& l, const Vec3& at_l, const Facet& r, con
                           best_.height + 0.5 * gap_tolerance_);
   }
   if (bound < best_.height) bound = std::max(bound, least_of_two(first, last));
-  if (!(bound >= goal())) return false;
+  if (!(bound >= height_to_reach())) return false;
   lower_to(bound);
   return true;
 }
@@ -174,7 +174,7 @@ void NormalSearch::arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& 
   const Arc arc = across(body_.x().edges[use.edge]);
   const auto known = [&](const Vec2& at, const Vec3& p) {
     const Sample there{at, arc.project(arc.on_edge - p)};
-    return there.height() >= goal() ? there : sample(arc, at);
+    return there.height() >= height_to_reach() ? there : sample(arc, at);
   };
   const Vec2 end = arc.project(body_.x().facets[arc.edge.facet[1]].normal);
   const bool forth = use.side == 0;

@@ -1,6 +1,7 @@
 #include "core/penetration/depth.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/active_set/separating_direction.hpp"
@@ -53,9 +54,9 @@ double rounding_of_height(const RelativePose& a_from_b, const Precision& p,
 // The certified distance along `s` that separates the bodies. At a facet of X, or on the arc of an
 // edge of X, the support value of X is exactly that of the feature. If the result is too far from
 // `lower`, the lower bound of the depth, every ulp counts: both methods are tried.
-double certified(const NormalSearch::Best& best, const Separator& s, const ActiveFeature& a,
-                 const ActiveFeature& b, const Precision& p, double rounding,
-                 double lower) noexcept {
+double upper_bound_of(const NormalSearch::Best& best, const Separator& s, const ActiveFeature& a,
+                      const ActiveFeature& b, const Precision& p, double rounding,
+                      double lower) noexcept {
   const bool feature_of_x = best.source == Source::kFacetOfX || best.source == Source::kArc;
   const double by_feature = feature_of_x ? best.height + rounding : kInfinity;
   if (by_feature - lower <= kConvergedGap * p.size) return by_feature;
@@ -72,9 +73,9 @@ double depth_from_below(const ActiveFeature& a, const ActiveFeature& b,
                         const RelativePose& a_from_b, const Precision& p, double least) noexcept {
   const double rounding = rounding_of_height(a_from_b, p, least);
   if (least > rounding) return least - rounding;
-  // There is less rounding if B is placed by the doubles of the pose, up to the nearest rotation.
-  // If the bodies penetrate there, their distance is at most the displacement of B back from that
-  // place.
+  // B can be placed by the rotation that is nearest to the doubles of the pose, with less rounding.
+  // If the bodies penetrate there, this bounds the depth as well: B's own place is no farther away
+  // than the doubles are off that rotation and off the exact one.
   RelativePose placed = a_from_b;
   const double off = off_rotation(a_from_b.rotation);
   placed.rotation_error = off;
@@ -105,6 +106,7 @@ Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
 
 Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
             const Separator* guess) noexcept {
+  assert(a_from_b.rotation.allFinite() && a_from_b.translation.allFinite());
   const Precision start = precision_of_vertices(a.body(), b.body(), a_from_b);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_segments(a, b, start);
   const MinkowskiDifference body(a.body(), b.body(), a_from_b);
@@ -135,8 +137,9 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
     out.lower = depth_from_below(a, b, a_from_b, start, std::min(search.lower(), best.height));
   }
   out.upper =
-      certified(best, s, a, b, p, rounding_of_height(a_from_b, start, best.height), out.lower);
+      upper_bound_of(best, s, a, b, p, rounding_of_height(a_from_b, start, best.height), out.lower);
   out.value = best.source == Source::kGuess ? out.upper - p.error_bound : best.height;
+  assert(out.lower <= out.upper && is_unit_or_unknown(out.normal));
   return out;
 }
 

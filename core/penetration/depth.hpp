@@ -14,7 +14,7 @@
 //
 // The bound from below needs no combinatorics that rounding could upset. A point c of the Minkowski
 // difference gives h(n) >= c.n everywhere. On the arc between l and r, h is at least the smaller
-// one of c.l and c.r. One such c, kept from elsewhere, settles most arcs and facets against the
+// one of c.l and c.r. One such c, kept from elsewhere, bounds most arcs and facets against the
 // best h known. Any other arc is split where two such bounds cross, until the support point there
 // shows nothing higher. The splitting ends because each split finds a new vertex. Nothing has to be
 // stored from one arc to the next.

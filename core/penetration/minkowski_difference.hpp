@@ -11,12 +11,12 @@
 
 namespace clearance {
 
-// Points of one frame in another: turn (p - before) + after.
+// Points of one frame in another: rotation (p - before) + after.
 struct Placement {
-  Mat3 turn;
+  Mat3 rotation;
   Vec3 before, after;
   [[nodiscard]] Vec3 operator()(const Vec3& p) const noexcept {
-    return turn * (p - before) + after;
+    return rotation * (p - before) + after;
   }
 };
 

@@ -22,7 +22,7 @@ bool is_unbounded_along(const ConvexBody& body, const Vec3& n, double margin) no
 }
 
 // Positive: v lies to the left of u.
-double turn(const Eigen::Vector2d& u, const Eigen::Vector2d& v) noexcept {
+double cross(const Eigen::Vector2d& u, const Eigen::Vector2d& v) noexcept {
   return u.x() * v.y() - u.y() * v.x();
 }
 
@@ -42,10 +42,10 @@ std::size_t NormalSearch::cell(const Vec3& n) noexcept {
 
 void NormalSearch::improve(double height, const Vec3& n, Source source,
                            std::int32_t facet) noexcept {
-  const bool held = steady_ > 0.0 && is_held(n);
-  if (!(height < best_.height - (held ? 0.0 : steady_))) return;
+  const bool preferred = preference_ > 0.0 && is_preferred(n);
+  if (!(height < best_.height - (preferred ? 0.0 : preference_))) return;
   best_ = {height, n, source, facet};
-  if (!held) steady_ = 0.0;
+  if (!preferred) preference_ = 0.0;
 }
 
 void NormalSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
@@ -54,7 +54,7 @@ void NormalSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
     const Arc arc = across(body_.x().edges[edge_of_x]);
     const Vec2 at = unit_along(arc.project(n));
     if (within(arc, at)) {
-      hold(n);
+      prefer(n);
       (void)sample(arc, at);
       return;
     }
@@ -125,15 +125,15 @@ void NormalSearch::split(const Arc& arc, const Sample& first, const Sample& last
     const Sample &l = part.l, &r = part.r;
     const double bound = std::max(std::min(l.height(), l.vertex.dot(r.at)),
                                   std::min(r.height(), r.vertex.dot(l.at)));
-    if (bound >= goal()) {
+    if (bound >= height_to_reach()) {
       lower_to(bound);
       continue;
     }
     const Vec2 between = r.vertex - l.vertex;
     Vec2 m = unit_along(Vec2(-between.y(), between.x()));
-    if (turn(l.at, m) < 0.0) m = -m;
+    if (cross(l.at, m) < 0.0) m = -m;
     // If rounding puts the crossing past the arc's end, the bounds do not cross on the arc.
-    if (!(turn(l.at, m) > 0.0 && turn(m, r.at) > 0.0)) {
+    if (!(cross(l.at, m) > 0.0 && cross(m, r.at) > 0.0)) {
       lower_to(bound);
       continue;
     }
@@ -149,24 +149,24 @@ void NormalSearch::split(const Arc& arc, const Sample& first, const Sample& last
   }
 }
 
-// All directions from l to r, less than half a turn.
-void NormalSearch::settle(const Arc& arc, const Vec2& l, const Vec2& r) noexcept {
+// All directions from l to r, less than half a rotation.
+void NormalSearch::bound_arc(const Arc& arc, const Vec2& l, const Vec2& r) noexcept {
   // Both tests are for the whole arc: c.n at least the smaller one of c.l and c.r.
-  const auto settled_by = [&](const Vec2& vertex) {
+  const auto bounded_by = [&](const Vec2& vertex) {
     const double bound = std::min(vertex.dot(l), vertex.dot(r));
-    if (!(bound >= goal())) return false;
+    if (!(bound >= height_to_reach())) return false;
     lower_to(bound);
     return true;
   };
   const Vec2 middle = middle_of(l, r);
   const Vec3* known = cached(arc.direction(middle));
-  if (known != nullptr && settled_by(arc.project(*known))) return;
+  if (known != nullptr && bounded_by(arc.project(*known))) return;
   const Sample m = sample(arc, middle);
-  if (settled_by(m.vertex)) return;
+  if (bounded_by(m.vertex)) return;
   const Sample from_l = sample(arc, l);
-  if (settled_by(from_l.vertex)) return;
+  if (bounded_by(from_l.vertex)) return;
   const Sample from_r = sample(arc, r);
-  if (settled_by(from_r.vertex)) return;
+  if (bounded_by(from_r.vertex)) return;
   split(arc, from_l, m);
   if (!ended_early()) split(arc, m, from_r);
 }
@@ -183,12 +183,12 @@ NormalSearch::Arc NormalSearch::across(const Edge& edge) const noexcept {
 void NormalSearch::full_circle(const Edge& edge) noexcept {
   const std::array<Vec2, 5> quarters = {Vec2(1, 0), Vec2(0, 1), Vec2(-1, 0), Vec2(0, -1),
                                         Vec2(1, 0)};
-  for (std::size_t i = 0; i < 4; ++i) settle(across(edge), quarters[i], quarters[i + 1]);
+  for (std::size_t i = 0; i < 4; ++i) bound_arc(across(edge), quarters[i], quarters[i + 1]);
 }
 
 void NormalSearch::arc_of(const Edge& edge) noexcept {
   const Arc arc = across(edge);
-  settle(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
+  bound_arc(arc, Vec2(1, 0), arc.project(body_.x().facets[edge.facet[1]].normal));
 }
 
 void NormalSearch::arcs() noexcept {

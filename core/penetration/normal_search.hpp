@@ -37,13 +37,13 @@ class NormalSearch {
   // Each of these stays the best unless another is better by more than rounding.
   void guess_facet_of_x(std::int32_t facet) noexcept {
     look_at_facet_of_x(facet);
-    hold(best_.n);
+    prefer(best_.n);
   }
   void guess_facet_of_y(std::int32_t facet) noexcept {
     look_at_facet_of_y(facet);
-    hold(best_.n);
+    prefer(best_.n);
   }
-  // Searches all facets and arcs; stops early if the bodies turn out to be disjoint.
+  // Searches all facets and arcs; stops early if the bodies rotation out to be disjoint.
   void run() noexcept;
 
   [[nodiscard]] const Best& best() const noexcept { return best_; }
@@ -68,13 +68,13 @@ class NormalSearch {
     [[nodiscard]] double height() const noexcept { return vertex.dot(at); }
   };
 
-  void hold(const Vec3& n) noexcept {
-    held_ = n;
-    steady_ = 0.5 * gap_tolerance_;
+  void prefer(const Vec3& n) noexcept {
+    preferred_ = n;
+    preference_ = 0.5 * gap_tolerance_;
   }
   // Is n the guessed direction, as facets and arcs represent it?
-  [[nodiscard]] bool is_held(const Vec3& n) const noexcept {
-    return (n - held_).squaredNorm() < kSame * kSame;
+  [[nodiscard]] bool is_preferred(const Vec3& n) const noexcept {
+    return (n - preferred_).squaredNorm() < kSame * kSame;
   }
   static constexpr double kSame = 0x1p-26;
 
@@ -83,12 +83,12 @@ class NormalSearch {
   // is 8.
   [[nodiscard]] double rounding_of_place() const noexcept { return 2.0 * gap_tolerance_; }
 
-  [[nodiscard]] double goal() const noexcept { return best_.height - gap_tolerance_; }
+  [[nodiscard]] double height_to_reach() const noexcept { return best_.height - gap_tolerance_; }
   void improve(double height, const Vec3& n, Source source, std::int32_t facet) noexcept;
   void lower_to(double bound) noexcept { lower_ = std::min(lower_, bound); }
 
   // No facet or arc whose h is certified to be at least this can be better.
-  [[nodiscard]] double settled() const noexcept { return best_.height - steady_; }
+  [[nodiscard]] double sufficient_height() const noexcept { return best_.height - preference_; }
 
   // Has h not been shown to be as high as the best known one?
   [[nodiscard]] bool may_be_lowest_along(const Vec3& n) const noexcept;
@@ -107,7 +107,7 @@ class NormalSearch {
     Source source;
     // The direction in the other's frame in which it is the deepest below a facet.
     [[nodiscard]] Vec3 against(const Facet& facet) const noexcept {
-      return -(body_from_other.turn.transpose() * facet.normal);
+      return -(body_from_other.rotation.transpose() * facet.normal);
     }
     // The depth of one of the other body's vertices below a facet, m.
     [[nodiscard]] double below(const Facet& facet, std::int32_t vertex) const noexcept {
@@ -126,7 +126,7 @@ class NormalSearch {
   void look_at_facets(const Facing& facing, DeepestPoints& points) noexcept;
   void look_at_few(const Facing& facing, std::span<const std::uint16_t> facets,
                    std::uint16_t* vertices) noexcept;
-  [[nodiscard]] bool is_settled(const Facing& facing, std::int32_t facet,
+  [[nodiscard]] bool is_bounded(const Facing& facing, std::int32_t facet,
                                 std::int32_t vertex) noexcept;
   void few_vertices() noexcept;
   void facets_of_y_bounded() noexcept;
@@ -137,8 +137,8 @@ class NormalSearch {
   void arcs(DeepestPoints& of_y) noexcept;
   void arcs_of(std::int32_t facet, DeepestPoints& of_y) noexcept;
   [[nodiscard]] Vec3 deepest_vertex_below(std::int32_t facet, DeepestPoints& of_y) const noexcept;
-  [[nodiscard]] bool settles(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
-                             const DeepestPoints::Point* sphere) noexcept;
+  [[nodiscard]] bool bounds_arc(const Facet& l, const Vec3& at_l, const Facet& r, const Vec3& at_r,
+                                const DeepestPoints::Point* sphere) noexcept;
   void arc_from(const EdgeUse& use, const Vec3& at_own, const Vec3& at_other) noexcept;
   void full_circle(const Edge& edge) noexcept;
   [[nodiscard]] Arc across(const Edge& edge) const noexcept;
@@ -146,7 +146,7 @@ class NormalSearch {
   [[nodiscard]] bool within(const Arc& arc, const Vec2& at) const noexcept;
 
   [[nodiscard]] Sample sample(const Arc& arc, const Vec2& at) noexcept;
-  void settle(const Arc& arc, const Vec2& l, const Vec2& r) noexcept;
+  void bound_arc(const Arc& arc, const Vec2& l, const Vec2& r) noexcept;
   void split(const Arc& arc, const Sample& l, const Sample& r) noexcept;
 
   const MinkowskiDifference& body_;
@@ -155,8 +155,8 @@ class NormalSearch {
   // direction. The smaller limit is for the normals of Y's facets. A rotated normal is off by 5
   // ulps, the ray by 1, their product by 3.
   double within_rounding_, beyond_rounding_;
-  Vec3 held_ = Vec3::Zero();  // the direction guessed
-  double steady_ = 0.0;       // m: how much lower h must be in another one, while it is the best
+  Vec3 preferred_ = Vec3::Zero();  // the direction guessed
+  double preference_ = 0.0;  // m: how much lower h must be in another one, while it is the best
   Best best_;
   double lower_ = kInfinity;
 

@@ -15,22 +15,19 @@ namespace {
 // features determine none.
 bool direction_of(const ActiveFeature& a, const ActiveFeature& b, const TrackingState& state,
                   Separator& out) noexcept {
-  const auto has = [](const TrackingState::Side& side, FeatureKind kind, std::size_t count) {
-    return side.kind == kind && side.feature >= 0 && static_cast<std::size_t>(side.feature) < count;
+  const auto has = [](const ActiveFeature& of, const TrackingState::Side& side, FeatureKind kind) {
+    return side.kind == kind && exists(of.body(), side);
   };
-  if (has(state.a, FeatureKind::kFacet, a.body().facets.size())) {
+  if (has(a, state.a, FeatureKind::kFacet)) {
     out = {a.body().facets[state.a.feature].normal, state.a.feature, kNone};
     return true;
   }
-  if (has(state.b, FeatureKind::kFacet, b.body().facets.size())) {
+  if (has(b, state.b, FeatureKind::kFacet)) {
     const Vec3& normal = b.body().facets[state.b.feature].normal;
     out = {-b.direction_to_a(normal).normalized(), kNone, state.b.feature};
     return true;
   }
-  if (!has(state.a, FeatureKind::kEdge, a.body().edges.size()) ||
-      !has(state.b, FeatureKind::kEdge, b.body().edges.size())) {
-    return false;
-  }
+  if (!has(a, state.a, FeatureKind::kEdge) || !has(b, state.b, FeatureKind::kEdge)) return false;
   const Edge& e = a.body().edges[state.a.feature];
   const Vec3 n = e.direction.cross(b.direction_to_a(b.body().edges[state.b.feature].direction));
   const double sine2 = n.squaredNorm();
@@ -47,23 +44,21 @@ Separator between_interiors(const ActiveFeature& a, const ActiveFeature& b) noex
   return {between.isZero(0.0) ? Vec3::UnitZ() : unit_along(between)};
 }
 
-Depth tracked_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                    const TrackingState& state) noexcept {
-  const ActiveFeature side_a(a, nullptr), side_b(b, &a_from_b);
+Depth tracked_depth(const Query& q) noexcept {
+  const ActiveFeature a(q.a, nullptr), b(q.b, &q.a_from_b);
   Separator guess;
-  if (!direction_of(side_a, side_b, state, guess)) guess = between_interiors(side_a, side_b);
-  return depth(side_a, side_b, a_from_b, &guess);
+  if (!direction_of(a, b, q.state, guess)) guess = between_interiors(a, b);
+  return depth(a, b, q.a_from_b, &guess);
 }
 
-void conclude_penetrating(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                          const Depth& found, TrackingState& state, DistanceResult& r) noexcept {
-  r.status = DistanceStatus::kOverlapping;
+void conclude_penetrating(const Query& q, const Depth& found, Answer& r) noexcept {
+  r.status = DistanceStatus::kConverged;
   r.lower = -found.upper;
   r.upper = -found.lower;
   r.distance = std::clamp(-found.value, r.lower, r.upper);
   r.normal = found.normal;
-  place_witnesses(a, b, a_from_b, found, state, r);
-  state.a.penetrating = true;
+  place_witnesses(q, found, r);
+  q.state.a.penetrating = true;
 }
 
 // Makes the facet that separates bodies which touch one of their features.
@@ -77,49 +72,40 @@ void separate_by(const Depth& found, TrackingState& state) noexcept {
 
 }  // namespace
 
-bool track_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                       TrackingState& state, DistanceResult& result,
-                       std::optional<Depth>& found) noexcept {
-  if (!state.a.penetrating) return false;
-  state.a.penetrating = false;
-  found = tracked_depth(a, b, a_from_b, state);
+bool track_penetration(const Query& q, Answer& answer, std::optional<Depth>& found) noexcept {
+  q.state.a.penetrating = false;
+  found = tracked_depth(q);
   if (!(found->lower > 0.0)) return false;
-  conclude_penetrating(a, b, a_from_b, *found, state, result);
+  conclude_penetrating(q, *found, answer);
+  answer.path = DistancePath::kPenetration;
   return true;
 }
 
-void measure_penetration(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                         TrackingState& state, DistanceResult& result,
-                         const std::optional<Depth>& known) noexcept {
-  const Depth found = known ? *known : tracked_depth(a, b, a_from_b, state);
-  if (found.lower > 0.0) {
-    conclude_penetrating(a, b, a_from_b, found, state, result);
-    return;
-  }
+void measure_penetration(const Query& q, const std::optional<Depth>& known, Answer& r) noexcept {
+  const Depth found = known ? *known : tracked_depth(q);
+  if (found.lower > 0.0) return conclude_penetrating(q, found, r);
   // The bodies are neither certainly disjoint nor certainly overlapping. Both the bounds of the
-  // distance and those of the depth hold, and so do the better ones of them.
-  if (-found.upper > result.lower) {
-    result.lower = -found.upper;
-    result.normal = found.normal;
+  // distance and those of the depth prefer, and so do the better ones of them.
+  if (-found.upper > r.lower) {
+    r.lower = -found.upper;
+    r.normal = found.normal;
   }
-  result.upper = std::min(result.upper, -found.lower);
-  result.distance = std::max(std::min(result.distance, result.upper), result.lower);
-  const Precision p = precision(a, b, a_from_b, std::max(0.0, result.distance));
-  // A penetration by less than the error bound can be seen from one side only: thrice.
-  const bool narrow = result.upper - result.lower <= 3.0 * p.error_bound + 5.0 * p.gap_tolerance;
-  if (narrow) {
+  r.upper = std::min(r.upper, -found.lower);
+  r.distance = std::max(std::min(r.distance, r.upper), r.lower);
+  const Precision p = precision(q.a, q.b, q.a_from_b, std::max(0.0, r.distance));
+  if (p.is_contact(r.upper - r.lower)) {
     // The features that touch certify the contact of the next query by themselves. A facet beside
     // which the search has stopped may be another one than the one that separates.
-    if (state.a.kind == FeatureKind::kFacet || state.b.kind == FeatureKind::kFacet) {
-      separate_by(found, state);
+    if (q.state.a.kind == FeatureKind::kFacet || q.state.b.kind == FeatureKind::kFacet) {
+      separate_by(found, q.state);
     }
-    state.a.penetrating = !a.facets.empty() || !b.facets.empty();
-    result.status = result.lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kTouching;
+    q.state.a.penetrating = !q.a.facets.empty() || !q.b.facets.empty();
+    r.status = DistanceStatus::kConverged;
     return;
   }
-  result.status = DistanceStatus::kIterationLimit;
-  const Vec3 between = result.point_on_b - result.point_on_a;
-  if (!between.isZero(0.0)) result.normal = unit_along(between);
+  r.status = DistanceStatus::kIterationLimit;
+  const Vec3 between = r.point_on_b - r.point_on_a;
+  if (!between.isZero(0.0)) r.normal = unit_along(between);
 }
 
 }  // namespace clearance

@@ -1,168 +1,114 @@
-// distance(), from top to bottom: the bodies and the state of a pair choose an entry.
-//
-//   straight features,
-//   or two facets ─────► one transition ─► certified ─────────────────────────────► result
-//                             └─ moved ─┐
-//   other features, or none ────────────┴─► feature tracking ─► certified ────────► result
-//                                                 └─ left open ─► penetrating features
-//   two facets that touched ► one transition ─► certified ──────────────────────────► result
-//                             └─ moved ─┐
-//   touched or penetrated in the last query ► penetrating features ─► certified ───► result
-//                                                 └─ left open ─► search.hpp
-//   two points ────────────────────────────► a closed form
-//   a curved body ─────────────────────────► core/curved
-//
-// Everything in HWY_NAMESPACE is compiled once a vector width.
+// distance(), from top to bottom.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "core/query/distance.cpp"
 #include "core/numerics/simd_targets.hpp"
 // The include above must come first.
+#include "core/curved/curved-inl.hpp"
 #include "core/distance.hpp"
-#include "core/query/entries.hpp"
-#include "core/query/methods-inl.hpp"
+#include "core/feature_tracking/penetrating_transitions-inl.hpp"
+#include "core/model/bad_pose.hpp"
+#include "core/model/finish.hpp"
+#include "core/query/search.hpp"
 
+// Everything in HWY_NAMESPACE is compiled once per vector width.
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
-template <FeaturePair kPair>
-DistanceResult pair_by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                             const Pose& world_from_b, TrackingState& state) noexcept {
-  return from_pair<kPair>(a, b, WorldPoses{world_from_a, world_from_b}, state);
-}
-template <FeaturePair kPair>
-DistanceResult pair_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
-                                     const RelativePose& a_from_b, TrackingState& state) noexcept {
-  return from_pair<kPair>(a, b, GivenPose{a_from_b}, state);
-}
+// The method that goes first.
+enum class Method {
+  kPoints,    // two points: a closed form
+  kTracked,   // the features of the last query, or their neighbours
+  kTouching,  // the same, of bodies that touched or penetrated each other
+  kCurved,
+  kCold,  // features that have to be chosen first
+};
 
-DistanceResult points_by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                               const Pose& world_from_b, TrackingState& state) noexcept {
-  return between_points(a, b, WorldPoses{world_from_a, world_from_b}, state);
-}
-DistanceResult points_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
-                                       const RelativePose& a_from_b,
-                                       TrackingState& state) noexcept {
-  return between_points(a, b, GivenPose{a_from_b}, state);
-}
-
-DistanceResult touching_facets_by_poses(const ConvexBody& a, const ConvexBody& b,
-                                        const Pose& world_from_a, const Pose& world_from_b,
-                                        TrackingState& state) noexcept {
-  return from_touching_facets(a, b, WorldPoses{world_from_a, world_from_b}, state);
-}
-DistanceResult touching_facets_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
-                                                const RelativePose& a_from_b,
-                                                TrackingState& state) noexcept {
-  return from_touching_facets(a, b, GivenPose{a_from_b}, state);
-}
-
-DistanceResult any_by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                            const Pose& world_from_b, TrackingState& state) noexcept {
-  return from_any_bodies(a, b, WorldPoses{world_from_a, world_from_b}, state, true);
-}
-DistanceResult any_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
-                                    const RelativePose& a_from_b, TrackingState& state) noexcept {
-  return from_any_bodies(a, b, GivenPose{a_from_b}, state, true);
-}
-DistanceResult without_depth(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
-                             TrackingState& state) noexcept {
-  return from_any_bodies(a, b, GivenPose{a_from_b}, state, false);
-}
-
-DistanceResult after_transitions(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                                 const Pose& world_from_b, TrackingState& state,
-                                 TransitionsMade start) noexcept {
-  if (query_class(a, b) == kTwoPoints) {
-    return points_by_poses(a, b, world_from_a, world_from_b, state);
+HWY_INLINE Method method_of(const Query4& q) {
+  if (HWY_UNLIKELY(is_point(q.a) && is_point(q.b))) return Method::kPoints;
+  const bool touched = q.state.a.penetrating && q.depth;
+  if (HWY_LIKELY(has_features(q) && (q.a.bounded() || q.b.bounded()))) {
+    return touched ? Method::kTouching : Method::kTracked;
   }
-  return tracked_or_searched(a, b, WorldPoses{world_from_a, world_from_b}, state, start, true);
+  if (q.a.is_curved() || q.b.is_curved()) return Method::kCurved;
+  return touched ? Method::kTouching : Method::kCold;
 }
 
-// For each kind on A the entries by kinds on B: vertex, edge, facet, inside.
-constexpr QueryEntries kQueryEntries = {
-    {pair_by_poses<FeaturePair::kVertexVertex>, pair_by_poses<FeaturePair::kVertexEdge>,
-     pair_by_poses<FeaturePair::kVertexFacet>, any_by_poses,
-     pair_by_poses<FeaturePair::kEdgeVertex>, pair_by_poses<FeaturePair::kEdgeEdge>, any_by_poses,
-     any_by_poses, pair_by_poses<FeaturePair::kFacetVertex>, any_by_poses,
-     pair_by_poses<FeaturePair::kFacetFacet>, any_by_poses, any_by_poses, any_by_poses,
-     any_by_poses, any_by_poses, points_by_poses, touching_facets_by_poses, any_by_poses},
-    {pair_by_relative_pose<FeaturePair::kVertexVertex>,
-     pair_by_relative_pose<FeaturePair::kVertexEdge>,
-     pair_by_relative_pose<FeaturePair::kVertexFacet>, any_by_relative_pose,
-     pair_by_relative_pose<FeaturePair::kEdgeVertex>, pair_by_relative_pose<FeaturePair::kEdgeEdge>,
-     any_by_relative_pose, any_by_relative_pose, pair_by_relative_pose<FeaturePair::kFacetVertex>,
-     any_by_relative_pose, pair_by_relative_pose<FeaturePair::kFacetFacet>, any_by_relative_pose,
-     any_by_relative_pose, any_by_relative_pose, any_by_relative_pose, any_by_relative_pose,
-     points_by_relative_pose, touching_facets_by_relative_pose, any_by_relative_pose},
-    without_depth,
-    after_transitions};
+inline HWY_NOINLINE bool track(const Query4& q, TransitionsMade made, Answer& answer) {
+  TrackedPair pair(q, made);
+  const TrackingEnd end = move_to_closest(pair);
+  if (end != TrackingEnd::kCertified) return may_touch(pair, end) && track_contact(q, answer);
+  write(pair, answer);
+  return true;
+}
 
-const QueryEntries* entries_of_width() { return &kQueryEntries; }
+inline HWY_NOINLINE bool touch(const Query4& q, Answer& answer) {
+  return track_contact(q, answer) || restart_contact(q, answer);
+}
+
+inline HWY_NOINLINE Start choose_features(const Query4& q) { return begin(q); }
+
+// Bodies whose features say nothing certain.
+inline HWY_NOINLINE void search(const Query4& q, Answer& answer) {
+  const RelativePose a_from_b = pose_of(q.a_from_b);
+  answer = is_good(a_from_b) ? clearance::search({q.a, q.b, a_from_b, q.state, q.depth})
+                             : of_bad_pose(q.state);
+}
+
+HWY_INLINE void answer_query(const Query4& q, Answer& answer) {
+  TransitionsMade made;
+  bool found = false;
+  switch (method_of(q)) {
+    case Method::kCurved:
+      return curved_distance(q, answer);
+    case Method::kPoints:
+      found = between_points(q, answer);
+      break;
+    case Method::kTouching:
+      found = touch(q, answer);
+      break;
+    case Method::kCold:
+      if (const Start start = choose_features(q); start != Start::kDisjoint) {
+        found = start == Start::kInContact && touch(q, answer);
+        break;
+      }
+      [[fallthrough]];
+    case Method::kTracked:
+      found = still_closest(q, made, answer) || track(q, made, answer);
+  }
+  if (HWY_UNLIKELY(!found)) search(q, answer);
+  finish(q.a, q.b, answer.normal, answer);
+}
+
+DistanceResult by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
+                        const Pose& world_from_b, TrackingState& state) {
+  DistanceResult result;
+  answer_query({a, b, relative_pose4(world_from_a, world_from_b), state}, result);
+  return result;
+}
+DistanceResult by_relative_pose(const ConvexBody& a, const ConvexBody& b,
+                                const RelativePose& a_from_b, TrackingState& state, bool depth) {
+  DistanceResult result;
+  answer_query({a, b, good_pose4_of(a_from_b), state, depth}, result);
+  return result;
+}
 
 }  // namespace clearance::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-#include <atomic>
-
 namespace clearance {
 
-HWY_EXPORT(entries_of_width);
-
-namespace {
-
-DistanceResult first_by_poses(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
-                              const Pose& world_from_b, TrackingState& state) noexcept {
-  choose_query_entries();
-  return distance(a, b, world_from_a, world_from_b, state);
-}
-DistanceResult first_by_relative_pose(const ConvexBody& a, const ConvexBody& b,
-                                      const RelativePose& a_from_b, TrackingState& state) noexcept {
-  choose_query_entries();
-  return distance(a, b, a_from_b, state);
-}
-DistanceResult first_without_depth(const ConvexBody& a, const ConvexBody& b,
-                                   const RelativePose& a_from_b, TrackingState& state) noexcept {
-  choose_query_entries();
-  return distance(a, b, a_from_b, state, {.depth = false});
-}
-
-// Every entry chooses the machine's vector width first.
-constexpr QueryEntries unchosen() {
-  QueryEntries entries{};
-  entries.by_poses.fill(first_by_poses);
-  entries.by_relative_pose.fill(first_by_relative_pose);
-  entries.without_depth = first_without_depth;
-  return entries;
-}
-constexpr QueryEntries kUnchosen = unchosen();
-
-constinit std::atomic<const QueryEntries*> chosen_entries = &kUnchosen;
-
-}  // namespace
-
-void choose_query_entries() noexcept {
-  chosen_entries.store(HWY_DYNAMIC_DISPATCH(entries_of_width)(), std::memory_order_relaxed);
-}
-
-const QueryEntries& query_entries() noexcept {
-  if (chosen_entries.load(std::memory_order_relaxed) == &kUnchosen) choose_query_entries();
-  return *chosen_entries.load(std::memory_order_relaxed);
-}
+HWY_EXPORT(by_poses);
+HWY_EXPORT(by_relative_pose);
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,
                         const Pose& world_from_b, TrackingState& state) noexcept {
-  const QueryEntries* const entries = chosen_entries.load(std::memory_order_relaxed);
-  return entries->by_poses[entry_of(a, b, state)](a, b, world_from_a, world_from_b, state);
+  return HWY_DYNAMIC_DISPATCH(by_poses)(a, b, world_from_a, world_from_b, state);
 }
 
 DistanceResult distance(const ConvexBody& a, const ConvexBody& b, const RelativePose& a_from_b,
                         TrackingState& state, const DistanceOptions& options) noexcept {
-  const QueryEntries* const entries = chosen_entries.load(std::memory_order_relaxed);
-  const QueryEntries::ByRelativePose entry = HWY_LIKELY(options.depth)
-                                                 ? entries->by_relative_pose[entry_of(a, b, state)]
-                                                 : entries->without_depth;
-  return entry(a, b, a_from_b, state);
+  return HWY_DYNAMIC_DISPATCH(by_relative_pose)(a, b, a_from_b, state, options.depth);
 }
 
 }  // namespace clearance

@@ -49,7 +49,7 @@ const std::string& BagLog::error() const noexcept {
   return bag_->error().empty() ? error_ : bag_->error();
 }
 
-// It is an error if the whole bag has no batch.
+// Fails if the whole bag has no batch.
 bool BagLog::next(LoggedBatch& batch) {
   read_ahead();
   if (waiting_.empty()) {

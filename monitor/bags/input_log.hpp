@@ -41,7 +41,7 @@ struct InputLogOptions {
   bool with_sensors = false;
 };
 
-// Not for several threads at once.
+// One thread at a time may use a log.
 class InputLog {
  public:
   virtual ~InputLog() = default;

@@ -43,7 +43,7 @@ struct DaemonOptions {
   CommanderOptions commander;        // how commands and SIGHUP change the cell
   std::string partner;               // this daemon's name among partners; empty: it has none
   bool reload = false;               // read the cell again when its files have changed
-  ReportWriter::OnHealth on_health;  // once a second; may be empty
+  ReportWriter::OnHealth on_health;  // once per second; may be empty
   // Lists all mistakes of the cell file for a person. Called after SIGHUP found some; may be empty.
   std::function<void()> list_mistakes;
 };

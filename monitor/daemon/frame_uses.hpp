@@ -1,4 +1,4 @@
-// The frames of sensors that ticks are shown, on their way from the tick thread to a recording.
+// The frames of sensors that ticks are shown, on their path from the tick thread to a recording.
 #pragma once
 
 #include <array>

@@ -49,7 +49,7 @@ class LeastDelay {
 class PartnerPort {
  public:
   struct Actions {
-    std::function<void()> wants_state;  // once a second, while this daemon does not follow
+    std::function<void()> wants_state;  // once per second, while this daemon does not follow
     std::function<void()> send_state;   // the partner asks for the state
     std::function<void(const PartnerStateView&)> take_state;
     std::function<std::uint64_t()> revision = {};  // of the scene in force here

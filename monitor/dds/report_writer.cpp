@@ -1,5 +1,5 @@
 // A thread empties the report queue in order: distances first, then separations and the zones that
-// the report changed. Health is written when statistics arrive, once a second.
+// the report changed. Health is written when statistics arrive, once per second.
 #include "monitor/dds/report_writer.hpp"
 
 #include <fmt/format.h>

@@ -1,7 +1,7 @@
-// The source whose samples are used for one input: an object's poses or a joint's positions. It is
-// the source that the cell names, else the first one that was heard. Another source may replace the
-// latter after it has been silent for long enough. A source whose samples are refused is not
-// silent.
+// The source whose samples are used for one input: an object's poses, a joint's positions, the path
+// of a camera's frame, or the batches under one name. It is the source that the cell names, else
+// the first one that was heard. Another source may replace the latter after it has been silent for
+// long enough. A source whose samples are refused is not silent.
 #pragma once
 
 #include <algorithm>
@@ -14,43 +14,52 @@ namespace clearance {
 
 // The age, ns, given to a value whose real age is not known: a hundred years.
 inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
+// A source that was silent for longer has lost its inputs: others may send them.
+inline constexpr std::int64_t kSourceSilentNs = 1'000'000'000;
 
-class InputOwner {
+template <class Source, Source kNobody>
+class Owner {
  public:
-  InputOwner() = default;
-  // Another source may take over after this silence, or after the age limit if that is longer.
-  static constexpr std::int64_t kSilentNs = 1'000'000'000;
+  Owner() = default;
 
   // The cell states the source, and no other source may replace it.
-  explicit InputOwner(std::uint32_t source) noexcept : source_(source), is_stated_(true) {}
+  explicit Owner(Source source) noexcept : source_(source), is_stated_(true) {}
 
   // Call this with every sample, also of those that will be refused. Returns true if samples of
   // this source must be refused, and then stores the source. `age_limit_ns` is that of the input.
-  [[nodiscard]] bool refuses(std::uint32_t source, std::int64_t now_ns,
+  // Another source may take over after kSourceSilentNs, or the age limit if that is longer.
+  [[nodiscard]] bool refuses(Source source, std::int64_t now_ns,
                              std::int64_t age_limit_ns) noexcept {
     if (source == source_) {
       heard_ns_ = now_ns;
       return false;
     }
-    if (source_ == kNoSource) return false;
-    if (!is_stated_ && elapsed(heard_ns_, now_ns) > std::max(age_limit_ns, kSilentNs)) return false;
+    if (!is_held(now_ns, age_limit_ns)) return false;
     other_ = source;
     return true;
   }
 
+  // True if the owner keeps others out at this time.
+  [[nodiscard]] bool is_held(std::int64_t now_ns, std::int64_t age_limit_ns) const noexcept {
+    if (source_ == kNobody) return false;
+    return is_stated_ || elapsed(heard_ns_, now_ns) <= std::max(age_limit_ns, kSourceSilentNs);
+  }
+
   // Call this when a sample of this source was taken into use.
-  void take(std::uint32_t source, std::int64_t now_ns) noexcept {
+  void take(Source source, std::int64_t now_ns) noexcept {
     if (source != source_) {
-      if (source_ != kNoSource && !is_stated_) {
+      if (source_ != kNobody && !is_stated_) {
         former_ = source_;
         ++takeovers_;
       }
-      other_ = kNoSource;
+      other_ = kNobody;
     }
     source_ = source;
     heard_ns_ = now_ns;
   }
 
+  // The owner does not exist any more.
+  void leave() noexcept { source_ = kNobody; }
   // The age of the last sample is not known any more: it counts from now.
   void forget_age(std::int64_t now_ns) noexcept { heard_ns_ = now_ns; }
 
@@ -58,20 +67,21 @@ class InputOwner {
   [[nodiscard]] bool is_stated() const noexcept { return is_stated_; }
   // The number of times that another source has taken over, and the owner before the last of them.
   [[nodiscard]] std::uint32_t takeovers() const noexcept { return takeovers_; }
-  [[nodiscard]] std::uint32_t former_source() const noexcept { return former_; }
-  [[nodiscard]] std::uint32_t source() const noexcept { return source_; }
-  // The last source that was refused because it is not the owner. kNoSource after the owner
-  // changed.
-  [[nodiscard]] std::uint32_t other_source() const noexcept { return other_; }
+  [[nodiscard]] Source former_source() const noexcept { return former_; }
+  [[nodiscard]] Source source() const noexcept { return source_; }
+  // The last source that was refused because it is not the owner. kNobody after the owner changed.
+  [[nodiscard]] Source other_source() const noexcept { return other_; }
 
  private:
   // The first three are all that a sample of the owner reads and writes.
-  std::uint32_t source_ = kNoSource;
+  Source source_ = kNobody;
   bool is_stated_ = false;
   std::int64_t heard_ns_ = 0;  // last sample of the owner, in the tick's time
-  std::uint32_t other_ = kNoSource;
-  std::uint32_t former_ = kNoSource;
+  Source other_ = kNobody;
+  Source former_ = kNobody;
   std::uint32_t takeovers_ = 0;
 };
+
+using InputOwner = Owner<std::uint32_t, kNoSource>;
 
 }  // namespace clearance

@@ -50,12 +50,37 @@ struct InputRecord {
   }
 };
 
-// Who sent a sample, and when its value held in the tick's time.
+// Tells who sent a sample, and when its value held in the tick's time.
 struct SampleOrigin {
   std::uint32_t source = 0;
   std::uint32_t namesake = kNoSource;  // the source whose name it shares
   std::int64_t stamp_ns = 0;
 };
+
+// True if a sample that was refused for this cause contradicts its input. Nonsense and other
+// sources do not, and samples may arrive in another order than they were made. `in_use_ns` is the
+// stamp of the value in use.
+[[nodiscard]] inline bool is_contradiction(Reject cause, std::int64_t stamp_ns,
+                                           std::int64_t in_use_ns,
+                                           std::int64_t age_limit_ns) noexcept {
+  switch (cause) {
+    case Reject::kBackwards:
+      return elapsed(stamp_ns, in_use_ns) > age_limit_ns;
+    case Reject::kUnknownObject:
+    case Reject::kNonFinite:
+    case Reject::kNotUnit:
+    case Reject::kWrongRevision:
+    case Reject::kOtherSource:
+      return false;
+    default:
+      return true;
+  }
+}
+
+// After a dispute of two sources, one of them must be silent for this long.
+[[nodiscard]] constexpr std::int64_t dispute_ns(std::int64_t age_limit_ns) noexcept {
+  return std::max(age_limit_ns, kSourceSilentNs);
+}
 
 // Takes a sample into use, or returns why it must not be used and updates the input's contradiction
 // state. Two sources that claim one input with values that exclude each other are a contradiction
@@ -76,17 +101,14 @@ template <class Candidate>
   if (is_rival) {
     const bool is_settled = input.owner.is_stated() && origin.namesake != input.owner.source();
     if (is_settled || !input.has_value || !candidate.disputes()) return Reject::kOtherSource;
-    input.contradiction.meet(limits.now_ns, std::max(age_limit_ns, InputOwner::kSilentNs));
+    input.contradiction.meet(limits.now_ns, dispute_ns(age_limit_ns));
     return Reject::kDisputed;
   }
   std::optional<Reject> cause;
-  bool reordered = false;
   if (elapsed(limits.now_ns, origin.stamp_ns) > limits.future_ns) {
     cause = Reject::kFuture;
   } else if (input.has_value && origin.stamp_ns < input.stamp_ns) {
     cause = Reject::kBackwards;
-    // Samples may arrive in another order than they were made: that is no contradiction.
-    reordered = elapsed(origin.stamp_ns, input.stamp_ns) <= age_limit_ns;
   } else {
     cause = candidate.implausible();
   }
@@ -96,7 +118,7 @@ template <class Candidate>
     input.stamp_ns = origin.stamp_ns;
     input.owner.take(origin.source, limits.now_ns);
     input.has_value = true;
-  } else if (!reordered) {
+  } else if (is_contradiction(*cause, origin.stamp_ns, input.stamp_ns, age_limit_ns)) {
     input.contradiction.meet(limits.now_ns, candidate.agree_for_ns());
   }
   return cause;

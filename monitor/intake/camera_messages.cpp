@@ -97,6 +97,10 @@ const char* text(FrameFault fault) noexcept {
       return "another publisher sends frames as well";
     case FrameFault::kTooOften:
       return "frames come more often than the cell states";
+    case FrameFault::kFrameChanged:
+      return "its frame_id is not that of the first message that was used";
+    case FrameFault::kFormChanged:
+      return "its encoding, size or fields are not those of the first message that was used";
     case FrameFault::kNoPlace:
       return "the place of the sensor at its stamp is not known";
     case FrameFault::kLateTransforms:
@@ -166,6 +170,10 @@ const char* name(FrameFault fault) noexcept {
       return "a second publisher";
     case FrameFault::kTooOften:
       return "more often than the cell states";
+    case FrameFault::kFrameChanged:
+      return "another frame than the first";
+    case FrameFault::kFormChanged:
+      return "another form than the first";
     case FrameFault::kNoPlace:
       return "its place is not known";
     case FrameFault::kLateTransforms:

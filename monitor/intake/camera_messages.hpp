@@ -41,6 +41,8 @@ enum class FrameFault : std::uint8_t {
   kFrozen,             // bit for bit the depth of one of the last frames, under a newer stamp
   kSecondPublisher,    // the writer of the frames in use is still heard
   kTooOften,           // more frames than the cell states
+  kFrameChanged,       // its frame_id is not that of the first frame of the stream
+  kFormChanged,        // its encoding, size, steps or fields are not those of the first one
   // Faults that show when a frame is built.
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
   kLateTransforms,  // no transform at or after its stamp has come in time, and no speed is stated
@@ -50,11 +52,11 @@ enum class FrameFault : std::uint8_t {
                     // obstacle
   kNotOrganised,    // points in one row, where the cell says that their neighbours are known
   kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
-  kWideRays,     // of organised points: no ball may span the way from one ray to the next
+  kWideRays,     // of organised points: no ball may span the distance from one ray to the next
   kUnknownRays,  // of organised points: too few show how far apart the rays are
   kRobotElsewhere,  // tf places the camera, and a robot elsewhere than the cell does
 };
-inline constexpr std::size_t kFrameFaults = 31;
+inline constexpr std::size_t kFrameFaults = 33;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

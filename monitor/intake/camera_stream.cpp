@@ -1,37 +1,15 @@
 #include "monitor/intake/camera_stream.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <span>
-#include <string_view>
+
+#include "monitor/intake/digest.hpp"
 
 namespace clearance {
 namespace {
 
-// The content of rows without their padding, eight bytes a step (FNV-1a's mixing). Equal depth has
-// the same digest. Two frames that differ have the same one by chance only, once in 2^64: the frame
-// is then refused.
-class Digest {
- public:
-  void add(std::span<const std::byte> bytes) noexcept {
-    while (bytes.size() >= sizeof(std::uint64_t)) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, bytes.data(), sizeof word);
-      mix(word);
-      bytes = bytes.subspan(sizeof word);
-    }
-    for (const std::byte byte : bytes) mix(std::to_integer<std::uint64_t>(byte));
-  }
-  [[nodiscard]] std::uint64_t value() const noexcept { return value_; }
-
- private:
-  void mix(std::uint64_t word) noexcept {
-    value_ = (value_ ^ word) * 0x100000001B3U;
-    value_ ^= value_ >> 29;
-  }
-  std::uint64_t value_ = 0xCBF29CE484222325U;
-};
-
+// The content of rows without their padding: equal depth has the same digest. A frame that differs
+// and has the same one by chance is refused.
 std::uint64_t digest_of(std::span<const std::byte> bytes, std::size_t row, std::size_t step,
                         std::uint32_t rows) noexcept {
   Digest digest;
@@ -52,17 +30,8 @@ std::uint64_t digest_of(const PointsView& points) noexcept {
   return digest.value();
 }
 
-// Returns a digest of the frame's name, or 0 if it has none.
-std::uint64_t digest_of(const std_msgs_msg_dds__Header_& header) noexcept {
-  const std::string_view name = header.frame_id == nullptr ? "" : header.frame_id;
-  if (name.empty()) return 0;
-  Digest digest;
-  digest.add(std::as_bytes(std::span(name)));
-  return digest.value();
-}
-
-bool are_named_unlike(std::uint64_t frame, std::uint64_t other) noexcept {
-  return frame != 0 && other != 0 && frame != other;
+std::uint64_t frame_of(const std_msgs_msg_dds__Header_& header) noexcept {
+  return digest_of_frame(header.frame_id == nullptr ? "" : header.frame_id);
 }
 
 // |a - b| as an unsigned number: stamps of a message may be any.
@@ -86,7 +55,7 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__CameraInfo_& message) n
     camera_.reset();
     return counted(fault);
   }
-  const std::uint64_t frame = digest_of(message.header);
+  const std::uint64_t frame = frame_of(message.header);
   if (!first_) {
     first_ = camera;
     frame_ = frame;
@@ -110,14 +79,15 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__Image_& message, const 
   if (image.width != camera_->width || image.height != camera_->height) {
     return counted(FrameFault::kSizeChanged);
   }
-  if (are_named_unlike(digest_of(message.header), frame_)) {
+  if (are_named_unlike(frame_of(message.header), frame_)) {
     return counted(FrameFault::kOtherCamera);
   }
-  fault = judge(origin);
+  const MessageForm form = form_of(origin.frame, image);
+  fault = judge(origin, form);
   if (fault != FrameFault::kNoFault) return counted(fault);
   const std::size_t pixel = image.format == DepthImage::Format::kMillimetres16 ? 2 : 4;
-  fault =
-      accept(origin, digest_of(image.bytes, image.width * pixel, image.step, image.height), kRing);
+  fault = accept(origin, form,
+                 digest_of(image.bytes, image.width * pixel, image.step, image.height), kRing);
   if (fault == FrameFault::kNoFault) out = image;
   return counted(fault);
 }
@@ -126,9 +96,10 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__PointCloud2_& message,
                               const FrameOrigin& origin, PointsView& out) noexcept {
   PointsView points;
   FrameFault fault = view(message, options_.most_pixels, points);
-  if (fault == FrameFault::kNoFault) fault = judge(origin);
+  const MessageForm form = form_of(origin.frame, points);
+  if (fault == FrameFault::kNoFault) fault = judge(origin, form);
   if (fault != FrameFault::kNoFault) return counted(fault);
-  fault = accept(origin, digest_of(points), kRing);
+  fault = accept(origin, form, digest_of(points), kRing);
   if (fault == FrameFault::kNoFault) out = points;
   return counted(fault);
 }
@@ -137,14 +108,20 @@ FrameFault CameraStream::take(const octomap_msgs_msg_dds__Octomap_& message,
                               const FrameOrigin& origin, OctomapView& out) noexcept {
   OctomapView map;
   FrameFault fault = view(message, map);
-  if (fault == FrameFault::kNoFault) fault = judge(origin);
+  const MessageForm form = form_of(origin.frame, map);
+  if (fault == FrameFault::kNoFault) fault = judge(origin, form);
   if (fault == FrameFault::kNoFault && !origin.is_stamped) {
-    fault = accept(origin, digest_of(map.bytes, map.bytes.size(), 0, 1), 1);
+    fault = accept(origin, form, digest_of(map.bytes, map.bytes.size(), 0, 1), 1);
   }
   if (fault != FrameFault::kNoFault) return counted(fault);
-  last_ = origin;
+  use(origin, form);
   out = map;
   return counted(FrameFault::kNoFault);
+}
+
+FrameFault CameraStream::judge(const FrameOrigin& origin, const MessageForm& form) const noexcept {
+  const FrameFault fault = judge(origin);
+  return fault == FrameFault::kNoFault ? form_.refuses(form) : fault;
 }
 
 FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
@@ -172,14 +149,20 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
 // Refuses a frame that repeats one of the last `ring` frames bit for bit: a driver that hangs may
 // send the buffers of its ring again and again, under fresh stamps. The stamp in use stays that of
 // the first of them. A map is compared with the last one only, since it may change back.
-FrameFault CameraStream::accept(const FrameOrigin& origin, std::uint64_t digest,
-                                std::uint64_t ring) noexcept {
+FrameFault CameraStream::accept(const FrameOrigin& origin, const MessageForm& form,
+                                std::uint64_t digest, std::uint64_t ring) noexcept {
   const std::uint64_t kept = std::min({digests_, ring, std::uint64_t{kRing}});
   for (std::uint64_t i = 1; i <= kept && !options_.may_repeat; ++i)
     if (digest_[(digests_ - i) % kRing] == digest) return FrameFault::kFrozen;
   digest_[digests_++ % kRing] = digest;
-  last_ = origin;
+  use(origin, form);
   return FrameFault::kNoFault;
+}
+
+void CameraStream::use(const FrameOrigin& origin, const MessageForm& form) noexcept {
+  last_ = origin;
+  last_.frame = {};  // of the message's memory
+  form_.use(form);
 }
 
 }  // namespace clearance

@@ -5,8 +5,10 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <string_view>
 
 #include "monitor/intake/camera_messages.hpp"
+#include "monitor/intake/message_form.hpp"
 
 namespace clearance {
 
@@ -26,7 +28,8 @@ struct FrameOrigin {
   std::int64_t stamp_ns = 0;  // of the header
   std::int64_t sent_ns = 0;   // the sender's clock at sending; in a log, the time of recording
   std::uint64_t writer = 0;
-  bool is_stamped = true;  // false: the header has none, and `stamp_ns` is the time of sending
+  bool is_stamped = true;       // false: the header has none, and `stamp_ns` is the time of sending
+  std::string_view frame = {};  // in which it was measured
 };
 
 // To be used by one thread. Stamps increase, unless the clock was set back: after a silence, a
@@ -64,15 +67,18 @@ class CameraStream {
 
  private:
   FrameFault counted(FrameFault fault) noexcept;
+  [[nodiscard]] FrameFault judge(const FrameOrigin& origin, const MessageForm& form) const noexcept;
   [[nodiscard]] FrameFault judge(const FrameOrigin& origin) const noexcept;
   // None of the last `ring` frames may have the same content.
-  [[nodiscard]] FrameFault accept(const FrameOrigin& origin, std::uint64_t digest,
-                                  std::uint64_t ring) noexcept;
+  [[nodiscard]] FrameFault accept(const FrameOrigin& origin, const MessageForm& form,
+                                  std::uint64_t digest, std::uint64_t ring) noexcept;
+  void use(const FrameOrigin& origin, const MessageForm& form) noexcept;
 
   CameraStreamOptions options_;
   std::optional<PinholeCamera> first_, camera_;
   std::uint64_t frame_ = 0;  // of the first CameraInfo: a digest of its name; 0: it has none
-  FrameOrigin last_;         // of the last frame that was used
+  FrameOrigin last_;         // of the last frame that was used, without its frame's name
+  FirstForm form_;
   static constexpr std::size_t kRing = 8;
   std::array<std::uint64_t, kRing> digest_{};  // of the depth of the last frames that were used
   std::uint64_t digests_ = 0;                  // so far

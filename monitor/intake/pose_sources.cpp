@@ -11,8 +11,8 @@ namespace {
 
 // A million batches last a quarter of an hour at 1 kHz: no source loses so many in a row.
 constexpr std::uint64_t kCountsAnew = 1'000'000;
-// The writer number of a name whose writer has left.
-constexpr std::uint64_t kNoIndex = 0;
+
+std::uint64_t writer_of(const SourceTally& tally) noexcept { return tally.writer.source(); }
 
 }  // namespace
 
@@ -50,18 +50,19 @@ Admission PoseSources::admit(const SourceName& source, std::uint64_t writer, std
   const auto known = std::ranges::find(tallies_, source, &SourceTally::source);
   if (known != tallies_.end()) {
     SourceTally& tally = *known;
-    if (tally.writer == writer) return {.tally = &tally};
-    const std::uint64_t former = tally.writer;
-    if (is_held(tally, writer, monotonic_ns)) {
+    const std::uint64_t former = tally.writer.source();
+    if (tally.writer.refuses(writer, monotonic_ns, 0)) {
       Admission refusal = refuse(source, SourceRefusal::kOtherWriter, poses);
       refusal.former_writer = former;
       return refusal;
     }
-    tally.writer = writer;
+    if (former == writer) return {.tally = &tally};
+    tally.writer.take(writer, monotonic_ns);
     tally.last_ns = 0;  // numbers of two writers are unrelated
     return {.tally = &tally, .news = Admission::News::kTakenOver, .former_writer = former};
   }
-  const SourceTally fresh{.source = source, .writer = writer};
+  SourceTally fresh{.source = source};
+  fresh.writer.take(writer, monotonic_ns);
   if (is_named(source) || places_for_others() > 0) {
     return {.tally = &tallies_.emplace_back(fresh), .news = Admission::News::kNewSource};
   }
@@ -79,15 +80,10 @@ SourceName PoseSources::name_for(const SourceName& source, std::uint64_t writer,
   for (std::size_t number = 1;; ++number) {
     const SourceName name = name_of_writer(source.view(), number);
     const auto known = std::ranges::find(tallies_, name, &SourceTally::source);
-    if (known == tallies_.end() || !is_held(*known, writer, monotonic_ns)) return name;
+    const bool is_free = known == tallies_.end() || known->writer.source() == writer ||
+                         !known->writer.is_held(monotonic_ns, 0);
+    if (is_free) return name;
   }
-}
-
-// True if the name belongs to another writer at this time.
-bool PoseSources::is_held(const SourceTally& tally, std::uint64_t writer,
-                          std::int64_t monotonic_ns) noexcept {
-  return tally.writer != writer && tally.writer != kNoIndex &&
-         monotonic_ns - tally.last_ns < kNameHeldNs;
 }
 
 bool PoseSources::is_named(const SourceName& source) const noexcept {
@@ -106,11 +102,11 @@ std::size_t PoseSources::places_for_others() const noexcept {
 SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
   SourceTally* longest = nullptr;
   for (SourceTally& tally : tallies_) {
-    const bool spare = std::ranges::count(tallies_, tally.writer, &SourceTally::writer) > 1;
+    const std::uint64_t writer = tally.writer.source();
+    const bool spare = std::ranges::count(tallies_, writer, writer_of) > 1;
     const std::int64_t silent = monotonic_ns - tally.last_ns;
     if (is_named(tally.source)) continue;
-    const bool may_go =
-        tally.writer == kNoIndex || silent >= (spare ? kSparePlaceHeldNs : kPlaceHeldNs);
+    const bool may_go = writer == 0 || silent >= (spare ? kSourceSilentNs : kPlaceHeldNs);
     if (may_go && (longest == nullptr || tally.last_ns < longest->last_ns)) longest = &tally;
   }
   return longest;
@@ -118,7 +114,7 @@ SourceTally* PoseSources::free_place(std::int64_t monotonic_ns) {
 
 void PoseSources::keep(std::span<const std::uint64_t> writers) {
   for (SourceTally& tally : tallies_) {
-    if (std::ranges::find(writers, tally.writer) == writers.end()) tally.writer = kNoIndex;
+    if (std::ranges::find(writers, writer_of(tally)) == writers.end()) tally.writer.leave();
   }
 }
 

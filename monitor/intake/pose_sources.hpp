@@ -8,14 +8,18 @@
 #include <string_view>
 #include <vector>
 
+#include "monitor/inputs/input_owner.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 
 namespace clearance {
 
+// The writer to which a name belongs; 0: it has left.
+using NameOwner = Owner<std::uint64_t, 0>;
+
 // Counts of one source since it was given one of the places.
 struct SourceTally {
   SourceName source;
-  std::uint64_t writer = 0;     // the writer to which the name belongs
+  NameOwner writer = {};
   std::uint64_t batches = 0;    // handed to the tick
   std::uint64_t lost = 0;       // gaps in the sequence numbers, and batches with no slot free
   std::uint64_t cut_poses = 0;  // poses above the largest size of a batch: not used
@@ -57,12 +61,9 @@ struct Admission {
 
 class PoseSources {
  public:
-  // Another writer may take over a name after its writer has been silent for this long.
-  static constexpr std::int64_t kNameHeldNs = 1'000'000'000;
-  // Another source may get a place after this silence. The shorter time applies if the writer of
-  // the silent source has more places.
+  // Another source may get a place after this silence; after kSourceSilentNs, if the writer of the
+  // silent source has more places.
   static constexpr std::int64_t kPlaceHeldNs = 10'000'000'000;
-  static constexpr std::int64_t kSparePlaceHeldNs = 1'000'000'000;
 
   // `named` are the sources that the cell names. Their places are reserved.
   explicit PoseSources(std::vector<SourceName> named = {});
@@ -88,8 +89,6 @@ class PoseSources {
 
  private:
   [[nodiscard]] std::size_t places_for_others() const noexcept;
-  [[nodiscard]] static bool is_held(const SourceTally& tally, std::uint64_t writer,
-                                    std::int64_t monotonic_ns) noexcept;
   [[nodiscard]] SourceTally* free_place(std::int64_t monotonic_ns);
   Admission refuse(const SourceName& source, SourceRefusal cause, std::size_t poses);
 

@@ -134,11 +134,11 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
           return {fmt::format("transforms of frame '{}'", child), "'stamps: sent' of 'ros2'"};
         });
   }
-  const FrameClaims::Publisher publisher{message.writer, port, is_static};
+  const TfFrames::Publisher publisher{message.writer, port, is_static};
   const auto claims = claims_.claims(child);
   if (!claims.empty() && claims.front().publisher == publisher) note_parent(child, link.parent);
   const bool is_disputed = claims_.set(child, publisher, std::move(link), now.monotonic_ns);
-  if (!is_disputed || rivals_said_.size() >= FrameClaims::kMostFrames ||
+  if (!is_disputed || rivals_said_.size() >= TfFrames::kMostFrames ||
       !rivals_said_.insert(child).second) {
     return;
   }
@@ -151,12 +151,9 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
 
 // A refused transform does not change its frame, which therefore becomes late.
 bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link) {
-  const Eigen::Quaterniond& turn = link.parent_from_child.orientation;
-  const bool is_pose = link.parent_from_child.position.allFinite() &&
-                       std::abs(turn.norm() - 1.0) <= kSampleUnitTolerance;
-  const bool has_names = !child.empty() && !link.parent.empty() && child != link.parent;
-  if (!is_pose || !has_names) {
-    if (refused_said_.size() < FrameClaims::kMostFrames && refused_said_.insert(child).second) {
+  if (!TfFrames::is_transform(child, link)) {
+    const bool has_names = !child.empty() && !link.parent.empty() && child != link.parent;
+    if (refused_said_.size() < TfFrames::kMostFrames && refused_said_.insert(child).second) {
       const char* const why = has_names ? "no pose (not finite, or a quaternion not of unit length)"
                                         : "a frame without a name, or its own parent";
       out_.tell({.cause = News::Cause::kFrameRefused,
@@ -169,7 +166,7 @@ bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link
   if (!std::exchange(too_many_said_, true)) {
     out_.tell({.cause = News::Cause::kTooManyFrames,
                .text = fmt::format("frame '{}' is one too many: {} frames are heard", child,
-                                   FrameClaims::kMostFrames)});
+                                   TfFrames::kMostFrames)});
   }
   return false;
 }
@@ -249,8 +246,8 @@ RosTransforms::State RosTransforms::follow(std::size_t follower, const std::stri
 void RosTransforms::follow_rivals(std::size_t follower, const std::string& source, const Now& now) {
   const TrackedFrames::Follower& of = frames_.followers()[follower];
   for (const std::string& frame : claims_.disputed_on(of.frame)) {
-    for (const FrameClaims::Claim& rival : claims_.claims(frame).subspan(1)) {
-      if (!FrameClaims::is_live(rival, now.monotonic_ns)) continue;
+    for (const TfFrames::Claim& rival : claims_.claims(frame).subspan(1)) {
+      if (!TfFrames::is_live(rival, now.monotonic_ns)) continue;
       const TfTree::Instead instead{frame, rival.link};
       const auto place = frames_.find(claims_.tree(), of.frame, nullptr, &instead);
       if (!place) continue;

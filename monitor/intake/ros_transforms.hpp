@@ -2,7 +2,7 @@
 // objects and robot bases that follow frames.
 //
 // If several publishers send a frame, the poses by each of them are handed over, under source names
-// of their own (frame_claims.hpp). The stamp of a chain of transforms is that of its oldest one. A
+// of their own (tf_frames.hpp). The stamp of a chain of transforms is that of its oldest one. A
 // follower's pose is handed over when that stamp changes. A chain of static transforms is always
 // valid: its pose is handed over again before it is late.
 #pragma once
@@ -16,9 +16,9 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/intake/decoder.hpp"
-#include "monitor/intake/frame_claims.hpp"
 #include "monitor/intake/sensor_messages.hpp"
 #include "monitor/intake/stamp_check.hpp"
+#include "monitor/intake/tf_frames.hpp"
 #include "monitor/intake/tracked_frames.hpp"
 #include "monitor/wire/cdr.hpp"
 
@@ -104,7 +104,7 @@ class RosTransforms final : public Decoder {
   std::vector<Topic> topics_;  // by port
   CdrDecoder decoder_;
   Sample<tf2_msgs_msg_dds__TFMessage_> message_;
-  FrameClaims claims_;
+  TfFrames claims_;
   std::set<std::string> rivals_said_;                // child frames
   std::map<std::uint64_t, StampCheck> stamps_;       // by publisher
   std::map<std::string, std::size_t> parents_said_;  // number of reported parents, by child frame

@@ -41,7 +41,7 @@ class ReportSink {
   virtual void joined(std::uint64_t /*lineage*/) noexcept {}
   // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
-  // Once a second, and after the last tick.
+  // Called once per second, and after the last tick.
   virtual void statistics(const LoopStatistics& statistics) noexcept = 0;
 };
 

@@ -135,7 +135,7 @@ bool TickLoop::ask(LoopQuestion& question, const std::atomic<bool>& loop_ended) 
   return false;
 }
 
-// Its owner may delete the question as soon as it is answered.
+// The question's owner may delete it as soon as it is answered.
 void TickLoop::answer_question() noexcept {
   LoopQuestion* const question = asked_.load(std::memory_order_acquire);
   if (question == nullptr) return;
@@ -229,7 +229,7 @@ void TickLoop::note_minimum(const Report& report) noexcept {
   if (is_less(found, statistics_.minimum)) statistics_.minimum = found;
 }
 
-// Called once a second. Figures that cover one second are reset afterwards.
+// Called once per second. Figures that cover one second are reset afterwards.
 void TickLoop::hand_over_statistics() noexcept {
   const Scene& scene = state_.scene();
   const Monitor& monitor = state_.monitor();

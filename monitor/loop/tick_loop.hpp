@@ -57,10 +57,10 @@ class TickLoop {
 
   // Any one thread: offers the monitor of a changed scene. The loop begins with it before its next
   // tick, and ticks it as soon as it has caught up. From then on, SceneIds decides which batches of
-  // former scenes are still used. Returns false while another one is under way. The offer must
+  // former scenes are still used. Returns false while another one is in progress. The offer must
   // live until the next one has succeeded, or the loop has ended.
   bool offer(SceneOffer& offer) noexcept;
-  // True while an offer is under way.
+  // True while an offer is in progress.
   [[nodiscard]] bool busy() const noexcept {
     return offered_.load(std::memory_order_acquire) != nullptr;
   }

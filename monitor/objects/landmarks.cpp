@@ -39,8 +39,10 @@ std::vector<Vec3> corners_of(const Object& object) {
 
 // Farthest-point sampling: each landmark is the vertex with the largest distance from those before
 // it.
-Landmarks::Landmarks(const Object& object) {
+Landmarks::Landmarks(const Object& object, double arm) {
   std::vector<Vec3> corners = corners_of(object);
+  for (int i = 0; i < 6 && arm > 0.0; ++i)
+    corners.push_back((i < 3 ? arm : -arm) * Vec3::Unit(i % 3));
   if (corners.empty()) corners.push_back(Vec3::Zero());  // a half-space has none
   points_[count_++] = corners.front();
   while (count_ < points_.size()) {

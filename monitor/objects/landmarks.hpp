@@ -24,7 +24,8 @@ class Landmarks {
   using Rate = Twist;
 
   Landmarks() = default;
-  explicit Landmarks(const Object& object);
+  // Points at the distance `arm` from the origin of its frame stand for what the object carries, m.
+  explicit Landmarks(const Object& object, double arm = 0.0);
 
   // Returns true if no landmark moves farther than `limit`, m, from one pose to the other. The
   // displacement a of the origin and a bound b of the rotational part usually decide without the

@@ -53,7 +53,7 @@ class TickPartner final : public PoseSource, public TickPace {
   // The thread that hears the partner: a notice, with `due_ns` in CLOCK_MONOTONIC of this machine.
   // Returns false if the tick thread is too slow for it.
   bool hear(const TickNotice& notice) noexcept;
-  // It has handed over all that had come when it looked.
+  // The thread that hears has handed over all that had come when it looked.
   void end_pass() noexcept { passes_.fetch_add(1, std::memory_order_release); }
   // Whether the partner was heard a moment ago.
   void set_partner_present(bool present) noexcept { partner_present_ = present; }

@@ -54,9 +54,9 @@ class RecordedTicks {
   // without any if there was no catalogue.
   [[nodiscard]] const Scene& names(std::uint64_t revision) { return names_[revision]; }
 
-  // Not empty: more than one daemon is in the file, or it cannot be read at all.
+  // Says why there are no ticks: more than one daemon is in the file, or it cannot be read at all.
   [[nodiscard]] std::string error() const;
-  // Not empty: the file is damaged; ticks before the damage were read.
+  // Says where the file is damaged, or nothing; ticks before the damage were read.
   [[nodiscard]] std::string damage() const;
   [[nodiscard]] const std::set<std::string>& not_recorded() const noexcept {
     return run_.reader().not_recorded();

@@ -2,7 +2,7 @@
 // for.
 //
 // A thread of its own makes and writes them. The thread that reports, mostly that of the tick,
-// copies a number in each tick, a report as often as markers are drawn, and statistics once a
+// copies a number in each tick, a report as often as markers are drawn, and statistics once per
 // second. It never waits: a full queue loses its newest entry, and the next one replaces it.
 #pragma once
 

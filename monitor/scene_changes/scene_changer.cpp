@@ -54,7 +54,7 @@ SceneChanger::Outcome SceneChanger::succeed(std::shared_ptr<const Cell> cell,
                                             const Began& began) {
   Successor::State state = Successor::State::kTooSlow;
   for (int i = 0; i < kAttempts && state == Successor::State::kTooSlow; ++i) {
-    // It holds what the loop no longer ticks, and is deleted here.
+    // The offer holds what the loop no longer ticks, and is deleted here.
     SceneOffer successor(loop_.state(), cell->scene, sinks, records_);
     state = run(successor, loop_ended, began);
     if (state != Successor::State::kSucceeded) continue;

@@ -25,7 +25,7 @@ class CellParts {
   // Makes the sinks of the changed cell. They get no report yet.
   virtual std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) = 0;
   // The loop ticks the changed cell: its inputs and sinks are in use from now on, and those of the
-  // cell before may go. There is no way back, so whatever can fail belongs into prepare().
+  // cell before may go. Nothing takes this back, so whatever can fail belongs into prepare().
   virtual void follow(const SceneInForce& since) noexcept = 0;
   // Is called before follow(), with the final figures of the cell that the loop no longer ticks.
   virtual void end(const LoopStatistics&) noexcept {}

@@ -25,9 +25,9 @@ class SceneThread {
   // or after end(). Otherwise the answer comes, unless the program ends.
   [[nodiscard]] bool put(SceneTask task) { return queue_.put(std::move(task)); }
 
-  // Once `loop_ended` is set: drops what waits, and waits for the change that is under way. Returns
-  // false if a cell is still being read, which may take long. The thread then goes on, and the
-  // program must end without destroying this or anything that the thread uses.
+  // Once `loop_ended` is set: drops what waits, and waits for the change that is in progress.
+  // Returns false if a cell is still being read, which may take long. The thread then goes on, and
+  // the program must end without destroying this or anything that the thread uses.
   bool end();
 
  private:

@@ -56,24 +56,24 @@ std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
 // the robot is an obstacle.
 void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
   postures_.place(frame.stamp_ns, state.sensor.stamp_error_ns);
+  mounts_.judge(state.sensor, frame.frame, frames_, now_);
   PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
   if (state.sensor.kind == SensorKind::kOctomap)
     place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
   FrameFault fault = FrameFault::kNoFault;
   std::string elsewhere;
   if (!place.known) {
-    fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_)
+    fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_)
                 ? FrameFault::kLateTransforms
                 : FrameFault::kNoPlace;
-  } else if (elsewhere = mounts_.robot_elsewhere(state.sensor, frame.frame, frame.stamp_ns, frames_,
-                                                 postures_, place);
+  } else if (elsewhere =
+                 mounts_.robot_elsewhere(state.sensor, frame.frame, frame.stamp_ns, frames_, place);
              !elsewhere.empty()) {
     fault = FrameFault::kRobotElsewhere;
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
-    const Carrier carrier =
-        mounts_.carrier(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+    const Carrier carrier = mounts_.carrier(state.sensor, frame.frame, frame.stamp_ns, frames_);
     fault = build_at(state, frame, place, carrier, cloud, use);
   }
   state.status.robot_elsewhere = std::move(elsewhere);
@@ -226,7 +226,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
 
 // Own points count as rays from now on: no ball reaches towards them, into the robot. A surface
 // between an own point and a neighbour is in the blind shell, which was found with balls that reach
-// that way, so a whole way is no longer than the diameter of the own point's ball.
+// that far, so the whole distance is no longer than the diameter of the own point's ball.
 void Sensors::narrow(const PointsView& frame, PointCloud& points) {
   for (std::size_t b = 0; b < points.blocks(); ++b) {
     const PointCloud::Block& block = points.block(b);

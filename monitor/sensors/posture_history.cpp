@@ -2,57 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/kinematics/joint_metric.hpp"
 #include "monitor/motion/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
 
-// A source that was silent for this long has lost its inputs, ns.
-constexpr std::int64_t kSilentNs = 1'000'000'000;
 // The rounding of the interpolation below, relative to the position, rad or m.
 constexpr double kInterpolated = 0x1p-50;
-// The rounding of a product of two poses, relative to the lengths that take part.
-constexpr double kComposed = 0x1p-48;
-
-// Two sources whose values differ by no more agree, rad or m.
-constexpr double kSameValue = 1e-6;
-
-// Whether the sample is of the source in use. A silent one is replaced.
-template <class Series>
-bool is_of_source(std::uint32_t source, std::int64_t stamp_ns, const Series& series,
-                  std::uint32_t& in_use) {
-  const bool is_silent = series.empty() || elapsed(series.last().stamp_ns, stamp_ns) > kSilentNs;
-  if (source != in_use && !is_silent) return false;
-  in_use = source;
-  return true;
-}
-
 double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return static_cast<double>(elapsed(from_ns, to_ns)) * 1e-9;
 }
 
-// Seconds between two times, whichever is later.
-double time_between(std::int64_t a_ns, std::int64_t b_ns) noexcept {
-  return std::max(seconds_between(a_ns, b_ns), seconds_between(b_ns, a_ns));
-}
-
-// Returns the largest way of a value with this largest speed within this time.
-double way_within(double speed, std::int64_t within_ns) noexcept {
-  return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
-}
-
-// The part of a line's length that this speed does not explain, and the rounding.
-double excess(double time_s, double speed, double mean) noexcept {
-  return (std::max(0.0, std::abs(mean) - speed) + 0x1p-48 * speed) * time_s;
-}
-
 // No position of a joint in this time is farther from `position`. Between two values, it is off the
 // line by no more than T (v^2 - u^2) / 2v, with T their time, u their mean speed and v the largest.
-// A point of the line is no farther than half of the way from `position` over it and back.
+// A point of the line is no farther than half of the distance from `position` over it and back.
 double farthest_within(const StampedSeries<double>& values, const JointMetric& metric,
                        double position, std::int64_t first_ns, std::int64_t last_ns,
                        double speed) noexcept {
@@ -83,94 +50,8 @@ double farthest_within(const StampedSeries<double>& values, const JointMetric& m
 
 }  // namespace
 
-void PostureHistory::Disputed::add(std::int64_t stamp_ns, std::int64_t hold_ns) noexcept {
-  const std::int64_t first_ns = less(stamp_ns, hold_ns), last_ns = less(stamp_ns, -hold_ns);
-  const bool goes_on = ever && first_ns <= until_ns && last_ns >= from_ns;
-  from_ns = goes_on ? std::min(from_ns, first_ns) : first_ns;
-  until_ns = goes_on ? std::max(until_ns, last_ns) : last_ns;
-  ever = true;
-}
-
-bool PostureHistory::Disputed::at(std::int64_t time_ns) const noexcept {
-  return ever && from_ns <= time_ns && time_ns <= until_ns;
-}
-
-// Values that stay for long where the input cannot be are taken, as in the tick.
-// A source that the cell states is never replaced, and only a namesake may contradict it.
-template <class Metric>
-void PostureHistory::Input<Metric>::take(const SampleOrigin& from, std::uint32_t stated,
-                                         const typename Metric::Value& value,
-                                         const MotionLimits& limits, const Metric& metric) {
-  const std::int64_t stamp_ns = from.stamp_ns;
-  const bool is_rival = stated != kNoSource && from.source != stated;
-  if (is_rival && (from.namesake != stated || values.empty())) return;
-  if (is_rival || !is_of_source(from.source, stamp_ns, values, source)) {
-    const auto& last = values.last();
-    const double within = limits.fastest * time_between(last.stamp_ns, stamp_ns) + kSameValue;
-    if (!metric.stay_within(within, last.value, value)) disputed.add(stamp_ns, kSilentNs);
-    return;
-  }
-  if (!values.empty() && stamp_ns > values.last().stamp_ns) {
-    const auto& last = values.last();
-    if (can_reach(metric, last.value, value, elapsed(last.stamp_ns, stamp_ns), limits)) {
-      elsewhere.clear();
-    } else {
-      disputed.add(stamp_ns, limits.age_limit_ns);
-      if (!elsewhere.add(value, stamp_ns, limits, metric)) return;
-      values.clear();
-    }
-  }
-  values.add(stamp_ns, value);
-}
-
-double PastPose::error(double radius) const noexcept {
-  return rounded_up(shift_error + turn_error * radius);
-}
-
-PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,
-                 double turn_error) noexcept {
-  const double arm = parent_from_child.position.norm();
-  PastPose child = parent;
-  child.world_from_body = compose(parent.world_from_body, parent_from_child);
-  child.world_from_body.orientation.normalize();
-  const double rounding = kComposed * (arm + parent.world_from_body.position.norm());
-  child.shift_error =
-      rounded_up(parent.shift_error + parent.turn_error * arm + shift_error + rounding);
-  child.turn_error = rounded_up(parent.turn_error + turn_error + kComposed);
-  return child;
-}
-
-// The value is within speed times the time of both ends, and the line has come mean times the time.
-double deviation(double before_s, double after_s, double speed, double mean) noexcept {
-  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
-  const double u = std::min(std::abs(mean), speed);
-  const double ahead = std::min(before_s * (speed - u), after_s * (speed + u));
-  const double behind = std::min(before_s * (speed + u), after_s * (speed - u));
-  // The differences above lose digits where both speeds are nearly equal.
-  return rounded_up(std::max(ahead, behind) + excess(before_s + after_s, speed, mean));
-}
-
-// With x between a and b, and p on the line at its time: |x - p| is no more than |x - a| + |a - p|.
-// By Stewart's theorem, its square is no more than before_s after_s (speed^2 - mean^2).
-double deviation_in_space(double before_s, double after_s, double speed, double mean) noexcept {
-  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
-  const double u = std::min(std::abs(mean), speed);
-  const double square = before_s * after_s * (speed + u) * (speed - u + 0x1p-48 * speed);
-  return std::min(deviation_of_turn(before_s, after_s, speed, mean),
-                  rounded_up(std::sqrt(square) + excess(before_s + after_s, speed, mean)));
-}
-
-double deviation_of_turn(double before_s, double after_s, double speed, double mean) noexcept {
-  if (before_s <= 0.0 || after_s <= 0.0) return 0.0;
-  const double u = std::min(std::abs(mean), speed);
-  return rounded_up((speed + u) * std::min(before_s, after_s) +
-                    excess(before_s + after_s, speed, mean));
-}
-
 PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
     : scene_(scene),
-      joints_(scene.variables.size()),
-      judged_(scene.variables.size()),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
       objects_(scene.objects.size()),
@@ -181,84 +62,72 @@ PostureHistory::PostureHistory(const Scene& scene, SourceNumbers numbers)
   for (const JointVariable& variable : scene.variables)
     joint_sources_.push_back(number(variable.source));
   for (const Object& object : scene.objects) object_sources_.push_back(number(object.source));
+  joints_.reserve(scene.variables.size());
+  for (std::size_t i = 0; i < scene.variables.size(); ++i)
+    joints_.emplace_back(initial_joint(i), kKept);
 }
 
-// A refusal because another source is in use is no fault of the input.
-void PostureHistory::judge(const JointSample& sample) {
+TrackedVariable PostureHistory::initial_joint(std::size_t variable) const {
+  TrackedVariable state;
+  const std::uint32_t stated = joint_sources_[variable];
+  if (stated != kNoSource) state.input.owner = InputOwner(stated);
+  return state;
+}
+
+// What stands on the object may be far away, so how it turns counts as well: as far as a base turns
+// in the time in which the object may have come so far.
+TrackedObject PostureHistory::initial_body(std::uint32_t object) const {
+  const Object& of = scene_.objects[object];
+  TrackedObject state = initial_state(of);
+  state.landmarks = Landmarks(of, of.plausible_speed() / kFastestBaseTurn);
+  const std::uint32_t stated = object_sources_[object];
+  if (stated != kNoSource) state.input.owner = InputOwner(stated);
+  return state;
+}
+
+void PostureHistory::add(const JointSample& sample, std::int64_t came_ns) {
+  if (sample.variable >= joints_.size()) return;
   const JointVariable& of = scene_.variables[sample.variable];
-  TrackedVariable& state = judged_[sample.variable];
-  if (elapsed(sample.stamp_ns, state.input.stamp_ns) > kSetBackNs) state = {};
-  const std::uint32_t stated = joint_sources_[sample.variable];
-  if (stated != kNoSource && sample.source != stated) return;
-  const auto cause = clearance::take(of, sample, sample.stamp_ns, {sample.stamp_ns, 0}, state,
-                                     judged_[of.first_of_joint].repetition);
-  if (cause == Reject::kFrozen || cause == Reject::kOtherWay || cause == Reject::kOutsideLimits) {
-    const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
-    joints_[sample.variable].disputed.add(sample.stamp_ns, hold_ns);
-  }
+  const SampleOrigin origin{sample.source, sample.namesake, sample.stamp_ns};
+  const SampleLimits limits{came_ns, scene_.future_limit_ns};
+  JointTrack& track = joints_[sample.variable];
+  if (track.is_set_back(origin)) track.begin_anew(initial_joint(sample.variable));
+  track.add(sample.position, origin, limits, of.age_limit_ns, [&](TrackedVariable& now) {
+    return take(of, sample, sample.stamp_ns, limits, now,
+                joints_[of.first_of_joint].now.repetition);
+  });
 }
 
-void PostureHistory::judge(const PoseSample& sample) {
-  const Object& of = scene_.objects[sample.object];
-  TrackedObject& state = judged_bodies_.try_emplace(sample.object, initial_state(of)).first->second;
-  if (elapsed(sample.stamp_ns, state.input.stamp_ns) > kSetBackNs) state = initial_state(of);
-  const std::uint32_t stated = object_sources_[sample.object];
-  if (stated != kNoSource && sample.source != stated) return;
-  const auto cause = clearance::take(of, sample, sample.stamp_ns, {sample.stamp_ns, 0}, state);
-  if (cause == Reject::kFrozen || cause == Reject::kOtherWay) {
-    const std::int64_t hold_ns = state.plausibility.agree_for_ns({.age_limit_ns = of.age_limit_ns});
-    bodies_[sample.object].disputed.add(sample.stamp_ns, hold_ns);
-  }
-}
-
-void PostureHistory::add(const JointSample& sample) {
-  if (sample.variable >= joints_.size() || !(std::abs(sample.position) <= kLargestJoint)) return;
-  const JointVariable& of = scene_.variables[sample.variable];
-  const double fastest = of.plausible_speed();
-  const double sent = sample.has_velocity ? std::abs(sample.velocity) : 0.0;
-  const MotionLimits limits{
-      .fastest = sent > fastest ? std::min(sent, of.speed_tolerance * fastest) : fastest,
-      .age_limit_ns = of.age_limit_ns};
-  joints_[sample.variable].take({sample.source, sample.namesake, sample.stamp_ns},
-                                joint_sources_[sample.variable], sample.position, limits,
-                                JointMetric(of.wraps));
-  judge(sample);
-}
-
-void PostureHistory::add(const PoseSample& sample) {
+void PostureHistory::add(const PoseSample& sample, std::int64_t came_ns) {
   if (sample.object >= scene_.objects.size()) return;
-  const Object& object = scene_.objects[sample.object];
-  const Pose& pose = sample.world_from_object;
-  const bool is_pose = pose.position.allFinite() && pose.orientation.coeffs().allFinite() &&
-                       std::abs(pose.orientation.norm() - 1.0) <= kSampleUnitTolerance;
-  if (object.fixed || object.is_seen() || !is_pose) return;
-  const double fastest = object.plausible_speed();
-  const MotionLimits limits{.fastest = fastest,
-                            .age_limit_ns = object.may_jump
-                                                ? std::numeric_limits<std::int64_t>::max()
-                                                : object.age_limit_ns};
-  bodies_[sample.object].take({sample.source, sample.namesake, sample.stamp_ns},
-                              object_sources_[sample.object],
-                              {pose.position, pose.orientation.normalized()}, limits,
-                              CarrierMetric{kFastestBaseTurn / fastest});
-  judge(sample);
+  const Object& of = scene_.objects[sample.object];
+  if (of.fixed || of.is_seen()) return;
+  auto body = bodies_.find(sample.object);
+  if (body == bodies_.end())
+    body = bodies_.try_emplace(sample.object, initial_body(sample.object), kKept).first;
+  const SampleOrigin origin{sample.source, sample.namesake, sample.stamp_ns};
+  const SampleLimits limits{came_ns, scene_.future_limit_ns};
+  BodyTrack& track = body->second;
+  if (track.is_set_back(origin)) track.begin_anew(initial_body(sample.object));
+  const auto& [position, orientation] = sample.world_from_object;
+  track.add({position, orientation.normalized()}, origin, limits, of.age_limit_ns,
+            [&](TrackedObject& now) { return take(of, sample, sample.stamp_ns, limits, now); });
 }
 
 void PostureHistory::forget() {
-  std::ranges::fill(joints_, Joint{});
-  std::ranges::fill(judged_, TrackedVariable{});
+  for (std::size_t i = 0; i < joints_.size(); ++i) joints_[i].begin_anew(initial_joint(i));
   bodies_.clear();
-  judged_bodies_.clear();
 }
 
 bool PostureHistory::covers(std::int64_t stamp_ns) const noexcept {
   const auto reaches = [&](const auto& series) {
     return series.empty() || series.last().stamp_ns >= stamp_ns ||
-           elapsed(series.last().stamp_ns, stamp_ns) > kSilentNs;
+           elapsed(series.last().stamp_ns, stamp_ns) > kSourceSilentNs;
   };
-  return std::ranges::all_of(joints_, [&](const Joint& joint) { return reaches(joint.values); }) &&
+  return std::ranges::all_of(
+             joints_, [&](const JointTrack& joint) { return reaches(joint.past.values()); }) &&
          std::ranges::all_of(bodies_,
-                             [&](const auto& body) { return reaches(body.second.values); });
+                             [&](const auto& body) { return reaches(body.second.past.values()); });
 }
 
 void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
@@ -266,9 +135,10 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
   const JointVariable& of = scene_.variables[variable];
   TrackedVariable& state = variables_[variable];
   state.may_have_moved = 0.0;
-  const auto [before, after] = joints_[variable].values.around(stamp_ns);
+  const PastValues<double>& past = joints_[variable].past;
+  const auto [before, after] = past.values().around(stamp_ns);
   // Before the first position, nothing is known.
-  state.input.has_value = before != nullptr && !joints_[variable].disputed.at(stamp_ns);
+  state.input.has_value = before != nullptr && !past.is_contradicted(stamp_ns);
   if (!state.input.has_value) return;
   const double speed = of.plausible_speed();
   const double since = seconds_between(before->stamp_ns, stamp_ns);
@@ -288,7 +158,7 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
                                       rounding + state.may_have_moved);
   }
   if (within_ns == 0) return;
-  const double by_values = farthest_within(joints_[variable].values, metric, state.position,
+  const double by_values = farthest_within(past.values(), metric, state.position,
                                            stamp_ns - within_ns, stamp_ns + within_ns, speed);
   state.may_have_moved = std::min(state.may_have_moved, by_values);
 }
@@ -302,8 +172,8 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   const Object& of = scene_.objects[object];
   if (of.fixed) return {.known = true, .world_from_body = of.world_from_object};
   const auto body = bodies_.find(object);
-  if (body == bodies_.end() || body->second.disputed.at(stamp_ns)) return past;
-  const PoseSeries& poses = body->second.values;
+  if (body == bodies_.end() || body->second.past.is_contradicted(stamp_ns)) return past;
+  const PoseSeries& poses = body->second.past.values();
   const auto [before, after] = poses.around(stamp_ns);
   if (before == nullptr) return past;
   const double speed = of.plausible_speed();
@@ -325,7 +195,7 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   const double until = seconds_between(stamp_ns, after->stamp_ns), gap = seconds(gap_ns);
   const Pose &a = before->value, &b = after->value;
   if (gap_ns > kLongGapNs || !same_pose(a, b)) {
-    const double shift = deviation_in_space(since, until, speed, way_between(a, b) / gap);
+    const double shift = deviation_in_space(since, until, speed, distance_between(a, b) / gap);
     past.shift_error = rounded_up(shift + past.shift_error);
   }
   if (gap_ns > kLongGapNs) {
@@ -338,8 +208,9 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
 }
 
 bool PostureHistory::began_by(std::int64_t stamp_ns) const noexcept {
-  return std::ranges::all_of(joints_, [&](const Joint& joint) {
-    return joint.values.empty() || joint.values.around(stamp_ns).before != nullptr;
+  return std::ranges::all_of(joints_, [&](const JointTrack& joint) {
+    const auto& values = joint.past.values();
+    return values.empty() || values.around(stamp_ns).before != nullptr;
   });
 }
 

@@ -41,7 +41,8 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNu
 Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)
     : Sensors(cell, before.options_, numbers) {
   frames_ = std::move(before.frames_);
-  last_came_ns_ = before.last_came_ns_;
+  mounts_.take_over(before.mounts_);
+  now_ = before.now_;
   for (const std::unique_ptr<State>& state : states_) {
     for (const std::unique_ptr<State>& old : before.states_) {
       const Sensor &a = old->sensor, &b = state->sensor;
@@ -56,11 +57,12 @@ Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers
 Sensors::~Sensors() = default;
 
 // Stamps come again after this machine's clock was set back. Samples from before say nothing about
-// frames from after it, and the other way round.
+// frames from after it, and vice versa.
 void Sensors::note_time(std::int64_t came_ns) {
-  if (elapsed(came_ns, std::exchange(last_came_ns_, came_ns)) <= kClockSetBackNs) return;
+  if (elapsed(came_ns, std::exchange(now_.realtime_ns, came_ns)) <= kClockSetBackNs) return;
   postures_.forget();
   frames_.forget();
+  mounts_.forget();
   drop_waiting();
 }
 
@@ -71,27 +73,30 @@ bool Sensors::is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexce
 void Sensors::add(std::span<const PoseSample> poses, std::span<const JointSample> joints,
                   std::int64_t came_ns) {
   note_time(came_ns);
-  for (const JointSample& sample : joints) {
-    if (!is_ahead(sample.stamp_ns, came_ns)) postures_.add(sample);
-  }
-  for (const PoseSample& sample : poses) {
-    if (!is_ahead(sample.stamp_ns, came_ns)) postures_.add(sample);
-  }
+  for (const JointSample& sample : joints) postures_.add(sample, came_ns);
+  for (const PoseSample& sample : poses) postures_.add(sample, came_ns);
 }
 
-void Sensors::add_transforms(const RawSensorMessage& message, std::int64_t came_ns) {
+void Sensors::add_transforms(const RawSensorMessage& message) {
   Sample<tf2_msgs_msg_dds__TFMessage_> transforms;
   if (!decoder_.decode(message.cdr, transforms, message.bytes)) return;
+  const bool is_static = message.type == Type::kStaticTransforms;
   for (std::uint32_t i = 0; i < transforms->transforms._length; ++i) {
     const auto& each = transforms->transforms._buffer[i];
-    const bool is_static = message.type == Type::kStaticTransforms;
     const std::int64_t stamp =
         StampCheck::time_of(stamp_ns(each.header), message.sent_ns, cell_.ros.stamps,
                             options_.is_log ? OtherClock::kReplaced : OtherClock::kTold);
-    if (!is_static && is_ahead(stamp, came_ns)) continue;
-    frames_.add(frame_name(each.child_frame_id), frame_name(each.header.frame_id),
-                pose_of(each.transform), stamp, is_static, message.writer);
+    if (!is_static && is_ahead(stamp, now_.realtime_ns)) continue;
+    const std::string child = frame_name(each.child_frame_id);
+    TfTree::Link link{.parent = frame_name(each.header.frame_id),
+                      .parent_from_child = pose_of(each.transform),
+                      .stamp_ns = is_static ? std::nullopt : std::optional(stamp)};
+    if (!TfFrames::is_transform(child, link) || frames_.is_one_too_many(child)) continue;
+    frames_.set(child, {.writer = message.writer, .is_static = is_static}, std::move(link),
+                now_.monotonic_ns);
   }
+  frames_.settle(now_.monotonic_ns);
+  mounts_.judge(frames_, now_);
 }
 
 template <class Message>
@@ -123,7 +128,8 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
                               {.stamp_ns = frame->stamp_ns,
                                .sent_ns = message.sent_ns,
                                .writer = message.writer,
-                               .is_stamped = stamp != 0},
+                               .is_stamped = stamp != 0,
+                               .frame = frame->frame},
                               frame->map);
     // A changed cell has no frame yet: the map that is sent again has the time of the first one.
     if (fault == FrameFault::kFrozen && state.status.frames == 0 && state.waiting.empty()) {
@@ -134,7 +140,11 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
   } else {
     frame->stamp_ns = stamp_ns(sample->header);
     frame->frame = frame_name(sample->header.frame_id);
-    fault = state.stream.take(*sample, {frame->stamp_ns, message.sent_ns, message.writer},
+    fault = state.stream.take(*sample,
+                              {.stamp_ns = frame->stamp_ns,
+                               .sent_ns = message.sent_ns,
+                               .writer = message.writer,
+                               .frame = frame->frame},
                               frame->view(static_cast<const Message*>(nullptr)));
   }
   if constexpr (std::is_same_v<Message, sensor_msgs_msg_dds__Image_>)
@@ -172,8 +182,9 @@ void Sensors::take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& sta
 
 void Sensors::add(const RawSensorMessage& message, const Now& now) {
   note_time(now.realtime_ns);
+  now_.monotonic_ns = now.monotonic_ns;
   if (message.type == Type::kTransforms || message.type == Type::kStaticTransforms)
-    return add_transforms(message, now.realtime_ns);
+    return add_transforms(message);
   const std::int64_t now_ns = now.monotonic_ns;
   for (const std::unique_ptr<State>& state : states_) {
     const Sensor& sensor = state->sensor;
@@ -204,7 +215,7 @@ void Sensors::add(const RawSensorMessage& message, const Now& now) {
 bool Sensors::is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const {
   const std::int64_t waited_ns = elapsed(frame.came_ns, now_ns);
   const bool has_no_transform =
-      mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+      mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_);
   if (has_no_transform && !state.sensor.mount_speed.is_stated())
     return waited_ns >= std::max(options_.patience_ns, state.age_limit_ns / 2);
   return waited_ns >= options_.patience_ns ||

@@ -127,7 +127,7 @@ class Sensors {
 
   void note_time(std::int64_t came_ns);
   [[nodiscard]] bool is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept;
-  void add_transforms(const RawSensorMessage& message, std::int64_t came_ns);
+  void add_transforms(const RawSensorMessage& message);
   template <class Message>
   void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
   void take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& state, std::int64_t now_ns);
@@ -145,7 +145,7 @@ class Sensors {
 
   const Cell& cell_;
   SensorsOptions options_;
-  FrameHistory frames_;
+  TfFrames frames_{Mounts::kKeptTransforms};
   PostureHistory postures_;
   Mounts mounts_;
   OwnImage own_image_;
@@ -154,7 +154,7 @@ class Sensors {
   SlabBody body_;
   std::vector<MeasuredPoint> points_, narrow_;
   OrganisedPoints organised_;
-  std::int64_t last_came_ns_ = 0;
+  Now now_;  // of the last message; the time of samples, too
 };
 
 }  // namespace clearance

@@ -42,10 +42,12 @@ def judge(tree, faults):
 
 
 def tighten(tree, faults):
-    """Lowers the counts to what was found, and drops the rows of which nothing is left."""
+    """Lowers the counts to what was found, and drops the rows and the groups of which nothing is left."""
     of_row, _ = assign(tree, faults)
     lines = tree.text(LIST).split("\n")
     for (line, _, _, count), found in of_row.items():
         if len(found) < count:
             lines[line - 1] = re.sub(r"\b\d+(?=\s*(#|$))", str(len(found)), lines[line - 1], count=1) if found else None
-    (tree.root / LIST).write_text("\n".join(line for line in lines if line is not None), encoding="utf-8")
+    head, *groups = "\n".join(line for line in lines if line is not None).strip().split("\n\n")
+    groups = [group for group in groups if any(not line.startswith("#") for line in group.split("\n"))]
+    (tree.root / LIST).write_text("\n\n".join([head, *groups]) + "\n", encoding="utf-8")

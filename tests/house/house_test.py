@@ -176,9 +176,9 @@ class House(unittest.TestCase):
         self.assertEqual(self.found(), [("comment", "core/a.cpp", 1), ("comment", "core/a.cpp", 4)])
         self.write("tests/house/exceptions.txt", "comment core/ 3\nword core/a.cpp 1\n")
         self.assertEqual(self.found(), [("comment", "tests/house/exceptions.txt", 1)])
-        self.write("tests/house/exceptions.txt", "comment core/ 3  # why\nword core/a.cpp 1\ncell config/ 1\n")
+        self.write("tests/house/exceptions.txt", "# head\n\n# A group.\ncomment core/ 3  # why\nword core/a.cpp 1\n\n# Another.\ncell config/ 1\n")
         self.assertEqual(subprocess.run([HERE / "check", self.root, "--tighten"]).returncode, 0)
-        self.assertEqual((self.root / "tests/house/exceptions.txt").read_text(), "comment core/ 2  # why\nword core/a.cpp 1\n")
+        self.assertEqual((self.root / "tests/house/exceptions.txt").read_text(), "# head\n\n# A group.\ncomment core/ 2  # why\nword core/a.cpp 1\n")
         self.assertEqual(self.found(), [])
 
     def test_the_program_prints_each_fault_and_fails(self):

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "core/distance.hpp"
-#include "core/query/entries.hpp"
 
 namespace clearance {
 
@@ -24,7 +23,6 @@ class OnlyWith {
   static void choose(std::int64_t target) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-    choose_query_entries();
   }
 };
 

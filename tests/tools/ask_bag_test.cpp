@@ -204,7 +204,7 @@ TEST_F(AskOfABag, TakesObjectsWhereTheBagHasThem) {
   EXPECT_NEAR(answers.at(0)["upper"], 1.15 - 0.1 * (1.0 + 1.25), 0.01) << answers[0];
 }
 
-// A camera looks down on a plate 0.1 m above the way of the finger.
+// A camera looks down on a plate 0.1 m above the path of the finger.
 TEST_F(AskOfABag, TakesWhatACameraSawBeforeTheMotion) {
   write_text(folder / "cell.yaml",
              "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 5000}\n"

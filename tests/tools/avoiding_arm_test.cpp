@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "monitor/client/avoiding_arm/quadratic_programme.hpp"
+#include "monitor/examples/avoiding_arm/quadratic_programme.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/tools/running_cell.hpp"

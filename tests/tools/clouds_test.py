@@ -41,7 +41,7 @@ def judged(replay, folder, bag, cell, work, environment):
     """Says what check.py found of this bag, and returns whether it found no fault."""
     table, links = work / "table.csv", work / "links.csv"
     done = subprocess.run(
-        [replay, "--offline", "--cell", cell, folder / bag, "--tick-hz", "0", "--csv", table, "--force"],
+        [replay, "check", "--cell", cell, folder / bag, "--tick-hz", "0", "--csv", table, "--force"],
         env=environment, capture_output=True, text=True)
     if done.returncode != 0:
         print(f"{bag}: clearance-replay ended with status {done.returncode}\n{done.stdout}{done.stderr}")

@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/client/picking_arm/motion.hpp"
+#include "monitor/examples/picking_arm/motion.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {

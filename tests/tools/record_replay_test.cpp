@@ -241,23 +241,6 @@ TEST_F(RecordReplay, TwoOutputsAreTwoFiles) {
   EXPECT_FALSE(std::filesystem::exists(folder / "both"));
 }
 
-// Before there were subcommands, --offline selected `check`, and `publish` had no name.
-TEST_F(RecordReplay, FormerSpellingsDoTheSameAndNameThePresentOnes) {
-  ASSERT_EQ(0, record_log()) << output;
-  const std::string csv = path("table.csv"), run_mcap = path("run.mcap"), cell = path("cell.yaml");
-  ASSERT_EQ(0, run(kReplay, {"check", "--cell", cell, run_mcap, "--csv", csv})) << output;
-  const std::string expected = read_text(csv);
-  ASSERT_EQ(0, run(kReplay, {"--cell", cell, run_mcap, "--csv", csv, "--offline", "--force"}));
-  EXPECT_EQ(expected, read_text(csv));
-  EXPECT_THAT(output, StartsWith("clearance-replay: note: 'clearance-replay --offline' is now "
-                                 "spelled 'clearance-replay check --cell " +
-                                 cell + " " + run_mcap));
-  ASSERT_EQ(
-      0, run(kReplay, with({run_mcap, "--wait", "0", "--rate", "100"}, dds_arguments(own_dds()))));
-  EXPECT_THAT(output, HasSubstr("is now spelled 'clearance-replay publish " + run_mcap));
-  EXPECT_THAT(output, HasSubstr("messages published"));
-}
-
 TEST_F(RecordReplay, ANumberThatIsNoneIsWrongUsage) {
   ASSERT_EQ(0, record_log()) << output;
   EXPECT_EQ(2, replay({"--expect-min-distance", "nan"}));

@@ -54,9 +54,24 @@ std::string chain_urdf() {
             "\"><collision><geometry><sphere radius=\"0.1\"/></geometry></collision></link>\n";
   }
   return urdf +
-         "<joint name=\"j\" type=\"revolute\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
-         "<joint name=\"k\" type=\"revolute\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
+         "<joint name=\"j\" type=\"continuous\"><parent link=\"a\"/><child link=\"b\"/></joint>\n"
+         "<joint name=\"k\" type=\"continuous\"><parent link=\"b\"/><child link=\"c\"/></joint>\n"
          "</robot>\n";
+}
+
+TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoBothKindsOfCell) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  for (const std::vector<std::string>& kind : {std::vector<std::string>{}, {"--joints"}}) {
+    std::vector<std::string> words = {"import",          file("chain.urdf"), "-o",
+                                      file("cell.yaml"), "--force",          "--mesh-tolerance",
+                                      "0.002",           "--max-parts",      "7"};
+    words.insert(words.end(), kind.begin(), kind.end());
+    EXPECT_EQ(run(words), 0) << output_;
+    std::ifstream written(file("cell.yaml"));
+    const std::string text((std::istreambuf_iterator<char>(written)), {});
+    EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
+    EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
+  }
 }
 
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
@@ -142,29 +157,6 @@ TEST_F(SceneProgram, ReportsTheModelsOfEachObjectAndTheirErrors) {
   EXPECT_NE(output_.find("2 objects, 1 with a hull"), std::string::npos) << output_;
 }
 
-TEST_F(SceneProgram, ReducesAPolyhedronToTheCheapestModelWithinATolerance) {
-  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 0 1 0\n"
-                                            "v 0.9 0.5 1\nv 1.1 0.5 1\n"
-                                            "f 1 2 3\nf 1 3 4\nf 1 2 6\nf 1 6 5\nf 3 4 5\nf 3 5 6\n"
-                                            "f 2 3 6\nf 1 4 5\n";
-  ASSERT_EQ(run({"reduce", file("tent.obj"), "--tolerance", "10", "--json"}), 0) << output_;
-  const auto body = nlohmann::json::parse(output_).at(0);
-  EXPECT_EQ(body["body"], "tent");
-  int chosen = 0;
-  for (const auto& model : body["models"]) {
-    chosen += model["chosen"].get<bool>() ? 1 : 0;
-    EXPECT_GE(model["error"].get<double>(), 0.0);
-  }
-  EXPECT_EQ(chosen, 1);
-  EXPECT_TRUE(body["models"][0]["chosen"]);  // the sphere is the cheapest model
-}
-
-TEST_F(SceneProgram, ReducesNothingThatIsMissing) {
-  EXPECT_EQ(run({"reduce", file("none.obj")}), 2);
-  EXPECT_EQ(run({"reduce", file("robot.urdf"), "-o", file("cell.yaml")}), 2);
-  EXPECT_EQ(run({"reduce", file("robot.urdf"), "--tolerance", "1", "--facets", "8"}), 2);
-}
-
 TEST_F(SceneProgram, ReportsTheErrorsOfACellThatIsNoGood) {
   std::ofstream(directory_ / "cell.yaml") << "name: empty\n";
   EXPECT_EQ(run({"report", file("cell.yaml")}), 3);
@@ -195,10 +187,10 @@ TEST_F(SceneProgram, HelpNamesRequiredArgumentsFirst) {
 
 TEST_F(SceneProgram, HelpNamesSubcommandsAndArgumentsBeforeOptions) {
   ASSERT_EQ(run({"--help"}), 0);
-  EXPECT_LT(output_.find("  reduce "), output_.find("Options:")) << output_;
-  ASSERT_EQ(run({"reduce", "--help"}), 0);
-  EXPECT_LT(output_.find("  FILE "), output_.find("Options:")) << output_;
-  EXPECT_LT(output_.find("--tolerance"), output_.find("--help")) << output_;
+  EXPECT_LT(output_.find("  report "), output_.find("Options:")) << output_;
+  ASSERT_EQ(run({"report", "--help"}), 0);
+  EXPECT_LT(output_.find("  CELL "), output_.find("Options:")) << output_;
+  EXPECT_LT(output_.find("--json"), output_.find("--help")) << output_;
 }
 
 // A post, a slide beside it, a tip that the slide moves through the post, and a body far from all
@@ -290,42 +282,6 @@ TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
   EXPECT_NE(text.find("- {between: [\"post\", \"far\"], reason: \"Never: in contact in 0 of 500 "),
             std::string::npos)
       << text;
-}
-
-// Before there were subcommands, an option selected the action.
-TEST_F(SceneProgram, FormerSpellingsDoTheSameAndNameThePresentOnes) {
-  std::ofstream(directory_ / "tent.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
-                                            "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n";
-  ASSERT_EQ(run({"warehouse", "60", "-o", file("cell.yaml")}), 0) << output_;
-  struct Spellings {
-    std::vector<std::string> former, present;
-    std::string note;
-  };
-  std::ofstream(directory_ / "crane.urdf") << crane_urdf();
-  const std::string urdf = file("crane.urdf"), obj = file("tent.obj"), cell = file("cell.yaml");
-  const Spellings all[] = {
-      {{"--from-urdf", urdf, "-o", file("a.yaml"), "--force"},
-       {"import", urdf, "-o", file("a.yaml"), "--force"},
-       "clearance-scene import " + urdf + " -o"},
-      {{"--samples=50", "--from-urdf=" + urdf, "--allow"},
-       {"allow", urdf, "--samples=50"},
-       "clearance-scene allow " + urdf + " --samples=50'"},
-      {{"--warehouse", "60", "-o", file("a.yaml"), "--force"},
-       {"warehouse", "60", "-o", file("a.yaml"), "--force"},
-       "clearance-scene warehouse 60 -o"},
-      {{"--report", cell, "--json"}, {"report", cell, "--json"}, "clearance-scene report " + cell},
-      {{"--reduce", obj, obj, "--tolerance", "10"},
-       {"reduce", obj, obj, "--tolerance", "10"},
-       "clearance-scene reduce " + obj + " " + obj + " --tolerance 10'"},
-  };
-  for (const Spellings& spelling : all) {
-    ASSERT_EQ(run(spelling.present), 0) << output_;
-    const std::string expected = output_;
-    ASSERT_EQ(run(spelling.former), 0) << output_;
-    EXPECT_EQ(output_.find("clearance-scene: note: '"), 0u) << output_;
-    EXPECT_LT(output_.find(spelling.note), output_.find('\n')) << output_;
-    EXPECT_EQ(output_.substr(output_.find('\n') + 1), expected);
-  }
 }
 
 }  // namespace

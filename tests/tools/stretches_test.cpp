@@ -6,7 +6,7 @@
 #include <random>
 #include <vector>
 
-#include "tools/plot/stretches.hpp"
+#include "tools/view/stretches.hpp"
 
 namespace clearance {
 namespace {

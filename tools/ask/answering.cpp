@@ -31,7 +31,6 @@ Answering::Answering(const AskOptions& options)
       report_(options.files, options.motions + " in " + options.cell, options.expected) {
   defaults_.margins = options.margins;
   defaults_.tolerance = options.tolerance;
-  defaults_.work_limit = options.work_limit;
   defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
   if (options.others_still) defaults_.others = OthersMove::kNot;
   if (options.expected) defaults_.margins.push_back(*options.expected);

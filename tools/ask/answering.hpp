@@ -23,7 +23,6 @@ struct AskOptions {
   std::vector<double> margins{0.0, 0.01, 0.05};
   double tolerance = 1e-3;
   std::optional<double> expected;
-  std::uint64_t work_limit = 1'000'000;
   bool others_still = false, only_verdicts = false;
   int repeat = 1;
   unsigned threads = 1;

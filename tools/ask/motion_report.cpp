@@ -10,8 +10,8 @@
 #include "monitor/files/build_info.hpp"
 #include "monitor/files/file_error.hpp"
 #include "monitor/files/temporary_folder.hpp"
+#include "tools/ask/html.hpp"
 #include "tools/plot/gnuplot.hpp"
-#include "tools/shared/html.hpp"
 
 namespace clearance {
 namespace {

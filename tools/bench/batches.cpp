@@ -13,7 +13,6 @@
 
 #include "core/batch.hpp"
 #include "core/distance.hpp"
-#include "core/query/entries.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/measure.hpp"
 
@@ -74,7 +73,6 @@ class Batched {
  public:
   explicit Batched(const Fleet& fleet) : batch_(fleet.shapes, fleet.pairs) {}
   std::span<const DistanceResult> step(const Fleet& fleet) { return batch_.evaluate(fleet.poses); }
-  [[nodiscard]] std::size_t single_queries() const { return batch_.single_queries(); }
 
  private:
   DistanceBatch batch_;
@@ -92,7 +90,6 @@ class OneByOne {
     }
     return results_;
   }
-  [[nodiscard]] std::size_t single_queries() const { return results_.size(); }
 
  private:
   std::vector<TrackingState> states_;
@@ -105,7 +102,6 @@ template <class Solver>
 void time_fleet(benchmark::State& state, Fleet& fleet) {
   Solver solver(fleet);
   Verdict verdict;
-  std::size_t single_queries = 0;
   for (std::size_t step = 0; step < fleet.steps(); ++step) {
     fleet.move_to(step);
     const auto results = solver.step(fleet);
@@ -115,7 +111,6 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
                    r.upper - r.lower},
                   fleet.truth(i, step));
     }
-    if (step > 0) single_queries += solver.single_queries();
   }
   const auto queries = static_cast<double>(kPairs * fleet.steps());
   verdict.iterations /= queries;
@@ -130,8 +125,6 @@ void time_fleet(benchmark::State& state, Fleet& fleet) {
     }
   }
   state.counters["ns"] = spent_ns / static_cast<double>(state.iterations());
-  state.counters["single"] =
-      static_cast<double>(single_queries) / (queries - static_cast<double>(kPairs));
   count(state, verdict);
 }
 
@@ -168,7 +161,6 @@ std::int64_t up_to(std::int64_t target) {
 void use_targets(std::int64_t targets) {
   hwy::SetSupportedTargetsForTest(targets);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  choose_query_entries();
 }
 
 template <class Solver>

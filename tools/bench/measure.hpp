@@ -75,7 +75,7 @@ inline void count_time(benchmark::State& state) {
       benchmark::Counter(queries * 1e-9, benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
-// Its counters.
+// Writes a verdict into a row's counters.
 inline void count(benchmark::State& state, const Verdict& verdict) {
   if (verdict.measures) state.counters["max_error"] = verdict.max_error;
   state.counters["failures"] = verdict.failures;

@@ -25,7 +25,7 @@ Vec3 shared_point(const ConvexBody& a, const ConvexBody& b, const RelativePose& 
   (void)dqp3(side_a, side_b, precision(a, b, a_from_b, 0.0).gap_tolerance);
   const double radii = a.radius + b.radius;
   const double part_of_a = radii > 0.0 ? a.radius / radii : 0.5;
-  return side_a.point_in_a() + part_of_a * (side_b.point_in_a() - side_a.point_in_a());
+  return side_a.point_A() + part_of_a * (side_b.point_A() - side_a.point_A());
 }
 
 OrderedJson figures(const ConvexBody& a, const ConvexBody& b, const Pose& world_from_a,

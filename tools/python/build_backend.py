@@ -45,7 +45,7 @@ def build():
         raise SystemExit(f"clearance: CLEARANCE_BUILD={given} is no folder of a build by CMake")
     if not given:
         options = ["-DCMAKE_BUILD_TYPE=Release", "-DCLEARANCE_PYTHON=ON"]
-        options += ["-DCLEARANCE_TESTS=OFF", "-DCLEARANCE_BENCH=OFF"]
+        options += ["-DCLEARANCE_TESTS=OFF"]
         run("cmake", "-S", PROJECT, "-B", folder, f"-DPython3_EXECUTABLE={sys.executable}", *options)
     run("cmake", "--build", folder, "--target", "clearance_python", "--parallel", os.cpu_count() or 1)
     return folder

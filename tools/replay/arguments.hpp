@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "config/write/single_robot_cell.hpp"
@@ -18,7 +17,6 @@ struct RecordedSpan {
   std::vector<std::string> recordings;  // at least one
   double start_s = 0.0;                 // after the first message
   double end_s = 1e18;
-  bool progress = false;
 
   [[nodiscard]] const std::string& recording() const { return recordings.front(); }
 };
@@ -42,9 +40,6 @@ struct CheckArguments {
   std::vector<std::string> joints;  // NAME=POSITION
   std::string out;
   std::string csv;
-  std::string plot;                                             // SVG; empty: none
-  std::string report;                                           // HTML; empty: none
-  std::vector<std::pair<std::string, std::string>> plot_pairs;  // empty: the nearest
   std::uint32_t balance = 0;  // a cell in this many shares of the same cost; 0: none
   bool force = false;
   bool published = false;

@@ -22,7 +22,6 @@
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
-#include "tools/replay/run_curves.hpp"
 #include "tools/replay/share_balance.hpp"
 #include "tools/shared/progress_bar.hpp"
 
@@ -148,13 +147,12 @@ std::string read_between(const CheckArguments& arguments, std::vector<ExpectedDi
   return {};
 }
 
-// The outputs of -o, --csv, --plot, --report and --balance.
+// The outputs of -o, --csv and --balance.
 class Outputs {
  public:
   Outputs(const CheckArguments& arguments, const Cell& cell) : arguments_(arguments) {
     if (!arguments.out.empty()) recording_.emplace(arguments.out, cell);
     if (!arguments.csv.empty()) csv_.emplace(arguments.csv, cell.scene, !arguments.published);
-    if (!arguments.plot.empty() || !arguments.report.empty()) curves_.emplace(arguments, cell);
     if (arguments.balance > 0) balance_.emplace(arguments.balance);
   }
   // False, after saying why, when a file cannot be made.
@@ -164,12 +162,10 @@ class Outputs {
     begun_ = true;
     if (recording_) recording_->add(tick);
     if (csv_) csv_->add(tick);
-    if (curves_) curves_->add(tick);
     if (balance_) balance_->add(tick);
   }
   // False, after saying why, when not all is written.
-  bool close(const OfflineReplay& replay) {
-    const bool drawn = !curves_ || said(curves_->write(replay));
+  bool close() {
     const bool recorded = !recording_ || recording_->close() || said(recording_->error());
     if (recording_ && recorded && !recording_->without_files().empty()) {
       say(fmt::format("the files that the cell names are not in {}: {}", arguments_.out,
@@ -178,7 +174,7 @@ class Outputs {
     const bool tabled = !csv_ || csv_->close() || said(csv_->error());
     const bool balanced = !balance_ || said(balance_->error());
     if (balance_) print(stdout, "{}", balance_->text());
-    return recorded && tabled && drawn && balanced;
+    return recorded && tabled && balanced;
   }
   // A recording is created with its first tick; before that, a file of this name is not ours.
   void abandon() {
@@ -199,7 +195,6 @@ class Outputs {
   const CheckArguments& arguments_;
   std::optional<ReportRecorder> recording_;
   std::optional<ReportCsv> csv_;
-  std::optional<RunCurves> curves_;
   std::optional<ShareBalance> balance_;
   bool begun_ = false;
 };
@@ -210,7 +205,7 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
   if (replay.stopped) {
     outputs.abandon();
   } else {
-    written = outputs.close(replay);
+    written = outputs.close();
   }
   if (!replay.ok() || !written) return kFailed;
   return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
@@ -242,7 +237,7 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
   Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
 
-  ProgressBar bar(arguments.span.progress);
+  ProgressBar bar;
   options.joints = joints;
   options.mesh_errors = mesh_errors;
   options.progress = [&bar](double share) { bar.show(share, "replayed"); };
@@ -268,16 +263,11 @@ bool are_one_file(const std::filesystem::path& first, const std::filesystem::pat
 }  // namespace
 
 int check_recording(const CheckArguments& arguments, StopSignal& stop) {
-  const std::vector<std::string> written = {arguments.out, arguments.csv, arguments.plot,
-                                            arguments.report};
-  for (std::size_t i = 0; i < written.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      if (!are_one_file(written[k], written[i])) continue;
-      say(fmt::format("two outputs name the same file, {}; expected one for each", written[i]));
-      return kUsage;
-    }
+  if (are_one_file(arguments.out, arguments.csv)) {
+    say(fmt::format("two outputs name the same file, {}; expected one for each", arguments.csv));
+    return kUsage;
   }
-  for (const std::string& output : written) {
+  for (const std::string& output : {arguments.out, arguments.csv}) {
     for (const std::string& recording : arguments.span.recordings) {
       if (!output_is_not_an_input("clearance-replay", output,
                                   {recording, arguments.cell, arguments.reference})) {

@@ -173,8 +173,7 @@ class Publishing {
         stop_(stop),
         participant_(dds),
         writers_(participant_),
-        sender_(arguments.restamp),
-        bar_(arguments.span.progress) {}
+        sender_(arguments.restamp) {}
 
   int run();
 

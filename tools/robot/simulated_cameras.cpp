@@ -21,20 +21,28 @@ constexpr std::int64_t kWarmUpNs = kSecondNs;
 constexpr std::uint32_t kPointStep = 16;  // bytes: x, y, z and padding, as drivers send it
 constexpr std::uint8_t kFloat32 = 7;
 
-double tangent_of(double view_deg) { return std::tan(view_deg * std::numbers::pi / 360.0); }
+// Half the angle between the left and the right side of a picture, 60 degrees.
+const double kViewTangent = std::tan(std::numbers::pi / 6.0);
 
 // Points that state the spacing of their rays come from a picture with that spacing.
 PinholeCamera camera_of(const Sensor& sensor, const SimulatedCameraOptions& options) {
   const double columns = options.columns;
   const double focal = sensor.kind == SensorKind::kPoints && sensor.spacing > 0.0
                            ? 1.0 / sensor.spacing
-                           : 0.5 * columns / tangent_of(options.view_deg);
+                           : 0.5 * columns / kViewTangent;
   return {.width = options.columns,
           .height = options.rows,
           .fx = focal,
           .fy = focal,
           .cx = 0.5 * (columns - 1.0),
           .cy = 0.5 * (options.rows - 1.0)};
+}
+
+// A depth image is 16UC1, in mm, unless half of its step exceeds the error that the cell states.
+DepthImage::Format format_of(const Sensor& sensor) {
+  const bool is_fine = sensor.error_at(sensor.least_depth) < 0.0005;
+  return sensor.kind == SensorKind::kDepthImage && !is_fine ? DepthImage::Format::kMillimetres16
+                                                            : DepthImage::Format::kMetres32;
 }
 
 void set_header(std_msgs_msg_dds__Header_& header, std::int64_t stamp_ns) {
@@ -73,12 +81,6 @@ std::string fault_of(const Cell& cell, const SimulatedCameraOptions& options) {
           "the picture of {} is too wide: a side ray is {:.0f} degrees off the axis; "
           "expected at most 51",
           sensor.name, std::atan(wide) * 180.0 / std::numbers::pi);
-    }
-    if (is_image && options.format == DepthImage::Format::kMillimetres16 &&
-        sensor.error_at(sensor.least_depth) < 0.0005) {
-      return fmt::format(
-          "the depth_error of {} is below half a step of 16UC1, 0.5 mm; expected 32FC1",
-          sensor.name);
     }
   }
   return {};
@@ -126,9 +128,8 @@ SimulatedCameras::Camera::Camera(std::uint32_t the_index, const Sensor& the_sens
           .range = {.least = the_sensor.least_depth, .greatest = the_sensor.greatest_depth},
           .share = options.noise_share,
           .missing_share = options.missing_share,
-          .seed = options.seed + the_index},
-      format(the_sensor.kind == SensorKind::kDepthImage ? options.format
-                                                        : DepthImage::Format::kMetres32),
+          .seed = 1 + the_index},
+      format(format_of(the_sensor)),
       is_sent(renderer.depth().size()) {
   const std::string topic = ros_dds_name(sensor.topic);
   if (is_image()) {

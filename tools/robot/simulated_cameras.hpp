@@ -23,11 +23,8 @@ namespace clearance {
 struct SimulatedCameraOptions {
   double rate_hz = 30.0;
   std::uint32_t columns = 320, rows = 240;
-  double view_deg = 60.0;  // the angle between the left and the right side of the picture
-  DepthImage::Format format = DepthImage::Format::kMillimetres16;  // of depth images
   double noise_share = 0.9;     // of the depth_error that the cell states
   double missing_share = 0.01;  // of the pixels
-  std::uint64_t seed = 1;
 };
 
 // One frame as it was sent, and what it shows in truth. Valid during the call.

@@ -1,12 +1,10 @@
 // The arguments of clearance-scene's subcommands.
 #pragma once
 
-#include <filesystem>
 #include <string>
 
 #include "config/write/robot_cell.hpp"
 #include "config/write/warehouse_cell.hpp"
-#include "tools/scene/reduction.hpp"
 #include "tools/scene/sampled_contacts.hpp"
 
 namespace clearance {
@@ -38,18 +36,10 @@ struct ReportArguments {
   bool json = false;
 };
 
-struct ReduceArguments {
-  ReductionOptions reduction;
-  std::filesystem::path plot;  // empty: none
-  bool json = false;
-  bool force = false;
-};
-
 // Each carries out one subcommand and returns the exit code.
 [[nodiscard]] int import_robot(ImportArguments arguments);
 [[nodiscard]] int allow_collisions(const AllowArguments& arguments);
 [[nodiscard]] int make_warehouse(const WarehouseArguments& arguments);
 [[nodiscard]] int report_models(const ReportArguments& arguments);
-[[nodiscard]] int reduce_bodies(const ReduceArguments& arguments);
 
 }  // namespace clearance

@@ -13,7 +13,7 @@
 #include "core/shapes.hpp"
 #include "monitor/geometry/bounding_hull.hpp"
 #include "monitor/geometry/bounding_sphere.hpp"
-#include "tools/scene/fitting/certified_error.hpp"
+#include "tools/scene/certified_error.hpp"
 
 namespace clearance {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -30,6 +29,7 @@ namespace {
 
 // Commands that are repeated wait so long at most, by parts that cover the interval evenly.
 constexpr std::chrono::duration<double, std::milli> kLongestWait{4.0};
+constexpr std::chrono::seconds kTimeout{10};  // for a result
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 constexpr const char* kSendFooter =
@@ -53,14 +53,6 @@ Examples:
   clearance-scene send --change 'read_cell_again: {}' --dry-run
   clearance-scene send attach.yaml --back detach.yaml --repeat 1000)";
 
-std::string is_hexadecimal(const std::string& text) {
-  const bool fits = !text.empty() && text.size() <= 16 &&
-                    text.find_first_not_of("0123456789abcdefABCDEF") == std::string::npos;
-  return fits ? std::string()
-              : fmt::format("found '{}'; expected a revision of 1 to 16 hexadecimal digits", text);
-}
-
-// Returns nothing after a message.
 std::optional<std::string> text_of(const std::string& file) {
   if (file == "-") return std::string(std::istreambuf_iterator<char>(std::cin), {});
   auto read = read_bytes(file);
@@ -105,9 +97,8 @@ int print_result(const CommandResult& result, bool dry_run) {
 // The time from each command to the first report that holds it.
 class Latencies {
  public:
-  Latencies(client::Connection& connection, client::Commands& commands,
-            std::chrono::nanoseconds timeout)
-      : commands_(commands), reports_(connection, {.depth = 256}), timeout_(timeout) {}
+  Latencies(client::Connection& connection, client::Commands& commands)
+      : commands_(commands), reports_(connection, {.depth = 256}) {}
 
   // Returns the daemon's refusal, or a result without a status other than done. Nothing when no
   // result or report came in time.
@@ -116,11 +107,11 @@ class Latencies {
     while (reports_.next()) {
     }
     const std::int64_t began_ns = client::now_ns();
-    auto result = commands_.send(changes, options, timeout_);
+    auto result = commands_.send(changes, options, kTimeout);
     if (!result || !result->done()) return result;
     const std::int64_t answered_ns = client::now_ns();
     while (reports_->cycle < result->in_force_from) {
-      if (!reports_.next(timeout_)) return std::nullopt;
+      if (!reports_.next(kTimeout)) return std::nullopt;
     }
     // A report that came before the result waits, and has its time of publishing.
     const std::int64_t held_ns =
@@ -154,7 +145,6 @@ class Latencies {
 
   client::Commands& commands_;
   client::Reports reports_;
-  std::chrono::nanoseconds timeout_;
   std::array<std::vector<double>, 2> in_force_, answered_;  // ms
 };
 
@@ -162,7 +152,7 @@ int no_result(const SendArguments& arguments, const client::Connection& connecti
               const client::Commands& commands) {
   if (commands.is_heard()) {
     print(stderr, "clearance-scene: no result came within {} s; the changes may be made or not\n",
-          arguments.timeout_s);
+          kTimeout.count());
   } else {
     print(stderr,
           "clearance-scene: no daemon takes commands on {} ({}); a cell allows them with "
@@ -188,9 +178,6 @@ CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
                    "Send this file along; changes name it as \"sent:NAME\"; repeatable")
       ->check(CLI::ExistingFile)
       ->allow_extra_args(false);
-  send->add_option("--revision", arguments.revision,
-                   "Refuse the changes unless this revision of the scene is in force")
-      ->check(is_hexadecimal);
   send->add_flag("--dry-run", arguments.dry_run, "Only ask whether the changes would be accepted");
   CLI::Option* const back = send->add_option("--back", arguments.back,
                                              "A file with changes that take those of CHANGES back");
@@ -199,9 +186,6 @@ CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
                    "report that holds them")
       ->check(whole_number(1, 10'000'000))
       ->needs(back);
-  send->add_option("--timeout", arguments.timeout_s, "Wait for a result for this time, s")
-      ->check(positive_number())
-      ->capture_default_str();
   for (const TopicKind kind :
        {TopicKind::kCommands, TopicKind::kCommandResults, TopicKind::kDistances}) {
     const Topic& each = topic(kind);
@@ -229,11 +213,6 @@ int send_changes(const SendArguments& arguments) {
     return kUsage;
   }
   client::CommandOptions options{.dry_run = arguments.dry_run};
-  if (!arguments.revision.empty()) {
-    (void)std::from_chars(arguments.revision.data(),
-                          arguments.revision.data() + arguments.revision.size(),
-                          options.scene_revision, 16);
-  }
   for (const std::filesystem::path& file : arguments.files) {
     auto bytes = text_of(file.string());
     if (!bytes) return kFailed;
@@ -242,10 +221,8 @@ int send_changes(const SendArguments& arguments) {
 
   client::Connection connection(arguments.dds.resolve(), arguments.topics);
   client::Commands commands(connection, arguments.client);
-  const auto timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
-      std::chrono::duration<double>(arguments.timeout_s));
   if (arguments.repeats == 0) {
-    const auto result = commands.send(changes, options, timeout);
+    const auto result = commands.send(changes, options, kTimeout);
     return result ? print_result(*result, arguments.dry_run)
                   : no_result(arguments, connection, commands);
   }
@@ -253,7 +230,7 @@ int send_changes(const SendArguments& arguments) {
   const auto text = text_of(arguments.back);
   if (!text) return kFailed;
   if (const int failed = add_changes(*text, arguments.back, back); failed != kOk) return failed;
-  Latencies latencies(connection, commands, timeout);
+  Latencies latencies(connection, commands);
   for (std::uint64_t i = 0; i < 2 * arguments.repeats; ++i) {
     // A command that follows a report at once would always meet the ticks at the same time.
     std::this_thread::sleep_for(kLongestWait *

@@ -18,11 +18,9 @@ struct SendArguments {
   std::vector<std::string> change;  // changes in YAML
   std::string client = "clearance-scene";
   std::vector<std::filesystem::path> files;  // that changes name as "sent:NAME"
-  std::string revision;                      // hexadecimal; empty: not checked
   bool dry_run = false;
   std::string back;           // a file with changes that take CHANGES back
   std::uint64_t repeats = 0;  // 0: once, and no latency
-  double timeout_s = 10.0;
   DdsArguments dds;
   Topics topics;
 };

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -61,38 +60,9 @@ int check_output(const RobotCellOptions& robot, const std::string& output, bool 
 }
 
 std::vector<SampledPair> sample_with_progress(const Scene& scene, SamplingOptions options) {
-  ProgressBar bar(false);
+  ProgressBar bar;
   options.progress = [&bar](double share) { bar.show(share, "joint positions"); };
   return sample_contacts(scene, options);
-}
-
-std::filesystem::path page_beside(std::filesystem::path svg) {
-  return svg.replace_extension(".md");
-}
-
-// Tells of bodies for which no model keeps the tolerance.
-bool said_if_none_chosen(const std::vector<Reduction>& bodies, const ReductionOptions& options) {
-  bool said = false;
-  for (const Reduction& body : bodies) {
-    if (!options.tolerance || body.chosen) continue;
-    said = true;
-    const auto best = std::ranges::min_element(body.models, {}, &ReducedModel::error);
-    print(stderr,
-          "{}: no model is within the tolerance of {:g} m; the nearest is '{}', with {:.5f} m. "
-          "Raise --tolerance, or take its parts from a cell's mesh with more 'max_parts'\n",
-          body.name, *options.tolerance, best->name, rounded_up_error(best->error));
-  }
-  return said;
-}
-
-int write_picture(const std::vector<Reduction>& bodies, const ReduceArguments& arguments) {
-  const std::string fault = plot_reductions(bodies, arguments.reduction, arguments.plot);
-  if (!fault.empty()) {
-    print(stderr, "{}: {}\n", arguments.plot.string(), fault);
-    return kFailed;
-  }
-  return write_text(reduction_page(bodies, arguments.reduction, arguments.plot.filename()),
-                    page_beside(arguments.plot));
 }
 
 }  // namespace
@@ -150,26 +120,6 @@ int report_models(const ReportArguments& arguments) {
         arguments.json ? model_json(cell->scene, mesh_errors)
                        : model_table(cell->scene, mesh_errors));
   return kOk;
-}
-
-int reduce_bodies(const ReduceArguments& arguments) {
-  const std::filesystem::path& plot = arguments.plot;
-  if (!plot.empty() && (!can_create(kProgram, plot, arguments.force) ||
-                        !can_create(kProgram, page_beside(plot), arguments.force))) {
-    return kFailed;
-  }
-  const auto made = reduce(arguments.reduction);
-  if (const auto* faults = std::get_if<std::vector<std::string>>(&made)) {
-    for (const std::string& fault : *faults) print(stderr, "{}\n", fault);
-    return kFailed;
-  }
-  const Reductions& all = std::get<Reductions>(made);
-  for (const std::string& note : all.notes) print(stderr, "note: {}\n", note);
-  print(stdout, "{}",
-        arguments.json ? reduction_json(all.bodies, arguments.reduction)
-                       : reduction_table(all.bodies, arguments.reduction));
-  const int wrote = plot.empty() ? kOk : write_picture(all.bodies, arguments);
-  return said_if_none_chosen(all.bodies, arguments.reduction) ? kFailed : wrote;
 }
 
 }  // namespace clearance

@@ -13,8 +13,7 @@ namespace clearance {
 
 class ProgressBar {
  public:
-  // `always`: also when stderr is no terminal.
-  explicit ProgressBar(bool always) : shown_(always || ::isatty(STDERR_FILENO) != 0) {}
+  ProgressBar() = default;
   ~ProgressBar() { finish(); }
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
@@ -34,7 +33,7 @@ class ProgressBar {
   }
 
  private:
-  bool shown_;
+  bool shown_ = ::isatty(STDERR_FILENO) != 0;
   bool started_ = false;
 };
 

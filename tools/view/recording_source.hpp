@@ -56,7 +56,7 @@ class RecordingSource final : public Source {
   Timeline timeline_;
   std::unique_ptr<Frame> frame_;
   RecordedSensors sensors_;
-  // Poses of objects that move seldom, and health, come once a second.
+  // Poses of objects that move seldom, and health, come once per second.
   ReadingPlace place_{1'200'000'000};
   std::unique_ptr<RecordingReader> reader_;
   RecordedMessage next_;  // read, but still to come

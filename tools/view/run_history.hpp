@@ -12,7 +12,7 @@
 
 #include "clearance.h"
 #include "config/scene/scene.hpp"
-#include "tools/plot/stretches.hpp"
+#include "tools/view/stretches.hpp"
 
 namespace clearance::view {
 

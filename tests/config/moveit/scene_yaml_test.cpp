@@ -218,7 +218,7 @@ TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
   EXPECT_THAT(mistakes("is_diff: false\nrobot", "is_diff: [\nrobot"), mistake_at(":3:17"));
 }
 
-// The hand is an object here; links carry in the same way. The unit of the cell is mm.
+// The hand is an object here; links carry likewise. The unit of the cell is mm.
 TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   std::string text = kYaml;
   text.replace(

@@ -133,17 +133,6 @@ TEST_F(RobotCellFile, ACylinderIsACylinder) {
   EXPECT_EQ(cylinder.discs[1], (Disc{0.5, 0.1}));
 }
 
-TEST_F(RobotCellFile, AFixedBaseTakesItsFixedJointsAlong) {
-  options_.fixed_base = true;
-  const Scene scene = this->scene();
-  EXPECT_TRUE(scene.objects[0].fixed);
-  EXPECT_TRUE(scene.objects[1].fixed);
-  EXPECT_FALSE(scene.objects[2].fixed);
-  EXPECT_EQ(scene.objects[1].world_from_object.position, Vec3(0.0, 0.0, 0.05));
-  EXPECT_NEAR(scene.objects[1].world_from_object.orientation.z(), std::sin(0.75), 1e-15);
-  EXPECT_EQ(scene.pairs.size(), 1u);
-}
-
 TEST_F(RobotCellFile, APackageIsWhereItIsSaidToBe) {
   std::filesystem::create_directories(root_ / "elsewhere");
   std::filesystem::rename(root_ / "little_description" / "head.obj",
@@ -299,24 +288,6 @@ TEST_F(RobotCellFile, ACapsuleIsOneWithItsEndsAlongZ) {
   EXPECT_EQ((capsule.anchors[0] - capsule.anchors[1]).cwiseAbs(), Vec3(0, 0, 1));
   EXPECT_THAT(cell().yaml,
               HasSubstr("capsule: {from: [0, 0, -0.5], to: [0, 0, 0.5], radius: 0.12}"));
-}
-
-TEST_F(RobotCellFile, APlanningSceneIsWatchedAgainstTheRobot) {
-  write("shelf.scene",
-        "shelf\n* board\n0 0 1\n0 0 0 1\n1\nbox\n2 1 0.1\n0 0 0\n0 0 0 1\n"
-        "0 0 0 0\n0\n.\n");
-  options_.scenes = {root_ / "shelf.scene"};
-  const Scene scene = this->scene();
-  ASSERT_EQ(scene.objects.size(), 4u);
-  const auto board = std::ranges::find(scene.objects, "board", &Object::name);
-  ASSERT_NE(board, scene.objects.end());
-  EXPECT_EQ(board->groups, std::vector<std::string>{"shelf"});
-  EXPECT_EQ(std::ranges::count_if(scene.pairs,
-                                  [&](const ObjectPair& pair) {
-                                    return &scene.objects[pair.first] == &*board ||
-                                           &scene.objects[pair.second] == &*board;
-                                  }),
-            3);
 }
 
 }  // namespace

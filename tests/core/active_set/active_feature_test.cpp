@@ -23,7 +23,7 @@ TEST(ActiveFeature, GoesToTheFacetUnderTheEndOfAMoveThroughTheInside) {
   advance(side, Vec3(0.5, 1.5, 0.0), {1.0, facet_towards(body, Vec3::UnitX())});
   ASSERT_EQ(side.feature(), FeatureKind::kFacet);
   EXPECT_EQ(side.facet().normal, Vec3::UnitY());
-  EXPECT_EQ(side.local_point(), Vec3(0.5, 0.5, 0.0));
+  EXPECT_EQ(side.point_L(), Vec3(0.5, 0.5, 0.0));
 }
 
 TEST(ActiveFeature, OfAnUnboundedBodyStartsNoFartherOutThanAnyClosestPoint) {
@@ -33,9 +33,9 @@ TEST(ActiveFeature, OfAnUnboundedBodyStartsNoFartherOutThanAnyClosestPoint) {
       far{FeatureKind::kFacet, false, 0, {1e17, 2.0, 0.0}};
   ActiveFeature side(floor, nullptr);
   side.place_near(near, other, 2.0);
-  EXPECT_EQ(side.local_point(), near.point);
+  EXPECT_EQ(side.point_L(), near.point);
   side.place_near(far, other, 2.0);
-  EXPECT_LT(side.local_point().norm(), 10.0);
+  EXPECT_LT(side.point_L().norm(), 10.0);
 }
 
 }  // namespace

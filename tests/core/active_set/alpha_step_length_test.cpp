@@ -100,8 +100,7 @@ Vec3 within_hull(const ActiveFeature& s, const Vec3& move) {
 double largest_part(const ActiveFeature& s, const Vec3& move) {
   double part = 1.0;
   for (const Facet& facet : s.body().facets) {
-    const double gap = facet.offset - facet.normal.dot(s.local_point()),
-                 speed = facet.normal.dot(move);
+    const double gap = facet.offset - facet.normal.dot(s.point_L()), speed = facet.normal.dot(move);
     if (gap < 1e-9 || !(speed > 0.0)) continue;
     part = std::min(part, gap / speed);
   }
@@ -131,7 +130,7 @@ TEST(AlphaStep, LeavesThePointOnTheFeatureThatBlocked) {
   for (int k = 0; k < 3; ++k) {
     advance(side, move, alpha(side, move));
     EXPECT_EQ(side.feature(), kinds[k]);
-    EXPECT_LE((side.local_point() - points[k]).norm(), 1e-15) << k;
+    EXPECT_LE((side.point_L() - points[k]).norm(), 1e-15) << k;
   }
 }
 

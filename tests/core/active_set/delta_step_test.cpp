@@ -208,8 +208,8 @@ TEST_F(DeltaStep, EndsOnBothHullsAtRightAnglesToThem) {
         const ActiveFeature q = active(b, &pose, of_b, random.integer(0, 99));
         const Delta d = delta(p, q);
         const double size = 1.0 + d.a.norm() + d.b.norm();
-        EXPECT_LE(off_the_hull(p, d.a - p.point_in_a()), 1e-11 * size) << k;
-        EXPECT_LE(off_the_hull(q, d.b - q.point_in_a()), 1e-11 * size) << k;
+        EXPECT_LE(off_the_hull(p, d.a - p.point_A()), 1e-11 * size) << k;
+        EXPECT_LE(off_the_hull(q, d.b - q.point_A()), 1e-11 * size) << k;
         for (const ActiveFeature* s : {&p, &q}) {
           for (const Vec3& direction : directions_within(*s)) {
             EXPECT_LE(std::abs((d.b - d.a).dot(direction)), 1e-11 * size) << k;

@@ -98,7 +98,7 @@ TEST(Lambda, IsTheGainPerMetreOfTheReleaseThatItNames) {
       for (int end = 0; end < 2; ++end) {
         if (edge.vertex[end] != vertex.index()) continue;
         const Vec3 far = body.vertices[edge.vertex[1 - end]].position;
-        best = std::max(best, (far - vertex.local_point()).normalized().dot(direction));
+        best = std::max(best, (far - vertex.point_L()).normalized().dot(direction));
       }
     }
     EXPECT_NEAR(from_vertex.derivative, best, 1e-9) << k;

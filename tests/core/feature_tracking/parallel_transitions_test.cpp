@@ -84,7 +84,7 @@ TEST(ParallelTransitions, SettlesWhatItWasLastTimeInOneStep) {
       EXPECT_EQ(state.a.kind, pair.kind_a) << pair.name << " seed " << seed;
       EXPECT_EQ(state.b.kind, pair.kind_b) << pair.name << " seed " << seed;
       DistanceResult result;
-      EXPECT_EQ(track_features(judge.a(), judge.b(), relative_pose(a, b), state, result),
+      EXPECT_EQ(track_features({judge.a(), judge.b(), relative_pose(a, b), state}, result),
                 TrackingEnd::kCertified)
           << pair.name << " seed " << seed;
       EXPECT_EQ(result.iterations, 1) << pair.name << " seed " << seed;

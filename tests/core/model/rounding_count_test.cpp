@@ -277,7 +277,7 @@ TEST_P(RoundingCounts, AreOfTheOperationsOfTheWalk) {
     TrackingState state{{GetParam().kind_a, false, 0}, {GetParam().kind_b, false, 0}};
     DistanceResult r;
     const RelativePose at_pose = relative_pose(pair.pose_a, pair.pose_b);
-    const TrackingEnd end = track_features(pair.a, pair.b, at_pose, state, r);
+    const TrackingEnd end = track_features({pair.a, pair.b, at_pose, state}, r);
     if (end != TrackingEnd::kCertified || r.iterations != 1) continue;
     ++proved;
     Counted::forget_all();

@@ -127,7 +127,7 @@ TEST(ErrorAccount, IsAppliedByTheSearch) {
   int searched = 0;
   for_each_example([&](const WeighedExample& e) {
     TrackingState state;
-    const DistanceResult r = search_distance(e.a, e.b, e.pose(), state, true);
+    const DistanceResult r = search({e.a, e.b, e.pose(), state});
     if (r.path == DistancePath::kGjk) return;
     ++searched;
     const double error = account(kOfPolyhedra, e.a, e.b, e.pose(), r.distance) * kRounded;

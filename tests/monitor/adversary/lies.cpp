@@ -11,10 +11,12 @@ constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell sile
 constexpr double kOutOfReach = 8.0;                 // m, of a takeover
 
 std::int64_t age_limit(Channel channel) {
+  if (channel == Channel::kEye) return kEyeAgeLimit;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
 double stated_speed(Channel channel) {
+  if (channel == Channel::kEye) return kEyeSpeed;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseSpeed : kBallSpeed;
 }
 
@@ -79,6 +81,15 @@ std::size_t joint_of(Lie lie, Random& random) {
   if (lie == Lie::kTakeover) return 0;
   if (lie == Lie::kLeap) return random.next() % 3;
   return random.next() % kJoints;
+}
+
+// Moves what is told away from the truth, at 2.5 times the stated speed.
+void drift(const Fault& fault, std::int64_t t, Told& told) {
+  const double lengths = 2.5 * since(fault, t);
+  // What rests on odom is held against a limit of its own.
+  const double stated = fault.channel == Channel::kOdom ? kBallSpeed : stated_speed(fault.channel);
+  told.offset = lengths * stated * fault.direction;
+  told.joint_offset[fault.joint] = lengths * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
 }
 
 }  // namespace
@@ -154,6 +165,8 @@ std::vector<Fault> drawn_mix(std::uint64_t seed) {
   return mix;
 }
 
+std::int64_t speed_delay(Channel channel) { return 16 * age_limit(channel); }
+
 Admissible admissible(const Fault& fault) {
   switch (fault.lie) {
     // A velocity may be wrong by a sixth, over at most 50 age limits. With the true speed u below
@@ -173,9 +186,10 @@ Admissible admissible(const Fault& fault) {
     // Where an angle passes through zero, it is right in any unit.
     case Lie::kScaled:
       return {0, is_robot(fault.channel) ? 1.0 : 0.0};
-    // Only the lie is heard, until the owner speaks for the first time and its message has come.
+    // Only the lie is heard, until the owner speaks for the first time and its message has come. A
+    // picture that was placed by the lie stays in use until it is old.
     case Lie::kRivalFirst:
-      return {kOwnerStarts + 5 * kMs, 0.0};
+      return {kOwnerStarts + 5 * kMs + (fault.channel == Channel::kEye ? kEyeAgeLimit : 0), 0.0};
     // All others can be noticed in the tick that hears them.
     default:
       return {};
@@ -208,15 +222,9 @@ Told told(const Fault& fault, std::int64_t t) {
         told.joint_offset[0] = 5.0;
       }
       break;
-    case Lie::kDrift: {
-      const double way = 2.5 * since(fault, t);
-      // What rests on odom is held against a limit of its own.
-      const double stated =
-          fault.channel == Channel::kOdom ? kBallSpeed : stated_speed(fault.channel);
-      told.offset = way * stated * fault.direction;
-      told.joint_offset[fault.joint] = way * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
+    case Lie::kDrift:
+      drift(fault, t, told);
       break;
-    }
     case Lie::kHalfSpeed:
       told.value_at = fault.from + (t - fault.from) / 2;
       break;

@@ -84,7 +84,7 @@ inline constexpr std::int64_t kOwnerStarts = 300 * kMs;
 // Velocities are compared with positions over some age limits: 3 (v/u + 1) for a speed that is
 // wrong by a half, where u is the true speed and v the stated one, and twice that if the
 // comparison has just begun.
-inline constexpr std::int64_t kSpeedDelay = 16 * kAgeLimit;
+[[nodiscard]] std::int64_t speed_delay(Channel channel);
 
 // The changes that the owner of a channel makes to the truth at an instant.
 struct Told {

@@ -46,7 +46,12 @@ std::string cell_text_of_lies() {
          ball + "  - {name: ball1" + ball + "  - {name: ball2" + ball +
          "  - {name: follower, frame: follower_link" + ball +
          "  - {name: rock, fixed: true, pose: {xyz: [1.0, 1.3, 0.3]}, sphere: {radius: 0.2}}\n"
+         "sensors:\n"
+         "  - {name: eye, points: /eye/points, most_points: 4, depth_along: ray, depth_error: "
+         "{constant: 0.002}, range: [0.1, 8], most_shell: 0.02, age_limit_ms: 100, mount: {frame: "
+         "eye_link, max_speed: 1, max_turn_speed: 1}}\n"
          "pairs:\n"
+         "  - between: [arm, eye]\n  - between: [post, eye]\n  - between: [balls, eye]\n"
          "  - between: [arm, balls]\n  - between: [post, balls]\n  - between: [balls, balls]\n"
          "  - between: [balls, rock]\n  - between: [arm, post]\n  - between: [arm, rock]\n"
          "  - between: [arm, arm]\n"
@@ -60,21 +65,24 @@ std::string cell_text_of_lies() {
          "  - {name: post, between: [post, balls], enter_below: 0.3, leave_above: 0.35}\n"
          "  - {name: robots, between: [arm, post], enter_below: 0.4, leave_above: 0.45}\n"
          "  - {name: rock, between: [balls, rock], enter_below: 0.3, leave_above: 0.35}\n"
-         "  - {name: balls, between: [balls, balls], enter_below: 0.4, leave_above: 0.45}\n";
+         "  - {name: balls, between: [balls, balls], enter_below: 0.4, leave_above: 0.45}\n"
+         "  - {name: seen, between: [arm, eye], enter_below: 1.2, leave_above: 1.25}\n"
+         "  - {name: near, between: [balls, eye], enter_below: 1.2, leave_above: 1.25}\n";
 }
 
 }  // namespace
 
 const char* name(Channel channel) {
-  constexpr std::array kNames{"ball0", "ball1", "ball2", "arm", "post", "odom", "base", "follower"};
+  constexpr std::array kNames{"ball0", "ball1", "ball2",    "arm", "post",
+                              "odom",  "base",  "follower", "eye"};
   return kNames[static_cast<std::size_t>(channel)];
 }
 
 const char* body_name(std::size_t body) {
   constexpr std::array<const char*, kBodies> kNames{
-      "ball0",     "ball1",      "ball2",      "follower",   "rock",
-      "arm_foot",  "arm_upper",  "arm_lower",  "arm_wrist",  "arm_tip",
-      "post_foot", "post_upper", "post_lower", "post_wrist", "post_tip"};
+      "ball0",      "ball1",      "ball2",     "follower", "rock",      "arm_foot",
+      "arm_upper",  "arm_lower",  "arm_wrist", "arm_tip",  "post_foot", "post_upper",
+      "post_lower", "post_wrist", "post_tip",  "eye"};
   return kNames[body];
 }
 

@@ -1,5 +1,6 @@
-// A cell for inputs that lie: balls by poses, a ball by tf, a robot whose base follows tf, and a
-// robot that stands in the world. Every body is a ball, so the true distance has a closed form.
+// A cell for inputs that lie: balls by poses, a ball by tf, a robot whose base follows tf, a robot
+// that stands in the world, and a camera on tf that sees a point at rest. Every body is a ball, so
+// the true distance has a closed form.
 #pragma once
 
 #include <array>
@@ -14,8 +15,18 @@ inline constexpr std::int64_t kMs = 1'000'000;
 inline constexpr std::int64_t kSecond = 1000 * kMs;
 
 // Each channel is sent by a program of its own. A fault strikes one channel.
-enum class Channel : std::uint8_t { kBall0, kBall1, kBall2, kArm, kPost, kOdom, kBase, kFollower };
-inline constexpr std::size_t kChannels = 8;
+enum class Channel : std::uint8_t {
+  kBall0,
+  kBall1,
+  kBall2,
+  kArm,
+  kPost,
+  kOdom,
+  kBase,
+  kFollower,
+  kEye,
+};
+inline constexpr std::size_t kChannels = 9;
 [[nodiscard]] constexpr bool is_ball(Channel c) { return c <= Channel::kBall2; }
 [[nodiscard]] constexpr bool is_robot(Channel c) {
   return c == Channel::kArm || c == Channel::kPost;
@@ -28,6 +39,8 @@ inline constexpr double kBallSpeed = 2.0;            // m/s, also of the ball th
 inline constexpr double kBaseSpeed = 1.0;            // m/s, of the base and its parent frame
 inline constexpr std::int64_t kAgeLimit = 20 * kMs;  // of balls and joints
 inline constexpr std::int64_t kBaseAgeLimit = 40 * kMs;
+inline constexpr double kEyeSpeed = 1.0;  // of the camera, m/s and rad/s
+inline constexpr std::int64_t kEyeAgeLimit = 100 * kMs;
 inline constexpr std::int64_t kFrozenLimit = 100 * kMs;
 // Joints in their order: shoulder, elbow (revolute), spin (continuous), push (prismatic).
 inline constexpr std::size_t kJoints = 4;
@@ -40,10 +53,11 @@ inline constexpr const char* kJointFrozenKey =
     "frozen_limit_ms";  // of a robot, with the value kFrozenLimit
 
 // A body, in the order of the true motion: balls 0 to 2, the follower, the rock, the links of the
-// arm from its foot to its tip, and those of the post.
+// arm from its foot to its tip, those of the post, and the point that the camera sees.
 inline constexpr std::size_t kLinks = 5;
 inline constexpr std::size_t kFollowerBody = 3, kRockBody = 4, kArmBody = 5,
-                             kPostBody = kArmBody + kLinks, kBodies = kPostBody + kLinks;
+                             kPostBody = kArmBody + kLinks, kEyeBody = kPostBody + kLinks,
+                             kBodies = kEyeBody + 1;
 [[nodiscard]] const char* body_name(std::size_t body);
 
 // Reads the cell. All pairs are published.

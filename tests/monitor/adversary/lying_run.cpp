@@ -2,33 +2,56 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
+#include <vector>
 
+#include "monitor/inputs/scene_ids.hpp"
 #include "monitor/loop/tick_loop.hpp"
+#include "monitor/sensors/sensors.hpp"
 
 namespace clearance::test::lies {
 namespace {
 
 constexpr std::int64_t kStartOfLies = 1'700'000'000 * kSecond;  // CLOCK_REALTIME
 
-// The ports of the loop. The time is that of its only clock.
+// The ports of the loop, and what makes the camera's frames. The time is that of its only clock.
 class LyingWorld final : public Clock, public PoseSource, public ReportSink {
  public:
   LyingWorld(const Cell& cell, const LyingRun& run)
       : truth_(run.sending.seed, run.joints_went_far),
-        intake_(cell, {.admits_sources = true, .most_samples = 4096, .most_joints = 4096},
+        revision_(cell.scene.revision),
+        ids_(cell.scene),
+        sensors_(cell, {}, ids_.sources()),
+        frames_(cell.scene.sensors.size()),
+        intake_(cell,
+                {.admits_sources = true,
+                 .most_samples = 4096,
+                 .most_joints = 4096,
+                 .use_sensor =
+                     [this](const RawSensorMessage& message) {
+                       sensors_.add(message, {kStartOfLies + now_, kSecond + now_});
+                     }},
                 [this](PoseBatch& batch) {
                   batches_.push_back(batch);
+                  note(batch);
                   return true;
                 }),
-        senders_(cell.scene, truth_, run.sending, kStartOfLies, intake_),
+        senders_(cell.scene, truth_, run.sending, kStartOfLies, intake_,
+                 [this](std::vector<std::uint64_t> writers) {
+                   std::ranges::sort(writers);
+                   sensors_.keep(writers);
+                 }),
         judge_(cell.scene, truth_, run.sending.faults) {}
 
   std::int64_t realtime_ns() noexcept override { return kStartOfLies + now_; }
   std::int64_t monotonic_ns() noexcept override { return kSecond + now_; }
   std::int64_t steady_ns() noexcept override { return kSecond + now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
-    while (kSecond + now_ < monotonic_ns) senders_.send(now_ += kMs);
+    while (kSecond + now_ < monotonic_ns) {
+      senders_.send(now_ += kMs);
+      build();
+    }
   }
   const PoseBatch* next() noexcept override {
     if (batches_.empty()) return nullptr;
@@ -42,12 +65,34 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     judge_.judge(report, now_);
   }
   [[nodiscard]] Verdict verdict() const { return judge_.verdict(); }
+  [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
 
  private:
+  // As the daemon's thread of sensors does.
+  void note(const PoseBatch& batch) {
+    poses_.clear();
+    joints_.clear();
+    static_cast<void>(ids_.append(batch, poses_, joints_));
+    sensors_.add(poses_, joints_, kStartOfLies + now_);
+  }
+  void build() {
+    sensors_.settle(
+        kSecond + now_, [this](const SeenCloud* cloud) { return frames_.is_used(cloud); },
+        [this](std::uint32_t sensor, const SensorFrame& frame) {
+          frames_.put(sensor, frame, revision_);
+        });
+  }
+
   std::int64_t now_ = -kMs;  // ns since the start
   TrueMotion truth_;
   std::deque<PoseBatch> batches_;
   PoseBatch given_;
+  std::uint64_t revision_;
+  SceneIds ids_;
+  Sensors sensors_;
+  std::vector<PoseSample> poses_;
+  std::vector<JointSample> joints_;
+  FrameExchange frames_;
   Intake intake_;
   LyingSenders senders_;
   TruthJudge judge_;
@@ -57,8 +102,9 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
 
 Verdict judged(const Cell& cell, const LyingRun& run) {
   LyingWorld world(cell, run);
-  TickLoop loop(cell.scene, world, {&world}, world,
-                {.max_ticks = static_cast<std::uint64_t>(run.length / kMs)});
+  TickLoop loop(
+      cell.scene, world, {&world}, world,
+      {.max_ticks = static_cast<std::uint64_t>(run.length / kMs), .frames = &world.frames()});
   const std::atomic<bool> stop = false;
   loop.run(stop);
   return world.verdict();

@@ -4,18 +4,21 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/intake/camera_texts.hpp"
 
 namespace clearance::test::lies {
 namespace {
 
-constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300;  // writers
+constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300, kCamera = 400;  // writers
 constexpr const char* kTfType = "tf2_msgs/msg/TFMessage";
 constexpr double kFarAway = 50.0;  // m
+constexpr std::int64_t kPicturePeriod = 20 * kMs;
 
 std::size_t index(Channel channel) { return static_cast<std::size_t>(channel); }
 std::uint64_t writer_of(Channel channel, bool is_rival) {
@@ -29,18 +32,20 @@ FrameText frame_text(const std::string& parent, const std::string& child, const 
 
 const char* child_of(Channel channel) {
   if (channel == Channel::kOdom) return "odom";
+  if (channel == Channel::kEye) return "eye_link";
   return channel == Channel::kBase ? "base_link" : "follower_link";
 }
 
 }  // namespace
 
 LyingSenders::LyingSenders(const Scene& scene, const TrueMotion& truth, const Sending& sending,
-                           std::int64_t start_ns, Intake& intake)
+                           std::int64_t start_ns, Intake& intake, Keep keep)
     : scene_(scene),
       truth_(truth),
       sending_(sending),
       start_ns_(start_ns),
       intake_(intake),
+      keep_(std::move(keep)),
       random_(sending.seed + 2000) {
   for (bool& sends : sends_velocities_) sends = random_.chance(0.5);
   for (bool& by_ros : by_ros_) by_ros = random_.chance(0.5);
@@ -63,12 +68,13 @@ void LyingSenders::send(std::int64_t t) {
     }
     if (t % period_[i] == 0) speak(channel, t);
   }
+  if (t % kPicturePeriod == 0) show(t);
   deliver(t);
 }
 
 // Tells the intake which writers exist, as discovery does.
 void LyingSenders::keep_writers(std::int64_t t) {
-  std::vector<std::uint64_t> writers{kMapMaker};
+  std::vector<std::uint64_t> writers{kMapMaker, kCamera};
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
     const Fault* const fault = fault_of(channel);
@@ -80,6 +86,7 @@ void LyingSenders::keep_writers(std::int64_t t) {
   if (writers == writers_) return;
   writers_ = writers;
   intake_.keep(writers);
+  keep_(writers);
 }
 
 const Fault* LyingSenders::fault_of(Channel channel) const {
@@ -93,6 +100,22 @@ void LyingSenders::speak(Channel channel, std::int64_t t) {
   const bool is_lost = t > kSecond / 5 && random_.chance(sending_.loss);
   if (said.is_silent || is_lost) return;
   post(message(channel, words(channel, said, t), false), t, said, channel);
+}
+
+// The camera sees the point where it is.
+void LyingSenders::show(std::int64_t t) {
+  const TruePose eye = truth_.pose(Channel::kEye, t);
+  const TruePoint off = truth_.centres(t)[kEyeBody] - eye.col(3).head<3>();
+  const Eigen::Vector3f seen = (eye.topLeftCorner<3, 3>().transpose() * off).cast<float>();
+  camera::CloudText cloud;
+  cloud.width = 1;
+  cloud.row_step = cloud.point_step;
+  cloud.data.assign(cloud.point_step, 0);
+  std::memcpy(cloud.data.data(), seen.data(), 3 * sizeof(float));
+  cloud.stamp_ns = start_ns_ + t;
+  cloud.frame = child_of(Channel::kEye);
+  under_way_.push_back({t, topic("/eye/points", "sensor_msgs/msg/PointCloud2"), kCamera,
+                        start_ns_ + t, cloud.cdr()});
 }
 
 void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int64_t t) {
@@ -142,7 +165,8 @@ LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::
     words.twist.linear *= told.velocity_scale;
     words.twist.angular *= told.velocity_scale;
   }
-  words.parent = told.is_far ? "far" : channel == Channel::kOdom ? "map" : "odom";
+  const bool is_on_map = channel == Channel::kOdom || channel == Channel::kEye;
+  words.parent = told.is_far ? "far" : is_on_map ? "map" : "odom";
   return words;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,9 +25,12 @@ struct Sending {
 
 class LyingSenders {
  public:
+  // Receives the writers that exist, when they change.
+  using Keep = std::function<void(std::vector<std::uint64_t> writers)>;
+
   // `start_ns` is CLOCK_REALTIME at time 0. All arguments must outlive this.
   LyingSenders(const Scene& scene, const TrueMotion& truth, const Sending& sending,
-               std::int64_t start_ns, Intake& intake);
+               std::int64_t start_ns, Intake& intake, Keep keep);
 
   // Sends what is sent at `t`, ns since the start, and delivers what arrives until then.
   void send(std::int64_t t);
@@ -53,6 +57,7 @@ class LyingSenders {
 
   void keep_writers(std::int64_t t);
   void speak(Channel channel, std::int64_t t);
+  void show(std::int64_t t);
   void speak_as_rival(Channel channel, const Rival& rival, std::int64_t t);
   [[nodiscard]] const Fault* fault_of(Channel channel) const;
   [[nodiscard]] Words words(Channel channel, const Told& told, std::int64_t t) const;
@@ -69,6 +74,7 @@ class LyingSenders {
   const Sending& sending_;
   const std::int64_t start_ns_;
   Intake& intake_;
+  Keep keep_;
   Random random_;
   CdrEncoder encoder_;
   std::array<bool, kChannels> sends_velocities_{};

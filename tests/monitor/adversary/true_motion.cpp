@@ -92,6 +92,11 @@ TruePose TrueMotion::pose(Channel channel, std::int64_t t) const {
     return translation(0.3L * std::sin(0.9L * s + base_phase_), 0.3L * std::cos(0.7L * s), 0.05L) *
            rotation(2, 0.2L * std::sin(0.8L * s + base_phase_));
   }
+  if (channel == Channel::kEye) {
+    return translation(1.2L + 0.3L * std::sin(0.9L * s), -0.8L + 0.3L * std::cos(0.7L * s), 1.5L) *
+           rotation(2, 0.4L * std::sin(0.8L * s + base_phase_)) *
+           rotation(1, 0.3L * std::sin(0.6L * s));
+  }
   const std::size_t orbit = is_ball(channel) ? static_cast<std::size_t>(channel) : kFollowerBody;
   const TruePoint p = on(orbits_[orbit], t);
   return translation(p.x(), p.y(), p.z()) * rotation(2, kYawRate * s);
@@ -126,6 +131,7 @@ std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
   const TruePose odom = pose(Channel::kOdom, t);
   centres[kFollowerBody] = moved(odom * pose(Channel::kFollower, t), 0.15L, 0, 0);
   centres[kRockBody] = {1.0L, 1.3L, 0.3L};
+  centres[kEyeBody] = {0.6L, -0.3L, 1.9L};
   add_links(odom * pose(Channel::kBase, t), joints(Channel::kArm, t), kArmBody, centres);
   add_links(translation(2.6L, 0.4L, 0), joints(Channel::kPost, t), kPostBody, centres);
   return centres;
@@ -134,6 +140,7 @@ std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
 double TrueMotion::radius(std::size_t body) {
   constexpr std::array<double, kLinks> kRadii{0.12, 0.1, 0.09, 0.08, 0.06};
   if (body < kRockBody) return 0.1;
+  if (body == kEyeBody) return 0.0;
   return body == kRockBody ? 0.2 : kRadii[(body - kArmBody) % kLinks];
 }
 
@@ -141,7 +148,7 @@ double TrueMotion::radius(std::size_t body) {
 double TrueMotion::fastest(std::size_t body) {
   constexpr std::array<double, kLinks> kByJoints{0.0, 0.5, 2.3, 3.7, 4.7};
   if (body < kRockBody) return kBallSpeed;
-  if (body == kRockBody || body == kPostBody) return 0.0;
+  if (body == kRockBody || body == kPostBody || body == kEyeBody) return 0.0;
   return (body < kPostBody ? kBaseSpeed : 0.0) + kByJoints[(body - kArmBody) % kLinks];
 }
 

@@ -11,7 +11,7 @@ namespace clearance::test::lies {
 namespace {
 
 constexpr double kRounding = 1e-9;  // m
-// Between two ticks a body is taken to move straight from one pose to the next. The way bends: an
+// Between two ticks a body is taken to move straight from one pose to the next. The path bends: an
 // acceleration of 20 m/s2 over 10 ms departs by a quarter of a millimetre.
 constexpr double kBend = 2.5e-4;  // m
 // A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No
@@ -19,6 +19,10 @@ constexpr double kBend = 2.5e-4;  // m
 constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
 // The path length of the farthest point of a robot when a joint rotates by a radian, m.
 constexpr double kLever = 2.1;
+// The camera is nearer to the point that it sees, m. Bounds are those of the ball by which it knows
+// the point, whose radius is the stated error of the depth.
+constexpr double kSight = 2.0;
+constexpr double kSeenRadius = 0.002 * 1.001;
 
 bool is_link_of(Channel robot, std::size_t body) {
   const std::size_t foot = robot == Channel::kPost ? kPostBody : kArmBody;
@@ -28,6 +32,7 @@ bool is_link_of(Channel robot, std::size_t body) {
 bool rests_on(std::size_t body, Channel channel) {
   if (is_ball(channel)) return body == static_cast<std::size_t>(channel);
   if (channel == Channel::kFollower) return body == kFollowerBody;
+  if (channel == Channel::kEye) return body == kEyeBody;
   if (channel == Channel::kBase) return is_link_of(Channel::kArm, body);
   if (channel == Channel::kOdom) return body == kFollowerBody || is_link_of(Channel::kArm, body);
   return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
@@ -38,6 +43,8 @@ double slack_of(Channel channel) {
   if (is_robot(channel)) return kLever * kJointSpeed[0] * 1e-9 * static_cast<double>(kAgeLimit);
   if (channel == Channel::kOdom || channel == Channel::kBase)
     return kBaseSpeed * 1e-9 * static_cast<double>(kBaseAgeLimit);
+  if (channel == Channel::kEye)
+    return (1.0 + kSight) * kEyeSpeed * 1e-9 * static_cast<double>(kEyeAgeLimit);
   return kBallSpeed * 1e-9 * static_cast<double>(kAgeLimit);
 }
 
@@ -112,8 +119,9 @@ void TruthJudge::find_allowed(std::int64_t t) {
       if (t >= fault.from && t < fault.to + kSlackEnds)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
-      of.is_speed_excused |= t >= fault.from && t < fault.from + kSpeedDelay;
-      of.is_speed_excused |= t >= fault.to && t < fault.to + kSpeedDelay;
+      const std::int64_t delay = speed_delay(fault.channel);
+      of.is_speed_excused |= t >= fault.from && t < fault.from + delay;
+      of.is_speed_excused |= t >= fault.to && t < fault.to + delay;
     }
   }
 }
@@ -126,7 +134,7 @@ double TruthJudge::allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t 
     const double aged = age > 0 && age <= age_limit_of(body)
                             ? TrueMotion::fastest(body) * 1e-9 * static_cast<double>(age)
                             : 0.0;
-    return aged + allowed_[body].error;
+    return aged + allowed_[body].error + (body == kEyeBody ? kSeenRadius : 0.0);
   };
   return kRounding + of(scene_.pairs[pair].first, age_a) + of(scene_.pairs[pair].second, age_b);
 }

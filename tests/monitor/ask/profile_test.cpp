@@ -67,7 +67,7 @@ TEST(TimeScaling, IsTheLargestFactorThatKeepsTheProtectiveDistance) {
   EXPECT_GE(answer.scaling.factor, truth * (1.0 - 1e-3));
   EXPECT_GE(answer.scaling.factor_above, truth - 1e-9);
   EXPECT_NEAR(answer.scaling.time, 1.25, 0.1);
-  // Too near for a robot that stands.
+  // The person is too near for a robot that stands.
   question.poses[0].world_from_object.position = {2.3, 0.0, 0.0};
   EXPECT_EQ(answered(scene, question).scaling.factor, 0.0);
 }

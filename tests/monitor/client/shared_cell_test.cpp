@@ -4,18 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "config/cell/share_topics.hpp"
 #include "monitor/report.hpp"
-#include "monitor/wire/convert.hpp"
-#include "monitor/wire/report_checksum.hpp"
-#include "tests/config/cells.hpp"
+#include "tests/monitor/client/share_daemon.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance::client {
@@ -24,99 +20,6 @@ namespace {
 using std::chrono::milliseconds;
 using test::eventually;
 
-constexpr std::uint32_t kWide = 0, kFar = 1;
-
-// The zone `wide` has pairs of both shares, `far` those of the right one.
-Cell cell_in_shares() {
-  const auto ball = [](const char* name, const char* group) {
-    return std::string("  - {name: ") + name + ", groups: [all, " + group +
-           "], sphere: {radius: 0.1}}\n";
-  };
-  return read_good(cell_text(
-      "objects:\n" + ball("a", "first") + ball("b", "first") + ball("c", "last") +
-      "pairs: [{between: [all, all], publish: true}]\nzones:\n"
-      "  - {name: wide, between: [all, all], enter_below: 1, leave_above: 1}\n"
-      "  - name: far\n    between: [first, last]\n    enter_below: 1\n    leave_above: 1\n"
-      "    separation: {human: last, reaction_time_ms: 1, stopping_time_ms: 1, "
-      "stopping_distance: 1, intrusion_distance: 1}\n"
-      "shares:\n  - {name: left, pairs: [{between: [first, first]}]}\n"
-      "  - {name: right, pairs: [{between: [first, last]}]}\n"));
-}
-
-// A daemon of a share. Partners have a name.
-class Daemon {
- public:
-  Daemon(const DdsOptions& dds, const Cell& cell, const char* share, std::uint64_t id,
-         std::string partner = {})
-      : topics_(topics_of_share(cell.topics, share)),
-        participant_(dds),
-        id_(id),
-        revision_(cell.scene.revision),
-        partner_(std::move(partner)) {
-    for (const Share& each : cell.shares.all) {
-      if (each.name == share) pairs_ = static_cast<std::uint32_t>(each.pairs.size());
-    }
-    auto catalogue = make_catalogue(cell);
-    catalogue->daemon = id;
-    check_dds(dds_write(catalogue_, &*catalogue), "writing");
-  }
-  [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
-  // Reports say from now on that it has so many pairs, or they have these bits.
-  void set_pairs(std::uint32_t pairs) { pairs_ = pairs; }
-  void set_bits(std::uint64_t state) { state_ = state; }
-  // The clock of its machine is ahead of this one's by this time from now on.
-  void set_clock_ahead(std::int64_t ns) { ahead_ns_ = ns; }
-  void report(std::uint64_t cycle) { report(cycle, dds_time() + ahead_ns_); }
-  void report(std::uint64_t cycle, std::int64_t publish_ns,
-              std::vector<std::uint32_t> active = {}) {
-    clearance_msg_Distances message{};
-    message.active_zones._length = message.active_zones._maximum =
-        static_cast<std::uint32_t>(active.size());
-    message.active_zones._buffer = active.data();
-    partner_.copy(message.partner, sizeof message.partner - 1);
-    message.daemon = id_;
-    message.cycle = cycle;
-    message.lineage = 4;
-    message.now_ns = now_ns(cycle);
-    message.publish_ns = publish_ns;
-    message.scene_revision = revision_;
-    message.pairs_total = pairs_;
-    message.state_checksum = state_;
-    if (!partner_.empty()) message.checksum = checksum_of(message);
-    check_dds(dds_write(distances_, &message), "writing");
-  }
-  void zones(std::uint64_t cycle, bool active) {
-    for (const std::uint32_t zone : {kWide, kFar}) {
-      clearance_msg_ZoneState state{};
-      state.zone = zone;
-      std::strcpy(state.name, zone == kWide ? "wide" : "far");
-      state.daemon = id_;
-      state.active = active;
-      state.cause = active ? static_cast<std::uint8_t>(ZoneCause::kNear) : std::uint8_t{0};
-      state.cycle = cycle;
-      state.now_ns = now_ns(cycle);
-      check_dds(dds_write(zones_, &state), "writing");
-    }
-  }
-
- private:
-  std::int64_t now_ns(std::uint64_t cycle) const {
-    return start_ns_ + ahead_ns_ + static_cast<std::int64_t>(cycle) * 1'000'000;
-  }
-
-  inline static const std::int64_t start_ns_ = dds_time();
-  std::int64_t ahead_ns_ = 0;
-  Topics topics_;
-  Participant participant_;
-  std::uint64_t id_, revision_, state_ = 0;
-  std::uint32_t pairs_ = 0;
-  std::string partner_;
-  dds_entity_t distances_ =
-      participant_.writer(TopicKind::kDistances, topics_.distances, {.lease_ns = 60'000'000'000});
-  dds_entity_t catalogue_ = participant_.writer(TopicKind::kCatalogue, topics_.catalogue);
-  dds_entity_t zones_ = participant_.writer(TopicKind::kZones, topics_.zones);
-};
-
 class ASharedCell : public testing::Test {
  protected:
   void open(std::vector<std::string> names) {
@@ -124,7 +27,7 @@ class ASharedCell : public testing::Test {
                                                 .names = std::move(names)});
   }
   // Both shares report until a report of the whole cell has come.
-  void begin(Daemon& left, std::vector<std::string> names) {
+  void begin(ShareDaemon& left, std::vector<std::string> names) {
     left.zones(1, false);
     right.zones(1, false);
     open(std::move(names));
@@ -134,7 +37,7 @@ class ASharedCell : public testing::Test {
   [[nodiscard]] bool is_active(std::uint32_t zone) const { return whole->zones().at(zone).active; }
   // Both shares report until a report of the whole cell is so.
   template <class IsSo>
-  bool report_until(Daemon& left, const IsSo& is_so) {
+  bool report_until(ShareDaemon& left, const IsSo& is_so) {
     return eventually(
         [&] {
           left.report(cycle);
@@ -167,7 +70,7 @@ class ASharedCell : public testing::Test {
   Cell cell = cell_in_shares();
   DdsOptions dds = test::own_dds();
   Connection connection{dds, cell.topics};
-  Daemon right{dds, cell, "right", 3};
+  ShareDaemon right{dds, cell, "right", 3};
   std::optional<SharedCell> whole;
   std::uint64_t cycle = 1;
 };
@@ -175,10 +78,10 @@ class ASharedCell : public testing::Test {
 // The reports of the one partner, which ticks apart, always come first.
 TEST_F(ASharedCell, HasTheZonesOfAPartnerWhoseReportsComeSecond) {
   open({"left", "right"});
-  Daemon apart(dds, cell, "left", 1, "one"), leader(dds, cell, "left", 2, "two");
+  ShareDaemon apart(dds, cell, "left", 1, "one"), leader(dds, cell, "left", 2, "two");
   ASSERT_TRUE(
       eventually([&] { return apart.is_heard() && leader.is_heard() && right.is_heard(); }));
-  for (Daemon* const daemon : {&apart, &leader, &right}) daemon->zones(1, false);
+  for (ShareDaemon* const daemon : {&apart, &leader, &right}) daemon->zones(1, false);
   const auto next = [&] {
     apart.report(cycle);
     right.report(cycle);
@@ -194,14 +97,14 @@ TEST_F(ASharedCell, HasTheZonesOfAPartnerWhoseReportsComeSecond) {
 
 // The first report has the states of all zones, although the names came in another order.
 TEST_F(ASharedCell, BeginsWithAllZonesWhereNamesAreInAnotherOrder) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"right", "left"});
   EXPECT_EQ(whole->zones().size(), 2u);
   EXPECT_NE(whole->catalogue(), nullptr);
 }
 
 TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   ASSERT_NE(whole->separation(), nullptr);
   ASSERT_EQ(whole->separation()->zones._length, 1u);
@@ -213,7 +116,7 @@ TEST_F(ASharedCell, HasASeparationThatNoShareHasReportedAndItStopsTheRobot) {
 
 // The state of a zone comes after the report of its tick, or is lost.
 TEST_F(ASharedCell, HasTheZonesActiveThatTheReportOfAShareLists) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   EXPECT_FALSE(is_active(kWide));
   EXPECT_EQ((*whole)->active_zones._length, 0u);
@@ -230,7 +133,7 @@ TEST_F(ASharedCell, HasTheZonesActiveThatTheReportOfAShareLists) {
 
 // The clock of the share's machine is ahead, so that its last report seems young for longer.
 TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   whole.emplace(connection,
                 SharedCellOptions{.late_after = milliseconds(400), .names = {"left", "right"}});
@@ -255,7 +158,7 @@ TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
 TEST_F(ASharedCell, HasAShareLateAfterThreePeriodsUnlessTheCallerStatesATime) {
   Cell slow = cell;
   slow.scene.rate_hz = 0.5;
-  Daemon left(dds, slow, "left", 1);
+  ShareDaemon left(dds, slow, "left", 1);
   left.zones(1, false);
   right.zones(1, false);
   whole.emplace(connection, SharedCellOptions{.names = {"left", "right"}});
@@ -268,7 +171,7 @@ TEST_F(ASharedCell, HasAShareLateAfterThreePeriodsUnlessTheCallerStatesATime) {
 
 // A clock was set back: the report is as old as it was published, and not younger.
 TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   const std::int64_t before = dds_time() - 1'000'000'000;
   EXPECT_TRUE(eventually(
@@ -283,7 +186,7 @@ TEST_F(ASharedCell, IsNoYoungerThanItsOldestPart) {
 // The clock is ahead, or was set back, by more than a report may be old: its reports come on time,
 // and say that the zones are clear.
 TEST_F(ASharedCell, HasAShareUnknownByNameWhoseTimesAreOfTheFutureOrOfThePast) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   for (const std::int64_t ahead_ns : {8'000'000'000, -8'000'000'000}) {
     SCOPED_TRACE(ahead_ns);
@@ -313,7 +216,7 @@ Cell divided_otherwise(Cell cell) {
 // The right share is still that of this build, so no share has the pair a-b.
 TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
   const Cell otherwise = divided_otherwise(cell);
-  std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
+  std::optional<ShareDaemon> left(std::in_place, dds, cell, "left", 1);
   begin(*left, {"left", "right"});
   const auto is_refused = [&] {
     return whole->shares()[0].state == ShareState::kOtherDivision && is_active(kWide) &&
@@ -334,12 +237,12 @@ TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
 // One after another, the daemons of all shares are those of another build.
 TEST_F(ASharedCell, FollowsADivisionThatAllSharesHave) {
   const Cell otherwise = divided_otherwise(cell);
-  std::optional<Daemon> left(std::in_place, dds, cell, "left", 1);
+  std::optional<ShareDaemon> left(std::in_place, dds, cell, "left", 1);
   begin(*left, {"left", "right"});
   left.emplace(dds, otherwise, "left", 4);
   left->zones(cycle, false);
   ASSERT_TRUE(report_until(*left, [&] { return !whole->is_whole(); }));
-  Daemon later(dds, otherwise, "right", 5);
+  ShareDaemon later(dds, otherwise, "right", 5);
   later.zones(cycle, false);
   EXPECT_TRUE(eventually([&] {
     left->report(cycle);
@@ -351,7 +254,7 @@ TEST_F(ASharedCell, FollowsADivisionThatAllSharesHave) {
 // The share has two partners. The state that is told covers all their reports, not only the last
 // ones.
 TEST_F(ASharedCell, TellsOnceThatPartnersDifferedAlthoughTheyAgreeAgain) {
-  Daemon one(dds, cell, "left", 1, "one"), two(dds, cell, "left", 2, "two");
+  ShareDaemon one(dds, cell, "left", 1, "one"), two(dds, cell, "left", 2, "two");
   Connection alone(dds, topics_of_share(cell.topics, "left"));
   Reports reports(alone);
   begin(one, {"left", "right"});
@@ -387,7 +290,7 @@ TEST_F(ASharedCell, TellsOnceThatPartnersDifferedAlthoughTheyAgreeAgain) {
 // The clock was set back, or ahead and back, by less. What it says then counts, although the state
 // that it wrote before has a later time.
 TEST_F(ASharedCell, HasTheZonesThatAShareWritesAfterItsClockWasSetBack) {
-  Daemon left(dds, cell, "left", 1);
+  ShareDaemon left(dds, cell, "left", 1);
   begin(left, {"left", "right"});
   for (const std::int64_t ahead_ns : {-2'000'000'000, 2'000'000'000, 0}) {
     SCOPED_TRACE(ahead_ns);

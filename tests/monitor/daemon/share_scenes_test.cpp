@@ -1,4 +1,4 @@
-// Which daemon of a cell in shares takes over whose scene, and when.
+// The daemons of a cell in shares take over scenes of each other: whose, and when.
 #include "monitor/daemon/share_scenes.hpp"
 
 #include <gtest/gtest.h>
@@ -50,7 +50,7 @@ TEST_F(AShare, LeavesTheFirstOneASecondToMakeAChangeThatItHasMadeItself) {
   EXPECT_EQ(scenes.find(kOther, true, 3 * kS), Share(0)) << "the first one has not made it";
 }
 
-// That one has only the cell file.
+// The restarted one has only the cell file.
 TEST_F(AShare, DoesNotFollowARestartedFirstOneThatHasLostTheScene) {
   scenes.hear(0, {kFirst, kNext, true});
   EXPECT_EQ(scenes.find(kNext, true, 0), kNoShare) << "they agree";
@@ -107,7 +107,7 @@ TEST_F(TheFirstShare, DoesNoMessagesBeforeItHasHeardAllOthersOrForASecond) {
   EXPECT_TRUE(scenes.is_settled());
 }
 
-// Its files lack here: it would never get it.
+// Files of the scene lack here: this daemon would never get it.
 TEST_F(TheFirstShare, DoesMessagesAfterThreeSecondsThoughItDoesNotGetTheScene) {
   scenes.hear(1, {1, kNext, true});
   for (std::int64_t now = 0; now <= 3 * kS; now += 100 * kMs) {

@@ -10,6 +10,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "tests/monitor/intake/camera_texts.hpp"
@@ -32,7 +33,10 @@ class CameraStreamTest : public testing::Test {
     return decoder.decode(text.cdr(), info) ? stream.take(*info) : FrameFault::kUndecodable;
   }
   FrameFault take(const ImageText& text, std::uint64_t writer = 1) {
-    return take(text, {text.stamp_ns, text.stamp_ns + 1'000'000, writer});
+    return take(text, {.stamp_ns = text.stamp_ns,
+                       .sent_ns = text.stamp_ns + 1'000'000,
+                       .writer = writer,
+                       .frame = text.frame});
   }
   FrameFault take(const ImageText& text, const FrameOrigin& origin) {
     if (!decoder.decode(text.cdr(), image)) return FrameFault::kUndecodable;
@@ -40,7 +44,10 @@ class CameraStreamTest : public testing::Test {
   }
   FrameFault take(const CloudText& text) {
     if (!decoder.decode(text.cdr(), cloud)) return FrameFault::kUndecodable;
-    return stream.take(*cloud, {text.stamp_ns, text.stamp_ns, 1}, points);
+    return stream.take(
+        *cloud,
+        {.stamp_ns = text.stamp_ns, .sent_ns = text.stamp_ns, .writer = 1, .frame = text.frame},
+        points);
   }
   // A frame after so many others, with a depth of its own.
   static ImageText frame(int number) {
@@ -75,6 +82,8 @@ TEST_F(CameraStreamTest, AFrameIsItsPixelsWithTheCameraOfItsInfo) {
   metres.encoding = "32FC1";
   metres.step = 32;
   metres.data.assign(32 * 6, 1);
+  stream = CameraStream({.most_pixels = 100});
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ASSERT_EQ(take(metres), FrameFault::kNoFault);
   EXPECT_EQ(seen.format, DepthImage::Format::kMetres32);
 }
@@ -173,6 +182,66 @@ TEST_F(CameraStreamTest, AnImageIsRefusedWithTheCameraInfoOfAnotherFrame) {
   EXPECT_EQ(take(said), FrameFault::kCameraInfoChanged) << "two cameras on one topic";
 }
 
+TEST_F(CameraStreamTest, AnImageOfAnotherFormThanTheFirstIsRefusedUntilTheFirstComesAgain) {
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  ASSERT_EQ(take(frame(0)), FrameFault::kNoFault);
+  int number = 0;
+  const auto with = [&](const auto& change) {
+    ImageText text = frame(++number);
+    change(text);
+    return take(text);
+  };
+  const auto as_metres = [](ImageText& t) {
+    t.encoding = "32FC1", t.step = 32, t.data.assign(32 * 6, 1);
+  };
+  EXPECT_EQ(with(as_metres), FrameFault::kFormChanged);
+  EXPECT_EQ(with([](ImageText& t) { t.step = 32, t.data.resize(32 * 6, 9); }),
+            FrameFault::kFormChanged);
+  EXPECT_EQ(with([](ImageText& t) { t.frame = ""; }), FrameFault::kNoFault) << "it says nothing";
+  // An image that was refused states nothing.
+  stream = CameraStream({.most_pixels = 100});
+  ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
+  ImageText unstamped = frame(0);
+  as_metres(unstamped);
+  unstamped.stamp_ns = 0;
+  ASSERT_EQ(take(unstamped), FrameFault::kNoStamp);
+  EXPECT_EQ(with([](ImageText&) {}), FrameFault::kNoFault);
+}
+
+TEST_F(CameraStreamTest, PointsOfAnotherFrameOrFormThanTheFirstAreRefusedUntilTheFirstComeAgain) {
+  CloudText first;
+  ASSERT_EQ(take(first), FrameFault::kNoFault);
+  int number = 0;
+  const auto with = [&](const auto& change) {
+    CloudText text = first;
+    text.stamp_ns += ++number * kFrame;
+    text.data[0] = static_cast<std::uint8_t>(100 + number);
+    change(text);
+    return take(text);
+  };
+  using Fault = FrameFault;
+  EXPECT_EQ(with([](CloudText& t) { t.frame = "base"; }), Fault::kFrameChanged);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[0].offset = 12; }), Fault::kFormChanged);
+  EXPECT_EQ(with([](CloudText& t) { std::swap(t.fields[0].offset, t.fields[1].offset); }),
+            Fault::kFormChanged);
+  EXPECT_EQ(with([](CloudText& t) { t.point_step = 16, t.row_step = 80, t.fields.pop_back(); }),
+            Fault::kFormChanged);
+  EXPECT_EQ(with([](CloudText& t) { t.height = 5, t.width = 1, t.row_step = 20; }),
+            Fault::kFormChanged);
+  EXPECT_EQ(with([](CloudText& t) { t.width = 4, t.row_step = 80; }), Fault::kNoFault)
+      << "fewer points in one row";
+  EXPECT_EQ(with([](CloudText& t) { t.frame = "/camera"; }), Fault::kNoFault);
+  EXPECT_EQ(with([](CloudText& t) {
+              t.fields.insert(t.fields.begin(), {"ring", 12});
+            }),
+            Fault::kNoFault)
+      << "x, y and z are where they were";
+  first.height = 5, first.width = 1, first.row_step = 20;
+  stream = CameraStream({.most_pixels = 100});
+  ASSERT_EQ(with([](CloudText&) {}), Fault::kNoFault);
+  EXPECT_EQ(with([](CloudText& t) { t.height = 4; }), Fault::kFormChanged) << "organised";
+}
+
 // The colours of each point go on.
 TEST_F(CameraStreamTest, PointsThatRepeatAreFrozenWhateverTheirColours) {
   CloudText text;
@@ -209,7 +278,7 @@ TEST_F(CameraStreamTest, FramesComeInTheOrderOfTheirStampsFromOneClockAndOnePubl
   EXPECT_EQ(take(frame(23), 1), FrameFault::kSecondPublisher);
 }
 
-// Its own clock, or that of this machine in a log.
+// The camera's own clock, or that of this machine in a log.
 TEST_F(CameraStreamTest, AClockThatWasSetBackCostsHalfASecondAndNotTheWholeStep) {
   ASSERT_EQ(take(InfoText{}), FrameFault::kNoFault);
   ASSERT_EQ(take(frame(200)), FrameFault::kNoFault);

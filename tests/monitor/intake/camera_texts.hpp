@@ -67,10 +67,11 @@ struct CloudText {
   std::uint32_t point_step = 20, row_step = 100;
   std::vector<std::uint8_t> data = std::vector<std::uint8_t>(100, 3);
   std::int64_t stamp_ns = kStart;
+  std::string frame = "camera";
 
   [[nodiscard]] std::vector<std::byte> cdr() const {
     RosCdr out;
-    out.header(stamp_ns, "camera").number(height).number(width);
+    out.header(stamp_ns, frame).number(height).number(width);
     out.number(static_cast<std::uint32_t>(fields.size()));
     for (const FieldText& field : fields) {
       out.text(field.name).number(field.offset).number(field.datatype).number(field.count);

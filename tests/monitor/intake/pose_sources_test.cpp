@@ -43,8 +43,8 @@ TEST(PoseSources, LeaveANameToItsWriterAsLongAsThatOneSends) {
 TEST(PoseSources, GiveANameToAnotherWriterAfterASecondOfSilence) {
   PoseSources sources;
   send(sources, "arm", 7, 0, 500);
-  EXPECT_EQ(send(sources, "arm", 8, kSecond - 1).tally, nullptr);
-  const Admission taken = send(sources, "arm", 8, kSecond, 1'968'028'530);
+  EXPECT_EQ(send(sources, "arm", 8, kSecond).tally, nullptr);
+  const Admission taken = send(sources, "arm", 8, kSecond + 1, 1'968'028'530);
   ASSERT_NE(taken.tally, nullptr);
   EXPECT_EQ(taken.news, Admitted::kTakenOver);
   EXPECT_EQ(taken.former_writer, 7u);

@@ -126,7 +126,7 @@ TEST_F(RosTransformsTest, OfTfStaticHoldForGood) {
   }
 }
 
-// Which of two publishers is right cannot be told: the tick gets both, as two sources.
+// Nothing tells which of two publishers is right: the tick gets both, as two sources.
 TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
@@ -134,7 +134,7 @@ TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}, {"/tf#2", 2.0}}));
   EXPECT_EQ(heard.told(News::Cause::kFrameOfTwo), 1u);
   // The first publisher is silent for a second.
-  heard.pass(FrameClaims::kSilentNs);
+  heard.pass(kSourceSilentNs);
   send({{"map", "cart_link", {2.1, 0, 0}}}, "/tf", 2);
   EXPECT_EQ(places_of(0), (Places{{"/tf#2", 2.1}}));
   // The second publisher has left.
@@ -159,11 +159,11 @@ TEST_F(RosTransformsTest, OnTfAndOnTfStaticAreTwoSourcesWhicheverCameFirst) {
   heard.intake.keep({1, 2});
   send({{"map", "cart_link", {1, 0, 0}}}, kStatic, 1);
   EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}}));
-  heard.pass(100 * FrameClaims::kSilentNs);
+  heard.pass(100 * kSourceSilentNs);
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
   EXPECT_EQ(places_of(0), (Places{{"/tf", 2.0}, {"/tf_static", 1.0}}));
   // The static one does not take over when the other falls silent.
-  heard.pass(100 * FrameClaims::kSilentNs);
+  heard.pass(100 * kSourceSilentNs);
   EXPECT_EQ(places_of(0), (Places{{"/tf_static", 1.0}}));
   heard.intake.keep({2});
   send({{"map", "cart_link", {3, 0, 0}}}, "/tf", 2);

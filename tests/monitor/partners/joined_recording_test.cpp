@@ -53,7 +53,7 @@ class JoinedRecordings : public testing::Test {
       other.tell(leader);
     }
   }
-  // It ticks on its own, and hears nothing.
+  // Ticks one side on its own, which hears nothing.
   void tick_alone(Side& side, int times) {
     for (int i = 0; i < times; ++i) {
       send();

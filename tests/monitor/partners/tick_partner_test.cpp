@@ -217,7 +217,7 @@ TEST_F(TickPartners, ALeaderThatWasStoppedFollowsTheOneThatWentOn) {
   }
 }
 
-// It ticked the cycle that the other one had announced otherwise.
+// This daemon ticked the cycle that the other one had announced otherwise.
 // A daemon was stopped, and the notice of its next tick was heard when it went on.
 TEST_F(TickPartners, ANoticeThatWasHeardLateDoesNotSetTheToldTimeBack) {
   constexpr std::int64_t kStopped = 1'500'000'000;
@@ -269,7 +269,7 @@ TEST_F(TickPartners, ABatchThatHasNotComeIsWaitedForAndThenTheTickRestsOnOtherIn
   EXPECT_EQ(right.cycle, left.cycle);
 }
 
-// It lacks the batches of that time. Its cycles would come a second time.
+// A daemon that was stopped lacks the batches of that time. Its cycles would come a second time.
 TEST_F(TickPartners, ADaemonThatCountsLowerIsSilentUntilItHasTheOthersState) {
   join();
   for (int i = 0; i < 30; ++i) {

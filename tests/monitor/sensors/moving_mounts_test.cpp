@@ -9,6 +9,7 @@
 
 #include "tests/monitor/bags/ros_bags.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
+#include "tests/monitor/sensors/tf_said.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance::sensors_test {
@@ -19,7 +20,7 @@ constexpr std::int64_t kMountMs = 1'000'000;
 TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfTheirPlace) {
   Random random(11);
   for (int run = 0; run < 500; ++run) {
-    // It moves on a straight way from one time to another, at any time in between.
+    // The frame moves on a straight path from one time to another, at any time in between.
     const double begins = random.uniform(-0.5, 1.0), ends = begins + random.uniform(0.05, 1.0);
     const double way = random.uniform(0.0, 0.5), turn = random.uniform(0.0, 2.0);
     const auto truth = [&](double s) {
@@ -28,7 +29,7 @@ TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfThe
       pose.orientation = Eigen::AngleAxisd(turn * share, Vec3::UnitZ());
       return pose;
     };
-    FrameHistory frames;
+    test::TfSaid frames;
     for (int i = 0; i <= 10; ++i)
       frames.add("cart", "map", truth(0.1 * i), kStart + 100 * i * kMountMs, false);
     const double s = random.uniform(0.0, 1.0), within = run % 2 == 0 ? 0.0 : 0.15;
@@ -46,7 +47,7 @@ TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfThe
 }
 
 TEST(PastFrames, AreNotKnownWhereTheirTransformsHaveAGapOrEnd) {
-  FrameHistory frames;
+  test::TfSaid frames;
   frames.add("cart", "map", {}, kStart, false);
   EXPECT_TRUE(frames.step("cart", kStart));
   EXPECT_FALSE(frames.step("cart", kStart + kMountMs)) << "it may have begun to move";

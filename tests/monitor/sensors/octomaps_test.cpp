@@ -16,9 +16,11 @@ constexpr double kResolution = 0.1;
 const std::string kMap = "octomap: /map, range: 10, age_limit_ms: 2000";
 
 std::vector<std::byte> map_message(const std::string& bytes, std::int64_t stamp_ns,
-                                   const std::string& id = "OcTree") {
+                                   const std::string& id = "OcTree",
+                                   const std::string& frame = "camera",
+                                   double resolution = kResolution) {
   test::RosCdr out;
-  out.header(stamp_ns, "camera").number(std::uint8_t{1}).text(id).number(kResolution);
+  out.header(stamp_ns, frame).number(std::uint8_t{1}).text(id).number(resolution);
   out.number(static_cast<std::uint32_t>(bytes.size()));
   for (const char byte : bytes) out.number(byte);
   return out.bytes();
@@ -96,7 +98,7 @@ TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {
   add_map(Type::kPlanningScene, without.bytes(), kStart);
   EXPECT_TRUE(settle(kStart + 30'000'000).empty());
   EXPECT_EQ(count(FrameFault::kOctree), 0u) << "a change of something else";
-  // Its stamp is 0: the time of sending counts.
+  // The stamp is 0: the time of sending counts.
   add_map(Type::kPlanningScene, with_map.bytes(), kStart + kFrame);
   const auto frames = settle(kStart + kFrame + 30'000'000);
   ASSERT_EQ(frames.size(), 1u);
@@ -151,11 +153,30 @@ TEST_F(OctomapsTest, AreRefusedByCauseIfTheyAreDamagedOrEmpty) {
   };
   const std::string good = one_cube({1, 2, 3});
   refuses(good.substr(0, 9), "OcTree", FrameFault::kOctree);
-  refuses(good, "SemanticOcTree", FrameFault::kOctree);
+  refuses(good, "SemanticOcTree", FrameFault::kFormChanged);
   refuses("", "OcTree", FrameFault::kNothingSeen);
   refuses(one_cube({1000, 0, 0}).substr(0, 30) + std::string(2, '\0'), "OcTree",
           FrameFault::kNothingSeen);
   refuses(std::string("\x00\x80", 2), "OcTree", FrameFault::kCannotBuild);  // an eighth of the tree
+  make(kMap + kAbove);
+  refuses(good, "SemanticOcTree", FrameFault::kOctree);
+}
+
+TEST_F(OctomapsTest, OfAnotherFrameOrResolutionThanTheFirstAreRefusedUntilTheFirstComesAgain) {
+  make(kMap + ", mount: {pose: {xyz: [0, 0, 0]}}");
+  std::int64_t stamp = kStart;
+  const auto frames = [&](const std::string& frame, double resolution) {
+    stamp += kFrame;
+    add_map(Type::kOctomap, map_message(one_cube({5, 0, 0}), stamp, "OcTree", frame, resolution),
+            stamp);
+    return settle(stamp + 1000).size();
+  };
+  ASSERT_EQ(frames("camera", 0.1), 1u);
+  EXPECT_EQ(frames("base", 0.1), 0u);
+  EXPECT_EQ(count(FrameFault::kFrameChanged), 1u);
+  EXPECT_EQ(frames("camera", 0.2), 0u);
+  EXPECT_EQ(count(FrameFault::kFormChanged), 1u);
+  EXPECT_EQ(frames("camera", 0.1), 1u);
 }
 
 // The ball around the reaches of both robots is larger than what a map of this range can hold.

@@ -339,14 +339,16 @@ TEST_F(OrganisedFrames, AreRefusedIfNothingShowsHowFarApartTheRowsOrColumnsAre) 
 
 // The first is a ranging chip with four by four zones; the others are lidars.
 TEST_F(OrganisedFrames, AreRefusedIfTheirRaysAreTooFarApartWhetherOrNotTheyAreWithinTheRange) {
-  make(kPoints + ", spacing: neighbours" + kAbove);
+  const auto make_one = [&] { make(kPoints + ", spacing: neighbours" + kAbove); };
+  make_one();
   EXPECT_TRUE(
       take(4, 4, 11 * kDegree, 11 * kDegree, [](std::size_t, std::size_t) { return 1.0; }).empty());
   EXPECT_EQ(count(FrameFault::kWideRays), 1u);
+  make_one();
   EXPECT_TRUE(take(8, 40, 6 * kDegree, 0.2 * kDegree, [](std::size_t v, std::size_t u) {
                 return v == 4 && u == 20 ? 1.0 : 6.0;
               }).empty());
-  EXPECT_EQ(count(FrameFault::kWideRays), 2u);
+  EXPECT_EQ(count(FrameFault::kWideRays), 1u);
   EXPECT_EQ(
       take(8, 40, 5 * kDegree, 0.2 * kDegree, [](std::size_t, std::size_t) { return 1.0; }).size(),
       1u);
@@ -372,6 +374,10 @@ TEST_F(SensorsTest, MakeBallsOfOrganisedPointsThatReachToTheirNeighbours) {
   cloud.width = 4;
   cloud.row_step = 80;
   cloud.data[0] ^= 1;
+  add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
+  EXPECT_TRUE(settle(cloud.stamp_ns + 1000).empty());
+  EXPECT_EQ(count(FrameFault::kFormChanged), 1u) << "in mid-stream";
+  make(kPoints + ", spacing: neighbours" + kAbove);
   add(Type::kPoints, cloud.cdr(), cloud.stamp_ns);
   EXPECT_TRUE(settle(cloud.stamp_ns + 1000).empty()) << "nothing says which points are neighbours";
   EXPECT_EQ(count(FrameFault::kNotOrganised), 1u);

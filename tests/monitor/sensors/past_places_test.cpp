@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/sensors/frame_history.hpp"
 #include "monitor/sensors/posture_history.hpp"
 #include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/sensors/tf_said.hpp"
 #include "tests/monitor/small_cells.hpp"
 #include "tests/shared/random.hpp"
 
@@ -19,7 +19,7 @@ constexpr std::int64_t kStart = test::kStart, kMs = 1'000'000;
 TEST(PastPlaces, LieWithinTheDeviationThatASpeedAllows) {
   Random random(7);
   for (int path = 0; path < 2000; ++path) {
-    // A path that always goes at full speed, one way and then the other, is the farthest from the
+    // A path that always goes at full speed, forth and then back, is the farthest from the
     // line between its ends.
     const double speed = random.uniform(0.1, 3.0), turn_s = random.uniform(0.0, 1.0);
     const auto value = [&](double s) { return speed * (s < turn_s ? s : 2.0 * turn_s - s); };
@@ -39,7 +39,7 @@ TEST(PastPlaces, OfLinksAreThoseOfTheirJointsAtTheStampAndNeverTheLatestOnes) {
   for (int i = 0; i <= 200; ++i) {
     for (const JointSample& sample :
          test::joints(shoulder(i * 0.01), 0.0, 0.0, kStart + i * 10 * kMs))
-      history.add(sample);
+      history.add(sample, sample.stamp_ns);
   }
   for (const double s : {0.10, 0.3333, 0.5049, 1.2345}) {
     const auto stamp = kStart + static_cast<std::int64_t>(std::llround(s * 1e9));
@@ -79,7 +79,7 @@ TEST(PastPlaces, OfLinksContainTheMotionWithinTheErrorOfTheStamp) {
       const auto stamp = kStart + static_cast<std::int64_t>(s * 1e9);
       for (const JointSample& sample :
            test::joints(shoulder(s), std::remainder(elbow(s), 2.0 * M_PI), 0.0, stamp))
-        history.add(sample);
+        history.add(sample, sample.stamp_ns);
     }
     const double at = random.uniform(0.0, 0.95), within = random.uniform(0.001, 0.1);
     const auto ns = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
@@ -105,7 +105,7 @@ TEST(PastPlaces, OfALinkAtRestHaveNoErrorOfTheStamp) {
   PostureHistory history(scene);
   for (int i = 0; i <= 100; ++i) {
     for (const JointSample& sample : test::joints(0.5, 0.0, 0.0, kStart + i * 10 * kMs))
-      history.add(sample);
+      history.add(sample, sample.stamp_ns);
   }
   history.place(kStart + 500 * kMs, 100 * kMs);
   EXPECT_LT(history.link(0, 1).turn_error, 0.0101);
@@ -117,10 +117,11 @@ TEST(PastPlaces, OfJointsAreNotMixedFromTwoSources) {
   const Scene scene = test::scara_cell();
   PostureHistory history(scene);
   for (int i = 0; i < 10; ++i) {
-    for (JointSample sample : test::joints(0.0, 0.0, 0.0, kStart + i * kMs)) history.add(sample);
+    for (JointSample sample : test::joints(0.0, 0.0, 0.0, kStart + i * kMs))
+      history.add(sample, sample.stamp_ns);
     for (JointSample sample : test::joints(1.0, 1.0, 0.1, kStart + i * kMs + kMs / 2)) {
       sample.source = 1;
-      history.add(sample);
+      history.add(sample, sample.stamp_ns);
     }
   }
   history.place(kStart + 5 * kMs + kMs / 2);
@@ -128,7 +129,7 @@ TEST(PastPlaces, OfJointsAreNotMixedFromTwoSources) {
 }
 
 TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove) {
-  FrameHistory frames;
+  test::TfSaid frames;
   frames.add("static", "world", test::at(1, 0, 0), 0, true);
   for (int i = 0; i < 10; ++i) {
     frames.add("still", "world", test::at(2, 0, 0), kStart + i * 100 * kMs, false);
@@ -152,7 +153,7 @@ TEST(PastPlaces, OfFramesAreExactWhereTheyStandStillAndHaveAnErrorWhereTheyMove)
 
 // A cart at 1 m/s whose transforms come every 10 ms.
 TEST(PastPlaces, OfFramesAtATimeThatIsNotWellKnownEncloseTheMotionWithin) {
-  FrameHistory frames;
+  test::TfSaid frames;
   for (int i = 0; i <= 20; ++i)
     frames.add("cart", "map", test::at(0.01 * i, 0, 0), kStart + 10 * i * kMs, false, 1);
   for (const std::int64_t ms : {40, 105, 175}) {
@@ -174,11 +175,11 @@ TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
   const auto add = [&](double position, std::uint32_t source, std::int64_t stamp_ns) {
     for (JointSample sample : test::joints(position, 0.0, 0.0, stamp_ns)) {
       sample.source = source;
-      history.add(sample);
+      history.add(sample, sample.stamp_ns);
     }
   };
   add(0.0, 1, kStart);
-  add(0.01, 2, kStart + 10 * kMs);  // 2 rad/s for 10 ms allow that
+  add(0.004, 2, kStart + 10 * kMs);  // that may be an error of measuring
   history.place(kStart + 20 * kMs);
   EXPECT_TRUE(history.link(0, 1).known);
   add(0.5, 2, kStart + 20 * kMs);
@@ -194,7 +195,7 @@ TEST(PastPlaces, OfWhatTwoSourcesContradictAreUnknown) {
   const auto pose = [&](double x, std::uint32_t source, std::int64_t stamp_ns) {
     PoseSample sample = test::sample(1, test::at(x, 0, 0), stamp_ns);
     sample.source = source;
-    history.add(sample);
+    history.add(sample, sample.stamp_ns);
   };
   pose(0.0, 1, kStart);
   pose(50.0, 2, kStart + kMs);
@@ -217,8 +218,8 @@ TEST(PastPlaces, AreThoseOfTheSourceThatTheCellStatesAndOfNoOther) {
     std::vector<PoseSample> poses;
     std::vector<JointSample> joints;
     numbers.append(batch, poses, joints);
-    for (const JointSample& sample : joints) history.add(sample);
-    for (const PoseSample& sample : poses) history.add(sample);
+    for (const JointSample& sample : joints) history.add(sample, sample.stamp_ns);
+    for (const PoseSample& sample : poses) history.add(sample, sample.stamp_ns);
   };
   const auto expect_at = [&](double value, std::int64_t stamp_ns) {
     history.place(stamp_ns);
@@ -249,27 +250,37 @@ TEST(PastPlaces, AreThoseOfTheSourceThatTheCellStatesAndOfNoOther) {
   EXPECT_FALSE(history.object(1).known);
 }
 
-TEST(PastPlaces, OfAFrameThatTwoPublishersContradictAreUnknown) {
-  FrameHistory frames;
-  const Pose here = test::at(1, 0, 0), there = test::at(2, 0, 0);
-  frames.add("mast", "map", here, kStart, true, 1);
-  frames.add("mast", "map", here, kStart, true, 2);
-  EXPECT_TRUE(frames.step("mast", kStart)) << "both say the same";
-  frames.add("mast", "map", there, kStart, true, 2);
-  EXPECT_FALSE(frames.step("mast", kStart));
-  frames.keep(std::vector<std::uint64_t>{1});
-  ASSERT_TRUE(frames.step("mast", kStart)) << "the second one has left";
-  EXPECT_EQ(frames.step("mast", kStart)->parent_from_child.position.x(), 1.0);
-  frames.keep({});
-  frames.add("mast", "map", there, kStart, true, 3);
-  EXPECT_EQ(frames.step("mast", kStart)->parent_from_child.position.x(), 2.0) << "a new owner";
+// A frame that gets another parent keeps its places by the one before.
+TEST(PastPlaces, OfAFrameAreThoseByTheParentThatItHadThen) {
+  test::TfSaid frames;
+  for (int i = 0; i < 5; ++i)
+    frames.add("mast", "map", test::at(1, 0, 0), kStart + i * 10 * kMs, false);
+  for (int i = 6; i < 9; ++i)
+    frames.add("mast", "odom", test::at(4, 0, 0), kStart + i * 10 * kMs, false);
+  const auto parent_at = [&](int ms) {
+    const auto parent = TfFrames::parent(*frames.frames.used("mast"), kStart + ms * kMs);
+    return parent ? *parent->name : "";
+  };
+  EXPECT_EQ(parent_at(35), "map");
+  EXPECT_EQ(frames.step("mast", kStart + 35 * kMs)->parent_from_child.position.x(), 1.0);
+  EXPECT_EQ(parent_at(50), "") << "between the two";
+  EXPECT_FALSE(frames.step("mast", kStart + 50 * kMs));
+  EXPECT_EQ(parent_at(75), "odom");
+  EXPECT_EQ(frames.step("mast", kStart + 75 * kMs)->parent_from_child.position.x(), 4.0);
+  EXPECT_FALSE(frames.step("mast", kStart + 62 * kMs, 5 * kMs)) << "before the first by it";
+}
 
-  frames.add("cart", "map", here, kStart, false, 1);
-  frames.add("cart", "map", there, kStart + kMs, false, 2);
-  frames.add("cart", "map", here, kStart + 2 * kMs, false, 1);
-  EXPECT_FALSE(frames.step("cart", kStart + 2 * kMs));
-  for (int i = 1; i < 20; ++i) frames.add("cart", "map", here, kStart + i * 100 * kMs, false, 1);
-  EXPECT_TRUE(frames.step("cart", kStart + 1900 * kMs)) << "the rival has been silent for a second";
+TEST(PastPlaces, OfAFrameWhosePublisherHasLeftStayAndANewOneGoesOn) {
+  test::TfSaid frames;
+  const Pose here = test::at(1, 0, 0), there = test::at(2, 0, 0);
+  frames.add("plate", "map", here, kStart, true, 1);
+  frames.add("mast", "map", here, kStart, false, 1);
+  frames.frames.keep({});
+  ASSERT_TRUE(frames.step("plate", kStart));
+  frames.add("plate", "map", there, kStart, true, 2);
+  EXPECT_EQ(frames.step("plate", kStart)->parent_from_child.position.x(), 2.0) << "a new owner";
+  frames.add("mast", "map", there, kStart + 10 * kMs, false, 2);
+  EXPECT_NEAR(frames.step("mast", kStart + 5 * kMs)->parent_from_child.position.x(), 1.5, 1e-12);
 }
 
 }  // namespace

@@ -145,7 +145,7 @@ int run_suite(std::span<const std::string> words) {
   std::filesystem::create_directories(arguments.out, ignored);
   std::vector<RaceRow> rows;
   {
-    ProgressBar bar(false);
+    ProgressBar bar;
     rows = race(rivals, kinds, arguments.race,
                 [&](double share, const std::string& what) { bar.show(share, what + "      "); });
   }

@@ -17,7 +17,7 @@ PyObject* make(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
 
 // pybind11 gives the methods of an object whose __init__ was not called memory that nothing has
 // filled. Body.__new__(Body) is the only call that makes such an object. Python refuses that call,
-// by itself, where a class makes its objects in another way than its base does.
+// by itself, where a class makes its objects otherwise than its base does.
 void refuse_new_without_init(const py::module_& module) {
   for (const auto& [name, value] : module.attr("__dict__").cast<py::dict>()) {
     if (!PyType_Check(value.ptr())) continue;

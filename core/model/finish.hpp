@@ -1,0 +1,39 @@
+// From what a method has found to the result of a query: radii, status and the promises of
+// DistanceResult.
+#pragma once
+
+#include <cassert>
+
+#include "core/model/query.hpp"
+#include "core/model/radii.hpp"
+#include "core/model/result_invariants.hpp"
+
+namespace clearance {
+
+// Bodies without radii become bodies with them. `outward`: unit, the direction from A to B in which
+// the witness points move. Converged bounds say by their signs whether the bodies touch or overlap.
+inline void finish(const ConvexBody& a, const ConvexBody& b, const Vec3& outward,
+                   Answer& r) noexcept {
+  const double sum = radii(a, b);
+  if (sum != 0.0 && r.upper != -kInfinity) {  // else no translation separates the bodies
+    const double rounding = rounding_of_radii(sum, r.upper);
+    r.distance -= sum;
+    r.lower -= sum + rounding;
+    r.upper -= sum - rounding;
+    r.point_on_a += a.radius * outward;
+    r.point_on_b = on_rounded_b(r.point_on_b, outward, b);
+  }
+  // A depth that has not converged stays kIterationLimit. Only that of curved bodies may be so.
+  const bool wide_depth =
+      r.status == DistanceStatus::kIterationLimit && r.path == DistancePath::kDirection;
+  if (!(r.lower > 0.0) && !wide_depth) {
+    if (r.upper < 0.0) {
+      r.status = DistanceStatus::kOverlapping;
+    } else if (r.status == DistanceStatus::kConverged) {
+      r.status = DistanceStatus::kTouching;
+    }
+  }
+  assert(keeps_promises(r));
+}
+
+}  // namespace clearance
