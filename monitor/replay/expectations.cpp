@@ -1,4 +1,4 @@
-// Which ticks count for an expectation, and how many of them may be doubtful.
+// Counts the ticks in which an expectation is judged, and how many of them are doubtful.
 #include "monitor/replay/expectations.hpp"
 
 #include <fmt/format.h>
