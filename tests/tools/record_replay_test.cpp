@@ -339,10 +339,14 @@ TEST_F(RecordReplay, ReportsWithoutTheirPosesCannotBeCompared) {
 }
 
 TEST_F(RecordReplay, PartitionsWithWildcardsAndLongSourceNamesAreRefused) {
-  for (const std::string& program : {kDaemon, kRobot, kReplay}) {
-    EXPECT_EQ(2, run(program, {path("cell.yaml"), "--partition", "a*"})) << program;
+  const auto is_refused = [this](const std::string& program, std::vector<std::string> arguments) {
+    EXPECT_EQ(2,
+              run(program, with(std::move(arguments), {path("cell.yaml"), "--partition", "a*"})));
     EXPECT_THAT(output, HasSubstr("found 'a*'; expected a partition of at most 255 bytes"));
-  }
+  };
+  is_refused(kDaemon, {});
+  is_refused(kRobot, {});
+  is_refused(kReplay, {"publish"});
   EXPECT_EQ(2, run(kRobot, {path("cell.yaml"), "--source", std::string(33, 'x')}));
   EXPECT_THAT(output, HasSubstr("33 bytes; expected a name of 1 to 32"));
 }
