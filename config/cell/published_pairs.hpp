@@ -9,7 +9,7 @@
 
 namespace clearance {
 
-// What a pair's nearness depends on.
+// The objects of the pairs, and what places them.
 struct PlacedObjects {
   std::span<const Object> objects;
   std::span<const Robot> robots;

@@ -143,7 +143,7 @@ std::string fault_of_reference(const XMLElement& element, const std::set<std::st
     return "";
   const char* const url = element.Attribute("url");
   if (url != nullptr && *url == '#' && ids.contains(url + 1)) return "";
-  return fmt::format("line {} has an <{}> of '{}', of which the file contains no mesh",
+  return fmt::format("line {} has an <{}> of '{}', and the file contains no mesh of that name",
                      element.GetLineNum(), name, url == nullptr ? "" : url);
 }
 

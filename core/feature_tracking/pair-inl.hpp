@@ -27,7 +27,7 @@ namespace clearance::HWY_NAMESPACE {
 HWY_INLINE double inverse_norm_near_1(Vec4 v) { return 1.5 - 0.5 * dot(v, v); }
 HWY_INLINE double inverse_square_near_1(Vec4 v) { return 2.0 - dot(v, v); }
 
-// What the transition that ends at kClosest has found; unset before it.
+// The closest points, set by the transition that ends at kClosest.
 struct Findings {
   Vec4 a_A, b_A, b_B;     // witness points: A's in frame A, and B's in frame A and in frame B
   Vec4 n_A;               // the normal: unit, from A to B, frame A
@@ -223,7 +223,7 @@ enum class Transition {
 
 using Side = TrackingState::Side;
 
-// Of bodies that touched or penetrated each other (penetrating_transitions-inl.hpp).
+// The contact of bodies that touch or penetrate each other (penetrating_transitions-inl.hpp).
 struct Contact {
   double inradius = 0.0;     // m: from the crossing of the edges to their nearest end
   double depth_error = 0.0;  // m: the depth may be smaller by this

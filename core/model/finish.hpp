@@ -1,5 +1,5 @@
-// From what a method has found to the result of a query: radii, status and the promises of
-// DistanceResult.
+// Turns the answer of a method into the result of a query: adds radii, decides the status, and
+// checks the promises of DistanceResult.
 #pragma once
 
 #include <cassert>

@@ -1,5 +1,5 @@
-// What a daemon does for the clients that its cell names: it takes their commands, and answers
-// questions about motions, also those on topics of trajectories.
+// Serves the clients that the cell names: accepts their commands, and answers questions about
+// motions, also those on topics of trajectories.
 #pragma once
 
 #include <atomic>
@@ -23,7 +23,7 @@ class ClientPorts {
     CommandPort::Put put;                     // passes a command on
     std::function<std::uint64_t()> revision;  // of the scene in force
     QuestionDesk::Frames frames;
-    // What a partner does; empty: there is none.
+    // The partner's part in each; empty: there is none.
     CommandPort::Sharing commands;
     QuestionPort::Sharing questions;
     RosWrites::Leads leads;

@@ -1,4 +1,4 @@
-// What the messages of a sensor say of themselves: the frame in which they were measured, and how
+// The form of a sensor's messages, as they state it: the frame in which they were measured, and how
 // their bytes are to be read.
 //
 // A driver says the same in each message. Another form in mid-stream shows another camera, another

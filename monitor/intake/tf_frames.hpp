@@ -92,7 +92,7 @@ class TfFrames {
     return claim.publisher.is_static || monotonic_ns - claim.heard_ns < kSourceSilentNs;
   }
 
-  // What a claim says of a past time.
+  // The parent that a claim names for a past time.
   struct Parent {
     const std::string* name = nullptr;
     std::int64_t known_until_ns = 0;  // the stamp of its last transform; if static, the last time

@@ -54,7 +54,8 @@ class Expectations {
   // have ended before the recording, and these ticks are not doubtful.
   [[nodiscard]] std::vector<Broken> finish(const Monitor& monitor, std::int64_t last_ns);
 
-  // After finish(): which ticks of which expectation were not judged, or doubtful but allowed.
+  // Tells, after finish(), how many ticks of each expectation were not judged, or were doubtful and
+  // allowed.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
   // The most ticks that one expectation was not judged in.
   [[nodiscard]] std::uint64_t not_judged() const noexcept;
