@@ -179,8 +179,8 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
     if (expectation.begun) ++expectation.judged;
     const bool late = is_late(expectation);
     expectation.judged_on_time |= expectation.begun && !late;
-    Found why = expectation.begun ? found(expectation, report, monitor)
-                                  : found_certain(expectation, report, monitor);
+    Found why = expectation.begun ? found(expectation, {report, monitor})
+                                  : found_certain(expectation, {report, monitor});
     if (!why) continue;
     Broken what{report.cycle, report.now_ns, std::move(why->what)};
     if (!why->certain) {

@@ -84,6 +84,10 @@ class Expectations {
     std::int64_t since_ns = 0;
     std::uint64_t refused = 0;  // samples of all objects until then
   };
+  struct Tick {
+    const Report& report;
+    const Monitor& monitor;
+  };
   // Why a tick breaks an expectation. `certain`: no bound of an unknown or late pair decided.
   struct Finding {
     std::string what;
@@ -103,21 +107,14 @@ class Expectations {
   void doubt(Expectation& expectation, Broken broken) const;
   void end_lateness(Expectation& expectation, const std::string& why) const;
   void finish_lateness(Expectation& expectation, std::int64_t last_ns);
-  [[nodiscard]] Found found(const Expectation& expectation, const Report& report,
-                            const Monitor& monitor) const;
+  [[nodiscard]] Found found(const Expectation& expectation, const Tick& tick) const;
   // Without unknown pairs, and of late ones what is certain.
-  [[nodiscard]] Found found_certain(const Expectation& expectation, const Report& report,
-                                    const Monitor& monitor) const;
-  [[nodiscard]] Found entered(const Expectation& expectation, const Report& report,
-                              const Monitor& monitor) const;
-  [[nodiscard]] Found entered_by_known(const Expectation& expectation, const Report& report,
-                                       const Monitor& monitor) const;
-  [[nodiscard]] Found certainly_near(const Expectation& expectation, const Report& report,
-                                     const Monitor& monitor) const;
-  [[nodiscard]] Found too_near(const Expectation& expectation, const Report& report,
-                               const Monitor& monitor) const;
-  [[nodiscard]] Found swept_too_near(const Expectation& expectation, const Report& report,
-                                     const Monitor& monitor) const;
+  [[nodiscard]] Found found_certain(const Expectation& expectation, const Tick& tick) const;
+  [[nodiscard]] Found entered(const Expectation& expectation, const Tick& tick) const;
+  [[nodiscard]] Found entered_by_known(const Expectation& expectation, const Tick& tick) const;
+  [[nodiscard]] Found certainly_near(const Expectation& expectation, const Tick& tick) const;
+  [[nodiscard]] Found too_near(const Expectation& expectation, const Tick& tick) const;
+  [[nodiscard]] Found swept_too_near(const Expectation& expectation, const Tick& tick) const;
   void note_ticks(const Expectation& expectation);
 
   const Scene* scene_;

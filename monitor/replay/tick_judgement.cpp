@@ -26,28 +26,24 @@ bool counts(const PairReport& pair, const Report& report) {
 
 }  // namespace
 
-Expectations::Found Expectations::found(const Expectation& expectation, const Report& report,
-                                        const Monitor& monitor) const {
+Expectations::Found Expectations::found(const Expectation& expectation, const Tick& tick) const {
   if (is_late(expectation)) {
-    if (Found certain = found_certain(expectation, report, monitor)) return certain;
+    if (Found certain = found_certain(expectation, tick)) return certain;
   }
-  return expectation.distance ? too_near(expectation, report, monitor)
-                              : entered(expectation, report, monitor);
+  return expectation.distance ? too_near(expectation, tick) : entered(expectation, tick);
 }
 
 Expectations::Found Expectations::found_certain(const Expectation& expectation,
-                                                const Report& report,
-                                                const Monitor& monitor) const {
-  return expectation.distance ? certainly_near(expectation, report, monitor)
-                              : entered_by_known(expectation, report, monitor);
+                                                const Tick& tick) const {
+  return expectation.distance ? certainly_near(expectation, tick)
+                              : entered_by_known(expectation, tick);
 }
 
 // A zone is active by the distance now, or by what may have happened between two ticks.
-Expectations::Found Expectations::entered(const Expectation& expectation, const Report& report,
-                                          const Monitor& monitor) const {
-  if (!expectation.index || !report.zones[*expectation.index].active) return std::nullopt;
+Expectations::Found Expectations::entered(const Expectation& expectation, const Tick& tick) const {
+  if (!expectation.index || !tick.report.zones[*expectation.index].active) return std::nullopt;
   const Zone& zone = scene_->zones[*expectation.index];
-  const ZoneReport& in_tick = report.zones[*expectation.index];
+  const ZoneReport& in_tick = tick.report.zones[*expectation.index];
   const bool between =
       in_tick.clearance >= zone.enter_below && in_tick.swept_clearance < zone.enter_below;
   const std::string what =
@@ -57,20 +53,19 @@ Expectations::Found Expectations::entered(const Expectation& expectation, const 
   return Finding{fmt::format("zone '{}' is active: {}{} (its lower bound less both margins)",
                              zone.name, pair_name(*scene_, in_tick.pair), what),
                  !is_late(expectation) && (in_tick.pair >= scene_->pairs.size() ||
-                                           is_known(monitor.pair(in_tick.pair).status))};
+                                           is_known(tick.monitor.pair(in_tick.pair).status))};
 }
 
 // The threshold of a zone with `separation` is the tick's. The pair that the tick names may have a
 // late object and hide another one that is too near.
 Expectations::Found Expectations::entered_by_known(const Expectation& expectation,
-                                                   const Report& report,
-                                                   const Monitor& monitor) const {
-  if (!expectation.index || !report.zones[*expectation.index].active) return std::nullopt;
+                                                   const Tick& tick) const {
+  if (!expectation.index || !tick.report.zones[*expectation.index].active) return std::nullopt;
   const Zone& zone = scene_->zones[*expectation.index];
   if (zone.separation) {
-    for (const PairSeparation& pair : report.separated_pairs) {
+    for (const PairSeparation& pair : tick.report.separated_pairs) {
       if (pair.zone != *expectation.index || has_late_object(pair.pair) ||
-          may_touch(report, pair.pair) || !(pair.remaining < 0.0))
+          may_touch(tick.report, pair.pair) || !(pair.remaining < 0.0))
         continue;
       return Finding{
           fmt::format("zone '{}' is active: {} has a clearance of {}, less than its "
@@ -80,13 +75,14 @@ Expectations::Found Expectations::entered_by_known(const Expectation& expectatio
     return std::nullopt;
   }
   for (const std::uint32_t p : expectation.pairs) {
-    const PairReport pair = monitor.pair(p);
+    const PairReport pair = tick.monitor.pair(p);
     const ObjectPair& objects = scene_->pairs[p];
     const double margins =
         scene_->objects[objects.first].margin + scene_->objects[objects.second].margin;
     const bool late = has_late_object(p);
     const double decides = late ? pair.upper : std::min(pair.lower, pair.swept_lower);
-    if (!counts(pair, report) || !is_known(pair.status) || !(decides - margins < zone.enter_below))
+    if (!counts(pair, tick.report) || !is_known(pair.status) ||
+        !(decides - margins < zone.enter_below))
       continue;
     return Finding{fmt::format(
         "zone '{}' is active: {} has a clearance of {} (its {} bound less both margins)", zone.name,
@@ -96,13 +92,12 @@ Expectations::Found Expectations::entered_by_known(const Expectation& expectatio
 }
 
 Expectations::Found Expectations::certainly_near(const Expectation& expectation,
-                                                 const Report& report,
-                                                 const Monitor& monitor) const {
+                                                 const Tick& tick) const {
   if (!expectation.distance) return std::nullopt;
   const double expected = expectation.distance->metres;
   for (const std::uint32_t p : expectation.pairs) {
-    const PairReport pair = monitor.pair(p);
-    if (!is_known(pair.status) || !(pair.upper < expected) || !counts(pair, report)) continue;
+    const PairReport pair = tick.monitor.pair(p);
+    if (!is_known(pair.status) || !(pair.upper < expected) || !counts(pair, tick.report)) continue;
     return Finding{fmt::format("{} is {} apart, at least {} expected", pair_name(*scene_, p),
                                metres(pair.distance), metres(expected))};
   }
@@ -111,16 +106,15 @@ Expectations::Found Expectations::certainly_near(const Expectation& expectation,
 
 // The bound over all pairs decides; only where it fails is a pair looked for to name it. Pairs with
 // late objects come last: a pair without one decides for certain.
-Expectations::Found Expectations::too_near(const Expectation& expectation, const Report& report,
-                                           const Monitor& monitor) const {
+Expectations::Found Expectations::too_near(const Expectation& expectation, const Tick& tick) const {
   const double expected = expectation.distance->metres;
-  if (expectation.all_pairs && report.lower_all >= expected)
-    return swept_too_near(expectation, report, monitor);
+  if (expectation.all_pairs && tick.report.lower_all >= expected)
+    return swept_too_near(expectation, tick);
   std::optional<PairReport> nearest;
   bool is_certain = false;
   for (const std::uint32_t p : expectation.pairs) {
-    const PairReport pair = monitor.pair(p);
-    if (!(pair.lower < expected) || !counts(pair, report)) continue;
+    const PairReport pair = tick.monitor.pair(p);
+    if (!(pair.lower < expected) || !counts(pair, tick.report)) continue;
     const bool certain = is_known(pair.status) && !has_late_object(p);
     if (!nearest || certain > is_certain ||
         (certain == is_certain && pair.lower < nearest->lower)) {
@@ -128,7 +122,7 @@ Expectations::Found Expectations::too_near(const Expectation& expectation, const
       is_certain = certain;
     }
   }
-  if (!nearest) return swept_too_near(expectation, report, monitor);
+  if (!nearest) return swept_too_near(expectation, tick);
   const std::string who = pair_name(*scene_, nearest->pair);
   if (nearest->upper < expected) {
     return Finding{fmt::format("{} is {} apart, at least {} expected", who,
@@ -143,16 +137,15 @@ Expectations::Found Expectations::too_near(const Expectation& expectation, const
 
 // No pair is too near now, but one may have been since the last tick.
 Expectations::Found Expectations::swept_too_near(const Expectation& expectation,
-                                                 const Report& report,
-                                                 const Monitor& monitor) const {
+                                                 const Tick& tick) const {
   const double expected = expectation.distance->metres;
-  if (expectation.all_pairs && report.swept_lower_all >= expected) return std::nullopt;
+  if (expectation.all_pairs && tick.report.swept_lower_all >= expected) return std::nullopt;
   Found doubtful;
   for (const std::uint32_t p : expectation.pairs) {
-    const PairReport pair = monitor.pair(p);
-    if (pair.swept_lower >= expected || !counts(pair, report)) continue;
+    const PairReport pair = tick.monitor.pair(p);
+    if (pair.swept_lower >= expected || !counts(pair, tick.report)) continue;
     // More expensive than the tick's own bound, hence only where that one does not suffice.
-    const SweptBounds swept = monitor.sweep(p, expected);
+    const SweptBounds swept = tick.monitor.sweep(p, expected);
     if (swept.lower >= expected) continue;
     const std::string who = pair_name(*scene_, p);
     const bool late = has_late_object(p);
