@@ -9,7 +9,7 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/bags/bag.hpp"
+#include "monitor/recording/bag.hpp"
 #include "monitor/files/file_error.hpp"
 #include "tools/ask/answering.hpp"
 

@@ -7,7 +7,7 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "tools/record/arguments.hpp"
 
 namespace clearance {

@@ -1,4 +1,4 @@
-// Reads `partner:`, the daemon's name among two that publish side by side (monitor/partners).
+// Reads `partner:`, the daemon's name among two that publish side by side (monitor/loop).
 #pragma once
 
 #include <string>

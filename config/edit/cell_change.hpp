@@ -50,7 +50,7 @@ struct Attach {
   std::string object;
   std::string to;
   // Nothing: where it is now relative to the carrier. Only a running monitor knows that: it fills
-  // this in before the change is made (monitor/scene_changes).
+  // this in before the change is made (monitor/requests).
   std::optional<Pose> carrier_from_object = {};
   std::vector<std::string> touch = {};
   // The greatest depth by which it may overlap its carrier and what it may touch, m. A running

@@ -1,5 +1,5 @@
 // A robot by its description: a tree of links that joints move. config/urdf/robot_model.hpp reads
-// it from URDF; monitor/kinematics places its links.
+// it from URDF; monitor/bodies places its links.
 #pragma once
 
 #include <cmath>

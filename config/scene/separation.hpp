@@ -1,5 +1,5 @@
 // Speed and separation monitoring of a zone. These are the terms of the protective separation
-// distance of ISO/TS 15066, 5.5.4, named as in ISO 13855. monitor/separation/README.md has the
+// distance of ISO/TS 15066, 5.5.4, named as in ISO 13855. monitor/zones/README.md has the
 // formula.
 #pragma once
 

@@ -5,8 +5,8 @@
 
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/ask/vectors.hpp"
-#include "monitor/kinematics/fixed_order.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/fixed_order.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "monitor/ask/robots_of_question.hpp"
-#include "monitor/contacts/contact_end.hpp"
+#include "monitor/zones/contact_end.hpp"
 
 namespace clearance {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/ask/present_inputs.hpp"
-#include "monitor/motion_question.hpp"
+#include "monitor/interface/motion_question.hpp"
 
 namespace clearance {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "monitor/ask/motion_search.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 void MotionSearch::find_least() {

@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "monitor/ask/motion_search.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

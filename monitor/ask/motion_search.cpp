@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -14,7 +14,7 @@
 #include "monitor/ask/pair_bounds.hpp"
 #include "monitor/ask/part_pairs.hpp"
 #include "monitor/ask/posture.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

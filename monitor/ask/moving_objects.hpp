@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 #include "monitor/ask/trajectory.hpp"
 
 namespace clearance {

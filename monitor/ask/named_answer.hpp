@@ -2,7 +2,7 @@
 #pragma once
 
 #include "config/scene/scene.hpp"
-#include "monitor/motion_question.hpp"
+#include "monitor/interface/motion_question.hpp"
 
 namespace clearance {
 

@@ -8,9 +8,9 @@
 #include "core/model/curved_extent.hpp"
 #include "core/model/support_function.hpp"
 #include "monitor/ask/vectors.hpp"
-#include "monitor/geometry/bounding_sphere.hpp"
-#include "monitor/kinematics/fixed_order.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
+#include "monitor/bodies/fixed_order.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 
 namespace clearance {

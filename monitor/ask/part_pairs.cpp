@@ -4,7 +4,7 @@
 #include <tuple>
 
 #include "core/model/curved_extent.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "monitor/ask/trajectory.hpp"
-#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
 
 namespace clearance {
 namespace {

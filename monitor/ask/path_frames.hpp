@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

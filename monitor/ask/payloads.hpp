@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "config/scene/scene.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

@@ -6,7 +6,7 @@
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
 #include "monitor/inputs/joint_batch.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

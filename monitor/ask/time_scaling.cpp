@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "monitor/ask/motion_search.hpp"
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/separation/protective_distance.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/zones/protective_distance.hpp"
 
 namespace clearance {
 namespace {

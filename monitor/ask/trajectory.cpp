@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "monitor/inputs/joint_batch.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

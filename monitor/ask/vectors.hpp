@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "monitor/kinematics/fixed_order.hpp"
+#include "monitor/bodies/fixed_order.hpp"
 
 namespace clearance {
 

@@ -1,4 +1,4 @@
-// Merges the reports of two partners (monitor/partners/README.md) into one stream.
+// Merges the reports of two partners (monitor/loop/PARTNERS.md) into one stream.
 #pragma once
 
 #include <array>

@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "monitor/commands/question_message.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance::client {

@@ -6,8 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "monitor/commands/command_message.hpp"
-#include "monitor/commands/question_message.hpp"
+#include "monitor/participant/command_message.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/topics.hpp"
 

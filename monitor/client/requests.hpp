@@ -12,8 +12,8 @@
 #include <string_view>
 
 #include "monitor/client/client.hpp"
-#include "monitor/command.hpp"
-#include "monitor/motion_question.hpp"
+#include "monitor/interface/command.hpp"
+#include "monitor/interface/motion_question.hpp"
 
 namespace clearance {
 

@@ -10,8 +10,8 @@
 #include "config/text/fnv1a.hpp"
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/whole_reports.hpp"
-#include "monitor/report.hpp"
-#include "monitor/tight_bounds.hpp"
+#include "monitor/interface/report.hpp"
+#include "monitor/interface/tight_bounds.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance::client {

@@ -12,9 +12,9 @@
 
 #include "monitor/client/client.hpp"
 #include "monitor/client/sequence_view.hpp"
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance::client {
 namespace {

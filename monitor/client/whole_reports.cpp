@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/convex_body.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance::client {

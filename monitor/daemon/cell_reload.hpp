@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/command.hpp"
+#include "monitor/interface/command.hpp"
 #include "monitor/daemon/file_watch.hpp"
-#include "monitor/scene_changes/scene_task.hpp"
-#include "monitor/service/service_manager.hpp"
+#include "monitor/requests/scene_task.hpp"
+#include "monitor/daemon/service_manager.hpp"
 
 namespace clearance {
 

@@ -20,15 +20,15 @@
 #include "monitor/daemon/recording.hpp"
 #include "monitor/daemon/share_scenes.hpp"
 #include "monitor/dds/pose_reader.hpp"
-#include "monitor/dds/report_writer.hpp"
+#include "monitor/publish/report_writer.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/ros/ros_messages.hpp"
-#include "monitor/ros/ros_writer.hpp"
-#include "monitor/scene_changes/scene_changer.hpp"
-#include "monitor/scene_changes/scene_thread.hpp"
-#include "monitor/service/service_manager.hpp"
+#include "monitor/publish/ros_messages.hpp"
+#include "monitor/publish/ros_writer.hpp"
+#include "monitor/requests/scene_changer.hpp"
+#include "monitor/requests/scene_thread.hpp"
+#include "monitor/daemon/service_manager.hpp"
 
 namespace clearance {
 

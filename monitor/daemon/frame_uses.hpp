@@ -8,7 +8,7 @@
 
 #include "config/scene/sensor.hpp"
 #include "monitor/loop/ports.hpp"
-#include "monitor/state/spsc_ring.hpp"
+#include "monitor/tick/spsc_ring.hpp"
 
 namespace clearance {
 

@@ -23,9 +23,9 @@
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/dds/robot_description.hpp"
-#include "monitor/metrics/metrics_server.hpp"
-#include "monitor/metrics/metrics_text.hpp"
-#include "monitor/scene_changes/kept_scene.hpp"
+#include "monitor/publish/metrics_server.hpp"
+#include "monitor/publish/metrics_text.hpp"
+#include "monitor/requests/kept_scene.hpp"
 
 namespace clearance {
 namespace {
@@ -124,7 +124,7 @@ void add_options(CLI::App& app, Arguments& arguments) {
                  "Keep the changed scene in this file, and begin with it after a crash");
   app.add_option("--partner", arguments.daemon.partner,
                  "Publish side by side with a second daemon of this cell, under this name "
-                 "(monitor/partners/README.md); in place of the cell's 'partner'")
+                 "(monitor/loop/PARTNERS.md); in place of the cell's 'partner'")
       ->check(is_partner);
   app.add_flag(
       "--reload", arguments.daemon.reload,

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "monitor/daemon/scene_turns.hpp"
-#include "monitor/moveit/scene_keeper.hpp"
-#include "monitor/scene_changes/scene_task.hpp"
+#include "monitor/intake/scene_keeper.hpp"
+#include "monitor/requests/scene_task.hpp"
 
 namespace clearance {
 

@@ -16,8 +16,8 @@
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/loop/tick_loop.hpp"
-#include "monitor/scene_changes/scene_changer.hpp"
-#include "monitor/scene_changes/scene_thread.hpp"
+#include "monitor/requests/scene_changer.hpp"
+#include "monitor/requests/scene_thread.hpp"
 
 namespace clearance {
 

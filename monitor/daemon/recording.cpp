@@ -9,7 +9,7 @@
 #include <span>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/dds/health.hpp"
+#include "monitor/publish/health.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/moveit/scene_keeper.hpp"
+#include "monitor/intake/scene_keeper.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

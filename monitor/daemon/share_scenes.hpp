@@ -16,7 +16,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/scene_changes/scene_task.hpp"
+#include "monitor/requests/scene_task.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -8,7 +8,7 @@
 #include "monitor/app/log_lines.hpp"
 #include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/ros/motion_diagnostics.hpp"
+#include "monitor/publish/motion_diagnostics.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/moveit_types.hpp"
 

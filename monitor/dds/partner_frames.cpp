@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/commands/wire_values.hpp"
+#include "monitor/participant/wire_values.hpp"
 
 namespace clearance {
 namespace {

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/commands/wire_values.hpp"
+#include "monitor/participant/wire_values.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/loop/realtime.hpp"

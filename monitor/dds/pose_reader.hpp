@@ -19,7 +19,7 @@
 #include "monitor/intake/intake.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/state/spsc_ring.hpp"
+#include "monitor/tick/spsc_ring.hpp"
 
 namespace clearance {
 

@@ -2,7 +2,7 @@
 //
 // A thread takes images, CameraInfo, points and transforms, and builds a frame of the newest of
 // them. It has readers of its own, so that no joint or pose waits behind an image, and ordinary
-// priority. The tick takes a frame when it is built (state/frame_exchange.hpp).
+// priority. The tick takes a frame when it is built (tick/frame_exchange.hpp).
 #pragma once
 
 #include <atomic>
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 #include "monitor/dds/partner_frames.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
@@ -22,8 +22,8 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
-#include "monitor/state/frame_exchange.hpp"
-#include "monitor/state/spsc_ring.hpp"
+#include "monitor/tick/frame_exchange.hpp"
+#include "monitor/tick/spsc_ring.hpp"
 
 namespace clearance {
 

@@ -22,7 +22,7 @@ struct JointSample {
 };
 
 // The largest admissible position and velocity of a joint. The sines and cosines of angles up to
-// this bound are computed without loss of digits (kinematics/sine_cosine.hpp).
+// this bound are computed without loss of digits (bodies/sine_cosine.hpp).
 inline constexpr double kLargestJoint = 1e6;  // rad, m, rad/s or m/s
 
 }  // namespace clearance

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "monitor/intake/decoder.hpp"
-#include "monitor/moveit/scene_keeper.hpp"
+#include "monitor/intake/scene_keeper.hpp"
 
 namespace clearance {
 

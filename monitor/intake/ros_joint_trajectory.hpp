@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 #include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {

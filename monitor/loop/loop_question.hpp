@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "monitor/loop/loop_statistics.hpp"
-#include "monitor/present_body.hpp"
+#include "monitor/tick/present_body.hpp"
 
 namespace clearance {
 

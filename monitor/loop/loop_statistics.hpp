@@ -8,8 +8,8 @@
 #include "config/scene/scene.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/loop/histogram.hpp"
-#include "monitor/monitor.hpp"
-#include "monitor/report.hpp"
+#include "monitor/tick/monitor.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 

@@ -11,7 +11,7 @@
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/loop/loop_statistics.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 
@@ -34,7 +34,7 @@ class ReportSink {
   virtual void input(const PoseBatch& batch) noexcept = 0;
   // The coming tick is shown the frame of this sensor with this stamp.
   virtual void frame(std::uint32_t /*sensor*/, std::int64_t /*stamp_ns*/) noexcept {}
-  // The report that follows is of this lineage (monitor/partners). Partners only.
+  // The report that follows is of this lineage (monitor/loop). Partners only.
   virtual void lineage(std::uint64_t /*lineage*/) noexcept {}
   // The tick of the report that follows goes on from the state of a partner, which was taken for
   // this lineage. Partners only.

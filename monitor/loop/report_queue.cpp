@@ -6,7 +6,7 @@
 #include <thread>
 #include <utility>
 
-#include "monitor/gradients/gradient_rows.hpp"
+#include "monitor/interface/gradient_rows.hpp"
 
 namespace clearance {
 namespace {

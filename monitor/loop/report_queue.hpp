@@ -11,7 +11,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/semaphore.hpp"
-#include "monitor/state/spsc_ring.hpp"
+#include "monitor/tick/spsc_ring.hpp"
 
 namespace clearance {
 

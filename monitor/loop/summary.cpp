@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include "config/text/sentences.hpp"
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 
 namespace clearance {
 std::string percentiles(const Histogram& histogram) {

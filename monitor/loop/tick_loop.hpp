@@ -12,7 +12,7 @@
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
-#include "monitor/state/tick_state.hpp"
+#include "monitor/tick/tick_state.hpp"
 
 namespace clearance {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "monitor/invariant.hpp"
+#include "monitor/interface/invariant.hpp"
 
 namespace clearance {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/pairs/carried_gap.hpp"
 
 namespace clearance {

@@ -8,7 +8,7 @@
 // of now. Motion across n costs nothing, and motion that separates the bodies along n gains.
 #pragma once
 
-#include "monitor/geometry/posed_part.hpp"
+#include "monitor/bodies/posed_part.hpp"
 
 namespace clearance {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/tight_bounds.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/interface/tight_bounds.hpp"
 
 namespace clearance {
 namespace {

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "core/model/radii.hpp"
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/motion/swept_bound.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/swept_bound.hpp"
 #include "monitor/pairs/carried_bounds.hpp"
 #include "monitor/pairs/carried_gap.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/invariant.hpp"
+#include "monitor/interface/invariant.hpp"
 
 namespace clearance {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/distance.hpp"
-#include "monitor/objects/large_column.hpp"
+#include "monitor/bodies/large_column.hpp"
 
 namespace clearance {
 

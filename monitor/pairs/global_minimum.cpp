@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/tight_bounds.hpp"
+#include "monitor/interface/tight_bounds.hpp"
 
 namespace clearance {
 

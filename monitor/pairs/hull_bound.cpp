@@ -1,6 +1,6 @@
 #include "monitor/pairs/hull_bound.hpp"
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

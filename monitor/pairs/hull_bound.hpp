@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "monitor/geometry/bounding_hull.hpp"
+#include "monitor/bodies/bounding_hull.hpp"
 #include "monitor/pairs/budget.hpp"
 #include "monitor/pairs/tick_view.hpp"
 

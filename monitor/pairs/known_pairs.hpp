@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/objects/tracked_object.hpp"
+#include "monitor/bodies/tracked_object.hpp"
 
 namespace clearance {
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/motion/closing_speed.hpp"
-#include "monitor/motion/directed_rounding.hpp"
-#include "monitor/motion/relative_displacement.hpp"
-#include "monitor/motion/swept_bound.hpp"
+#include "monitor/bodies/closing_speed.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/relative_displacement.hpp"
+#include "monitor/bodies/swept_bound.hpp"
 #include "monitor/pairs/carried_bounds.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "monitor/pairs/tick_view.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 

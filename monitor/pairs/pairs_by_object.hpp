@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/objects/large_column.hpp"
+#include "monitor/bodies/large_column.hpp"
 
 namespace clearance {
 

@@ -10,7 +10,7 @@
 
 #include "config/scene/revision.hpp"
 #include "config/text/file_bytes.hpp"
-#include "monitor/mcap/compression.hpp"
+#include "monitor/files/compression.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 
 namespace clearance {

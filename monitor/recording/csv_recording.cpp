@@ -10,7 +10,7 @@
 #include <string_view>
 
 #include "config/text/spelling.hpp"
-#include "monitor/csv/pose_log.hpp"
+#include "monitor/files/pose_log.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/convert.hpp"

@@ -1,4 +1,4 @@
-// Recordings made of pose logs (monitor/csv/pose_log.hpp).
+// Recordings made of pose logs (monitor/files/pose_log.hpp).
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // Recordings made of the logs of other programs: bags of ROS 2, joint positions as CSV
-// (monitor/bags).
+// (monitor/recording).
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "monitor/recording/options.hpp"
 
 namespace clearance {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "monitor/recording/layout_change.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/wire/dds_sample.hpp"

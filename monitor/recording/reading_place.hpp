@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 
 namespace clearance {
 

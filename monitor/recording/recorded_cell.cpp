@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "monitor/files/temporary_folder.hpp"
-#include "monitor/mcap/attachments.hpp"
-#include "monitor/mcap/compression.hpp"
+#include "monitor/files/attachments.hpp"
+#include "monitor/files/compression.hpp"
 #include "monitor/recording/writer.hpp"
 
 namespace clearance {

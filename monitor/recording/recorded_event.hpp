@@ -6,7 +6,7 @@
 #include <string>
 
 #include "config/scene/scene.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 

@@ -17,7 +17,7 @@
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/recording/recorded_event.hpp"
 #include "monitor/recording/sink.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
 
@@ -51,7 +51,7 @@ class Recorder {
   void joined(std::span<const std::byte> cdr);
 
   // The report of a tick and what it used, which poses() has been given before. `publish_ns`: when
-  // it was handed over; 0 where it was not published. `lineage`: of partners (monitor/partners); 0
+  // it was handed over; 0 where it was not published. `lineage`: of partners (monitor/loop); 0
   // of a daemon on its own.
   void report(const Report& report, std::span<const SourceUse> sources, std::int64_t publish_ns = 0,
               std::uint64_t lineage = 0);

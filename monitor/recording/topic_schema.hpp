@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "monitor/mcap/format.hpp"
+#include "monitor/files/format.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/expected_distance.hpp"
 
 namespace clearance {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <type_traits>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/wire/message_fields.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "monitor/present_body.hpp"
+#include "monitor/tick/present_body.hpp"
 
 namespace clearance {
 

@@ -29,11 +29,11 @@
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/expected_distance.hpp"
 #include "monitor/replay/reference_totals.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 
-class Monitor;  // monitor/monitor.hpp, in the source tree
+class Monitor;  // monitor/tick/monitor.hpp, in the source tree
 
 // All are optional: without any, the replay only runs.
 struct OfflineReplayOptions {
@@ -51,7 +51,7 @@ struct OfflineReplayOptions {
   // ticks. Zero means one tick for each time at which something came. If not set, it is the cell's
   // rate for a bag or a joint log, and 0 for Clearance's own recordings.
   std::optional<double> tick_hz = {};
-  // Topics of joint states of a bag (monitor/bags); empty: all that are named joint_states.
+  // Topics of joint states of a bag (monitor/recording); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
   // Positions of joints that a bag or joint log does not have, by name, rad or m.
   std::map<std::string, double> joints = {};

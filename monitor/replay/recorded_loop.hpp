@@ -14,7 +14,7 @@
 #include "monitor/replay/tick_feed.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"
-#include "monitor/state/tick_state.hpp"
+#include "monitor/tick/tick_state.hpp"
 
 namespace clearance {
 

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "monitor/bags/bag.hpp"
+#include "monitor/recording/bag.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/replay/side_feed.hpp"
 #include "monitor/replay/tick_messages.hpp"

@@ -1,7 +1,7 @@
 // The first difference of two recordings of the same cycles, such as those of two daemons that run
 // one cell. No monitor runs: the recorded reports themselves are compared.
 //
-// Partners (monitor/partners) tick other inputs before they join and while they are apart. Only
+// Partners (monitor/loop) tick other inputs before they join and while they are apart. Only
 // their ticks of the same lineage are compared.
 #pragma once
 

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <utility>
 
-#include "monitor/csv/table.hpp"
-#include "monitor/pair_name.hpp"
+#include "monitor/files/table.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/replay/metres.hpp"
 
 namespace clearance {

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/reference_totals.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <utility>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/replay/sensor_notes.hpp"
 
 namespace clearance {

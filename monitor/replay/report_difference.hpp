@@ -9,7 +9,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/tick_feed.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/gradient_message.hpp"
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "monitor/sensors/sensors.hpp"
 
 namespace clearance {

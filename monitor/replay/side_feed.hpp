@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "monitor/recording/layout_change.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/sensors/built_frames.hpp"

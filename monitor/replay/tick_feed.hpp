@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/intake/own_batches.hpp"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
 #include "monitor/replay/expectations.hpp"
 #include "monitor/replay/metres.hpp"

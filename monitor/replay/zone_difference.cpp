@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/replay/message_difference.hpp"
 #include "monitor/wire/convert.hpp"
 

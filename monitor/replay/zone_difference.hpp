@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-#include "monitor/broad_phase/culling.hpp"
+#include "monitor/schedule/culling.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 #include "monitor/schedule/refresh_queue.hpp"
 

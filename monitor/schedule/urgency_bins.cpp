@@ -5,7 +5,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

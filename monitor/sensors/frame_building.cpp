@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/sensors/measured_points.hpp"
 #include "monitor/sensors/sensor_state.hpp"
 

@@ -6,7 +6,7 @@
 #include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/pose_series.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

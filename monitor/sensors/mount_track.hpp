@@ -14,7 +14,7 @@
 #include "config/scene/sensor.hpp"
 #include "core/pose.hpp"
 #include "monitor/inputs/track.hpp"
-#include "monitor/objects/landmarks.hpp"
+#include "monitor/bodies/landmarks.hpp"
 
 namespace clearance {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "config/scene/rigid_root.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

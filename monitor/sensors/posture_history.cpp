@@ -5,8 +5,8 @@
 
 #include "config/scene/plausible_joints.hpp"
 #include "monitor/inputs/elapsed.hpp"
-#include "monitor/kinematics/joint_metric.hpp"
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/joint_metric.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

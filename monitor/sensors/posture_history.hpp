@@ -19,8 +19,8 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/track.hpp"
 #include "monitor/intake/pose_series.hpp"
-#include "monitor/kinematics/forward_kinematics.hpp"
-#include "monitor/objects/tracked_object.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/tracked_object.hpp"
 #include "monitor/sensors/past_pose.hpp"
 
 namespace clearance {

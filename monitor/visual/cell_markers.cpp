@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <span>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/visual/body_mesh.hpp"
 
 namespace clearance {

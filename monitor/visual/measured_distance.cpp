@@ -4,7 +4,7 @@
 #include <span>
 
 #include "core/distance.hpp"
-#include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 
 namespace clearance {

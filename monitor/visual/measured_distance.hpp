@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/geometry/posed_part.hpp"
-#include "monitor/report.hpp"
+#include "monitor/bodies/posed_part.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/visual/object_poses.hpp"
 
 namespace clearance {

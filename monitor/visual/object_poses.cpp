@@ -5,8 +5,8 @@
 #include <span>
 #include <utility>
 
-#include "monitor/geometry/bounding_sphere.hpp"
-#include "monitor/geometry/posed_part.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
+#include "monitor/bodies/posed_part.hpp"
 
 namespace clearance {
 namespace {

@@ -4,7 +4,7 @@
 // For each source, the report names the last batch that its tick used. If the tick used no batch,
 // the report has the stamp of the newest pose in use. Later batches wait for the report that uses
 // them, so that bodies, witness points and distances belong together. Batches go through the
-// daemon's own ingest stage (objects/ingest.hpp) and kinematics. Samples that the daemon refuses
+// daemon's own ingest stage (bodies/ingest.hpp) and kinematics. Samples that the daemon refuses
 // are therefore not shown either.
 #pragma once
 
@@ -21,7 +21,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
-#include "monitor/objects/ingest.hpp"
+#include "monitor/bodies/ingest.hpp"
 
 namespace clearance {
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "core/pose.hpp"
-#include "monitor/mcap/format.hpp"
+#include "monitor/files/format.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/ros_types.hpp"
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/mcap/format.hpp"
+#include "monitor/files/format.hpp"
 #include "monitor/visual/ros_types.hpp"
 #include "monitor/wire/camera_types.hpp"
 

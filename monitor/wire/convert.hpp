@@ -10,7 +10,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/joint_names.hpp"
 #include "monitor/wire/message_fields.hpp"

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "config/scene/scene.hpp"
-#include "monitor/gradients/gradient_rows.hpp"
+#include "monitor/interface/gradient_rows.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -1,9 +1,9 @@
-// The fields of the messages that a tick publishes: the lists of monitor/report_fields.hpp and the
+// The fields of the messages that a tick publishes: the lists of monitor/interface/report_fields.hpp and the
 // fields that only messages have.
 #pragma once
 
 #include "clearance.h"
-#include "monitor/report_fields.hpp"
+#include "monitor/interface/report_fields.hpp"
 
 namespace clearance {
 

@@ -1,4 +1,4 @@
-// The state of a monitor (monitor/state/saved_state.hpp) as a message: for a partner, and in
+// The state of a monitor (monitor/tick/saved_state.hpp) as a message: for a partner, and in
 // recordings.
 #pragma once
 

@@ -1,6 +1,6 @@
 #include "monitor/zones/zone_hysteresis.hpp"
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 

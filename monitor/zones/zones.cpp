@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {
@@ -132,7 +132,7 @@ void Zones::finish(std::span<const TrackedObject> objects, const Clearance& wait
   for (std::uint32_t z = 0; z < updates_.size(); ++z) {
     ZoneHysteresis& update = updates_[z];
     // A pair that was not added is absent, culled, waiting or unknown. Culled ones are outside by
-    // the invariant of the broad phase (monitor/broad_phase/README.md).
+    // the invariant of the broad phase (monitor/schedule/BROAD_PHASE.md).
     if (added_[z] + absent_[z] < scene_.zones[z].pairs.size()) {
       const auto least = [&](double lower) {
         return std::min(ZoneLevels::threshold(scene_.zones[z], true),

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "config/cell/simulation.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

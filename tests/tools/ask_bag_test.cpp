@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "tests/monitor/bags/ros_camera.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/recording/ros_camera.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {

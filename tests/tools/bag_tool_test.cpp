@@ -3,9 +3,9 @@
 #include <gtest/gtest.h>
 
 #include "monitor/files/numbered_file.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

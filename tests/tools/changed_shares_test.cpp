@@ -11,7 +11,7 @@
 #include "config/cell/share_topics.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/client/shared_cell.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tests/tools/shared_cells.hpp"
 
 namespace clearance {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/commands/command_message.hpp"
+#include "monitor/participant/command_message.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance::test {

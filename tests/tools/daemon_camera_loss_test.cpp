@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tests/shared/ros_camera.hpp"
 #include "tests/tools/camera_daemon.hpp"

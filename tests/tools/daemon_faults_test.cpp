@@ -6,7 +6,7 @@
 #include <csignal>
 #include <map>
 
-#include "monitor/dds/report_writer.hpp"
+#include "monitor/publish/report_writer.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {

@@ -5,7 +5,7 @@
 #include <map>
 #include <string>
 
-#include "tests/monitor/metrics/metrics_client.hpp"
+#include "tests/monitor/publish/metrics_client.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {

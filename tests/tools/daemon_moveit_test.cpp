@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "monitor/client/client.hpp"
-#include "monitor/moveit/from_wire.hpp"
-#include "tests/monitor/moveit/moveit_messages.hpp"
+#include "monitor/intake/from_wire.hpp"
+#include "tests/monitor/intake/moveit_messages.hpp"
 #include "tests/shared/byte_writer.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/ros_frames.hpp"

@@ -6,7 +6,7 @@
 #include <sstream>
 
 #include "monitor/files/build_info.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/tools/running_cell.hpp"
 

@@ -8,8 +8,8 @@
 #include <cstdlib>
 
 #include "monitor/recording/writer.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

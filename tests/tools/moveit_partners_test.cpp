@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "monitor/wire/moveit_types.hpp"
-#include "tests/monitor/moveit/moveit_messages.hpp"
+#include "tests/monitor/intake/moveit_messages.hpp"
 #include "tests/shared/byte_writer.hpp"
 #include "tests/tools/running_partners.hpp"
 

@@ -13,7 +13,7 @@
 #include <sstream>
 #include <vector>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/running_cell.hpp"

@@ -7,10 +7,10 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "monitor/bags/bag.hpp"
+#include "monitor/recording/bag.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/base64.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"

@@ -4,7 +4,7 @@
 
 #include <csignal>
 
-#include "monitor/csv/pose_log.hpp"
+#include "monitor/files/pose_log.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/bench_cell.hpp"

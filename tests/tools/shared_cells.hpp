@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "monitor/client/shared_cell.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tests/tools/meeting_boxes.hpp"
 
 namespace clearance::test {

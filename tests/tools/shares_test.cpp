@@ -14,7 +14,7 @@
 #include "config/cell/cell_file.hpp"
 #include "config/cell/share_topics.hpp"
 #include "monitor/client/shared_cell.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/tools/shared_cells.hpp"
 
 namespace clearance {

@@ -10,7 +10,7 @@
 #include <csignal>
 #include <filesystem>
 
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {

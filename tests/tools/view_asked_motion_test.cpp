@@ -12,7 +12,7 @@
 
 #include "monitor/client/client.hpp"
 #include "monitor/client/questions.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/ros_joints.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/monitor/metrics/metrics_client.hpp"
+#include "tests/monitor/publish/metrics_client.hpp"
 #include "tests/tools/running_view.hpp"
 
 namespace clearance::test {

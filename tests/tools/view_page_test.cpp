@@ -9,8 +9,8 @@
 #include <optional>
 #include <thread>
 
-#include "monitor/zone_cause.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "monitor/interface/zone_cause.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"

@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 

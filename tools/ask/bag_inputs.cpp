@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/offline_replay.hpp"
 
 namespace clearance {

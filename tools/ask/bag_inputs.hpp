@@ -11,7 +11,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/ask/present_inputs.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 #include "tools/ask/bag_motions.hpp"
 
 namespace clearance {

@@ -6,7 +6,7 @@
 #include <map>
 #include <optional>
 
-#include "monitor/bags/bag.hpp"
+#include "monitor/recording/bag.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/wire/cdr.hpp"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

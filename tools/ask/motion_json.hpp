@@ -6,7 +6,7 @@
 #include <string>
 
 #include "config/scene/scene.hpp"
-#include "monitor/ask/question.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

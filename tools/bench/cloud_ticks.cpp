@@ -11,7 +11,7 @@
 
 #include "core/shapes.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/cloud_frame.hpp"
 #include "tools/bench/rows.hpp"

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/kinematics/forward_kinematics.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/ticks.hpp"

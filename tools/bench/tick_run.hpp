@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/crowd.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <utility>
 
-#include "monitor/dds/report_writer.hpp"
+#include "monitor/publish/report_writer.hpp"
 
 namespace clearance::merge {
 namespace {

@@ -13,7 +13,7 @@
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/other_daemons.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/ros/ros_messages.hpp"
+#include "monitor/publish/ros_messages.hpp"
 #include "monitor/wire/written_zones.hpp"
 #include "tools/merge/zone_check.hpp"
 

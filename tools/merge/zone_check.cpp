@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <span>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance::merge {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
 #include "tools/rendering/depth_renderer.hpp"
 #include "tools/rendering/person.hpp"
 

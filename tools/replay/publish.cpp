@@ -11,7 +11,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
-#include "monitor/bags/input_log.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/participant/participant.hpp"

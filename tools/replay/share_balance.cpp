@@ -9,7 +9,7 @@
 #include "config/cell/shares.hpp"
 #include "config/text/sentences.hpp"
 #include "config/yaml/yaml_emitter.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
 
 namespace clearance {

@@ -13,7 +13,7 @@
 #include "core/shapes.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/loop/realtime.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
 namespace {

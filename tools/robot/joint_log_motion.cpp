@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/csv/table.hpp"
+#include "monitor/files/table.hpp"
 #include "tools/shared/joint_sweep.hpp"
 
 namespace clearance {

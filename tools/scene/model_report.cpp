@@ -11,8 +11,8 @@
 #include "core/enclosing_polyhedron.hpp"
 #include "core/query_tables.hpp"
 #include "core/shapes.hpp"
-#include "monitor/geometry/bounding_hull.hpp"
-#include "monitor/geometry/bounding_sphere.hpp"
+#include "monitor/bodies/bounding_hull.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
 #include "tools/scene/certified_error.hpp"
 
 namespace clearance {

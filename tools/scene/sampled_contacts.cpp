@@ -6,7 +6,7 @@
 
 #include "config/write/seeded_draw.hpp"
 #include "core/distance.hpp"
-#include "monitor/kinematics/forward_kinematics.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
 
 namespace clearance {
 namespace {

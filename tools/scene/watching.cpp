@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "config/scene/scene.hpp"
-#include "monitor/broad_phase/broad_phase.hpp"
+#include "monitor/schedule/broad_phase.hpp"
 #include "monitor/schedule/urgency_bins.hpp"
 
 namespace clearance {

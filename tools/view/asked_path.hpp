@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "monitor/motion_question.hpp"
+#include "monitor/interface/motion_question.hpp"
 #include "monitor/visual/object_poses.hpp"
 
 namespace clearance::view {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "monitor/mcap/format.hpp"
+#include "monitor/files/format.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance::view {

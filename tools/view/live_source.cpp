@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include "monitor/commands/question_message.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "monitor/loop/ports.hpp"
 #include "tools/view/sensors_json.hpp"
 

@@ -1,5 +1,5 @@
 // Chooses the reports that the page shows from those of several daemons. Partners
-// (monitor/partners) become one stream; those of other daemons are all shown.
+// (monitor/loop) become one stream; those of other daemons are all shown.
 #pragma once
 
 #include <cstdint>

@@ -3,7 +3,7 @@
 #include <optional>
 #include <vector>
 
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tools/view/json_number.hpp"
 
 namespace clearance::view {

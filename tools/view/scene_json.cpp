@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "monitor/contact_text.hpp"
+#include "monitor/interface/contact_text.hpp"
 #include "monitor/visual/body_mesh.hpp"
-#include "monitor/zone_cause.hpp"
+#include "monitor/interface/zone_cause.hpp"
 
 namespace clearance::view {
 namespace {

@@ -10,9 +10,9 @@
 #include <span>
 #include <utility>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/recording/reader.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance::view {

@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "monitor/contact_text.hpp"
+#include "monitor/interface/contact_text.hpp"
 
 namespace clearance::watch {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "monitor/pair_name.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/pair_name.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance::watch {
 namespace {

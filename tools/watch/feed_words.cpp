@@ -9,7 +9,7 @@
 
 #include "config/text/sentences.hpp"
 #include "monitor/client/share_merge.hpp"
-#include "monitor/zone_cause.hpp"
+#include "monitor/interface/zone_cause.hpp"
 
 namespace clearance::watch {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <span>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance::watch {
 namespace {

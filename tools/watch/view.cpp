@@ -8,7 +8,7 @@
 #include <span>
 
 #include "monitor/app/log_line.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tools/watch/contact_lines.hpp"
 #include "tools/watch/feed_words.hpp"
 #include "tools/watch/number_text.hpp"

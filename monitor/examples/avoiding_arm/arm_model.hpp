@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/kinematics/forward_kinematics.hpp"
-#include "monitor/kinematics/joint_screw.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/joint_screw.hpp"
 
 namespace clearance::avoid {
 

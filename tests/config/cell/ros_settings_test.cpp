@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/config/cells.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/mistake_at.hpp"
 
 namespace clearance {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/shared/simulated_samples.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <ostream>
 
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 namespace {

@@ -9,7 +9,7 @@
 #include <iosfwd>
 #include <vector>
 
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
 

@@ -1,6 +1,6 @@
 #include "tests/monitor/adversary/cells.hpp"
 
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 namespace {

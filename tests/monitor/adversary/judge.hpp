@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/adversary/adversary.hpp"
 #include "tests/monitor/adversary/oracle.hpp"
 

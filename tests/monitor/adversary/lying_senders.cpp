@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/intake/camera_texts.hpp"
 
 namespace clearance::test::lies {

@@ -1,8 +1,8 @@
 // Computes the true distance of two objects, for the judge of a tick.
 #pragma once
 
-#include "tests/monitor/fresh_distance.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/fresh_distance.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 

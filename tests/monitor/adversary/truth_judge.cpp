@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/pair_name.hpp"
+#include "monitor/interface/pair_name.hpp"
 
 namespace clearance::test::lies {
 namespace {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tests/monitor/adversary/lies.hpp"
 #include "tests/monitor/adversary/true_motion.hpp"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <string>
 
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance {
 namespace {

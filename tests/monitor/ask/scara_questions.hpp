@@ -7,7 +7,7 @@
 #include <variant>
 
 #include "monitor/ask/asker.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::test {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::trajectory_test {
 namespace {

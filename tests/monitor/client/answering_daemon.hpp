@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "config/cell/topics.hpp"
-#include "monitor/commands/command_message.hpp"
+#include "monitor/participant/command_message.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "config/cell/share_topics.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/config/cells.hpp"

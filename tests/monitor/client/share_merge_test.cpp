@@ -12,7 +12,7 @@
 #include "core/convex_body.hpp"
 #include "monitor/client/share_merge.hpp"
 #include "monitor/client/whole_reports.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "tests/config/cells.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tests/monitor/client/share_daemon.hpp"
 #include "tests/shared/loopback.hpp"
 

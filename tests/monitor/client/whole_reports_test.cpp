@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "monitor/client/whole_reports.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/wire/changed_pairs.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "tests/shared/random.hpp"

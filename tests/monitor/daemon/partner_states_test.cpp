@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
-#include "monitor/state/saved_state.hpp"
-#include "tests/monitor/scene_changes/commanded_cell.hpp"
+#include "monitor/tick/saved_state.hpp"
+#include "tests/monitor/requests/commanded_cell.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {

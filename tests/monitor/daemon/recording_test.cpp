@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "monitor/files/build_info.hpp"
-#include "monitor/mcap/reader.hpp"
+#include "monitor/files/reader.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/recording/writer.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"

@@ -1,5 +1,5 @@
 // The messages for a service manager, read from a socket of the test.
-#include "monitor/service/service_manager.hpp"
+#include "monitor/daemon/service_manager.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

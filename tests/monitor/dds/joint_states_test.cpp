@@ -3,8 +3,8 @@
 
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {

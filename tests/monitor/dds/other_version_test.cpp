@@ -7,9 +7,9 @@
 #include <string>
 
 #include "monitor/client/client.hpp"
-#include "monitor/dds/report_writer.hpp"
+#include "monitor/publish/report_writer.hpp"
 #include "other_version.h"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
 

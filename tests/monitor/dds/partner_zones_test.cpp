@@ -5,10 +5,10 @@
 #include <map>
 
 #include "monitor/client/client.hpp"
-#include "monitor/dds/report_writer.hpp"
+#include "monitor/publish/report_writer.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
 

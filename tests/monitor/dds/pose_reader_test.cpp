@@ -5,11 +5,11 @@
 #include <cstring>
 
 #include "monitor/dds/dds_log.hpp"
-#include "monitor/dds/health.hpp"
+#include "monitor/publish/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/byte_writer.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/logged.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 
 namespace clearance::test::camera {
 

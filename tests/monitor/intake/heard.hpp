@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "monitor/intake/intake.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 
 namespace clearance::test {
 

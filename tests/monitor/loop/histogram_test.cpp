@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "monitor/loop/histogram.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

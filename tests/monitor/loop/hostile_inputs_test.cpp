@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "monitor/loop/tick_loop.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "monitor/loop/ports.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 

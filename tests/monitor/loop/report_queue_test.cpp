@@ -4,8 +4,8 @@
 
 #include <thread>
 
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {

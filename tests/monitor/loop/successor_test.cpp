@@ -1,5 +1,5 @@
 // The loop changes from the monitor of one scene to that of another between two ticks.
-#include "monitor/state/successor.hpp"
+#include "monitor/tick/successor.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {

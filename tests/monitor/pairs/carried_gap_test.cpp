@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include "monitor/motion/directed_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

@@ -9,8 +9,8 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/monitor.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "monitor/tick/monitor.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/monitor/fresh_distance.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/fresh_distance.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 namespace {

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/pairs/evaluate_pair.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

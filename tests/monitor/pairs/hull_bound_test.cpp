@@ -10,7 +10,7 @@
 
 #include "config/cell/cell_file.hpp"
 #include "config/write/warehouse_cell.hpp"
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/made.hpp"

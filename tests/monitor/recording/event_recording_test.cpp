@@ -4,7 +4,7 @@
 
 #include <fstream>
 
-#include "monitor/mcap/attachments.hpp"
+#include "monitor/files/attachments.hpp"
 #include "monitor/recording/event_files.hpp"
 #include "monitor/recording/event_ring.hpp"
 #include "monitor/replay/side_feed.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "monitor/files/build_info.hpp"
-#include "monitor/mcap/writer.hpp"
+#include "monitor/files/writer.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 #include "monitor/recording/topic_schema.hpp"
 #include "monitor/replay/offline_replay.hpp"

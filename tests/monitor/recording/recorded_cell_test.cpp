@@ -11,8 +11,8 @@
 #include <variant>
 #include <vector>
 
-#include "monitor/mcap/attachments.hpp"
-#include "monitor/mcap/writer.hpp"
+#include "monitor/files/attachments.hpp"
+#include "monitor/files/writer.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/shared/scratch_folder.hpp"

@@ -10,9 +10,9 @@
 #include "monitor/recording/log_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/replay/report_recorder.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/monitor/bags/ros_camera.hpp"
+#include "tests/monitor/recording/ros_camera.hpp"
 #include "tests/monitor/clouds/rendered_scene.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::camera_replay_test {
 namespace {

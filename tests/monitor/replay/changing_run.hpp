@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "tests/monitor/replay/recorded_changes.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::test {
 

@@ -9,7 +9,7 @@
 #include "config/cell/simulation.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
 

@@ -11,7 +11,7 @@
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::test {
 namespace {

@@ -10,9 +10,9 @@
 #include "monitor/recording/log_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/replay/report_recorder.hpp"
-#include "tests/monitor/bags/ros_bags.hpp"
-#include "tests/monitor/moveit/moveit_messages.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
+#include "tests/monitor/intake/moveit_messages.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/one_cube.hpp"
 
 namespace clearance::test {

@@ -14,7 +14,7 @@
 
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/recording/recorder.hpp"
-#include "monitor/state/successor.hpp"
+#include "monitor/tick/successor.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"

@@ -10,7 +10,7 @@
 #include "monitor/recording/recorder.hpp"
 #include "monitor/recording/writer.hpp"
 #include "monitor/wire/cdr.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "monitor/report_fields.hpp"
+#include "monitor/interface/report_fields.hpp"
 
 namespace clearance::test {
 

@@ -5,8 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "config/scene/refresh_share.hpp"
-#include "monitor/monitor.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "monitor/tick/monitor.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

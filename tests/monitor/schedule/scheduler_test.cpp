@@ -3,10 +3,10 @@
 
 #include <gtest/gtest.h>
 
-#include "monitor/monitor.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/adversary/adversary.hpp"
 #include "tests/monitor/adversary/cells.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "monitor/clouds/seen_cloud.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::links_and_clouds_test {
 namespace {

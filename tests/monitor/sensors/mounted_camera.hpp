@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 
 namespace clearance::sensors_test {

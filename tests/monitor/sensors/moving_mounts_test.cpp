@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 #include "tests/monitor/sensors/tf_said.hpp"
 #include "tests/shared/random.hpp"

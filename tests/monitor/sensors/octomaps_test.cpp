@@ -3,7 +3,7 @@
 // Oracle: the place of the cubes that the test puts in.
 #include <gtest/gtest.h>
 
-#include "tests/monitor/moveit/moveit_messages.hpp"
+#include "tests/monitor/intake/moveit_messages.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 #include "tests/shared/one_cube.hpp"
 

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "monitor/sensors/posture_history.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/sensors/tf_said.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance::past_places_test {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "tests/monitor/bags/ros_bags.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 #include "tests/shared/random.hpp"
 

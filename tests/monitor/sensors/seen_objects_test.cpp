@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/zone_cause.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "monitor/interface/zone_cause.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance::seen_objects_test {

@@ -12,8 +12,8 @@
 
 #include "monitor/sensors/sensors.hpp"
 #include "tests/monitor/intake/camera_texts.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::sensors_test {
 

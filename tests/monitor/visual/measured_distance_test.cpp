@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 namespace {

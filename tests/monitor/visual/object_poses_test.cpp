@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/scara_cell.hpp"
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance::test {
 namespace {

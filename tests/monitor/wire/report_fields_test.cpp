@@ -13,7 +13,7 @@
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/message_fields.hpp"
-#include "tests/monitor/scara_cell.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::test {
 namespace {

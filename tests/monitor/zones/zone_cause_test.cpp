@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

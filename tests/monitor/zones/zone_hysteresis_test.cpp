@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/monitor/small_cells.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
 namespace {

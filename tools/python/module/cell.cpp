@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "config/write/single_robot_cell.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/module.hpp"
 #include "tools/python/module/waiting.hpp"

@@ -5,12 +5,12 @@
 #include <limits>
 
 #include "config/scene/chain_rounding.hpp"
-#include "monitor/geometry/bounding_sphere.hpp"
-#include "monitor/gradients/gradient_rows.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
+#include "monitor/interface/gradient_rows.hpp"
 #include "monitor/inputs/joint_batch.hpp"
-#include "monitor/kinematics/fixed_order.hpp"
+#include "monitor/bodies/fixed_order.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
-#include "monitor/report.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance::python {
 namespace {
@@ -197,7 +197,7 @@ void Configurations::evaluate(Pair& pair, std::size_t index,
   if (rates != nullptr) differentiate(pair, on_a, on_b, normal, rates);
 }
 
-// monitor/gradients/differentiate.hpp explains the sum.
+// monitor/pairs/differentiate.hpp explains the sum.
 void Configurations::differentiate(const Pair& pair, const Vec3& on_a, const Vec3& on_b,
                                    const Vec3& normal, double* rates) noexcept {
   std::fill_n(rates, variables_.size(), 0.0);

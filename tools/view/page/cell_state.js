@@ -2,7 +2,7 @@
 import { counted, isKnown } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
-const ALLOWED = 1; // ContactStatus of monitor/report.hpp
+const ALLOWED = 1; // ContactStatus of monitor/interface/report.hpp
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
 const LIVE = "partners"; // the server's status while what is shown is the present state all the same

@@ -1,7 +1,7 @@
 // The contacts that the cell allows, a row per pair, and what is attached to what.
 import { mm, put, seconds } from "./format.js";
 
-// ContactStatus and ContactEnded of monitor/report.hpp.
+// ContactStatus and ContactEnded of monitor/interface/report.hpp.
 const STATUS = ["not known", "allowed", "too deep", "ended", "too late", "absent"];
 const ENDED = ["", "by distance", "by time", "by cycle"];
 const CLASS = ["lost", "", "alarm", "ended", "alarm", "ended"];

@@ -1,6 +1,6 @@
 // Figures for people, and the knowledge of a pair's distance.
 
-// PairStatus of monitor/report.hpp.
+// PairStatus of monitor/interface/report.hpp.
 export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown", "absent"];
 const STALE = STATUS.indexOf("stale");
 export const isKnown = (pair) => pair.status < STALE;

@@ -3,7 +3,7 @@
 import { put } from "./format.js";
 
 const AGAIN_MS = 150;
-const UNKNOWN = 6; // PairStatus of monitor/report.hpp
+const UNKNOWN = 6; // PairStatus of monitor/interface/report.hpp
 
 const element = (id) => document.getElementById(id);
 const orElse = (value, without) => value ?? without;

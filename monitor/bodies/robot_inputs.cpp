@@ -1,0 +1,127 @@
+#include "monitor/bodies/robot_inputs.hpp"
+
+#include <algorithm>
+
+namespace clearance {
+namespace {
+
+// Links come after all other objects.
+std::uint32_t first_link_of(const Scene& scene) {
+  auto first = static_cast<std::uint32_t>(scene.objects.size());
+  for (const Robot& robot : scene.robots) {
+    for (const RobotLink& link : robot.links) first = std::min(first, link.object);
+  }
+  return first;
+}
+
+// No joint state ever comes for a robot without variables. It follows what it stands on.
+std::vector<bool> heard_at_the_start(const Scene& scene) {
+  std::vector<bool> heard;
+  for (const Robot& robot : scene.robots)
+    heard.push_back(robot.base.kind != RobotBase::Kind::kWorld);
+  for (const JointVariable& variable : scene.variables) heard[variable.robot] = false;
+  return heard;
+}
+
+LinkState base_at(const TrackedObject& object) noexcept {
+  LinkState base;
+  base.known = object.input.has_value;
+  base.velocity_known = object.velocity_known();
+  base.late = object.input.late;
+  base.contradicted = object.input.contradicted;
+  base.stamp_ns = object.input.stamp_ns;
+  base.pose = object.pose;
+  base.twist = object.twist;
+  return base;
+}
+
+}  // namespace
+
+RobotInputs::RobotInputs(const Scene& scene)
+    : scene_(scene),
+      first_link_(first_link_of(scene)),
+      robot_of_(scene.objects.size() - first_link_),
+      heard_(heard_at_the_start(scene)),
+      variables_(scene.variables.size()),
+      bases_(scene.robots.size()),
+      kinematics_(scene.robots) {
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    for (const RobotLink& link : scene.robots[robot].links) {
+      if (link.object != RobotLink::kNoObject) robot_of_[link.object - first_link_] = robot;
+    }
+  }
+}
+
+bool RobotInputs::is_lost(std::uint32_t robot, std::uint32_t link,
+                          std::span<const TrackedObject> objects) const noexcept {
+  for (;;) {
+    for (; link > 0; link = scene_.robots[robot].joints[link - 1].parent) {
+      const RobotJoint& joint = scene_.robots[robot].joints[link - 1];
+      for (std::uint32_t i = 0; i < variables_of(joint.type); ++i) {
+        const TrackedVariable& state = variables_[joint.variable + i];
+        const bool is_known = state.input.has_value && !state.input.contradicted;
+        if (!is_known || !(state.may_have_moved < kInfinity)) return true;
+      }
+    }
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind == RobotBase::Kind::kWorld) return false;
+    if (base.kind == RobotBase::Kind::kObject) return !objects[base.object].known();
+    robot = base.robot;
+    link = base.link;
+  }
+}
+
+void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
+  for (TrackedVariable& variable : variables_) {
+    if (variable.input.has_value) forget_age(now_ns, variable);
+  }
+}
+
+void RobotInputs::take_over(const RobotInputs& before, const SceneMap& map) noexcept {
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    if (map.variables[i] != SceneMap::kNone && scene_.variables[i].is_read)
+      variables_[i] = before.variables_[map.variables[i]];
+  }
+  for (std::size_t i = 0; i < heard_.size(); ++i) {
+    if (map.robots[i] != SceneMap::kNone) heard_[i] = before.heard_[map.robots[i]];
+  }
+}
+
+void RobotInputs::save(StateWriter& out) const {
+  out.put(std::span(variables_));
+  for (const bool heard : heard_) out.put(heard);
+}
+
+void RobotInputs::restore(StateReader& in) noexcept {
+  in.take(std::span(variables_));
+  for (auto heard : heard_) {
+    bool value = false;
+    in.take(value);
+    heard = value;
+  }
+}
+
+void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
+  if (std::ranges::find(heard_, true) == heard_.end()) return;
+  for (std::size_t i = 0; i < variables_.size(); ++i) {
+    advance(scene_.variables[i], now_ns, variables_[i]);
+  }
+  for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind == RobotBase::Kind::kObject) bases_[robot] = base_at(objects[base.object]);
+  }
+  kinematics_.place(variables_, bases_);
+  for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot) {
+    if (!heard_[robot]) continue;
+    const std::vector<RobotLink>& links = scene_.robots[robot].links;
+    for (std::size_t link = 0; link < links.size(); ++link) {
+      if (links[link].object == RobotLink::kNoObject) continue;
+      const Object& object = scene_.objects[links[link].object];
+      TrackedObject& state = objects[links[link].object];
+      if (!object.fixed && !state.absent)
+        follow(kinematics_.links(robot)[link], object, now_ns, state);
+    }
+  }
+}
+
+}  // namespace clearance

@@ -1,0 +1,123 @@
+// The counts of a sample only grow. The log tells their growth, which shows when a fault began.
+#include "monitor/publish/health_log.hpp"
+
+#include <algorithm>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "config/text/sentences.hpp"
+#include "monitor/app/log_lines.hpp"
+
+namespace clearance {
+namespace {
+
+// The most lines of one update; it then logs how many it left out.
+constexpr std::size_t kLinesAtOnce = 5;
+
+// Logs by how much a count has grown.
+template <class... Noun>
+void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t now,
+                std::uint64_t& before, Noun... noun) {
+  if (now > before) log_line(line, counted(now - before, noun...), now);
+  before = now;
+}
+
+}  // namespace
+
+HealthLog::HealthLog(const Scene& scene) : joints_(scene) { note_sensors(scene); }
+
+void HealthLog::note_sensors(const Scene& scene) {
+  for (const Sensor& sensor : scene.sensors) poses_[sensor.name].is_of_sensor = true;
+}
+
+// Says that an input is late, and why; or that it is back.
+void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) {
+  const std::int64_t age_ms = input.age_ns / 1'000'000;
+  if (now.is_of_sensor && now.stale && input.contradicted) {
+    log_line(lines::kFramesUnplaced, input.name);
+  } else if (now.is_of_sensor && now.stale) {
+    log_line(lines::kFramesLate, input.name, age_ms);
+  } else if (now.is_of_sensor) {
+    log_line(lines::kFramesBack, input.name);
+  } else if (!now.stale) {
+    log_line(lines::kPosesBack, input.name);
+  } else if (input.contradicted) {
+    log_line(lines::kPosesContradict, input.name);
+  } else {
+    log_line(lines::kPosesLate, input.name, age_ms);
+  }
+}
+
+void HealthLog::change(const Scene& scene) {
+  refusals_.begin_counts_anew();
+  joints_.change(scene);
+  std::set<std::string> inputs;
+  for (const Object& object : scene.objects) inputs.insert(object.name);
+  for (const JointVariable& variable : scene.variables) inputs.insert("joint " + variable.name);
+  const auto is_gone = [&](const auto& entry) { return !inputs.contains(entry.first); };
+  std::erase_if(poses_, is_gone);
+  std::erase_if(notes_, is_gone);
+  note_sensors(scene);
+}
+
+// The change of the offset is the sum of all steps.
+void HealthLog::log_clock(const clearance_msg_Health& health) {
+  if (health.clock_steps > clock_steps_) {
+    log_line(lines::kClockStepped,
+             1e-9 * static_cast<double>(health.clock_offset_ns - clock_offset_ns_));
+  }
+  clock_steps_ = health.clock_steps;
+  clock_offset_ns_ = health.clock_offset_ns;
+}
+
+// Inputs that change together share one line: all joints of a robot have the same source.
+void HealthLog::log_notes(const clearance_msg_Health& health) {
+  std::map<std::pair<std::string, std::string>, std::vector<std::string>> changed;
+  std::vector<std::string> velocities;
+  for (std::uint32_t i = 0; i < health.notes._length; ++i) {
+    const clearance_msg_InputNote& note = health.notes._buffer[i];
+    Note& before = notes_[note.input];
+    if (note.takeovers > before.takeovers)
+      changed[{note.source, note.former_source}].emplace_back(note.input);
+    before.takeovers = note.takeovers;
+    if (note.velocities_contradict && !std::exchange(before.velocities_said, true))
+      velocities.emplace_back(note.input);
+  }
+  for (const auto& [sources, inputs] : changed) {
+    log_line(lines::kSourceChanged, listed(inputs, kNamesALine), sources.first, sources.second);
+  }
+  if (!velocities.empty()) log_line(lines::kVelocitiesContradict, listed(velocities, kNamesALine));
+}
+
+// Logs late inputs, then refusals, then the totals. The limit on lines is for a cell that loses all
+// its objects at once.
+void HealthLog::update(const clearance_msg_Health& health,
+                       const std::function<std::string()>& senders_of_joints) {
+  std::size_t logged = 0;
+  for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
+    const clearance_msg_InputAge& input = health.inputs._buffer[i];
+    // An object that was never known is no news. For links, the log of joints reports lateness.
+    const bool stale = input.stale && input.age_ns >= 0 && !input.follows_joints;
+    Poses& before = poses_[input.name];  // first without poses, which is not late
+    if (std::exchange(before.stale, stale) != stale && logged++ < kLinesAtOnce)
+      log_late(input, before);
+    if (before.other_source != input.other_source && logged++ < kLinesAtOnce) {
+      log_line(lines::kTwoSources, input.name, input.source, input.other_source);
+    }
+    before.other_source = input.other_source;
+  }
+  logged += refusals_.update(health, kLinesAtOnce - std::min(logged, kLinesAtOnce));
+  if (logged > kLinesAtOnce)
+    log_line(lines::kMoreLeftOut, counted(logged - kLinesAtOnce, "more line"));
+  joints_.update(health.joints, senders_of_joints);
+  log_notes(health);
+  log_clock(health);
+  log_growth(lines::kBatchesLost, health.lost_batches, lost_, "batch", "batches");
+  log_growth(lines::kUndecodable, health.undecodable_samples, undecodable_, "sample");
+  log_growth(lines::kOtherReports, health.foreign_reports, foreign_, "report");
+  log_growth(lines::kOverruns, health.overruns, overruns_, "overrun");
+  log_growth(lines::kReportsDropped, health.dropped_reports, dropped_, "report");
+}
+
+}  // namespace clearance

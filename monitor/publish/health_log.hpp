@@ -1,0 +1,54 @@
+// Logs the news in each health sample for a person: the changes since the previous sample.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+
+#include "config/scene/scene.hpp"
+#include "monitor/publish/joint_log.hpp"
+#include "monitor/publish/refusal_log.hpp"
+#include "monitor/wire/dds_sample.hpp"
+
+namespace clearance {
+
+// Logs new rejections, losses and late inputs: a few lines a second at most.
+class HealthLog {
+ public:
+  // The scene must outlive this, or its use until the next call of change().
+  explicit HealthLog(const Scene& scene);
+  // The following samples are of this scene. What has been told of an input is not told again under
+  // the same name.
+  void change(const Scene& scene);
+  // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
+  // that is needed.
+  void update(const clearance_msg_Health& health,
+              const std::function<std::string()>& senders_of_joints);
+
+ private:
+  void log_clock(const clearance_msg_Health& health);
+  void log_notes(const clearance_msg_Health& health);
+
+  RefusalLog refusals_;
+  struct Poses {
+    bool stale = false;
+    bool is_of_sensor = false;
+    std::string other_source;
+  };
+  void note_sensors(const Scene& scene);
+  static void log_late(const clearance_msg_InputAge& input, const Poses& now);
+  std::map<std::string, Poses> poses_;  // by object
+  // By input: the takeovers, and whether its velocities were told of.
+  struct Note {
+    std::uint32_t takeovers = 0;
+    bool velocities_said = false;
+  };
+  std::map<std::string, Note> notes_;
+  JointLog joints_;
+  std::uint64_t clock_steps_ = 0;
+  std::int64_t clock_offset_ns_ = 0;
+  std::uint64_t lost_ = 0, undecodable_ = 0, foreign_ = 0, overruns_ = 0, dropped_ = 0;
+};
+
+}  // namespace clearance

@@ -1,0 +1,61 @@
+#include "monitor/requests/durable_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+
+namespace clearance {
+namespace {
+
+// The kernel may take less than was given.
+bool write_all(int file, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(file, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+// The name of a file is kept with its folder.
+bool sync_folder(const std::filesystem::path& folder) {
+  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) return false;
+  const bool done = ::fsync(handle) == 0;
+  ::close(handle);
+  return done;
+}
+
+}  // namespace
+
+std::string write_durably(const std::filesystem::path& file, std::string_view bytes) {
+  const std::string beside = fmt::format("{}.{}.new", file.string(), ::getpid());
+  constexpr int kMode = 0644;
+  const int handle = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
+  bool done = handle >= 0 && write_all(handle, bytes) && ::fsync(handle) == 0;
+  int error = errno;
+  if (handle >= 0 && ::close(handle) != 0 && done) {
+    error = errno;
+    done = false;
+  }
+  if (done && ::rename(beside.c_str(), file.c_str()) != 0) {
+    error = errno;
+    done = false;
+  }
+  if (!done) {
+    if (handle >= 0) ::unlink(beside.c_str());
+    return fmt::format("'{}' cannot be written: {}", file.string(), std::strerror(error));
+  }
+  const std::filesystem::path folder = file.has_parent_path() ? file.parent_path() : ".";
+  if (!sync_folder(folder)) {
+    return fmt::format("the folder '{}' cannot be kept: {}", folder.string(), std::strerror(errno));
+  }
+  return {};
+}
+
+}  // namespace clearance

@@ -1,0 +1,134 @@
+#include "monitor/requests/overlap.hpp"
+
+#include <algorithm>
+#include <cstdint>
+#include <utility>
+#include <variant>
+
+#include "config/scene/rigid_root.hpp"
+#include "core/distance.hpp"
+
+namespace clearance {
+namespace {
+
+// Follows the links that are objects; any other object is its own root.
+RigidRoot root_of(const Scene& scene, std::uint32_t object) {
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    const auto& links = scene.robots[robot].links;
+    const auto link = std::ranges::find(links, object, &RobotLink::object);
+    if (link == links.end()) continue;
+    return root_of_link(scene.robots, robot, static_cast<std::uint32_t>(link - links.begin()));
+  }
+  return {true, object, 0};
+}
+
+// Tells whether a change says anew where this object is. An entry of text does so, too, but its
+// name is in the text.
+struct PutsElsewhere {
+  const std::string& object;
+  bool operator()(const Attach& change) const { return change.object == object; }
+  bool operator()(const Detach& change) const { return change.object == object; }
+  bool operator()(const Place& change) const { return change.object == object; }
+  bool operator()(const RemoveObject& change) const { return change.object == object; }
+  template <class Change>
+  bool operator()(const Change&) const {
+    return false;
+  }
+};
+
+// m; 0 if they are disjoint, or if it is not known that they overlap.
+double depth_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
+  double depth = 0.0;
+  for (const Part& of_a : a.parts) {
+    for (const Part& of_b : b.parts) {
+      TrackingState state;
+      const DistanceResult result =
+          distance(of_a.shape, of_b.shape, of_a.object_from_part,
+                   compose(a_from_object_b, of_b.object_from_part), state);
+      if (result.upper < 0.0) depth = std::max(depth, -result.distance);
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+std::optional<Attach> as_attached(const Attach& change, std::span<const CellChange> later,
+                                  const Scene& scene) {
+  const auto elsewhere = [&change](const CellChange& each) {
+    return std::visit(PutsElsewhere{change.object}, each);
+  };
+  const Object* const object = find_object(scene, change.object);
+  if (object == nullptr || std::ranges::any_of(later, elsewhere)) return std::nullopt;
+  Attach attached = change;
+  if (const auto carrier = carrier_of(change.object, scene)) {
+    if (carrier->name != change.to) return std::nullopt;
+    attached.carrier_from_object = carrier->carrier_from_object;
+    return attached;
+  }
+  if (!object->fixed) return std::nullopt;
+  const Object* const to = find_object(scene, change.to);
+  if (to == nullptr) return attached;
+  if (!to->fixed) return std::nullopt;
+  attached.carrier_from_object = a_from_b(to->world_from_object, object->world_from_object);
+  return attached;
+}
+
+std::vector<std::string> left_out_with(const Attach& change, const Scene& scene) {
+  std::vector<std::string> names{change.to};
+  const Object* attached = find_object(scene, change.object);
+  const auto in_touch = [&](const std::string& name) {
+    return std::ranges::find(change.touch, name) != change.touch.end();
+  };
+  if (attached != nullptr) {
+    const RigidRoot root =
+        root_of(scene, static_cast<std::uint32_t>(attached - scene.objects.data()));
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+      const Object& other = scene.objects[i];
+      const bool is_rigid = !attached->fixed && root_of(scene, i) == root;
+      const bool may_touch = in_touch(other.name) || std::ranges::any_of(other.groups, in_touch);
+      if (is_rigid || may_touch) names.push_back(other.name);
+    }
+  }
+  std::ranges::sort(names);
+  const auto same = std::ranges::unique(names);
+  names.erase(same.begin(), same.end());
+  std::erase(names, change.object);
+  return names;
+}
+
+std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
+                                       const std::vector<std::string>& others,
+                                       const PresentPoses& poses,
+                                       const std::map<std::string, double>& mesh_errors) {
+  const Object* attached = find_object(scene, change.object);
+  if (attached == nullptr || !change.carrier_from_object) return std::nullopt;
+  const auto usable = [&](const std::string& name) -> const Pose* {
+    const auto pose = poses.find(name);
+    const bool is = pose != poses.end() && pose->second.state == PresentPose::State::kUsable;
+    return is ? &pose->second.world_from_body : nullptr;
+  };
+  const auto error_of = [&](const std::string& name) {
+    const auto error = mesh_errors.find(name);
+    return error == mesh_errors.end() ? 0.0 : error->second;
+  };
+  const Pose* const world_from_carrier = usable(change.to);
+  std::optional<Overlap> deepest;
+  for (const std::string& name : others) {
+    const Object* other = find_object(scene, name);
+    if (other == nullptr) continue;
+    Pose other_from_object = *change.carrier_from_object;
+    if (name != change.to) {
+      const Pose* const world_from_other = usable(name);
+      if (world_from_other == nullptr || world_from_carrier == nullptr) continue;
+      other_from_object =
+          compose(a_from_b(*world_from_other, *world_from_carrier), *change.carrier_from_object);
+    }
+    const double depth =
+        depth_of(*other, *attached, other_from_object) - error_of(name) - error_of(change.object);
+    if (depth > 0.0 && (!deepest || depth > deepest->depth)) deepest = Overlap{name, depth};
+  }
+  return deepest;
+}
+
+}  // namespace clearance

@@ -1,0 +1,44 @@
+// Measures the overlap of an attached object with the bodies that it may touch from then on.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "config/edit/cell_change.hpp"
+#include "config/scene/scene.hpp"
+#include "monitor/requests/present_poses.hpp"
+
+namespace clearance {
+
+// The depth by which an attached object may overlap if the change states none, m. The errors
+// of both objects' parts against their meshes are added.
+inline constexpr double kDefaultOverlap = 1e-3;
+
+// Returns the change with the pose that the object has in `scene`, to which the whole list leads.
+// `later`: the changes after this one. Nothing: by one of them it is not attached there any more,
+// or is attached once more.
+[[nodiscard]] std::optional<Attach> as_attached(const Attach& change,
+                                                std::span<const CellChange> later,
+                                                const Scene& scene);
+
+// Names of all objects that the attached one is not watched against: those that are rigidly
+// connected to its carrier, and those that it may touch. Sorted.
+[[nodiscard]] std::vector<std::string> left_out_with(const Attach& change, const Scene& scene);
+
+struct Overlap {
+  std::string object;
+  double depth = 0.0;  // m
+};
+
+// Returns the deepest overlap of an object with one of these. `poses` has the poses of the
+// others and of the carrier in this scene, at one instant; those that are not usable are left out,
+// except the carrier's own parts, which need none. `mesh_errors` has, by object, how far parts
+// exceed meshes, m, and lowers the depth.
+[[nodiscard]] std::optional<Overlap> deepest_overlap(
+    const Attach& change, const Scene& scene, const std::vector<std::string>& others,
+    const PresentPoses& poses, const std::map<std::string, double>& mesh_errors);
+
+}  // namespace clearance

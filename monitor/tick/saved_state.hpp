@@ -1,0 +1,33 @@
+// The state of a monitor as bytes: for a partner of its daemon, and for recordings. A monitor of
+// the same scene in the same build goes on from them with the same bits.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "monitor/inputs/scene_ids.hpp"
+#include "monitor/tick/monitor.hpp"
+
+namespace clearance {
+
+// Saves a monitor that has taken over and not ticked yet, with the numbers of its sources at that
+// time. Former scenes are those of `ids`.
+inline void save_state(const SourceNumbers& numbers, const SceneIds& ids, const Monitor& monitor,
+                       std::vector<std::byte>& bytes) {
+  StateWriter out(bytes);
+  out.put(numbers);
+  ids.save_former(out);
+  monitor.save(out);
+}
+
+// `ids` and `monitor` are new ones of the scene. False: the bytes do not fit it.
+[[nodiscard]] inline bool restore_state(std::span<const std::byte> bytes, SceneIds& ids,
+                                        Monitor& monitor) {
+  StateReader in(bytes);
+  in.take(ids.sources());
+  ids.restore_former(in);
+  return monitor.restore(in);
+}
+
+}  // namespace clearance

@@ -1,0 +1,192 @@
+// MoveIt's messages change the cell of a running loop.
+#include "monitor/daemon/moveit_port.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstring>
+#include <future>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/requests/scene_thread.hpp"
+#include "tests/monitor/intake/moveit_messages.hpp"
+#include "tests/monitor/requests/commanded_cell.hpp"
+
+namespace clearance {
+namespace {
+
+moveit::RawScene raw(const moveit::CollisionObject& message) {
+  return {moveit::RawScene::Type::kCollisionObject, "/collision_object", moveit::cdr_of(message)};
+}
+moveit::RawScene sphere(const std::string& id, const std::string& frame) {
+  return raw(moveit::sphere_object(id, frame, {0.5, 0.0, 0.0}));
+}
+moveit::RawScene removal(const std::string& id) {
+  return raw(moveit::operation(moveit::Operation::kRemove, id));
+}
+
+class MoveItPortTest : public test::CommandedCell {
+ protected:
+  MoveItPortTest()
+      : port_([this](SceneTask task) {
+          if (AnswerCommand* const asked = answer_of(task)) {
+            *asked = [this, answer = std::move(*asked)](const CommandResult& result) {
+              answer(result);
+              if (auto waiting = std::exchange(result_, std::nullopt)) waiting->set_value(result);
+            };
+          }
+          return thread_->put(std::move(task));
+        }) {
+    std::string text = test::kCommandedCell;
+    text.insert(text.find("commands:"), "ros2: {collision_object: true}\n");
+    text.insert(text.find("zones:"), "  - {between: [arm, moveit]}\n");
+    start(text);
+    thread_ = std::make_unique<SceneThread>(*changer, *loop, loop_ended, CommanderOptions{});
+    thread_->start();
+  }
+  ~MoveItPortTest() override {
+    port_.close();
+    end();
+    EXPECT_TRUE(thread_->end());
+  }
+  CommandResult take(moveit::RawScene message) {
+    auto result = result_.emplace().get_future();
+    port_.take(std::move(message));
+    return result.get();
+  }
+  [[nodiscard]] const Object* object(const std::string& name) const {
+    const auto& objects = changer->cell().scene.objects;
+    const auto found = std::ranges::find(objects, name, &Object::name);
+    return found == objects.end() ? nullptr : &*found;
+  }
+
+  std::optional<std::promise<CommandResult>> result_;  // that take() waits for
+  MoveItPort port_;
+  std::unique_ptr<SceneThread> thread_;
+};
+
+TEST_F(MoveItPortTest, AnObjectIsPlacedInAFrameThatMoves) {
+  poses->put(test::at(2.0, 1.0, 0.0));
+  poses->settle();
+  EXPECT_TRUE(take(sphere("ball", "hand")).done());
+  ASSERT_NE(object("ball"), nullptr);
+  EXPECT_EQ(object("ball")->world_from_object.position, Vec3(2.5, 1.0, 0.0));
+  EXPECT_TRUE(take(removal("ball")).done());
+  EXPECT_EQ(object("ball"), nullptr);
+}
+
+TEST_F(MoveItPortTest, WhatTheCapacityDoesNotAllowIsRefusedAndTheNextMessageCounts) {
+  for (const char* name : {"a", "b"}) EXPECT_TRUE(take(sphere(name, "world")).done());
+  EXPECT_EQ(take(sphere("c", "world")).status, CommandStatus::kBeyondCapacity);
+  EXPECT_TRUE(take(removal("a")).done());
+  EXPECT_TRUE(take(sphere("c", "world")).done());
+}
+
+// Beside a partner, which the test plays.
+class SharedMoveItPort : public MoveItPortTest {
+ protected:
+  SharedMoveItPort() {
+    port_.share({.leads = [this] { return leads.load(); },
+                 .revision = [this] { return in_force.load(); },
+                 .tell =
+                     [this](auto done, auto) {
+                       const std::lock_guard lock(mutex_);
+                       told_.assign(done.begin(), done.end());
+                     }});
+    in_force = revision();
+  }
+  // The partner leads, and has done this message, after which that revision is in force.
+  void hear(const moveit::RawScene& message, std::uint64_t revision) {
+    Sample<clearance_msg_PartnerScene> sample;
+    reserve_sequence(sample->changes, 1);
+    sample->changes._buffer[0] = {message.identity(), revision};
+    sample->changes._length = 1;
+    std::vector<std::byte> bytes;
+    moveit::SceneKeeper().save(bytes);
+    reserve_sequence(sample->bytes, bytes.size());
+    std::memcpy(sample->bytes._buffer, bytes.data(), bytes.size());
+    sample->bytes._length = static_cast<std::uint32_t>(bytes.size());
+    port_.hear(*sample);
+    port_.update_lead();
+  }
+  // Until the scene thread has done what waits.
+  void finish() {
+    for (int i = 0; i < 3; ++i) {
+      port_.update_lead();
+      std::promise<void> done;
+      ASSERT_TRUE(thread_->put(OtherWork{[&] { done.set_value(); }}));
+      done.get_future().get();
+    }
+  }
+  bool is_told(const moveit::RawScene& message) {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::find(told_, message.identity(), &DoneSceneChange::message) != told_.end();
+  }
+
+  std::atomic<bool> leads{false};
+  std::atomic<std::uint64_t> in_force{0};
+
+ private:
+  std::mutex mutex_;
+  std::vector<DoneSceneChange> told_;
+};
+
+TEST_F(SharedMoveItPort, MessagesWaitUntilThisDaemonLeadsAndAreDoneInOrder) {
+  const auto added = sphere("ball", "world"), gone = removal("ball"), other = sphere("b", "world");
+  for (const auto& message : {added, gone, other}) port_.take(message);
+  finish();
+  EXPECT_EQ(revision(), cell->scene.revision);
+  leads = true;
+  finish();
+  EXPECT_EQ(object("ball"), nullptr);
+  EXPECT_NE(object("b"), nullptr);
+  for (const auto& message : {added, gone, other}) EXPECT_TRUE(is_told(message));
+}
+
+TEST_F(SharedMoveItPort, WhatTheOtherLeaderHasDoneIsNotDoneAgain) {
+  const auto first = sphere("a", "world"), second = sphere("b", "world");
+  port_.take(first);
+  port_.take(second);
+  hear(first, revision());
+  leads = true;
+  finish();
+  EXPECT_EQ(object("a"), nullptr) << "it is in the scene that the test says is in force";
+  EXPECT_NE(object("b"), nullptr);
+  EXPECT_TRUE(is_told(first)) << "whoever follows has to know";
+}
+
+TEST_F(SharedMoveItPort, WhatTheOtherLeaderHadNotPutInForceIsDone) {
+  const auto first = sphere("a", "world");
+  port_.take(first);
+  hear(first, revision() + 1);
+  leads = true;
+  finish();
+  EXPECT_NE(object("a"), nullptr);
+}
+
+TEST_F(SharedMoveItPort, AMessageThatWasQueuedIsNotDoneOnceTheOtherOneLeads) {
+  leads = true;
+  finish();
+  std::promise<void> begun, may_go_on;
+  ASSERT_TRUE(thread_->put(OtherWork{[&] {
+    begun.set_value();
+    may_go_on.get_future().get();
+  }}));
+  begun.get_future().get();
+  port_.take(sphere("a", "world"));
+  leads = false;
+  may_go_on.set_value();
+  finish();
+  EXPECT_EQ(object("a"), nullptr);
+  leads = true;
+  finish();
+  EXPECT_NE(object("a"), nullptr);
+}
+
+}  // namespace
+}  // namespace clearance

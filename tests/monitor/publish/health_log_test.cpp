@@ -1,0 +1,74 @@
+#include "monitor/publish/health_log.hpp"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/monitor/tick/small_cells.hpp"
+#include "tests/shared/logged.hpp"
+
+namespace clearance::test {
+namespace {
+
+// Scenes with a cup and a bowl, in this order or in the other.
+class HealthLogTest : public testing::Test {
+ protected:
+  static Scene scene_of_names(const std::vector<std::string>& names) {
+    std::vector<Object> objects;
+    for (const std::string& name : names) objects.push_back(moving(name, {ball(0.1)}));
+    return cell_of(std::move(objects));
+  }
+  // One second passes in this scene. The named object is late.
+  void second(const Scene& scene, const std::string& late, std::uint64_t overruns) {
+    std::vector<std::string> names;
+    for (const Object& object : scene.objects) names.push_back(object.name);
+    std::vector<clearance_msg_InputAge> inputs(names.size());
+    for (std::uint32_t i = 0; i < names.size(); ++i) {
+      inputs[i].object = i;
+      inputs[i].name = names[i].data();
+      inputs[i].stale = names[i] == late;
+    }
+    clearance_msg_Health health{};
+    health.overruns = overruns;
+    health.inputs._buffer = inputs.data();
+    health.inputs._length = static_cast<std::uint32_t>(inputs.size());
+    log_.update(health, [] { return std::string(); });
+  }
+  [[nodiscard]] std::size_t lines(const std::string& code) const {
+    return logged_->count("[" + code + "]");
+  }
+
+  Scene first_ = scene_of_names({"cup", "bowl"}), turned_ = scene_of_names({"bowl", "cup"});
+  HealthLog log_{first_};
+  std::shared_ptr<Logged> logged_ = std::make_shared<Logged>();
+  LoggedTo to_{logged_};
+};
+
+TEST_F(HealthLogTest, DoesNotTellAgainWhatAChangedSceneStillHasUnderAnotherNumber) {
+  second(first_, "cup", 3);
+  EXPECT_EQ(lines("poses-late"), 1u);
+  EXPECT_EQ(lines("overruns"), 1u);
+  log_.change(turned_);
+  second(turned_, "cup", 3);
+  EXPECT_EQ(lines("poses-late"), 1u) << logged_->text();
+  EXPECT_EQ(lines("poses-back"), 0u);
+  EXPECT_EQ(lines("overruns"), 1u) << "none came since";
+  second(turned_, "bowl", 3);
+  EXPECT_EQ(lines("poses-late"), 2u);
+  EXPECT_EQ(lines("poses-back"), 1u);
+}
+
+TEST_F(HealthLogTest, TellsAgainOfAnObjectThatWasAwayForAChange) {
+  second(first_, "cup", 0);
+  const Scene without = scene_of_names({"bowl"});
+  log_.change(without);
+  second(without, "", 0);
+  log_.change(first_);
+  second(first_, "cup", 0);
+  EXPECT_EQ(lines("poses-late"), 2u) << logged_->text();
+}
+
+}  // namespace
+}  // namespace clearance::test
