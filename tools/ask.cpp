@@ -9,8 +9,8 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/recording/bag.hpp"
 #include "monitor/files/file_error.hpp"
+#include "monitor/recording/bag.hpp"
 #include "tools/ask/answering.hpp"
 
 namespace clearance {

@@ -5,8 +5,8 @@
 
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/ask/vectors.hpp"
-#include "monitor/bodies/fixed_order.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/fixed_order.hpp"
 
 namespace clearance {
 namespace {

@@ -10,8 +10,8 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/ask/trajectory.hpp"
-#include "monitor/bodies/posed_part.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/posed_part.hpp"
 
 namespace clearance {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "monitor/ask/vectors.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/fixed_order.hpp"
 #include "monitor/bodies/sine_cosine.hpp"
-#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/interface/question.hpp"
 #include "monitor/ask/trajectory.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

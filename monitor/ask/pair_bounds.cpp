@@ -9,8 +9,8 @@
 #include "core/model/support_function.hpp"
 #include "monitor/ask/vectors.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
-#include "monitor/bodies/fixed_order.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/fixed_order.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 
 namespace clearance {

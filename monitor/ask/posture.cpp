@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "config/scene/chain_rounding.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
 #include "monitor/inputs/joint_batch.hpp"
-#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

@@ -12,8 +12,8 @@
 #include "monitor/ask/chains.hpp"
 #include "monitor/ask/moving_objects.hpp"
 #include "monitor/ask/trajectory.hpp"
-#include "monitor/bodies/posed_part.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/posed_part.hpp"
 #include "monitor/pairs/cloud_pairs.hpp"
 
 namespace clearance {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/inputs/joint_batch.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/interface/question.hpp"
 #include "monitor/bodies/tracked_variable.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance {
 

@@ -8,9 +8,9 @@
 
 #include "config/scene/chain_rounding.hpp"
 #include "core/convex_body.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/fixed_order.hpp"
 #include "monitor/bodies/sine_cosine.hpp"
-#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

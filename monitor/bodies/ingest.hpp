@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "config/scene/carrier.hpp"
-#include "monitor/inputs/source_clock.hpp"
-#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/bodies/large_column.hpp"
 #include "monitor/bodies/pose_stamps.hpp"
 #include "monitor/bodies/robot_inputs.hpp"
 #include "monitor/bodies/tracked_object.hpp"
 #include "monitor/bodies/visit_times.hpp"
+#include "monitor/inputs/source_clock.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 
 namespace clearance {
 

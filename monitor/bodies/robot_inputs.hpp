@@ -8,10 +8,10 @@
 
 #include "config/scene/scene.hpp"
 #include "config/scene/scene_map.hpp"
-#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
-#include "monitor/bodies/tracked_variable.hpp"
 #include "monitor/bodies/tracked_object.hpp"
+#include "monitor/bodies/tracked_variable.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 

@@ -2,8 +2,8 @@
 #pragma once
 
 #include "config/scene/scene_map.hpp"
-#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/bodies/ingest.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 

@@ -4,10 +4,10 @@
 #include <cmath>
 #include <limits>
 
-#include "monitor/inputs/elapsed.hpp"
-#include "monitor/inputs/mean_twist.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/presence.hpp"
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/mean_twist.hpp"
 
 namespace clearance {
 namespace {

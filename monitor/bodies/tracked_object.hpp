@@ -5,14 +5,14 @@
 #include <optional>
 
 #include "config/scene/scene.hpp"
+#include "monitor/bodies/displacement.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/interpolated_motion.hpp"
+#include "monitor/bodies/landmarks.hpp"
+#include "monitor/bodies/relative_displacement.hpp"
 #include "monitor/inputs/input_record.hpp"
 #include "monitor/inputs/plausibility.hpp"
 #include "monitor/inputs/pose_batch.hpp"
-#include "monitor/bodies/forward_kinematics.hpp"
-#include "monitor/bodies/displacement.hpp"
-#include "monitor/bodies/interpolated_motion.hpp"
-#include "monitor/bodies/relative_displacement.hpp"
-#include "monitor/bodies/landmarks.hpp"
 
 namespace clearance {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "core/convex_body.hpp"
-#include "monitor/inputs/elapsed.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {

@@ -5,10 +5,10 @@
 #include <optional>
 
 #include "config/scene/robot.hpp"
+#include "monitor/bodies/joint_metric.hpp"
 #include "monitor/inputs/input_record.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/inputs/plausibility.hpp"
-#include "monitor/bodies/joint_metric.hpp"
 
 namespace clearance {
 

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "monitor/participant/command_message.hpp"
-#include "monitor/participant/question_message.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "monitor/wire/topics.hpp"
 
 namespace clearance::client {

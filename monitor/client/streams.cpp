@@ -13,8 +13,8 @@
 #include "monitor/client/client.hpp"
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/interface/pair_name.hpp"
-#include "monitor/participant/participant.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/participant/participant.hpp"
 
 namespace clearance::client {
 namespace {

@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/interface/command.hpp"
 #include "monitor/daemon/file_watch.hpp"
-#include "monitor/requests/scene_task.hpp"
 #include "monitor/daemon/service_manager.hpp"
+#include "monitor/interface/command.hpp"
+#include "monitor/requests/scene_task.hpp"
 
 namespace clearance {
 

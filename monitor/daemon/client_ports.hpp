@@ -12,8 +12,8 @@
 #include "monitor/dds/request_port.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/requests/question_desk.hpp"
 #include "monitor/publish/ros_writes.hpp"
+#include "monitor/requests/question_desk.hpp"
 
 namespace clearance {
 

@@ -18,17 +18,17 @@
 #include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/partner_states.hpp"
 #include "monitor/daemon/recording.hpp"
+#include "monitor/daemon/service_manager.hpp"
 #include "monitor/daemon/share_scenes.hpp"
 #include "monitor/dds/pose_reader.hpp"
-#include "monitor/publish/report_writer.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/publish/report_writer.hpp"
 #include "monitor/publish/ros_messages.hpp"
 #include "monitor/publish/ros_writer.hpp"
 #include "monitor/requests/scene_changer.hpp"
 #include "monitor/requests/scene_thread.hpp"
-#include "monitor/daemon/service_manager.hpp"
 
 namespace clearance {
 

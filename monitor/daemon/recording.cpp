@@ -9,9 +9,9 @@
 #include <span>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/publish/health.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/publish/health.hpp"
 
 namespace clearance {
 namespace {

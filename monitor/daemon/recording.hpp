@@ -17,8 +17,8 @@
 #include "config/cell/cell.hpp"
 #include "monitor/daemon/frame_uses.hpp"
 #include "monitor/dds/pose_reader.hpp"
-#include "monitor/publish/recording_health.hpp"
 #include "monitor/loop/report_queue.hpp"
+#include "monitor/publish/recording_health.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/wire/partner_state.hpp"
 

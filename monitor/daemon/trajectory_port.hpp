@@ -14,8 +14,8 @@
 #include "config/cell/ros_settings.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
-#include "monitor/requests/question_desk.hpp"
 #include "monitor/publish/ros_writes.hpp"
+#include "monitor/requests/question_desk.hpp"
 
 namespace clearance {
 

@@ -7,8 +7,8 @@
 
 #include "config/cell/topics.hpp"
 #include "monitor/dds/daemon_identity.hpp"
-#include "monitor/participant/participant.hpp"
 #include "monitor/loop/tick_partner.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

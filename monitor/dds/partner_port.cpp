@@ -5,10 +5,10 @@
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
-#include "monitor/participant/wire_values.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/participant/wire_values.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {

@@ -16,8 +16,8 @@
 #include "config/cell/topics.hpp"
 #include "monitor/dds/daemon_identity.hpp"
 #include "monitor/dds/partner_reports.hpp"
-#include "monitor/participant/participant.hpp"
 #include "monitor/loop/tick_partner.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/partner_state.hpp"
 

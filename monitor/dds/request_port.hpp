@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/participant/command_message.hpp"
-#include "monitor/participant/question_message.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/request_ledger.hpp"
 #include "monitor/participant/cdr_sample.hpp"
+#include "monitor/participant/command_message.hpp"
 #include "monitor/participant/lapsed_writers.hpp"
 #include "monitor/participant/participant.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "monitor/requests/question_desk.hpp"
 #include "monitor/requests/scene_task.hpp"
 #include "monitor/wire/cdr.hpp"

@@ -14,11 +14,11 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/interface/question.hpp"
 #include "monitor/dds/partner_frames.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/intake/intake.hpp"
+#include "monitor/interface/question.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/sensors/built_frames.hpp"
 #include "monitor/sensors/sensors.hpp"

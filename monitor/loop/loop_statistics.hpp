@@ -7,9 +7,9 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/tick/monitor.hpp"
-#include "monitor/interface/report.hpp"
 
 namespace clearance {
 

@@ -10,8 +10,8 @@
 
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
-#include "monitor/loop/loop_statistics.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/loop/loop_statistics.hpp"
 
 namespace clearance {
 

@@ -10,10 +10,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "monitor/loop/batch_store.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/semaphore.hpp"
 #include "monitor/loop/steady_time.hpp"
-#include "monitor/loop/batch_store.hpp"
 #include "monitor/loop/tick_notice.hpp"
 #include "monitor/tick/frame_exchange.hpp"
 #include "monitor/tick/spsc_ring.hpp"

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/pairs/contact_cone.hpp"
 #include "monitor/bodies/fixed_order.hpp"
+#include "monitor/pairs/contact_cone.hpp"
 
 namespace clearance {
 namespace {

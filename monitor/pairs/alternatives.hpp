@@ -9,8 +9,8 @@
 
 #include <span>
 
-#include "monitor/pairs/tick_view.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/pairs/tick_view.hpp"
 
 namespace clearance {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <limits>
 
-#include "monitor/pairs/alternatives.hpp"
 #include "monitor/bodies/fixed_order.hpp"
+#include "monitor/pairs/alternatives.hpp"
 
 namespace clearance {
 namespace {

@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/interface/gradient_rows.hpp"
 #include "monitor/bodies/joint_screw.hpp"
 #include "monitor/bodies/robot_inputs.hpp"
+#include "monitor/interface/gradient_rows.hpp"
 #include "monitor/pairs/tick_view.hpp"
 
 namespace clearance {

@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "monitor/pairs/tick_view.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/pairs/tick_view.hpp"
 
 namespace clearance {
 

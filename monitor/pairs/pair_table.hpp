@@ -12,9 +12,9 @@
 
 #include "config/scene/scene.hpp"
 #include "core/distance.hpp"
+#include "monitor/bodies/large_column.hpp"
 #include "monitor/bodies/posed_part.hpp"
 #include "monitor/inputs/checksum.hpp"
-#include "monitor/bodies/large_column.hpp"
 #include "monitor/pairs/evaluations.hpp"
 
 namespace clearance {

@@ -6,8 +6,8 @@
 #include <string>
 #include <variant>
 
-#include "monitor/participant/command_message.hpp"
 #include "monitor/interface/motion_question.hpp"
+#include "monitor/participant/command_message.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

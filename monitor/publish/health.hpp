@@ -6,8 +6,8 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/dds/pose_reader.hpp"
-#include "monitor/publish/recording_health.hpp"
 #include "monitor/loop/loop_statistics.hpp"
+#include "monitor/publish/recording_health.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {

@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/publish/zone_log.hpp"
-#include "monitor/participant/participant.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/participant/participant.hpp"
+#include "monitor/publish/zone_log.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/written_zones.hpp"
 

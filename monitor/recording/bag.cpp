@@ -7,10 +7,10 @@
 #include <cstdio>
 #include <string_view>
 
+#include "monitor/files/compression.hpp"
 #include "monitor/recording/bag_folder.hpp"
 #include "monitor/recording/mcap_bag.hpp"
 #include "monitor/recording/sqlite_bag.hpp"
-#include "monitor/files/compression.hpp"
 
 namespace clearance {
 namespace {

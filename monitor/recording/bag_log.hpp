@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "monitor/intake/intake.hpp"
 #include "monitor/recording/bag.hpp"
 #include "monitor/recording/given_joints.hpp"
 #include "monitor/recording/input_log.hpp"
-#include "monitor/intake/intake.hpp"
 
 namespace clearance {
 

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "monitor/files/reader.hpp"
+#include "monitor/files/table.hpp"
 #include "monitor/recording/bag_log.hpp"
 #include "monitor/recording/joint_csv_log.hpp"
-#include "monitor/files/table.hpp"
-#include "monitor/files/reader.hpp"
 
 namespace clearance {
 namespace {

@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "monitor/recording/given_joints.hpp"
-#include "monitor/recording/input_log.hpp"
 #include "monitor/files/table.hpp"
 #include "monitor/intake/slow_inputs.hpp"
+#include "monitor/recording/given_joints.hpp"
+#include "monitor/recording/input_log.hpp"
 
 namespace clearance {
 

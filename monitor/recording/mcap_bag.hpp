@@ -3,8 +3,8 @@
 
 #include <map>
 
-#include "monitor/recording/bag.hpp"
 #include "monitor/files/reader.hpp"
+#include "monitor/recording/bag.hpp"
 
 namespace clearance {
 

@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/files/temporary_folder.hpp"
 #include "monitor/files/attachments.hpp"
 #include "monitor/files/compression.hpp"
+#include "monitor/files/temporary_folder.hpp"
 #include "monitor/recording/writer.hpp"
 
 namespace clearance {

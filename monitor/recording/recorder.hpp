@@ -15,9 +15,9 @@
 
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/recording/recorded_event.hpp"
 #include "monitor/recording/sink.hpp"
-#include "monitor/interface/report.hpp"
 #include "monitor/wire/gradient_message.hpp"
 #include "monitor/wire/written_zones.hpp"
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/inputs/former_scenes.hpp"
 #include "monitor/files/writer.hpp"
+#include "monitor/inputs/former_scenes.hpp"
 #include "monitor/recording/attached_files.hpp"
 #include "monitor/recording/options.hpp"
 #include "monitor/recording/topic_schema.hpp"

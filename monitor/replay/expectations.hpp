@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/expected_distance.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

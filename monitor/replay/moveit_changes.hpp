@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "config/edit/cell_editor.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/intake/scene_keeper.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

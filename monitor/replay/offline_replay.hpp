@@ -26,10 +26,10 @@
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/expected_distance.hpp"
 #include "monitor/replay/reference_totals.hpp"
-#include "monitor/interface/report.hpp"
 
 namespace clearance {
 

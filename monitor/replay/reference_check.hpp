@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/reference_totals.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

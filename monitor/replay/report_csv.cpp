@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "monitor/files/file_error.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/interface/report_fields.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 namespace {

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "config/scene/scene.hpp"
+#include "monitor/interface/report.hpp"
 #include "monitor/replay/comparison.hpp"
 #include "monitor/replay/tick_feed.hpp"
-#include "monitor/interface/report.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/gradient_message.hpp"
 

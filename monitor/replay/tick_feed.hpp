@@ -18,10 +18,10 @@
 #include <string>
 #include <vector>
 
-#include "monitor/recording/input_log.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/intake/own_batches.hpp"
+#include "monitor/recording/input_log.hpp"
 #include "monitor/replay/object_map.hpp"
 #include "monitor/replay/recorded_run.hpp"
 #include "monitor/replay/scene_history.hpp"

@@ -14,8 +14,8 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/ask/asker.hpp"
-#include "monitor/loop/request_queue.hpp"
 #include "monitor/interface/motion_question.hpp"
+#include "monitor/loop/request_queue.hpp"
 #include "monitor/requests/input_states.hpp"
 
 namespace clearance {

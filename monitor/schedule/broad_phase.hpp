@@ -13,11 +13,11 @@
 #include <span>
 #include <vector>
 
-#include "monitor/schedule/motion_wheel.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/interface/invariant.hpp"
 #include "monitor/pairs/pairs_by_object.hpp"
 #include "monitor/pairs/tick_view.hpp"
+#include "monitor/schedule/motion_wheel.hpp"
 #include "monitor/zones/zone_levels.hpp"
 
 namespace clearance {

@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
-#include "monitor/schedule/broad_phase.hpp"
-#include "monitor/schedule/untouched_pairs.hpp"
 #include "monitor/bodies/displacements.hpp"
 #include "monitor/pairs/hull_bound.hpp"
 #include "monitor/pairs/known_pairs.hpp"
+#include "monitor/schedule/broad_phase.hpp"
+#include "monitor/schedule/untouched_pairs.hpp"
 
 namespace clearance {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <span>
 
-#include "monitor/schedule/culling.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/schedule/culling.hpp"
 #include "monitor/schedule/refresh_queue.hpp"
 
 namespace clearance {

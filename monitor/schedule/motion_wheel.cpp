@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 
-#include "monitor/interface/invariant.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/interface/invariant.hpp"
 
 namespace clearance {
 namespace {

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
-#include "monitor/schedule/culling.hpp"
 #include "monitor/pairs/published_pairs.hpp"
+#include "monitor/schedule/culling.hpp"
 #include "monitor/schedule/minimum_search.hpp"
 #include "monitor/schedule/round_robin.hpp"
 #include "monitor/schedule/urgency_bins.hpp"

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/interface/invariant.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/interface/invariant.hpp"
 #include "monitor/pairs/carried_bounds.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
 #include "monitor/schedule/swept_search.hpp"

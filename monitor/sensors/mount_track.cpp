@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "config/scene/plausible_joints.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/pose_series.hpp"
-#include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
 namespace {

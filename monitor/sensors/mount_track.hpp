@@ -13,8 +13,8 @@
 #include "config/scene/carrier.hpp"
 #include "config/scene/sensor.hpp"
 #include "core/pose.hpp"
-#include "monitor/inputs/track.hpp"
 #include "monitor/bodies/landmarks.hpp"
+#include "monitor/inputs/track.hpp"
 
 namespace clearance {
 

@@ -6,8 +6,8 @@
 #include <iterator>
 
 #include "config/scene/plausible_joints.hpp"
-#include "monitor/inputs/elapsed.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {

@@ -4,9 +4,9 @@
 #include <cmath>
 
 #include "config/scene/plausible_joints.hpp"
-#include "monitor/inputs/elapsed.hpp"
-#include "monitor/bodies/joint_metric.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/joint_metric.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {

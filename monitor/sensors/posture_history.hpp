@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/tracked_object.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/track.hpp"
 #include "monitor/intake/pose_series.hpp"
-#include "monitor/bodies/forward_kinematics.hpp"
-#include "monitor/bodies/tracked_object.hpp"
 #include "monitor/sensors/past_pose.hpp"
 
 namespace clearance {

@@ -16,10 +16,10 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/camera_stream.hpp"
 #include "monitor/intake/sensor_messages.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/sensors/mounts.hpp"
 #include "monitor/sensors/organised_points.hpp"
 #include "monitor/sensors/own_image.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "monitor/schedule/culling.hpp"
 #include "monitor/pairs/global_minimum.hpp"
+#include "monitor/schedule/culling.hpp"
 #include "monitor/schedule/zone_crossings.hpp"
 #include "monitor/zones/zones.hpp"
 

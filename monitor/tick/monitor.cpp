@@ -23,10 +23,10 @@
 #include <limits>
 #include <utility>
 
-#include "monitor/interface/invariant.hpp"
-#include "monitor/tick/monitor_state.hpp"
 #include "monitor/bodies/presence.hpp"
 #include "monitor/bodies/take_over.hpp"
+#include "monitor/interface/invariant.hpp"
+#include "monitor/tick/monitor_state.hpp"
 #include "monitor/tick/stage_borders.hpp"
 
 namespace clearance {

@@ -4,9 +4,9 @@
 
 #include <span>
 
-#include "monitor/schedule/culling.hpp"
 #include "monitor/bodies/displacements.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/schedule/culling.hpp"
 
 namespace clearance {
 

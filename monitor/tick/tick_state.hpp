@@ -18,9 +18,9 @@
 
 #include "config/scene/scene_map.hpp"
 #include "monitor/inputs/scene_ids.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/tick/frame_exchange.hpp"
 #include "monitor/tick/joined_state.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "monitor/tick/successor.hpp"
 #include "monitor/tick/tick_pace.hpp"
 

@@ -19,9 +19,9 @@
 
 #include "clearance.h"
 #include "config/scene/scene.hpp"
+#include "monitor/bodies/ingest.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
-#include "monitor/bodies/ingest.hpp"
 
 namespace clearance {
 

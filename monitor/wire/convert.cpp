@@ -1,5 +1,5 @@
-// Reports go by the lists of monitor/interface/report_fields.hpp; inputs and the catalogue field by field.
-// Functions for the tick thread and beside it write into sequences that make_distances or
+// Reports go by the lists of monitor/interface/report_fields.hpp; inputs and the catalogue field by
+// field. Functions for the tick thread and beside it write into sequences that make_distances or
 // make_batch sized.
 #include "monitor/wire/convert.hpp"
 

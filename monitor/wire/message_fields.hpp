@@ -1,5 +1,5 @@
-// The fields of the messages that a tick publishes: the lists of monitor/interface/report_fields.hpp and the
-// fields that only messages have.
+// The fields of the messages that a tick publishes: the lists of
+// monitor/interface/report_fields.hpp and the fields that only messages have.
 #pragma once
 
 #include "clearance.h"

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "monitor/zones/contact_end.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/zones/contact_end.hpp"
 
 namespace clearance {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <cmath>
 
-#include "monitor/inputs/elapsed.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {

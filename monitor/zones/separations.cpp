@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "monitor/inputs/elapsed.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/pairs/pair_table.hpp"
 #include "monitor/zones/closing.hpp"
 #include "monitor/zones/protective_distance.hpp"

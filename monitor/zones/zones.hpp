@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "config/scene/scene_map.hpp"
-#include "monitor/zones/contacts.hpp"
-#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/bodies/tracked_object.hpp"
+#include "monitor/inputs/state_bytes.hpp"
+#include "monitor/zones/contacts.hpp"
 #include "monitor/zones/zone_hysteresis.hpp"
 
 namespace clearance {

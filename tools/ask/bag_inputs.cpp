@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 namespace {

@@ -6,9 +6,9 @@
 #include <map>
 #include <optional>
 
-#include "monitor/recording/bag.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/intake/ros_joint_trajectory.hpp"
+#include "monitor/recording/bag.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance {

@@ -12,8 +12,8 @@
 
 #include "config/cell/cell_file.hpp"
 #include "monitor/client/shared_cell.hpp"
-#include "monitor/participant/participant.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/participant/participant.hpp"
 #include "monitor/publish/ros_writer.hpp"
 
 namespace clearance::merge {

@@ -4,8 +4,8 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
-#include "monitor/recording/given_joints.hpp"
 #include "monitor/recording/csv_recording.hpp"
+#include "monitor/recording/given_joints.hpp"
 #include "monitor/recording/log_recording.hpp"
 #include "tools/record/arguments.hpp"
 

@@ -9,8 +9,8 @@
 #include "config/cell/shares.hpp"
 #include "config/text/sentences.hpp"
 #include "config/yaml/yaml_emitter.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/pairs/pair_bounds.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance {
 namespace {

@@ -12,8 +12,8 @@
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "monitor/app/print.hpp"
-#include "monitor/loop/realtime.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/loop/realtime.hpp"
 
 namespace clearance {
 namespace {

@@ -3,10 +3,11 @@
 //
 // The monitor's broad phase queries a pair and certifies a distance. It then leaves the pair alone
 // until both objects have moved by the allowance: the excess of the distance over the threshold
-// that matters (§4.6; monitor/schedule/BROAD_PHASE.md). If the distance exceeds that threshold by D,
-// a model of error e certifies at least D - e. Let V be the largest speed of both objects together
-// that the cell states, m/s. Let u be the margin of the broad phase for urgent pairs. Then the pair
-// is queried V / (D - e - u) times a second. A model of c ns per query therefore costs c V / (D - e
+// that matters (§4.6; monitor/schedule/BROAD_PHASE.md). If the distance exceeds that threshold by
+// D, a model of error e certifies at least D - e. Let V be the largest speed of both objects
+// together that the cell states, m/s. Let u be the margin of the broad phase for urgent pairs. Then
+// the pair is queried V / (D - e - u) times a second. A model of c ns per query therefore costs c V
+// / (D - e
 // - u). In a plot of c against e, draw the line from each model to the point (D - u, 0). The
 // cheapest model is the one with the least slope.
 #pragma once

@@ -8,8 +8,8 @@
 #include <utility>
 #include <variant>
 
-#include "monitor/participant/question_message.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/participant/question_message.hpp"
 #include "tools/view/sensors_json.hpp"
 
 namespace clearance::view {

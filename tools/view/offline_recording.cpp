@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "monitor/tick/monitor.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/replay/offline_replay.hpp"
+#include "monitor/tick/monitor.hpp"
 
 namespace clearance::view {
 namespace {

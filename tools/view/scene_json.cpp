@@ -8,8 +8,8 @@
 #include <set>
 
 #include "monitor/interface/contact_text.hpp"
-#include "monitor/visual/body_mesh.hpp"
 #include "monitor/interface/zone_cause.hpp"
+#include "monitor/visual/body_mesh.hpp"
 
 namespace clearance::view {
 namespace {

@@ -9,8 +9,8 @@ namespace clearance::view {
 
 // Equal meshes occur once. A pose is [x, y, z, qx, qy, qz, qw]; lengths are in m. Zones have
 // shells: the parts of one of their groups, enlarged by the zone's entry distance. `zone_causes`
-// has the texts of monitor/interface/zone_cause.hpp by the number of the cause, with {} for the object's
-// name.
+// has the texts of monitor/interface/zone_cause.hpp by the number of the cause, with {} for the
+// object's name.
 [[nodiscard]] std::string scene_json(const Cell& cell);
 
 }  // namespace clearance::view

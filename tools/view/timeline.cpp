@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "monitor/interface/pair_name.hpp"
-#include "monitor/recording/reader.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
 
 namespace clearance::view {

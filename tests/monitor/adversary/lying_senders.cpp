@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/intake/camera_texts.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 
 namespace clearance::test::lies {
 namespace {

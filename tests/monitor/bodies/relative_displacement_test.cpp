@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "monitor/tick/monitor.hpp"
 #include "monitor/bodies/tracked_object.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/poses.hpp"
 

@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "monitor/dds/dds_log.hpp"
-#include "monitor/publish/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/publish/health.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/tick/small_cells.hpp"

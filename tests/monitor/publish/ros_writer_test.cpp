@@ -5,8 +5,8 @@
 
 #include <map>
 
-#include "monitor/publish/health.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/publish/health.hpp"
 #include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/logged.hpp"

@@ -7,10 +7,10 @@
 
 #include <cmath>
 
-#include "monitor/tick/monitor.hpp"
 #include "monitor/replay/offline_replay.hpp"
-#include "tests/monitor/recording/ros_camera.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/clouds/rendered_scene.hpp"
+#include "tests/monitor/recording/ros_camera.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::camera_replay_test {

@@ -10,8 +10,8 @@
 #include "monitor/recording/log_recording.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/replay/report_recorder.hpp"
-#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/intake/moveit_messages.hpp"
+#include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/one_cube.hpp"
 

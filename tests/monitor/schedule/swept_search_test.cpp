@@ -5,9 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include "monitor/tick/monitor.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 #include "monitor/schedule/zone_crossings.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/poses.hpp"
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "monitor/sensors/posture_history.hpp"
-#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/sensors/tf_said.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/random.hpp"
 

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "monitor/interface/gradient_rows.hpp"
-#include "monitor/tick/monitor.hpp"
 #include "monitor/interface/zone_cause.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/allocation_count.hpp"

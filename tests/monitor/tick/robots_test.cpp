@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/inputs/source_numbers.hpp"
 #include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/monitor/zones/lift.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
+#include "tests/monitor/zones/lift.hpp"
 
 namespace clearance {
 namespace {

@@ -7,8 +7,8 @@
 #include <list>
 #include <memory>
 
-#include "tests/monitor/zones/lift.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
+#include "tests/monitor/zones/lift.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {

@@ -30,8 +30,8 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/asker.hpp"
-#include "monitor/bodies/posed_part.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
+#include "monitor/bodies/posed_part.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/peers/fcl_bodies.hpp"
 

@@ -6,11 +6,11 @@
 
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
-#include "monitor/interface/gradient_rows.hpp"
-#include "monitor/inputs/joint_batch.hpp"
 #include "monitor/bodies/fixed_order.hpp"
-#include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/inputs/joint_batch.hpp"
+#include "monitor/interface/gradient_rows.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/pairs/evaluate_pair.hpp"
 
 namespace clearance::python {
 namespace {

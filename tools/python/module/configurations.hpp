@@ -12,9 +12,9 @@
 
 #include "config/scene/scene.hpp"
 #include "core/distance.hpp"
-#include "monitor/bodies/posed_part.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
 #include "monitor/bodies/joint_screw.hpp"
+#include "monitor/bodies/posed_part.hpp"
 
 namespace clearance::python {
 
