@@ -126,7 +126,7 @@ Doubles array_of(const Vec3& v) {
 py::dtype record_dtype(const std::vector<Field>& fields, std::size_t size) {
   py::list names, formats, offsets;
   for (const Field& field : fields) {
-    names.append(field.name);
+    names.append(py::str(field.name.data(), field.name.size()));
     formats.append(field.type);
     offsets.append(field.offset);
   }

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <initializer_list>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/pose.hpp"
@@ -40,8 +41,8 @@ inline constexpr py::ssize_t kAny = -1;
 
 // A field of a record: NumPy's name of the type ("f8", "3f8", "u1"), and the offset in the struct.
 struct Field {
-  const char* name;
-  const char* type;
+  std::string_view name;
+  std::string type;
   std::size_t offset;
 };
 

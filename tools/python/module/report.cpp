@@ -2,41 +2,18 @@
 
 #include <fmt/format.h>
 
-#include <cstddef>
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
-#include "tools/python/module/arrays.hpp"
+#include "tools/python/module/fields.hpp"
 #include "tools/python/module/tick_messages.hpp"
 
 namespace clearance::python {
 namespace {
-
-using PairMessage = clearance_msg_PairDistance;
-
-const py::dtype& pair_dtype() {
-  // Never destroyed: the interpreter may be gone by then.
-  static const auto* const dtype = new py::dtype(
-      record_dtype({{"pair", "u4", offsetof(PairMessage, pair)},
-                    {"part_a", "u4", offsetof(PairMessage, part_a)},
-                    {"part_b", "u4", offsetof(PairMessage, part_b)},
-                    {"status", "u1", offsetof(PairMessage, status)},
-                    {"distance", "f8", offsetof(PairMessage, distance)},
-                    {"lower", "f8", offsetof(PairMessage, lower)},
-                    {"upper", "f8", offsetof(PairMessage, upper)},
-                    {"swept_lower", "f8", offsetof(PairMessage, swept_lower)},
-                    {"witness_a", "3f8", offsetof(PairMessage, witness_a)},
-                    {"witness_b", "3f8", offsetof(PairMessage, witness_b)},
-                    {"normal", "3f8", offsetof(PairMessage, normal)},
-                    {"closing_speed", "f8", offsetof(PairMessage, closing_speed)},
-                    {"time_to_contact", "f8", offsetof(PairMessage, time_to_contact)},
-                    {"age_a_ns", "i8", offsetof(PairMessage, age_a_ns)},
-                    {"age_b_ns", "i8", offsetof(PairMessage, age_b_ns)},
-                    {"evaluated_cycle", "u8", offsetof(PairMessage, evaluated_cycle)},
-                    {"refresh_age_cycles", "u8", offsetof(PairMessage, refresh_age_cycles)}},
-                   sizeof(PairMessage)));
-  return *dtype;
-}
 
 // Gradients need the number of joints, which comes with the names.
 void add_beside(const Beside& beside, const clearance_msg_Distances& message, Report& report) {
@@ -49,9 +26,8 @@ void add_beside(const Beside& beside, const clearance_msg_Distances& message, Re
     report.drifts = std::move(arrays.drifts);
   }
   if (beside.separation != nullptr) {
-    SeparationArrays arrays = separation_arrays(*beside.separation);
-    report.separated_zones = std::move(arrays.zones);
-    report.separated_pairs = std::move(arrays.pairs);
+    report.separated_zones = value_of(beside.separation->zones);
+    report.separated_pairs = value_of(beside.separation->pairs);
   }
 }
 
@@ -93,9 +69,14 @@ py::object Report::names_of(std::uint32_t pair) const {
 
 py::list Report::pair_names() const {
   py::list list;
-  const auto* rows = static_cast<const PairMessage*>(pairs.data());
-  for (py::ssize_t i = 0; i < pairs.shape(0); ++i) list.append(names_of(rows[i].pair));
+  for (const py::handle pair : field("pairs")["pair"])
+    list.append(names_of(pair.cast<std::uint32_t>()));
   return list;
+}
+
+py::object Report::minimum_names() const {
+  if (!field("minimum_known").cast<bool>()) return py::none();
+  return names_of(field("minimum")["pair"].cast<std::uint32_t>());
 }
 
 py::object Report::find(const py::tuple& pair) const {
@@ -103,9 +84,8 @@ py::object Report::find(const py::tuple& pair) const {
   if (!names->id_of.contains(pair))
     throw py::key_error(fmt::format("the daemon watches no pair {}", std::string(py::repr(pair))));
   const auto id = names->id_of[pair].cast<std::uint32_t>();
-  const auto* rows = static_cast<const PairMessage*>(pairs.data());
-  for (py::ssize_t i = 0; i < pairs.shape(0); ++i) {
-    if (rows[i].pair == id) return pairs[py::int_(i)];
+  for (const py::handle row : field("pairs")) {
+    if (row["pair"].cast<std::uint32_t>() == id) return py::reinterpret_borrow<py::object>(row);
   }
   throw py::key_error(
       fmt::format("the pair {} is watched but not published; expected 'publish: true' "
@@ -116,53 +96,71 @@ py::object Report::find(const py::tuple& pair) const {
 Report report_of(const clearance_msg_Distances& message, const ReportCheck& check,
                  client::PartnerState partner, std::shared_ptr<const Names> names,
                  const Beside& beside) {
-  Report report = {.pairs = records_of(pair_dtype(), message.pairs._buffer, message.pairs._length),
-                   .minimum = message.minimum,
-                   .check = check,
-                   .partner = partner,
-                   .daemon = message.daemon,
-                   .cycle = message.cycle,
-                   .revision = message.scene_revision,
-                   .now_ns = message.now_ns,
-                   .publish_ns = message.publish_ns,
-                   .lower_all = message.lower_all,
-                   .swept_lower_all = message.swept_lower_all,
-                   .minimum_known = message.minimum_known,
-                   .minimum_certified = message.minimum_certified,
-                   .pairs_total = message.pairs_total,
-                   .evaluated = message.evaluated,
-                   .carried = message.carried,
-                   .stale = message.stale,
-                   .unknown = message.unknown,
-                   .names = std::move(names)};
+  Report report = {
+      .fields = fields_of(message), .check = check, .partner = partner, .names = std::move(names)};
   add_beside(beside, message, report);
   return report;
 }
 
 namespace {
 
-void add_records(py::class_<Report>& type) {
-  type.def_readonly("pairs", &Report::pairs, R"(Records of the published pairs.
+// The meanings of fields for readers in Python. idl/FIELDS.md explains those that are not in
+// it.
+struct FieldText {
+  std::string_view field;
+  const char* text;
+};
+constexpr FieldText kTexts[] = {
+    {"pairs", R"(Records of the published pairs.
 
 Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, witness_a,
 witness_b, normal, closing_speed, time_to_contact, age_a_ns, age_b_ns, evaluated_cycle and
-refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)")
-      .def_property_readonly(
+refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)"},
+    {"minimum", "The record of the pair with the smallest upper bound; see minimum_known."},
+    {"contacts",
+     "Records of the contacts that the cell allows: pair, status, ended, depth (m) and since."},
+    {"hidden",
+     "Records of published pairs of a sensor and a link: what own image and blind shells hide "
+     "there."},
+    {"active_zones", "Ids of the zones that are active in this tick, ascending."},
+    {"sources",
+     "Dicts with the source and sequence_number of every batch that this tick used first."},
+    {"minimum_known", "False: no pair is known."},
+    {"minimum_certified", "No other pair can be closer."},
+    {"lower_all", "Certified: no pair is closer, m."},
+    {"swept_lower_all", "The same at every instant since the last tick."},
+    {"daemon", "A random number that names one run of one daemon."},
+    {"cycle", "Counts ticks from 1."},
+    {"scene_revision", "Of the scene."},
+    {"now_ns", "The time of the tick."},
+    {"publish_ns", "CLOCK_REALTIME when it was published."},
+    {"pairs_total", "Watched pairs."},
+    {"evaluated", "Pairs that were evaluated in this tick."},
+    {"carried", "Pairs with carried bounds."},
+    {"stale", "Pairs with a late pose."},
+    {"unknown", "Pairs without a pose."}};
+
+// All fields of the message but `partner`, which is what partners' reports merged say.
+void add_fields(py::class_<Report>& type) {
+  const auto add = [&type](const clearance::Field& field, const auto&) {
+    if (field.name == "partner") return;
+    const auto known = std::ranges::find(kTexts, field.name, &FieldText::field);
+    const std::string name(field.name);
+    type.def_property_readonly(
+        name.c_str(), [name](const Report& report) { return report.field(name.c_str()); },
+        known != std::end(kTexts) ? known->text : "idl/FIELDS.md explains it.");
+  };
+  const clearance_msg_Distances message{};
+  for_each_field(add, message);
+}
+
+void add_records(py::class_<Report>& type) {
+  type.def_property_readonly(
           "pair_names", &Report::pair_names,
           "Two names for each record of `pairs`; None while names have not come.")
       .def("__getitem__", &Report::find, py::arg("pair"),
            R"(The record of a published pair by two names, in any order. Raises KeyError.)")
-      .def_property_readonly(
-          "minimum",
-          [](const Report& r) {
-            const py::array record = records_of(pair_dtype(), &r.minimum, 1);
-            return py::object(record[py::int_(0)]);
-          },
-          "The record of the pair with the smallest upper bound; see minimum_known.")
-      .def_property_readonly(
-          "minimum_names",
-          [](const Report& r) { return r.minimum_known ? r.names_of(r.minimum.pair) : py::none(); },
-          "Its two names, or None.")
+      .def_property_readonly("minimum_names", &Report::minimum_names, "Its two names, or None.")
       .def_readonly(
           "gradients", &Report::gradients,
           R"((pairs, joints): how each distance of `pairs` changes with each of `joints`, m/rad or m/m.
@@ -192,12 +190,7 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
 }
 
 void add_figures(py::class_<Report>& type) {
-  type.def_readonly("minimum_known", &Report::minimum_known, "False: no pair is known.")
-      .def_readonly("minimum_certified", &Report::minimum_certified, "No other pair can be closer.")
-      .def_readonly("lower_all", &Report::lower_all, "Certified: no pair is closer, m.")
-      .def_readonly("swept_lower_all", &Report::swept_lower_all,
-                    "The same at every instant since the last tick.")
-      .def_property_readonly(
+  type.def_property_readonly(
           "fresh", [](const Report& r) { return r.check.fresh(); }, "It describes the present.")
       .def_property_readonly(
           "age_s", [](const Report& r) { return 1e-9 * static_cast<double>(r.check.age_ns); },
@@ -216,20 +209,16 @@ void add_figures(py::class_<Report>& type) {
       .def_property_readonly(
           "other_scene", [](const Report& r) { return r.check.other_scene; },
           "The report before is of another scene, with other ids.")
-      .def_readonly("daemon", &Report::daemon, "A random number that names one run of one daemon.")
-      .def_readonly("cycle", &Report::cycle, "Counts ticks from 1.")
-      .def_readonly("revision", &Report::revision, "Of the scene.")
-      .def_readonly("now_ns", &Report::now_ns, "The time of the tick.")
-      .def_readonly("publish_ns", &Report::publish_ns, "CLOCK_REALTIME when it was published.")
-      .def_readonly("pairs_total", &Report::pairs_total, "Watched pairs.")
-      .def_readonly("evaluated", &Report::evaluated, "Pairs that were evaluated in this tick.")
-      .def_readonly("carried", &Report::carried, "Pairs with carried bounds.")
-      .def_readonly("stale", &Report::stale, "Pairs with a late pose.")
-      .def_readonly("unknown", &Report::unknown, "Pairs without a pose.")
+      .def_property_readonly(
+          "revision", [](const Report& r) { return r.field("scene_revision"); }, "Of the scene.")
       .def("__repr__", [](const Report& r) {
-        return fmt::format("<clearance.Report: cycle {}, {} pairs, minimum {} m{}>", r.cycle,
-                           r.pairs.shape(0), r.minimum_known ? r.minimum.distance : r.lower_all,
-                           r.check.fresh() ? "" : ", not fresh");
+        const auto number = [&r](const char* name) { return r.field(name).cast<double>(); };
+        const bool is_known = r.field("minimum_known").cast<bool>();
+        return fmt::format(
+            "<clearance.Report: cycle {:.0f}, {} pairs, minimum {} m{}>", number("cycle"),
+            py::len(r.field("pairs")),
+            is_known ? r.field("minimum")["distance"].cast<double>() : number("lower_all"),
+            r.check.fresh() ? "" : ", not fresh");
       });
 }
 
@@ -237,6 +226,7 @@ void add_figures(py::class_<Report>& type) {
 
 void add_report_class(py::module_& module) {
   py::class_<Report> type(module, "Report", R"(The distances of one tick. It does not change.)");
+  add_fields(type);
   add_records(type);
   add_figures(type);
 }

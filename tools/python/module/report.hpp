@@ -41,15 +41,9 @@ struct Beside {
 
 // A copy of a report: it does not change when the stream goes on.
 struct Report {
-  py::array pairs;
-  clearance_msg_PairDistance minimum;
+  py::dict fields;  // of the message by their names; `partner` is the one below
   ReportCheck check;
   client::PartnerState partner;
-  std::uint64_t daemon, cycle, revision;
-  std::int64_t now_ns, publish_ns;
-  double lower_all, swept_lower_all;
-  bool minimum_known, minimum_certified;
-  std::uint32_t pairs_total, evaluated, carried, stale, unknown;
   std::shared_ptr<const Names> names;  // null: the catalogue of its scene has not come
   py::object gradients = py::none(), drifts = py::none();  // arrays, or None
   py::object separated_zones = py::none(), separated_pairs = py::none();
@@ -61,6 +55,8 @@ struct Report {
   // The names of the pair, or None.
   [[nodiscard]] py::object names_of(std::uint32_t pair) const;
   [[nodiscard]] py::list pair_names() const;
+  [[nodiscard]] py::object minimum_names() const;
+  [[nodiscard]] py::object field(const char* name) const { return fields[name]; }
   // The record of a pair by two names.
   [[nodiscard]] py::object find(const py::tuple& pair) const;
 };

@@ -1,68 +1,12 @@
 #include "tools/python/module/tick_messages.hpp"
 
 #include <algorithm>
-#include <cstddef>
 #include <limits>
 
-#include "tools/python/module/arrays.hpp"
+#include "tools/python/module/fields.hpp"
 
 namespace clearance::python {
 namespace {
-
-using ZoneMessage = clearance_msg_ZoneState;
-using ZoneSeparationMessage = clearance_msg_ZoneSeparation;
-using PairSeparationMessage = clearance_msg_PairSeparation;
-
-// The types are never destroyed: the interpreter may be gone by then.
-const py::dtype& zone_dtype() {
-  static const auto* const dtype =
-      new py::dtype(record_dtype({{"zone", "u4", offsetof(ZoneMessage, zone)},
-                                  {"active", "?", offsetof(ZoneMessage, active)},
-                                  {"certified", "?", offsetof(ZoneMessage, certified)},
-                                  {"cause", "u1", offsetof(ZoneMessage, cause)},
-                                  {"cause_object", "u4", offsetof(ZoneMessage, cause_object)},
-                                  {"pair", "u4", offsetof(ZoneMessage, pair)},
-                                  {"clearance", "f8", offsetof(ZoneMessage, clearance)},
-                                  {"swept_clearance", "f8", offsetof(ZoneMessage, swept_clearance)},
-                                  {"since_cycle", "u8", offsetof(ZoneMessage, since_cycle)},
-                                  {"cycle", "u8", offsetof(ZoneMessage, cycle)},
-                                  {"now_ns", "i8", offsetof(ZoneMessage, now_ns)}},
-                                 sizeof(ZoneMessage)));
-  return *dtype;
-}
-
-const py::dtype& zone_separation_dtype() {
-  static const auto* const dtype = new py::dtype(
-      record_dtype({{"zone", "u4", offsetof(ZoneSeparationMessage, zone)},
-                    {"validity", "u1", offsetof(ZoneSeparationMessage, validity)},
-                    {"pair", "u4", offsetof(ZoneSeparationMessage, pair)},
-                    {"remaining", "f8", offsetof(ZoneSeparationMessage, remaining)},
-                    {"speed_limit", "f8", offsetof(ZoneSeparationMessage, speed_limit)},
-                    {"scaling", "f8", offsetof(ZoneSeparationMessage, scaling)}},
-                   sizeof(ZoneSeparationMessage)));
-  return *dtype;
-}
-
-const py::dtype& pair_separation_dtype() {
-  static const auto* const dtype = new py::dtype(record_dtype(
-      {{"zone", "u4", offsetof(PairSeparationMessage, zone)},
-       {"pair", "u4", offsetof(PairSeparationMessage, pair)},
-       {"validity", "u1", offsetof(PairSeparationMessage, validity)},
-       {"clearance", "f8", offsetof(PairSeparationMessage, clearance)},
-       {"human_speed", "f8", offsetof(PairSeparationMessage, human_speed)},
-       {"robot_speed", "f8", offsetof(PairSeparationMessage, robot_speed)},
-       {"human_term", "f8", offsetof(PairSeparationMessage, human_term)},
-       {"robot_term", "f8", offsetof(PairSeparationMessage, robot_term)},
-       {"stopping_term", "f8", offsetof(PairSeparationMessage, stopping_term)},
-       {"protective_distance", "f8", offsetof(PairSeparationMessage, protective_distance)},
-       {"remaining", "f8", offsetof(PairSeparationMessage, remaining)},
-       {"speed_limit", "f8", offsetof(PairSeparationMessage, speed_limit)},
-       {"scaling", "f8", offsetof(PairSeparationMessage, scaling)},
-       {"age_human_ns", "i8", offsetof(PairSeparationMessage, age_human_ns)},
-       {"age_robot_ns", "i8", offsetof(PairSeparationMessage, age_robot_ns)}},
-      sizeof(PairSeparationMessage)));
-  return *dtype;
-}
 
 // The items of a sequence, each as a dict that `fill` fills.
 template <class Sequence, class Fill>
@@ -111,17 +55,11 @@ GradientArrays gradient_arrays(const clearance_msg_Gradients& message,
   return {rates, drifts};
 }
 
-SeparationArrays separation_arrays(const clearance_msg_Separation& message) {
-  return {records_of(zone_separation_dtype(), message.zones._buffer, message.zones._length),
-          records_of(pair_separation_dtype(), message.pairs._buffer, message.pairs._length)};
-}
-
 py::dict zones_of(const ZoneStates& zones, const py::list& names) {
   py::dict all;
   for (const auto& [id, state] : zones) {
-    const py::array record = records_of(zone_dtype(), &state, 1);
     const bool is_named = *state.name != '\0' || id >= names.size();
-    all[is_named ? py::object(py::str(state.name)) : py::object(names[id])] = record[py::int_(0)];
+    all[is_named ? py::object(py::str(state.name)) : py::object(names[id])] = value_of(state);
   }
   return all;
 }

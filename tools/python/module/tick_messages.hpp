@@ -75,11 +75,6 @@ struct GradientArrays {
                                              const std::vector<std::uint32_t>& pairs,
                                              std::size_t joints);
 
-struct SeparationArrays {
-  py::array zones, pairs;
-};
-[[nodiscard]] SeparationArrays separation_arrays(const clearance_msg_Separation& message);
-
 // The state of every zone by its name, as records. `names` are those of zones by id, for a state
 // that has none yet.
 using ZoneStates = std::map<std::uint32_t, clearance_msg_ZoneState>;
