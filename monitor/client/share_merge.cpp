@@ -3,21 +3,42 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <iterator>
 #include <limits>
 #include <span>
 #include <string_view>
 
 #include "config/text/fnv1a.hpp"
+#include "monitor/client/complete_reports.hpp"
 #include "monitor/client/sequence_view.hpp"
-#include "monitor/client/whole_reports.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/interface/tight_bounds.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "monitor/wire/message_fields.hpp"
 
 namespace clearance::client {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// What joining does with each field of a report. Without a line here, a new field does not compile.
+constexpr std::string_view kJoined[] = {
+    // of the cell: the caller names itself
+    "daemon", "partner", "lineage", "checksum", "state_checksum", "delivery_checksum",
+    "changes_since", "cycle", "scene_revision",
+    // join_reports, add_counts, join_pairs and join_sources
+    "now_ns", "publish_ns", "clock_offset_ns", "newest_pose_ns", "oldest_pose_ns", "pairs_total",
+    "unknown", "stale", "evaluated", "carried", "queries", "oldest_evaluation_cycles",
+    "minimum_known", "minimum_certified", "minimum", "lower_all", "swept_lower_all", "pairs",
+    "contacts", "hidden", "sources", "active_zones"};
+constexpr bool joins_all() {
+  bool all = true;
+  FieldsOf<clearance_msg_Distances>::for_each([&all](Field field) {
+    all = all && std::ranges::find(kJoined, field.name) != std::end(kJoined);
+  });
+  return all;
+}
+static_assert(joins_all(), "a field of Distances is not joined: see kJoined");
 
 // Empties a sequence whose elements own nothing, with capacity for `count` of them.
 template <class Sequence>
