@@ -89,8 +89,8 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
   const nlohmann::json one = shown(view, 400);
   EXPECT_THAT(one["statuses"].dump(), HasSubstr("partner 'right': missing"));
   EXPECT_THAT(one["statuses"].dump(), Not(HasSubstr("mixed")));
-  // Without a viewer for five seconds, the page forgets what it has heard.
-  std::this_thread::sleep_for(std::chrono::seconds(6));
+  // Without a viewer for two seconds, the page forgets what it has heard.
+  std::this_thread::sleep_for(std::chrono::seconds(3));
   EXPECT_THAT(shown(view, 60)["statuses"].dump(), HasSubstr("no partner yet"));
   EXPECT_EQ(view.end(), 0);
 }

@@ -191,7 +191,7 @@ TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
     EXPECT_GT(cycles.front(), last);
     last = cycles.back();
     // This time is longer than readers of reports are kept without a viewer.
-    if (look == 0) std::this_thread::sleep_for(std::chrono::seconds(7));
+    if (look == 0) std::this_thread::sleep_for(std::chrono::seconds(3));
   }
 }
 

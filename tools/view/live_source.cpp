@@ -20,7 +20,7 @@ namespace {
 constexpr std::int64_t kSilentNs = 1'000'000'000;
 
 // Readers stay for this time after the last viewer has gone, because a page may be loaded again.
-constexpr std::int64_t kLingerNs = 5'000'000'000;
+constexpr std::int64_t kLingerNs = 2'000'000'000;
 
 // Topics whose every message is complete are read only while there is a viewer. The last pose must
 // not be missed, because an object that seldom moves sends it once.
