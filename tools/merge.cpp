@@ -24,8 +24,8 @@
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "tools/merge/command_relay.hpp"
+#include "tools/merge/joined_writer.hpp"
 #include "tools/merge/ros_relay.hpp"
-#include "tools/merge/whole_writer.hpp"
 
 namespace clearance {
 namespace {
@@ -121,7 +121,7 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
   for (const Share& share : cell.shares.all) options.names.push_back(share.name);
   client::SharedCell whole(connection, options);
   merge::RosRelay ros(connection.participant(), cell, arguments.cell.reading(), arguments.ros);
-  merge::WholeWriter writer(
+  merge::JoinedWriter writer(
       connection.participant(), cell, whole.daemon(),
       [&ros](Sample<clearance_msg_Health> health) { ros.tell(std::move(health)); });
   merge::CommandRelay commands(connection, cell, whole.daemon());
@@ -137,7 +137,7 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
     writer.write(whole);
     commands.note(whole);
     log.note(whole);
-    if (writer.gives_way()) return kDdsFailed;
+    if (writer.yields()) return kDdsFailed;
     ros.write(whole);
   }
   print(stdout, "{}\n", writer.summary(whole));

@@ -41,8 +41,9 @@ class Landmarks {
   [[nodiscard]] bool are_slower(double limit, const Pose& pose, const Twist& twist) const noexcept;
   // Approximate path length of the landmarks, m, for a translation in m and a rotation in rad. With
   // a twist in m/s and rad/s it is their speed, m/s.
-  [[nodiscard]] double length(const Twist& way) const noexcept {
-    return std::sqrt(way.linear.squaredNorm() + way.angular.squaredNorm() * (radius_ * radius_));
+  [[nodiscard]] double length(const Twist& motion) const noexcept {
+    return std::sqrt(motion.linear.squaredNorm() +
+                     motion.angular.squaredNorm() * (radius_ * radius_));
   }
   [[nodiscard]] static Twist scaled_sum(double factor, const Twist& a, const Twist& b) noexcept {
     return {.linear = factor * (a.linear + b.linear), .angular = factor * (a.angular + b.angular)};

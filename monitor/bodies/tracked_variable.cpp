@@ -103,10 +103,11 @@ struct PositionCandidate {
 
 // The distance to the farther one of the two position limits, m or rad. Infinity if there are no
 // limits, or if the joint has been found outside of them.
-double largest_way(const JointVariable& variable, const TrackedVariable& state) noexcept {
+double largest_distance(const JointVariable& variable, const TrackedVariable& state) noexcept {
   if (state.outside_limits) return kInfinity;
-  const double way = std::max(variable.upper - state.position, state.position - variable.lower);
-  return rounded_up(way + variable.limit_tolerance);
+  const double distance =
+      std::max(variable.upper - state.position, state.position - variable.lower);
+  return rounded_up(distance + variable.limit_tolerance);
 }
 
 }  // namespace
@@ -133,9 +134,9 @@ void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable
   if (!input.late) return;
   // If the measured velocity exceeds the velocity limit, the limit does not bound the joint.
   const double fastest = std::max(variable.max_speed, std::abs(state.velocity));
-  const double way =
+  const double distance =
       input.contradicted ? kInfinity : rounded_up(fastest * seconds(input.age_ns(now_ns)));
-  state.may_have_moved = std::min(way, largest_way(variable, state));
+  state.may_have_moved = std::min(distance, largest_distance(variable, state));
 }
 
 }  // namespace clearance

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "config/cell/topics.hpp"
+#include "monitor/client/complete_reports.hpp"
 #include "monitor/client/partner_merge.hpp"
-#include "monitor/client/whole_reports.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"
@@ -111,7 +111,7 @@ class Stream {
   ReportCheck check_;
   PartnerMerge merge_;  // of reports, here and below
   PartnerCheck partner_;
-  WholeReports whole_;
+  CompleteReports whole_;
 };
 
 // Reports have all pairs here, even if the daemon publishes only those that changed. A pair that

@@ -51,8 +51,8 @@ struct OfTwoScenes {
 };
 
 // A share with all its readers.
-struct SharedCell::OfShare {
-  OfShare(Connection& whole, std::string of, std::int64_t late, bool has_gradients)
+struct SharedCell::ShareStreams {
+  ShareStreams(Connection& whole, std::string of, std::int64_t late, bool has_gradients)
       : name(std::move(of)),
         late_ns(late),
         connection(whole.participant().handle(), whole.participant().partition(),
@@ -65,7 +65,7 @@ struct SharedCell::OfShare {
                                                          connection.topics().zones)) {
     if (has_gradients) gradients.emplace(connection);
   }
-  ~OfShare() { dds_delete(zones); }
+  ~ShareStreams() { dds_delete(zones); }
 
   // Up to two reports: the second one waits while the first one is not used yet.
   void take(std::int64_t now_ns) {

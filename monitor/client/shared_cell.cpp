@@ -53,7 +53,8 @@ void SharedCell::open(const std::vector<std::string>& names) {
   std::vector<dds_entity_t> readers;
   if (discovery_) readers.push_back(discovery_->reader());
   for (const std::string& name : names) {
-    shares_.push_back(std::make_unique<OfShare>(connection_, name, late_ns_, options_.gradients));
+    shares_.push_back(
+        std::make_unique<ShareStreams>(connection_, name, late_ns_, options_.gradients));
     readers.push_back(shares_.back()->reports.reader());
   }
   wait_ = std::make_unique<DataWait>(connection_.participant(), readers);
@@ -156,7 +157,7 @@ bool SharedCell::is_due(std::int64_t now_ns) const {
 void SharedCell::judge(std::int64_t now_ns) {
   checks_.clear();
   for (std::size_t i = 0; i < shares_.size(); ++i) {
-    OfShare* const share = shares_[i].get();
+    ShareStreams* const share = shares_[i].get();
     share->used = share->report_of(map_.revision(), now_ns);
     if (share->used == nullptr) share->used = &*share->current.latest;
     const clearance_msg_Distances& report = *share->used;
@@ -186,7 +187,7 @@ bool SharedCell::join(std::int64_t now_ns) {
   judge(now_ns);
   std::vector<ShareView> views;
   for (std::size_t i = 0; i < map_.names().size() && i < shares_.size(); ++i) {
-    OfShare& share = *shares_[i];
+    ShareStreams& share = *shares_[i];
     ShareView& view = views.emplace_back();
     view.state = checks_[i].state;
     view.report = share.used;
@@ -295,7 +296,7 @@ Sample<clearance_msg_Health> SharedCell::health() {
   std::vector<const clearance_msg_Health*> of_shares;
   std::vector<const HealthCounts*> counts;
   for (std::size_t i = 0; i < shares_.size(); ++i) {
-    OfShare& share = *shares_[i];
+    ShareStreams& share = *shares_[i];
     share.health.update();
     const clearance_msg_Health* const health = share.health.message();
     if (health == nullptr) continue;

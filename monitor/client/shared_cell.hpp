@@ -89,7 +89,7 @@ class SharedCell {
   [[nodiscard]] std::uint64_t daemon() const noexcept { return daemon_; }
 
  private:
-  struct OfShare;
+  struct ShareStreams;
 
   [[nodiscard]] const clearance_msg_Catalogue* catalogue_of(std::uint64_t revision) const noexcept;
   void look_for_names();
@@ -102,7 +102,7 @@ class SharedCell {
   [[nodiscard]] bool waits_for_first() const;
   [[nodiscard]] bool is_due(std::int64_t now_ns) const;
   // Returns true if the share's last report is not late.
-  [[nodiscard]] bool is_here(const OfShare& share) const;
+  [[nodiscard]] bool is_here(const ShareStreams& share) const;
   [[nodiscard]] std::uint64_t scene_of_most() const;
   [[nodiscard]] std::uint64_t division_of_most(std::uint64_t revision) const;
   [[nodiscard]] bool can_stay(std::uint64_t next) const;
@@ -123,7 +123,7 @@ class SharedCell {
   std::int64_t late_ns_;  // a report that is older is late
   std::uint64_t daemon_;
   std::unique_ptr<ShareNames> discovery_;  // null: the names are known
-  std::vector<std::unique_ptr<OfShare>> shares_;
+  std::vector<std::unique_ptr<ShareStreams>> shares_;
   std::unique_ptr<DataWait> wait_;
   ShareMap map_;
   std::vector<ShareCheck> checks_;

@@ -11,7 +11,7 @@
 
 namespace clearance::client {
 
-bool SharedCell::is_here(const OfShare& share) const {
+bool SharedCell::is_here(const ShareStreams& share) const {
   const clearance_msg_Distances& report = *share.current.latest;
   return report.scene_revision != 0 && joined_ns_ - report.publish_ns < late_ns_;
 }

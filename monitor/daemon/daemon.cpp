@@ -133,8 +133,8 @@ Daemon::~Daemon() {
   end_requests();
 }
 
-Daemon::OfCell Daemon::parts_of(std::shared_ptr<const Cell> cell) {
-  OfCell parts{std::move(cell), nullptr, nullptr};
+Daemon::CellOutputs Daemon::parts_of(std::shared_ptr<const Cell> cell) {
+  CellOutputs parts{std::move(cell), nullptr, nullptr};
   parts.queue = std::make_unique<ReportQueue>(
       parts.cell->scene, ReportQueueOptions{.reports = kQueuedReports, .awaits = ahead_ns() > 0});
   if (writes_ros(*parts.cell)) {
@@ -172,7 +172,7 @@ void Daemon::run(StopSignal& signal) {
   std::thread ticking([&] { tick_thread(done); });
   scene_thread_->start();
   clients_->start();
-  for (int polls = 0; !done && !gave_way() && !signal.wait(kSignalPollMs);) {
+  for (int polls = 0; !done && !yielded() && !signal.wait(kSignalPollMs);) {
     ++polls;
     if (signal.hung_up()) {
       reload_.read_again();

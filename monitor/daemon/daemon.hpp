@@ -63,7 +63,7 @@ class Daemon : private CellParts {
   void run(StopSignal& signal);
 
   // True when the daemon ends because an older one publishes this cell.
-  [[nodiscard]] bool gave_way() const noexcept { return reports_.gives_way(); }
+  [[nodiscard]] bool yielded() const noexcept { return reports_.yields(); }
   // After run(): a summary for a person.
   [[nodiscard]] std::string summary() const;
   // After run(): true when nothing was to be recorded, or when the file holds all of it.
@@ -81,7 +81,7 @@ class Daemon : private CellParts {
 
  private:
   // The parts that a change of the cell replaces.
-  struct OfCell {
+  struct CellOutputs {
     std::shared_ptr<const Cell> cell;
     std::unique_ptr<ReportQueue> queue;
     std::unique_ptr<RosWriter> ros;
@@ -100,7 +100,7 @@ class Daemon : private CellParts {
    private:
     PoseReader& poses_;
   };
-  [[nodiscard]] OfCell parts_of(std::shared_ptr<const Cell> cell);
+  [[nodiscard]] CellOutputs parts_of(std::shared_ptr<const Cell> cell);
   void share_states();
   [[nodiscard]] std::vector<ReportSink*> first_sinks();
   [[nodiscard]] CellReload::Actions reload_actions();
@@ -129,7 +129,7 @@ class Daemon : private CellParts {
   SystemClock clock_;
   std::unique_ptr<Partnership> partner_;  // null: it has none
   RecordingHealth recording_health_;
-  OfCell now_, next_;
+  CellOutputs now_, next_;
   std::uint64_t dropped_before_ = 0;  // reports, by queues of former cells
   MinimumSeen least_before_;          // of all former cells, and the cell that it is of
   std::shared_ptr<const Cell> least_cell_;

@@ -261,7 +261,7 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
     drain_log();
     std::_Exit(kIncomplete);
   }
-  const int status = daemon.gave_way()             ? kDdsFailed
+  const int status = daemon.yielded()              ? kDdsFailed
                      : daemon.recording_complete() ? kOk
                                                    : kIncomplete;
   if (daemon.still_reads()) {

@@ -65,17 +65,17 @@ bool OtherDaemons::has_met(dds_instance_handle_t writer) const {
 }
 
 // There are two partners at most: a third one would ask both for their states again and again.
-void OtherDaemons::meet_partner(dds_instance_handle_t writer, const DaemonIdentity& partner) {
+void OtherDaemons::note_partner(dds_instance_handle_t writer, const DaemonIdentity& partner) {
   met_.push_back(writer);
   partners_.push_back({writer, partner});
   log_line(lines::kPartnerMet, partner.described(), topic_);
   const bool is_third =
       partners_.size() > 1 && std::ranges::all_of(partners_, [this](const Partner& each) {
-        return gives_way(own_, each.identity);
+        return yields(own_, each.identity);
       });
   if (!is_third) return;
   log_line(lines::kOtherDaemonFirst, partner.described(), topic_);
-  give_way_ = true;
+  yields_ = true;
 }
 
 // Ignores a writer that has left in the meantime. An older daemon counts only when it is heard.
@@ -83,14 +83,14 @@ void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   const WriterFacts facts = writer_facts(reader_, writer);
   if (!facts.present) return;
   const auto other = from_user_data(facts.user_data);
-  if (other && are_partners(own_, *other)) return meet_partner(writer, *other);
-  const bool first = other && gives_way(own_, *other);
+  if (other && are_partners(own_, *other)) return note_partner(writer, *other);
+  const bool first = other && yields(own_, *other);
   if (first && !heard) return;
   met_.push_back(writer);
   ++writers_;
   if (first) {
     log_line(lines::kOtherDaemonFirst, other->described(), topic_);
-    give_way_ = true;
+    yields_ = true;
   } else if (other) {
     log_line(lines::kOtherDaemonLater, other->described(), topic_);
   } else {

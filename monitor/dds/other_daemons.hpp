@@ -34,7 +34,7 @@ class OtherDaemons {
   [[nodiscard]] bool have_just_left() noexcept { return std::exchange(left_, false); }
 
   // Another daemon started first, so nothing more may be published.
-  [[nodiscard]] bool give_way() const noexcept { return give_way_.load(); }
+  [[nodiscard]] bool yields() const noexcept { return yields_.load(); }
   // Reports of other daemons since the start.
   [[nodiscard]] std::uint64_t reports() const noexcept { return reports_.load(); }
   // The number of other writers since the start, silent ones included.
@@ -43,7 +43,7 @@ class OtherDaemons {
  private:
   void note_writers();
   void meet(dds_instance_handle_t writer, bool heard);
-  void meet_partner(dds_instance_handle_t writer, const DaemonIdentity& partner);
+  void note_partner(dds_instance_handle_t writer, const DaemonIdentity& partner);
   [[nodiscard]] bool has_met(dds_instance_handle_t writer) const;
 
   DaemonIdentity own_;
@@ -59,7 +59,7 @@ class OtherDaemons {
   std::vector<Partner> partners_;  // of those
   bool left_ = false;
   std::atomic<std::uint64_t> reports_{0}, writers_{0};
-  std::atomic<bool> give_way_{false};
+  std::atomic<bool> yields_{false};
 };
 
 }  // namespace clearance

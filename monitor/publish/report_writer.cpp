@@ -52,8 +52,8 @@ std::int64_t lease_ns(double rate_hz) noexcept {
   return std::max<std::int64_t>(100'000'000, std::llround(10.0 * 1e9 / rate_hz));
 }
 
-ReportWriter::OfCell::OfCell(const Cell& the_cell, const SceneInForce& in_force,
-                             ReportQueue& the_queue, std::uint64_t daemon)
+ReportWriter::CellMessages::CellMessages(const Cell& the_cell, const SceneInForce& in_force,
+                                         ReportQueue& the_queue, std::uint64_t daemon)
     : cell(the_cell),
       since(in_force),
       queue(the_queue),
@@ -85,7 +85,7 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       catalogue_(make_writer(participant, topics_, TopicKind::kCatalogue)),
       health_(make_writer(participant, topics_, TopicKind::kHealth)),
       others_(participant, topics_.distances, identity_),
-      now_(std::make_unique<OfCell>(cell, SceneInForce(), queue, identity_.id)),
+      now_(std::make_unique<CellMessages>(cell, SceneInForce(), queue, identity_.id)),
       zones_(make_writer(participant, topics_, TopicKind::kZones), cell.scene, identity_.id,
              [this](dds_entity_t writer, const clearance_msg_ZoneState& state) {
                return write(TopicKind::kZones, writer, &state, "zone state");
@@ -119,7 +119,7 @@ void ReportWriter::finish() {
 }
 
 void ReportWriter::continue_with(const Cell& cell, const SceneInForce& since, ReportQueue& queue) {
-  auto next = std::make_unique<OfCell>(cell, since, queue, identity_.id);
+  auto next = std::make_unique<CellMessages>(cell, since, queue, identity_.id);
   const std::lock_guard lock(mutex_);
   next_ = std::move(next);
   queue_->close();
@@ -169,7 +169,7 @@ void ReportWriter::look_for_others() {
 void ReportWriter::settle_catalogue() {
   const bool is_due = catalogue_is_due_ && zones_.which() != ZoneWriter::Which::kNothing;
   if (!is_due && !takes_catalogue_back_) return;
-  if (others_.give_way() || monotonic_ns() - refused_ns_ < kAgainNs) return;
+  if (others_.yields() || monotonic_ns() - refused_ns_ < kAgainNs) return;
   const auto catalogue = own_catalogue();
   if (is_due) {
     catalogue_is_due_ = !write(TopicKind::kCatalogue, catalogue_, &*catalogue, "catalogue");
@@ -209,7 +209,7 @@ void ReportWriter::write_all() {
 // Returns false if no other cell follows. A partner writes its catalogue once it knows whether the
 // other one has that cell, too.
 bool ReportWriter::change() {
-  std::unique_ptr<OfCell> changed;
+  std::unique_ptr<CellMessages> changed;
   {
     const std::lock_guard lock(mutex_);
     changed = std::move(next_);
@@ -329,7 +329,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
 
 bool ReportWriter::write(TopicKind kind, dds_entity_t writer, const void* sample,
                          const char* what) {
-  if (others_.give_way()) return false;
+  if (others_.yields()) return false;
   if (also_ != nullptr && leads_) also_->published(kind, sample);
   const dds_return_t result = dds_write(writer, sample);
   if (result == DDS_RETCODE_OK) return true;

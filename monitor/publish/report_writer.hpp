@@ -77,11 +77,11 @@ class ReportWriter {
   // Before finish(): the thread that writes.
   [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
   // True if an older daemon publishes this cell. This one then writes nothing more.
-  [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
+  [[nodiscard]] bool yields() const noexcept { return others_.yields(); }
 
  private:
   // The parts that a change of the cell replaces, and the queue of the cell's reports.
-  struct OfCell {
+  struct CellMessages {
     const Cell& cell;
     SceneInForce since;
     ReportQueue& queue;
@@ -91,8 +91,8 @@ class ReportWriter {
     MapPairs pairs;  // to the ids of the whole cell
     ChangedPairs changed;
 
-    OfCell(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
-           std::uint64_t daemon);
+    CellMessages(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
+                 std::uint64_t daemon);
   };
 
   void run();
@@ -121,7 +121,7 @@ class ReportWriter {
   dds_entity_t separation_ = 0;  // 0: no zone has had one yet
   dds_entity_t gradients_ = 0;   // 0: no scene has asked for them yet
   OtherDaemons others_;
-  std::unique_ptr<OfCell> now_;
+  std::unique_ptr<CellMessages> now_;
   ZoneWriter zones_;
   ContactLog contact_log_;
   HealthLog health_log_;
@@ -132,10 +132,10 @@ class ReportWriter {
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};
-  mutable std::mutex mutex_;      // guards the next three
-  std::unique_ptr<OfCell> next_;  // null: no other cell follows
-  ReportQueue* queue_;            // the last one
-  const ReportQueue* written_;    // the one that is being written
+  mutable std::mutex mutex_;            // guards the next three
+  std::unique_ptr<CellMessages> next_;  // null: no other cell follows
+  ReportQueue* queue_;                  // the last one
+  const ReportQueue* written_;          // the one that is being written
   std::thread thread_;
 };
 

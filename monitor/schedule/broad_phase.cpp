@@ -92,7 +92,7 @@ void BroadPhase::begin(const OpenTick& tick, std::span<const std::uint32_t> chan
   take_due(overdue_ ? busy_ : advanced_);
   // An arriving object costs as much as a pair that is met for the first time.
   const std::size_t arrived = std::min(arrived_.size() - arrived_before, most_met_);
-  meet_arrivals(most_met_ - arrived);
+  pair_arrivals(most_met_ - arrived);
 }
 
 void BroadPhase::arrive(std::uint32_t object, const TrackedObject& state) noexcept {
@@ -123,7 +123,7 @@ void BroadPhase::activate(std::uint32_t pair) noexcept {
 // order of their arrival. A pair is activated in the first turn of one of its objects at which the
 // other has arrived as well. When all objects arrive at once, pairs are thus visited in memory
 // order.
-void BroadPhase::meet_arrivals(std::size_t most) noexcept {
+void BroadPhase::pair_arrivals(std::size_t most) noexcept {
   for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
     Arrival& arrival = bodies_[object].arrival;

@@ -120,7 +120,7 @@ class BroadPhase {
 
   void arrive(std::uint32_t object, const TrackedObject& state) noexcept;
   void jump(std::uint32_t object, PairTable& table) noexcept;
-  void meet_arrivals(std::size_t most) noexcept;
+  void pair_arrivals(std::size_t most) noexcept;
   void take_due(std::span<const std::uint32_t> objects) noexcept;
   [[nodiscard]] double level_of(std::uint32_t pair) const noexcept;
   [[nodiscard]] double zone_level(std::uint32_t pair) const noexcept;

@@ -13,7 +13,7 @@ constexpr double kComposed = 0x1p-48;
 
 }  // namespace
 
-double way_within(double speed, std::int64_t within_ns) noexcept {
+double path_within(double speed, std::int64_t within_ns) noexcept {
   return within_ns > 0 ? rounded_up(speed * 1e-9 * static_cast<double>(within_ns)) : 0.0;
 }
 

@@ -33,7 +33,7 @@ struct PastPose {
                                        double mean) noexcept;
 
 // The largest distance of a value with this largest speed within this time.
-[[nodiscard]] double way_within(double speed, std::int64_t within_ns) noexcept;
+[[nodiscard]] double path_within(double speed, std::int64_t within_ns) noexcept;
 // The part of a line's length that this speed does not explain, and the rounding.
 [[nodiscard]] double excess(double time_s, double speed, double mean) noexcept;
 

@@ -143,7 +143,7 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
   const double speed = of.plausible_speed();
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   state.position = before->value;
-  state.may_have_moved = way_within(speed, within_ns);
+  state.may_have_moved = path_within(speed, within_ns);
   if (after == nullptr) {
     state.may_have_moved = rounded_up(speed * since + state.may_have_moved);
     return;
@@ -183,8 +183,8 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
   const PoseSpread turned = spread(poses, past.world_from_body,
                                    std::max(stamp_ns - within_ns, poses.at(0).stamp_ns), end_ns);
   past.turn_error =
-      rounded_up(turned.turn + way_within(kFastestBaseTurn, elapsed(until_ns, end_ns)));
-  past.shift_error = way_within(speed, within_ns);
+      rounded_up(turned.turn + path_within(kFastestBaseTurn, elapsed(until_ns, end_ns)));
+  past.shift_error = path_within(speed, within_ns);
   const double since = seconds_between(before->stamp_ns, stamp_ns);
   if (after == nullptr) {
     past.shift_error = rounded_up(speed * since + past.shift_error);
@@ -202,7 +202,7 @@ PastPose PostureHistory::pose_at(std::uint32_t object, std::int64_t stamp_ns,
     const double turn =
         deviation_of_turn(since, until, kFastestBaseTurn, angle_between(a, b) / gap);
     past.turn_error =
-        std::max(past.turn_error, rounded_up(turn + way_within(kFastestBaseTurn, within_ns)));
+        std::max(past.turn_error, rounded_up(turn + path_within(kFastestBaseTurn, within_ns)));
   }
   return past;
 }

@@ -1,5 +1,5 @@
 // Reports that carry only the pairs that changed, so that their bytes follow motion.
-// client/whole_reports.hpp makes them whole again.
+// client/complete_reports.hpp makes them whole again.
 #pragma once
 
 #include <cstdint>

@@ -51,7 +51,7 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
     : connection_(connection), follow_first_(cell.ros.moveit.any()) {
   if (cell.commands.from.empty()) return;
   for (const Share& share : cell.shares.all) {
-    OfShare& of = shares_.emplace_back();
+    ShareClient& of = shares_.emplace_back();
     of.name = share.name;
     of.connection = std::make_unique<client::Connection>(connection.participant().handle(),
                                                          connection.participant().partition(),
@@ -108,7 +108,7 @@ void CommandRelay::run() {
   }
 }
 
-CommandResult CommandRelay::send(OfShare& share, const Command& command, bool dry_run) {
+CommandResult CommandRelay::send(ShareClient& share, const Command& command, bool dry_run) {
   client::Commands& commands = *share.commands.at(command.client);
   const auto result = commands.send(command.changes,
                                     {.scene_revision = command.scene_revision,
@@ -123,7 +123,7 @@ CommandResult CommandRelay::send(OfShare& share, const Command& command, bool dr
 // All at once, so that they change within a short time of each other.
 std::vector<CommandResult> CommandRelay::send_to_all(const Command& command, bool dry_run) {
   std::vector<std::future<CommandResult>> sent;
-  for (OfShare& share : shares_) {
+  for (ShareClient& share : shares_) {
     sent.push_back(std::async(std::launch::async, [&] { return send(share, command, dry_run); }));
   }
   std::vector<CommandResult> results;

@@ -33,7 +33,7 @@ class CommandRelay {
   void note(const client::SharedCell& whole);
 
  private:
-  struct OfShare {
+  struct ShareClient {
     std::string name;
     std::unique_ptr<client::Connection> connection;
     std::map<std::string, std::unique_ptr<client::Commands>> commands;  // by client
@@ -43,11 +43,11 @@ class CommandRelay {
   [[nodiscard]] std::uint64_t in_force_from(std::uint64_t revision) const;
   [[nodiscard]] bool all_get(std::uint64_t revision) const;
   [[nodiscard]] CommandResult pass_on(const Command& command);
-  [[nodiscard]] CommandResult send(OfShare& share, const Command& command, bool dry_run);
+  [[nodiscard]] CommandResult send(ShareClient& share, const Command& command, bool dry_run);
   [[nodiscard]] std::vector<CommandResult> send_to_all(const Command& command, bool dry_run);
 
   client::Connection& connection_;
-  std::vector<OfShare> shares_;
+  std::vector<ShareClient> shares_;
   const bool follow_first_;  // the shares take over the scene of the first one
   std::atomic<std::uint64_t> revision_{0}, since_cycle_{0};
   std::atomic<std::uint64_t> whole_in_{0};  // the revision that all shares have; 0: not the same

@@ -44,8 +44,8 @@ RosRelay::RosRelay(Participant& participant, Cell cell, CellOptions options,
       asked_(std::move(asked)),
       now_(parts_of(std::move(cell))) {}
 
-std::unique_ptr<RosRelay::OfCell> RosRelay::parts_of(Cell cell) {
-  auto parts = std::make_unique<OfCell>(OfCell{std::move(cell), nullptr});
+std::unique_ptr<RosRelay::CellRelay> RosRelay::parts_of(Cell cell) {
+  auto parts = std::make_unique<CellRelay>(CellRelay{std::move(cell), nullptr});
   add_asked(asked_, parts->cell.ros.outputs);
   if (!writes_ros(parts->cell)) return parts;
   const auto health = [this](const LoopStatistics&) {
@@ -68,7 +68,7 @@ void RosRelay::follow(const clearance_msg_Catalogue& catalogue) {
   const std::uint64_t wanted = catalogue.scene_revision;
   if (is_done(making_)) {
     Made made = making_.get();
-    auto* const next = std::get_if<std::unique_ptr<OfCell>>(&made);
+    auto* const next = std::get_if<std::unique_ptr<CellRelay>>(&made);
     const bool is_it = next != nullptr && (*next)->cell.scene.revision == wanted;
     if (is_it) std::swap(now_, *next);
     if (!is_it && read_ == wanted) {
@@ -79,8 +79,8 @@ void RosRelay::follow(const clearance_msg_Catalogue& catalogue) {
     ending_ = std::async(std::launch::async,
                          [last = std::move(made)]() mutable { last = std::string(); });
   }
-  const bool is_under_way = making_.valid() || (ending_.valid() && !is_done(ending_));
-  if (wanted == now_->cell.scene.revision || wanted == unreadable_ || is_under_way) return;
+  const bool is_running = making_.valid() || (ending_.valid() && !is_done(ending_));
+  if (wanted == now_->cell.scene.revision || wanted == unreadable_ || is_running) return;
   read_ = wanted;
   making_ = std::async(std::launch::async, [this, yaml = std::string(catalogue.cell_yaml)] {
     if (const Refusal refusal = use_fifo_scheduling(0)) log_line(lines::kSystemRefuses, *refusal);

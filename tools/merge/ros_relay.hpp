@@ -18,7 +18,7 @@
 
 namespace clearance::merge {
 
-// A relay writes all outputs but `messages`, which WholeWriter writes. After a change of the cell
+// A relay writes all outputs but `messages`, which JoinedWriter writes. After a change of the cell
 // it writes nothing until another thread has read the changed cell.
 class RosRelay {
  public:
@@ -35,14 +35,14 @@ class RosRelay {
 
  private:
   // The writer refers to the cell, and ends before it.
-  struct OfCell {
+  struct CellRelay {
     Cell cell;
     std::unique_ptr<RosWriter> writer;  // null: the cell asks for nothing
   };
   // A cell, or why it cannot be read.
-  using Made = std::variant<std::unique_ptr<OfCell>, std::string>;
+  using Made = std::variant<std::unique_ptr<CellRelay>, std::string>;
 
-  [[nodiscard]] std::unique_ptr<OfCell> parts_of(Cell cell);
+  [[nodiscard]] std::unique_ptr<CellRelay> parts_of(Cell cell);
   [[nodiscard]] Made read(const std::string& yaml);
   void follow(const clearance_msg_Catalogue& catalogue);
 
@@ -52,7 +52,7 @@ class RosRelay {
   Report report_;
   std::mutex mutex_;  // guards health_, which a writer's thread takes
   std::optional<Sample<clearance_msg_Health>> health_;
-  std::unique_ptr<OfCell> now_;
+  std::unique_ptr<CellRelay> now_;
   std::uint64_t read_ = 0, unreadable_ = 0;  // revisions; 0: none
   // Threads that may wait for a disk or for DDS: the one that makes the next cell, and the one that
   // ends the last one.

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "monitor/client/whole_reports.hpp"
+#include "monitor/client/complete_reports.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/visual/measured_distance.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -75,7 +75,7 @@ class Frame {
   CdrDecoder decoder_;
   CdrEncoder encoder_;
   Sample<clearance_msg_Distances> report_, taken_;
-  client::WholeReports whole_;
+  client::CompleteReports whole_;
   bool is_sparse_ = true;  // reports carry only what changed, or none has come
   Sample<clearance_msg_ZoneState> zone_;
   Sample<clearance_msg_Catalogue> catalogue_;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "core/convex_body.hpp"
+#include "monitor/client/complete_reports.hpp"
 #include "monitor/client/share_merge.hpp"
-#include "monitor/client/whole_reports.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/dds_sample.hpp"

@@ -1,4 +1,4 @@
-#include "monitor/client/whole_reports.hpp"
+#include "monitor/client/complete_reports.hpp"
 
 #include <algorithm>
 #include <limits>
@@ -46,7 +46,7 @@ clearance_msg_PairDistance unknown_pair(std::uint32_t pair) noexcept {
 
 // Pairs stand in the order of the cell, which is that of their ids. Behind a gap all are unknown
 // but those that a message has had since.
-bool WholeReports::complete(clearance_msg_Distances& message) {
+bool CompleteReports::complete(clearance_msg_Distances& message) {
   if (message.changes_since == 0) {  // of a daemon that always sends all
     cycle_ = 0;
     return true;

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "monitor/client/whole_reports.hpp"
+#include "monitor/client/complete_reports.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/wire/changed_pairs.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -56,10 +56,10 @@ bool is_as(const clearance_msg_Distances& message,
   return true;
 }
 
-TEST(WholeReports, AreAsTheFullOnes) {
+TEST(CompleteReports, AreAsTheFullOnes) {
   Ticks ticks(34);
   ChangedPairs changes(50);
-  WholeReports whole;
+  CompleteReports whole;
   std::size_t sent = 0;
   for (int tick = 0; tick < 500; ++tick) {
     Sample<clearance_msg_Distances> message;
@@ -75,11 +75,11 @@ TEST(WholeReports, AreAsTheFullOnes) {
 
 // A reader that joins late, or loses a report, knows each pair truly or not at all, and knows all
 // with the next full report.
-TEST(WholeReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
+TEST(CompleteReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
   Ticks ticks(35);
   Random random(36);
   ChangedPairs changes(20);
-  WholeReports whole;
+  CompleteReports whole;
   int unknown = 0, lost = 0;
   bool is_known = false;
   for (std::uint64_t cycle = 1; cycle <= 1000; ++cycle) {
@@ -113,10 +113,10 @@ TEST(WholeReports, ThatLackOneBeforeAreUnknownUntilTheNextFullOne) {
   EXPECT_GT(unknown, 100);
 }
 
-TEST(WholeReports, KnowAPairForGoodThatHasComeBehindAGap) {
+TEST(CompleteReports, KnowAPairForGoodThatHasComeBehindAGap) {
   Ticks ticks(37);
   ChangedPairs changes(50);
-  WholeReports whole;
+  CompleteReports whole;
   for (std::uint64_t cycle = 1; cycle <= 20; ++cycle) {
     Sample<clearance_msg_Distances> message;
     ticks.fill(*message, cycle == 4 ? 1.0 : 0.0);
@@ -130,11 +130,11 @@ TEST(WholeReports, KnowAPairForGoodThatHasComeBehindAGap) {
   }
 }
 
-TEST(WholeReports, AnotherDaemonOrSceneBeginsWithAFullOne) {
+TEST(CompleteReports, AnotherDaemonOrSceneBeginsWithAFullOne) {
   for (const bool other_scene : {false, true}) {
     Ticks ticks(37);
     ChangedPairs changes(1000);
-    WholeReports whole;
+    CompleteReports whole;
     Sample<clearance_msg_Distances> first, second;
     ticks.fill(*first, 1.0);
     changes.reduce(*first);
@@ -150,7 +150,7 @@ TEST(WholeReports, AnotherDaemonOrSceneBeginsWithAFullOne) {
 }
 
 // An age is listed again before it has grown by more than the limit.
-TEST(WholeReports, APairWhosePosesGrowOldIsListedAgain) {
+TEST(CompleteReports, APairWhosePosesGrowOldIsListedAgain) {
   ChangedPairs changes(1000);
   Ticks ticks(38);
   std::int64_t listed = 0, age = 0;

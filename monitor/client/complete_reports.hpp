@@ -8,7 +8,7 @@
 
 namespace clearance::client {
 
-class WholeReports {
+class CompleteReports {
  public:
   // Completes a message: the pairs that it leaves out are as in the messages before. If one of
   // those is missing, they are unknown until the next full report. Returns false then. Afterwards

@@ -1,4 +1,4 @@
-#include "tools/merge/whole_writer.hpp"
+#include "tools/merge/joined_writer.hpp"
 
 #include <fmt/format.h>
 
@@ -34,8 +34,8 @@ DaemonIdentity identity_of(std::uint64_t daemon) {
 
 }  // namespace
 
-WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon,
-                         OnHealth on_health)
+JoinedWriter::JoinedWriter(Participant& participant, const Cell& cell, std::uint64_t daemon,
+                           OnHealth on_health)
     : participant_(participant),
       identity_(identity_of(daemon)),
       topics_(cell.topics),
@@ -50,8 +50,8 @@ WholeWriter::WholeWriter(Participant& participant, const Cell& cell, std::uint64
       others_(participant, topics_.distances, identity_),
       zone_check_(cell) {}
 
-bool WholeWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
-  if (others_.give_way()) return false;
+bool JoinedWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
+  if (others_.yields()) return false;
   const bool is_taken = dds_write(writer, sample) == DDS_RETCODE_OK;
   failed_ += is_taken ? 0 : 1;
   messages_.published(kind, sample);
@@ -59,7 +59,7 @@ bool WholeWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) {
 }
 
 // The strings belong to the share's sample. Cycles are those of this program.
-bool WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
+bool JoinedWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
   clearance_msg_Catalogue whole = catalogue;
   whole.daemon = identity_.id;
   whole.share[0] = '\0';
@@ -69,7 +69,7 @@ bool WholeWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
 
 // Ids that a changed cell no longer has are withdrawn, and all others are written again. So is a
 // state that DDS has not taken.
-void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
+void JoinedWriter::write_zones(const client::SharedCell& whole, bool again) {
   std::map<std::uint32_t, WrittenZone> now;
   for (const auto& [id, state] : whole.zones()) {
     const WrittenZone present = WrittenZone::of(state);
@@ -87,7 +87,7 @@ void WholeWriter::write_zones(const client::SharedCell& whole, bool again) {
 }
 
 // Before the first catalogue, nothing is known of the cell.
-void WholeWriter::write(client::SharedCell& whole) {
+void JoinedWriter::write(client::SharedCell& whole) {
   others_.poll();
   const clearance_msg_Catalogue* const catalogue = whole.catalogue();
   if (catalogue == nullptr) return;
@@ -122,7 +122,7 @@ void WholeWriter::write(client::SharedCell& whole) {
     put(TopicKind::kGradients, gradients_, gradients);
   }
   write_zones(whole, is_new);
-  if (!others_.give_way()) messages_.report_ended();
+  if (!others_.yields()) messages_.report_ended();
   zone_check_.check(whole);
   if (client::monotonic_ns() - health_ns_ < kHealthEvery) return;
   health_ns_ = client::monotonic_ns();
@@ -134,7 +134,7 @@ void WholeWriter::write(client::SharedCell& whole) {
   on_health_(std::move(health));
 }
 
-std::string WholeWriter::summary(const client::SharedCell& whole) const {
+std::string JoinedWriter::summary(const client::SharedCell& whole) const {
   return fmt::format(
       "{} reports of the whole cell, {} of them with a share missing, late, of another revision or "
       "divided otherwise; "

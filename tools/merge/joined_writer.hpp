@@ -19,20 +19,21 @@
 
 namespace clearance::merge {
 
-class WholeWriter {
+class JoinedWriter {
  public:
   // Gets the health that was written last.
   using OnHealth = std::function<void(Sample<clearance_msg_Health>)>;
 
   // `daemon` is the number in all messages. The participant and the cell outlive this. Throws
   // DdsError.
-  WholeWriter(Participant& participant, const Cell& cell, std::uint64_t daemon, OnHealth on_health);
+  JoinedWriter(Participant& participant, const Cell& cell, std::uint64_t daemon,
+               OnHealth on_health);
 
   // Writes the report at hand, and what has changed with it: catalogue, separations, zones. Health
   // goes out once per second.
   void write(client::SharedCell& whole);
   // Another program that started first publishes this cell.
-  [[nodiscard]] bool gives_way() const noexcept { return others_.give_way(); }
+  [[nodiscard]] bool yields() const noexcept { return others_.yields(); }
   // "12 reports, 0 of them not whole, ..."
   [[nodiscard]] std::string summary(const client::SharedCell& whole) const;
 
