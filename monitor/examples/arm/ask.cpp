@@ -1,4 +1,4 @@
-#include "monitor/examples/jogging_arm/run.hpp"
+#include "monitor/examples/arm/ask.hpp"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "monitor/examples/picking_arm/motion.hpp"
+#include "monitor/examples/arm/motion.hpp"
 
 namespace clearance::jog {
 namespace {

@@ -10,7 +10,7 @@
 
 namespace clearance::jog {
 
-inline constexpr std::string_view kClient = "jogging arm";
+inline constexpr std::string_view kClient = "example arm";
 // m: a jog that may come nearer than `kNear` is refused, and one that may come nearer than `kSlow`
 // is slowed down.
 inline constexpr double kNear = 0.005, kSlow = 0.02;

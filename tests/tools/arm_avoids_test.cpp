@@ -4,7 +4,7 @@
 
 #include <sstream>
 
-#include "monitor/examples/avoiding_arm/quadratic_programme.hpp"
+#include "monitor/examples/arm/quadratic_programme.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/tools/running_cell.hpp"
@@ -68,8 +68,8 @@ TEST(AvoidingArm, KeepsFartherFromMovingObstaclesAndStaysNearItsPath) {
   const std::string cell = test::places::sources() + "/config/cells/avoid.yaml";
   const DdsOptions dds = own_dds();
   ChildProcess daemon(kDaemon, with({cell}, dds_arguments(dds)));
-  ChildProcess avoid(test::places::programs() + "/avoiding_arm",
-                     with({cell, "--seconds", "5"}, dds_arguments(dds)));
+  ChildProcess avoid(test::places::programs() + "/example_arm",
+                     with({"avoid", cell, "--seconds", "5"}, dds_arguments(dds)));
   ASSERT_EQ(avoid.wait(std::chrono::seconds(120)), 0) << avoid.output();
   const Outcome without = outcome_of(avoid.output(), "without avoidance"),
                 with_it = outcome_of(avoid.output(), "with avoidance");

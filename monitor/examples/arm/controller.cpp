@@ -1,10 +1,10 @@
-#include "monitor/examples/avoiding_arm/controller.hpp"
+#include "monitor/examples/arm/controller.hpp"
 
 #include <algorithm>
 #include <span>
 #include <utility>
 
-#include "monitor/examples/avoiding_arm/quadratic_programme.hpp"
+#include "monitor/examples/arm/quadratic_programme.hpp"
 
 namespace clearance::avoid {
 namespace {

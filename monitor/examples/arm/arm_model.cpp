@@ -1,4 +1,4 @@
-#include "monitor/examples/avoiding_arm/arm_model.hpp"
+#include "monitor/examples/arm/arm_model.hpp"
 
 #include <fmt/format.h>
 

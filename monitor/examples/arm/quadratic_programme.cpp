@@ -1,4 +1,4 @@
-#include "monitor/examples/avoiding_arm/quadratic_programme.hpp"
+#include "monitor/examples/arm/quadratic_programme.hpp"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "monitor/examples/avoiding_arm/run.hpp"
+#include "monitor/examples/arm/avoid.hpp"
 
 #include <algorithm>
 #include <chrono>

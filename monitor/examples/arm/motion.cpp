@@ -1,6 +1,6 @@
 // Joints 2, 4 and 6 turn about parallel axes: two links of equal length and the hand, in the plane
 // that joint 1 turns.
-#include "monitor/examples/picking_arm/motion.hpp"
+#include "monitor/examples/arm/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -12,9 +12,9 @@ namespace {
 TEST(JoggingArm, IsRefusedAndSlowedWithTheReasonAndNeverComesNearerThanItAskedFor) {
   const std::string cell = test::places::sources() + "/config/cells/pick.yaml";
   const DdsOptions dds = own_dds();
-  ChildProcess daemon(kDaemon, with({cell, "--questions", "jogging arm"}, dds_arguments(dds)));
-  ChildProcess arm(test::places::programs() + "/jogging_arm",
-                   with({cell, "--speed", "4"}, dds_arguments(dds)));
+  ChildProcess daemon(kDaemon, with({cell, "--questions", "example arm"}, dds_arguments(dds)));
+  ChildProcess arm(test::places::programs() + "/example_arm",
+                   with({"ask", cell, "--speed", "4"}, dds_arguments(dds)));
   ASSERT_EQ(arm.wait(std::chrono::seconds(180)), 0) << arm.output();
   const std::string output = arm.output();
   std::smatch found;

@@ -6,7 +6,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
-#include "monitor/examples/avoiding_arm/controller.hpp"
+#include "monitor/examples/arm/controller.hpp"
 
 namespace clearance::avoid {
 

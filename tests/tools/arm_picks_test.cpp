@@ -4,7 +4,7 @@
 #include <sstream>
 #include <string>
 
-#include "monitor/examples/picking_arm/motion.hpp"
+#include "monitor/examples/arm/motion.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -51,8 +51,8 @@ TEST(PickingArm, IsNearerToTheWallOnceTheDaemonKnowsThePart) {
   const std::string cell = test::places::sources() + "/config/cells/pick.yaml";
   const DdsOptions dds = own_dds();
   ChildProcess daemon(kDaemon, with({cell}, dds_arguments(dds)));
-  ChildProcess arm(test::places::programs() + "/picking_arm",
-                   with({cell, "--speed", "2"}, dds_arguments(dds)));
+  ChildProcess arm(test::places::programs() + "/example_arm",
+                   with({"pick", cell, "--speed", "2"}, dds_arguments(dds)));
   ASSERT_EQ(arm.wait(std::chrono::seconds(180)), 0) << arm.output();
   const Picking without = picking_of(arm.output(), "not known"),
                 with_it = picking_of(arm.output(), "known");

@@ -13,7 +13,7 @@
 
 #include "config/scene/scene.hpp"
 #include "monitor/client/client.hpp"
-#include "monitor/examples/avoiding_arm/arm_model.hpp"
+#include "monitor/examples/arm/arm_model.hpp"
 
 namespace clearance::avoid {
 

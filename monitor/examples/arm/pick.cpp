@@ -1,4 +1,4 @@
-#include "monitor/examples/picking_arm/run.hpp"
+#include "monitor/examples/arm/pick.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -10,7 +10,7 @@
 #include <variant>
 #include <vector>
 
-#include "monitor/examples/picking_arm/motion.hpp"
+#include "monitor/examples/arm/motion.hpp"
 
 namespace clearance::pick {
 namespace {

@@ -1,0 +1,189 @@
+// An example of a program beside the daemon: an arm that keeps away from obstacles by the daemon's
+// gradients, tells it what it holds, or asks it before each motion.
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <string>
+
+#include "monitor/app/cell_arguments.hpp"
+#include "monitor/app/log.hpp"
+#include "monitor/app/print.hpp"
+#include "monitor/app/program.hpp"
+#include "monitor/app/stop_signal.hpp"
+#include "monitor/client/client.hpp"
+#include "monitor/dds/dds_arguments.hpp"
+#include "monitor/dds/dds_log.hpp"
+#include "monitor/examples/arm/ask.hpp"
+#include "monitor/examples/arm/avoid.hpp"
+#include "monitor/examples/arm/pick.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr const char* kFooter = R"(Exit status:
+  0  all motions were made or decided
+  1  something else failed
+  2  wrong usage
+  3  the cell file is wrong
+  4  DDS could not be joined
+  5  stopped, or the daemon did not answer
+  6  the daemon refused a command
+
+Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml:
+  build/bin/example_arm avoid config/cells/avoid.yaml --partition lab
+  build/bin/example_arm pick config/cells/pick.yaml --partition lab
+  build/bin/example_arm ask config/cells/pick.yaml --partition lab    # clearanced --questions "example arm")";
+
+struct Arguments {
+  CellArguments cell;
+  DdsArguments dds;
+  avoid::RunOptions avoid;
+  pick::RunOptions pick;
+  double speed = 1.0;  // of the jogs that are asked about
+};
+
+CLI::App* add_kind(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
+  CLI::App* const kind = app.add_subcommand(name, help);
+  arguments.cell.add_to(*kind);
+  arguments.dds.add_to(*kind);
+  return kind;
+}
+
+int no_answer(const client::Connection& connection, const std::string& what) {
+  print(stderr, "example_arm: stopped, or no {} on {}?\n", what, connection.where());
+  return kIncomplete;
+}
+
+void print_row(const char* name, const avoid::RunResult& result) {
+  print(stdout, "{:<18} {:>9.4f}  {:>9.4f} / {:<9.4f} {:>7}  {}\n", name, result.least_distance_m,
+        result.mean_error_m, result.largest_error_m, result.steps, result.nearest);
+  std::fflush(stdout);
+}
+
+// The hand follows a path twice, without and with avoidance, past the same moving obstacles.
+int avoid_twice(const Cell& cell, client::Connection& connection, Arguments& arguments,
+                StopSignal& signal) {
+  print(stdout, "{:<18} {:>9}  {:>21} {:>7}\n", "", "nearest m", "task error m, mean / max",
+        "steps");
+  for (const bool avoids : {false, true}) {
+    arguments.avoid.controller.avoids = avoids;
+    const avoid::RunResult result =
+        avoid::run(cell, connection, arguments.avoid, [&signal] { return !signal.wait(0); });
+    if (!result.heard) {
+      return no_answer(connection,
+                       "gradients came; does clearanced run, with 'gradients: true' in its cell "
+                       "or --gradients,");
+    }
+    print_row(avoids ? "with avoidance" : "without avoidance", result);
+  }
+  return kOk;
+}
+
+void print_row(const char* name, const pick::RunResult& result) {
+  print(stdout, "{:<16} {:>9.4f} {:>12.4f}  {:<20} {:>12} {:>12.1f}\n", name,
+        result.least_distance_m, result.least_lower_m, result.nearest, result.entered,
+        1e3 * result.slowest_command_s);
+  std::fflush(stdout);
+}
+
+// The arm carries a part twice, without and with commands that say so.
+int pick_twice(client::Connection& connection, Arguments& arguments, StopSignal& signal) {
+  print(stdout, "{:<16} {:>9} {:>12}  {:<20} {:>12} {:>12}\n", "payload", "nearest m",
+        "certified m", "pair", "zone entries", "command ms");
+  for (const bool tells : {false, true}) {
+    arguments.pick.tells = tells;
+    const pick::RunResult result =
+        pick::run(connection, arguments.pick, [&signal] { return !signal.wait(0); });
+    if (!result.refusal.empty()) {
+      print(stderr, "example_arm: a command was refused: {}\n", result.refusal);
+      return kRefused;
+    }
+    if (!result.heard) {
+      return no_answer(
+          connection, "reports or results came; does clearanced run, with config/cells/pick.yaml,");
+    }
+    print_row(tells ? "known" : "not known", result);
+  }
+  return kOk;
+}
+
+const char* name_of(jog::Decision decision) {
+  switch (decision) {
+    case jog::Decision::kMade:
+      return "made";
+    case jog::Decision::kSlowed:
+      return "slowed";
+    case jog::Decision::kRefused:
+      break;
+  }
+  return "refused";
+}
+
+// The daemon says of each jog of an operator how near it comes. The arm makes it, slows it down, or
+// refuses it.
+int ask_each(client::Connection& connection, const Arguments& arguments, StopSignal& signal) {
+  print(stdout, "{:<6} {:<8} {:>9} {:>8}  {}\n", "jog", "decision", "nearest m", "asked ms",
+        "reason");
+  const jog::RunResult result = jog::run(
+      connection, arguments.speed,
+      [](const jog::Jog& each) {
+        print(stdout, "{:<6} {:<8} {:>9.4f} {:>8.2f}  {}\n", each.name, name_of(each.decision),
+              each.lower_m, each.asked_ms, each.reason);
+        std::fflush(stdout);
+      },
+      [&signal] { return !signal.wait(0); });
+  if (!result.heard) {
+    return no_answer(connection,
+                     "reports or answers came; does clearanced run, with --questions \"" +
+                         std::string(jog::kClient) + "\",");
+  }
+  print(stdout,
+        "{} jogs made, {} slowed, {} refused; the least distance in all reports is at least {:.4f} "
+        "m\n",
+        result.made, result.slowed, result.refused, result.least_lower_m);
+  return kOk;
+}
+
+int run(int argc, char** argv, StopSignal& signal) {
+  CLI::App app("An arm beside the daemon that avoids obstacles, carries a part, or asks first.");
+  Arguments arguments;
+  CLI::App* const avoiding = add_kind(app, arguments, "avoid",
+                                      "Follows a path past moving obstacles, without and with "
+                                      "keeping away from them");
+  avoiding->add_option("--seconds", arguments.avoid.seconds, "Length of each run")
+      ->check(CLI::Range(2.0, 3600.0))
+      ->capture_default_str();
+  avoiding->add_option("--keep", arguments.avoid.controller.keep_m, "Distance that is kept, m")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  CLI::App* const picking = add_kind(app, arguments, "pick",
+                                     "Carries a part over a wall, without and with telling the "
+                                     "daemon what the arm holds");
+  picking->add_option("--speed", arguments.pick.speed, "Speed of the motion; 1: about 10 s a run")
+      ->check(CLI::Range(0.1, 3.0))
+      ->capture_default_str();
+  CLI::App* const asking =
+      add_kind(app, arguments, "ask", "Jogs past a wall, and asks the daemon before each jog");
+  asking->add_option("--speed", arguments.speed, "Speed of the jogs; 1: about 10 s in all")
+      ->check(CLI::Range(0.1, 5.0))
+      ->capture_default_str();
+  app.require_subcommand(1);
+  app.footer(kFooter);
+  if (const auto done = parse(app, argc, argv)) return *done;
+  start_log("example_arm", "error");
+  const auto cell = cell_or_errors(arguments.cell.read());
+  if (!cell) return kBadCell;
+  route_dds_log();
+  client::Connection connection(arguments.dds.resolve(*cell), cell->topics);
+  if (avoiding->parsed()) return avoid_twice(*cell, connection, arguments, signal);
+  if (picking->parsed()) return pick_twice(connection, arguments, signal);
+  return ask_each(connection, arguments, signal);
+}
+
+}  // namespace
+}  // namespace clearance
+
+int main(int argc, char** argv) {
+  return clearance::run_program(
+      "example_arm", [=](auto& signal) { return clearance::run(argc, argv, signal); },
+      clearance::dds_exit_code);
+}
