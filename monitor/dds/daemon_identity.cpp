@@ -74,7 +74,7 @@ bool are_partners(const DaemonIdentity& one, const DaemonIdentity& other) noexce
   return !one.partner.empty() && !other.partner.empty() && one.partner != other.partner;
 }
 
-bool yields(const DaemonIdentity& one, const DaemonIdentity& other) noexcept {
+bool yields_to(const DaemonIdentity& one, const DaemonIdentity& other) noexcept {
   return std::tie(one.start_ns, one.id) > std::tie(other.start_ns, other.id);
 }
 

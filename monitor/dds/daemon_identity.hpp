@@ -35,6 +35,6 @@ struct DaemonIdentity {
 
 // True if `one` must stop publishing in favour of the other daemon of the cell, because it started
 // later. The ids decide between equal times, so both daemons come to the same answer.
-[[nodiscard]] bool yields(const DaemonIdentity& one, const DaemonIdentity& other) noexcept;
+[[nodiscard]] bool yields_to(const DaemonIdentity& one, const DaemonIdentity& other) noexcept;
 
 }  // namespace clearance

@@ -71,7 +71,7 @@ void OtherDaemons::note_partner(dds_instance_handle_t writer, const DaemonIdenti
   log_line(lines::kPartnerMet, partner.described(), topic_);
   const bool is_third =
       partners_.size() > 1 && std::ranges::all_of(partners_, [this](const Partner& each) {
-        return yields(own_, each.identity);
+        return yields_to(own_, each.identity);
       });
   if (!is_third) return;
   log_line(lines::kOtherDaemonFirst, partner.described(), topic_);
@@ -84,7 +84,7 @@ void OtherDaemons::meet(dds_instance_handle_t writer, bool heard) {
   if (!facts.present) return;
   const auto other = from_user_data(facts.user_data);
   if (other && are_partners(own_, *other)) return note_partner(writer, *other);
-  const bool first = other && yields(own_, *other);
+  const bool first = other && yields_to(own_, *other);
   if (first && !heard) return;
   met_.push_back(writer);
   ++writers_;

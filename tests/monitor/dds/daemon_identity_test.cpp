@@ -28,10 +28,10 @@ TEST(DaemonIdentity, IsNotReadFromOtherPrograms) {
 TEST(DaemonIdentity, ExactlyOneOfTwoGivesWay) {
   const DaemonIdentity early{.id = 9, .start_ns = 100}, late{.id = 1, .start_ns = 101},
       as_late{.id = 2, .start_ns = 101};
-  EXPECT_TRUE(yields(late, early));
-  EXPECT_FALSE(yields(early, late));
-  EXPECT_TRUE(yields(as_late, late));
-  EXPECT_FALSE(yields(late, as_late));
+  EXPECT_TRUE(yields_to(late, early));
+  EXPECT_FALSE(yields_to(early, late));
+  EXPECT_TRUE(yields_to(as_late, late));
+  EXPECT_FALSE(yields_to(late, as_late));
 }
 
 }  // namespace
