@@ -1,5 +1,5 @@
-// The daemon's log lines: the only place where their wording stands. tests/monitor/messages.golden
-// shows each of them with sample arguments.
+// The daemon's log lines: the only place where their wording stands.
+// tests/monitor/app/messages.golden shows each of them with sample arguments.
 //
 // A new line is one entry here and its name in all_log_lines.hpp. Codes do not change: they are
 // what tests, FAULTS.md and other programs look for. An argument "2 joints" comes from counted().

@@ -13,7 +13,7 @@ def fields_of(name):
     """The types and names of the members of a struct, as its IDL says."""
     text = re.sub(r"//[^\n]*", "", IDL.read_text())
     body = re.search(r"struct " + name + r"\s*\{(.*?)\};", text, re.S).group(1)
-    return {field: kind for kind, field in re.findall(r"([^;\n]+?)\s+(\w+)(?:\[\d*\])?;", body)}
+    return {field: kind.strip() for kind, field in re.findall(r"([^;\n]+?)\s+(\w+)(?:\[\d*\])?;", body)}
 
 
 def test_the_idl_is_read_as_it_is_written():

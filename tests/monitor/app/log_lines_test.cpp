@@ -1,4 +1,4 @@
-// The wording of every log line of the daemon is kept in tests/monitor/messages.golden.
+// The wording of every log line of the daemon is kept in tests/monitor/app/messages.golden.
 #include "monitor/app/all_log_lines.hpp"
 #include "tests/shared/places.hpp"
 
@@ -12,7 +12,7 @@
 namespace clearance {
 namespace {
 
-const std::string kGolden = test::places::sources() + "/tests/monitor/messages.golden";
+const std::string kGolden = test::places::sources() + "/tests/monitor/app/messages.golden";
 
 std::string content(const std::string& file) {
   std::ostringstream text;
