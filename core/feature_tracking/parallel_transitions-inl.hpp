@@ -269,7 +269,7 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   const std::int32_t crossed_b = crossed_a == kNone ? crossed_side(pair.b, facet_b, local) : kNone;
   if (HWY_UNLIKELY(crossed_a != kNone || crossed_b != kNone)) {
     const Vec4 before = local;
-    if (!slide_back_on_boxes(pair.a, pair.b, pair.a_from_b, facet_a, facet_b, local)) {
+    if (!slide_back_on_boxes(pair.a, pair.b, in_memory(pair.a_from_b), facet_a, facet_b, local)) {
       local = before;
       if (!slide_back(pair, crossed_a, crossed_b, local)) return Transition::kMoved;
     }

@@ -47,8 +47,13 @@ struct PlacePrecision {
 // fixed and the wrong rotation rotates A about B's origin. No point of A is farther from there than
 // extent_a plus the translation. The part of the error that is not a rotation then stretches the
 // distance. Both are bounds, so the smaller one counts.
-[[nodiscard]] inline Precision precision(const ConvexBody& a, const ConvexBody& b,
-                                         const PlacePrecision& b_in_a, double farthest) noexcept {
+//
+// It is always inlined: a call from vector code would change between instruction sets, which takes
+// as long as a third of a query.
+[[nodiscard, gnu::always_inline]] inline Precision precision(const ConvexBody& a,
+                                                             const ConvexBody& b,
+                                                             const PlacePrecision& b_in_a,
+                                                             double farthest) noexcept {
   assert(!(farthest < 0.0) && !(b_in_a.translation < 0.0));
   const bool a_bounded = a.bounded(), b_bounded = b.bounded();
   Precision p;

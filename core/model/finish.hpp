@@ -12,8 +12,9 @@ namespace clearance {
 
 // Bodies without radii become bodies with them. `outward`: unit, the direction from A to B in which
 // the witness points move. Converged bounds say by their signs whether the bodies touch or overlap.
-inline void finish(const ConvexBody& a, const ConvexBody& b, const Vec3& outward,
-                   Answer& r) noexcept {
+// Always inlined, as precision() is.
+[[gnu::always_inline]] inline void finish(const ConvexBody& a, const ConvexBody& b,
+                                          const Vec3& outward, Answer& r) noexcept {
   const double sum = radii(a, b);
   if (sum != 0.0 && r.upper != -kInfinity) {  // else no translation separates the bodies
     const double rounding = rounding_of_radii(sum, r.upper);

@@ -41,6 +41,17 @@ struct RelativePose4 {
   double translation_length;                 // m
 };
 
+// A copy for a function that gets its address, made number by number: so the original may stay in
+// registers.
+HWY_INLINE RelativePose4 in_memory(const RelativePose4& r) {
+  return {{r.rotation.main, r.rotation.next, r.rotation.last},
+          {r.transposed.main, r.transposed.next, r.transposed.last},
+          r.translation,
+          r.rotation_error,
+          r.translation_error,
+          r.translation_length};
+}
+
 using Query4 = QueryAt<RelativePose4>;
 
 HWY_INLINE Vec4 direction_to_a(const RelativePose4& r, Vec4 v) { return r.rotation * v; }
@@ -148,6 +159,23 @@ HWY_INLINE RelativePose4 relative_pose4(const Pose& world_from_a, const Pose& wo
     set_exactness(a, load4(world_from_b.orientation.coeffs().data()), r);
   }
   return r;
+}
+
+// The translation and its error alone, for a point of B at the origin of its frame: a rotation does
+// not move it. False: the poses are not certainly good, or a product with the rotation could change
+// the sign of a zero.
+HWY_INLINE bool set_place(const Pose& world_from_a, const Pose& world_from_b, RelativePose4& r) {
+  const Vec4 a = load4(world_from_a.orientation.coeffs().data()), zero = spread(0.0);
+  const Vec4 between = load3_masked(world_from_b.position) - load3_masked(world_from_a.position);
+  const Vec2 squares = squares_of(a, load4(world_from_b.orientation.coeffs().data()));
+  set_translation(a, two_over_unit(squares)[0], between, r);
+  r.rotation = r.transposed = {zero, zero, zero};
+  r.rotation_error = 0.0;
+  if (HWY_UNLIKELY(!has_digits(world_from_a.orientation.w())) && permutes_axes(a)) {
+    r.translation_error = kPermutedTranslationError * r.translation_length;
+  }
+  return both_nearly_unit(squares) && r.translation_length <= kLargestCoordinate &&
+         (less(zero, r.translation * r.translation) & 7u) == 7u;
 }
 
 // The nine numbers of the matrix are followed by the translation in the same object.
