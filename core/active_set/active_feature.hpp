@@ -55,7 +55,8 @@ class ActiveFeature {
   }
 
   void place(FeatureKind feature, std::int32_t index, const Vec3& local) noexcept {
-    assert(has_feature(body_, feature, index));
+    assert(feature == FeatureKind::kInside ? index == kNone
+                                           : exists(body_, {feature, false, index}));
     feature_ = feature;
     index_ = index;
     point_L_ = local;

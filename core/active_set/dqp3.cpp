@@ -1,5 +1,7 @@
 #include "core/active_set/dqp3.hpp"
 
+#include <cassert>
+
 #include "core/active_set/alpha_step_length.hpp"
 #include "core/active_set/delta_step.hpp"
 #include "core/active_set/lambda_multipliers.hpp"
@@ -137,7 +139,9 @@ void keep_on_body(ActiveFeature& side) noexcept {
 }  // namespace
 
 Dqp3Outcome dqp3(ActiveFeature& a, ActiveFeature& b, double contact) noexcept {
+  assert(!(contact < 0.0));
   const Dqp3Outcome outcome = iterate(a, b, contact);
+  assert(outcome.end != Dqp3End::kCertified || outcome.separating_direction.norm() > 0.0);
   keep_on_body(a);
   keep_on_body(b);
   return outcome;

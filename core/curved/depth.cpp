@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <numbers>
 
@@ -324,8 +325,11 @@ int find_deepest_points(CurvedPair& pair) noexcept {
 }  // namespace
 
 DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept {
+  assert(is_unit_or_unknown(pair.bounds.normal));
   DepthBounds found = DepthSearch(pair, active).run();
   if (found.lower > 0.0) found.supports += find_deepest_points(pair);
+  assert(is_unit_or_unknown(pair.bounds.normal) &&
+         !(found.lower > -pair.bounds.lower + 2.0 * pair.error()));
   return found;
 }
 

@@ -3,6 +3,7 @@
 // the step. A step must improve the least of the distances. If it does not, it is shortened, or a
 // missing pair of parts joins the programme.
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/curved/max_min_programme.hpp"
@@ -181,7 +182,7 @@ class DirectionSearch {
     }
   }
 
-  [[nodiscard]] Vec3 turned(const Vec2& step) const noexcept {
+  [[nodiscard]] Vec3 rotated(const Vec2& step) const noexcept {
     return (n_ + step.x() * tangents_.x + step.y() * tangents_.y).normalized();
   }
 
@@ -192,7 +193,7 @@ class DirectionSearch {
     for (int trial = 0; trial < kTrials && !pair_.is_converged(); ++trial) {
       // A step is at most half a right angle: farther away, other parts are active.
       found.step /= std::max(1.0, found.step.norm());
-      const Vec3 next = turned(found.step);
+      const Vec3 next = rotated(found.step);
       if (over_caps(next)) return;
       if (next == n_) break;
       const SupportPair there = pair_.support(next);
@@ -215,7 +216,7 @@ class DirectionSearch {
     }
     // The bounds have converged. This step makes the direction as accurate as they are.
     if (pair_.is_converged()) {
-      pair_.prefer(turned(found.step));
+      pair_.prefer(rotated(found.step));
     } else {
       const PointPair last = add_points(found, kPointRounds);
       const bool deepest = at_.value >= pair_.bounds.lower - pair_.gap_tolerance();
@@ -316,7 +317,10 @@ class DirectionSearch {
 }  // namespace
 
 int search_direction(CurvedPair& pair, const Vec3& n, ActiveParts& active) noexcept {
-  return DirectionSearch(pair, n, active).run();
+  assert(is_unit_or_unknown(n));
+  const int supports = DirectionSearch(pair, n, active).run();
+  assert(is_unit_or_unknown(pair.bounds.normal));
+  return supports;
 }
 
 }  // namespace clearance

@@ -3,12 +3,15 @@
 #define HWY_TARGET_INCLUDE "core/feature_tracking/feature_tracking.cpp"
 #include "core/numerics/simd_targets.hpp"
 // The include above must come first.
+#include <cassert>
+
 #include "core/feature_tracking/transitions-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace clearance::HWY_NAMESPACE {
 
 TrackingEnd track_relative(const Query& query, Answer& answer) {
+  assert(!query.a.is_curved() && !query.b.is_curved());
   const RelativePose4 a_from_b = pose4_of(query.a_from_b);
   const Query4 query4{query.a, query.b, a_from_b, query.state, query.depth};
   if (!has_features(query) && begin(query4) == Start::kInContact) return TrackingEnd::kUndecided;

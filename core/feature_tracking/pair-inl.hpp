@@ -29,12 +29,14 @@ HWY_INLINE double inverse_square_near_1(Vec4 v) { return 2.0 - dot(v, v); }
 
 // The closest points, set by the transition that ends at kClosest.
 struct Findings {
-  Vec4 a_A, b_A, b_B;     // witness points: A's in frame A, and B's in frame A and in frame B
+  // The witness points: A's in frame A, and B's in frame A and in frame B. g++ does not see that
+  // the last one is set wherever it is read.
+  Vec4 a_A, b_A, b_B{};
   Vec4 n_A;               // the normal: unit, from A to B, frame A
   double distance = 0.0;  // m: |b_A - a_A|; for penetrating bodies minus the depth
   // m: the distance of the polyhedra that the normal certifies, less error_bound
-  double certified;
-  double error_bound;  // m: Precision::error_bound
+  double certified = 0.0;
+  double error_bound = 0.0;  // m: Precision::error_bound
 };
 
 // One of the bodies, A or B, and its pose relative to the other. Names end in the frame: _A, _B, _L

@@ -155,6 +155,7 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
       return false;
     }
   }
+  assert(is_unit_or_unknown(vec3(pair.found.n_A)));
   pair.on_a.penetrating = pair.contact.touching || !(pair.found.distance > 0.0);
   pair.on_a.point = vec3(pair.found.a_A);
   pair.on_b.point = vec3(pair.found.b_B);

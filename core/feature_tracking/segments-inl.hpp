@@ -76,6 +76,7 @@ HWY_INLINE double to_place_on_segment(Side& side, double s, double length) {
 // A hint, as any features are: the certificate decides. Parallel segments may have several closest
 // features; the search then starts at their edges.
 HWY_INLINE void start_at_segments(const Query4& q) {
+  assert(are_segments(q.a, q.b));
   const Segment a = segment_of(q.a), b = segment_of(q.b);
   const RelativePose4& a_from_b = q.a_from_b;
   TrackingState& state = q.state;

@@ -259,7 +259,9 @@ HWY_INLINE bool still_closest(const Query4& q, TransitionsMade& made, Answer& an
 // Makes transitions until the features are closest.
 HWY_INLINE TrackingEnd move_to_closest(TrackedPair& pair) {
   if (!pair.a.bounded() && !pair.b.bounded()) return TrackingEnd::kUndecided;
-  assert(exists(pair.a, pair.on_a) && exists(pair.b, pair.on_b));
+  // to_vertex() may have left a side without a feature.
+  assert(exists(pair.a, pair.on_a) || pair.on_a.kind == FeatureKind::kUnknown);
+  assert(exists(pair.b, pair.on_b) || pair.on_b.kind == FeatureKind::kUnknown);
   while (pair.made.all < kMostTransitions) {
     ++pair.made.all;
     const Transition result = transition(pair);

@@ -1,6 +1,7 @@
 #include "core/gjk/gjk.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/active_set/certificate.hpp"
@@ -119,6 +120,7 @@ void refine(ActiveFeature& a, ActiveFeature& b, const RelativePose& a_from_b, co
     r.lower = std::max(r.lower, separated - p.error_bound);
     if (length - separated <= p.gap_tolerance || !simplex.add(next)) break;
   }
+  assert(r.normal.isZero(0.0) || is_unit_or_unknown(r.normal));
 }
 
 }  // namespace clearance

@@ -71,11 +71,11 @@ struct PlacePrecision {
   }
   if (!a_bounded || !b_bounded) ulps = kGapToleranceUlps[!a_bounded + !b_bounded];
   p.size = p.extent_a + p.extent_b + translation;
-  const double turned = a_bounded
-                            ? std::min(p.extent_b, p.extent_a + translation + kStretched * farthest)
-                            : p.extent_b;
+  const double rotated =
+      a_bounded ? std::min(p.extent_b, p.extent_a + translation + kStretched * farthest)
+                : p.extent_b;
   p.error_bound = on_features + (kUlp * kUlpsBetween * translation + b_in_a.translation_error) +
-                  b_in_a.rotation_error * turned;
+                  b_in_a.rotation_error * rotated;
   p.gap_tolerance = ulps * kUlp * p.size;
   p.promised = (a_bounded || b_bounded ? kConvergedGap : kContactGap) * p.size;
   return p;

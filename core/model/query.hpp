@@ -23,13 +23,6 @@ using Query = QueryAt<RelativePose>;
 // (core/model/finish.hpp).
 using Answer = DistanceResult;
 
-// Has the body this feature?
-[[nodiscard]] inline bool has_feature(const ConvexBody& body, FeatureKind kind,
-                                      std::int32_t feature) noexcept {
-  if (kind == FeatureKind::kInside) return feature == kNone;
-  return kind < FeatureKind::kInside &&
-         static_cast<std::uint32_t>(feature) < body.features[static_cast<std::size_t>(kind)];
-}
 // Does the side of a state name a vertex, an edge or a facet of the body?
 [[nodiscard]] inline bool exists(const ConvexBody& body, const TrackingState::Side& side) noexcept {
   return side.kind <= FeatureKind::kFacet && static_cast<std::uint32_t>(side.feature) <

@@ -1,6 +1,7 @@
 #include "core/penetration/normal_search.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 namespace clearance {
@@ -49,6 +50,7 @@ void NormalSearch::improve(double height, const Vec3& n, Source source,
 }
 
 void NormalSearch::guess(const Vec3& n, std::int32_t edge_of_x) noexcept {
+  assert(is_unit_or_unknown(n));
   if (is_unbounded_along(body_.x(), n, -within_rounding_)) return;
   if (edge_of_x != kNone) {
     const Arc arc = across(body_.x().edges[edge_of_x]);
@@ -149,7 +151,7 @@ void NormalSearch::split(const Arc& arc, const Sample& first, const Sample& last
   }
 }
 
-// All directions from l to r, less than half a rotation.
+// All directions from l to r, less than half a turn apart.
 void NormalSearch::bound_arc(const Arc& arc, const Vec2& l, const Vec2& r) noexcept {
   // Both tests are for the whole arc: c.n at least the smaller one of c.l and c.r.
   const auto bounded_by = [&](const Vec2& vertex) {
@@ -206,10 +208,14 @@ void NormalSearch::run() noexcept {
   const auto fits = [](const ConvexBody& body) {
     return body.bounded() && !body.facets.empty() && DeepestPoints::fits(body);
   };
-  if (fits(body_.x()) && fits(body_.y())) return run_bounded();
-  facets_of_x();
-  facets_of_y();
-  arcs();
+  if (fits(body_.x()) && fits(body_.y())) {
+    run_bounded();
+  } else {
+    facets_of_x();
+    facets_of_y();
+    arcs();
+  }
+  assert(ended_early() || lower_ <= best_.height + 2.0 * gap_tolerance_);
 }
 
 }  // namespace clearance

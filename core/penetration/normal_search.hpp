@@ -7,7 +7,8 @@
 #include <span>
 
 #include "core/numerics/error_constants.hpp"
-#include "core/penetration/facet_scan.hpp"
+#include "core/penetration/deepest_points.hpp"
+#include "core/penetration/deepest_vertices.hpp"
 #include "core/penetration/minkowski_difference.hpp"
 
 namespace clearance {
@@ -43,7 +44,7 @@ class NormalSearch {
     look_at_facet_of_y(facet);
     prefer(best_.n);
   }
-  // Searches all facets and arcs; stops early if the bodies rotation out to be disjoint.
+  // Searches all facets and arcs; stops early if the bodies turn out to be disjoint.
   void run() noexcept;
 
   [[nodiscard]] const Best& best() const noexcept { return best_; }

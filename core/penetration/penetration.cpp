@@ -1,6 +1,7 @@
 #include "core/penetration/penetration.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 
 #include "core/model/error_bounds.hpp"
@@ -82,6 +83,7 @@ bool track_penetration(const Query& q, Answer& answer, std::optional<Depth>& fou
 }
 
 void measure_penetration(const Query& q, const std::optional<Depth>& known, Answer& r) noexcept {
+  assert(!(r.lower > 0.0));
   const Depth found = known ? *known : tracked_depth(q);
   if (found.lower > 0.0) return conclude_penetrating(q, found, r);
   // The bodies are neither certainly disjoint nor certainly overlapping. Both the bounds of the

@@ -1,6 +1,7 @@
 #include "core/penetration/witness_points.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <cstdint>
 
@@ -68,6 +69,7 @@ TrackingState at_support_vertices(const ConvexBody& a, const ConvexBody& b,
 }  // namespace
 
 void place_witnesses(const Query& q, const Depth& found, Answer& r) noexcept {
+  assert(found.lower > 0.0 && is_unit_or_unknown(found.normal));
   const double size = size_of(q.a, q.b, q.a_from_b.translation.norm());
   const double farther = std::max(found.value, size > 0.0 ? kFarther * size : 1.0);
   RelativePose pose = q.a_from_b;

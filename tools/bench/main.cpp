@@ -49,10 +49,6 @@ Rows:
                      pair/tracked/A-B of two bodies that are not curved; .../cold/...
   nearness/cold/KIND/GAP  60 pairs of a curved kind at this gap, in units of the larger semi-axis; also
                      nearness/tracked/...
-  batch/f2 ...       512 tracked pairs at once; batch/single/... the same pairs one by one; batch/AVX2/...
-                     with that instruction set; batch/own/... 1,024 bodies without common shapes,
-                     batch/own/single/... one by one; batch/curved/A-B, batch/curved/single/A-B; batch/few/boxes/8:
-                     8 pairs, batch/few/single/boxes/8 one by one; also links, and 1 to 64 pairs
   overlap/tracked/KIND/HOW, overlap/cold/...  penetration depth: boxes, links, f10, v10, f40, v40; shallow, half,
                      near, nearer, middle; no reference
   peer/WHO/...       the same by other solvers: fcl, fcl-tight, fcl-gjk, bullet, libccd, qp
@@ -79,12 +75,11 @@ Rows:
 Counters:
   ns           per query
   max_error    m, against a reference in long doubles; only queries that report no failure count
-  failures     queries that report a failure, return NaN or are wrong by more than 1e-6 m, of 4,000 (batch: 102,400;
-               overlap: 1,000)
+  failures     queries that report a failure, return NaN or are wrong by more than 1e-6 m, of 4,000 (overlap:
+               1,000)
   steps        mean iterations of the solver; 0: unknown
   truth_gap    m, error bound of the reference; overlapping: number of overlapping pairs
   widest_gap   m, largest upper - lower
-  single       share of the pairs of a batch that were evaluated one by one
 The warning about a DEBUG library concerns Debian's build of Google Benchmark, not ours.
 
 Examples:
@@ -99,7 +94,6 @@ Options of Google Benchmark:
                                 const std::vector<std::filesystem::path>& meshes) {
   using namespace clearance::bench;
   register_ours(RowSet::kBench);
-  register_batches();
   register_nearness();
   register_peers(RowSet::kBench);
   std::vector<std::filesystem::path> cells = cells_in(CLEARANCE_CELLS);
@@ -117,7 +111,7 @@ struct Part {
   const char* rows;
 };
 constexpr Part kParts[] = {
-    {"--queries", "^(tracked|cold|relative|batch|overlap|peer/[^/]+/(tracked|cold))/"},
+    {"--queries", "^(tracked|cold|relative|overlap|peer/[^/]+/(tracked|cold))/"},
     {"--curved", "^(peer/[^/]+/)?(curved|pair)/"},
     {"--tick", "^tick/"},
     {"--parts", "^parts/"},

@@ -12,9 +12,6 @@ namespace clearance::bench {
 // interval/N/f2.
 void register_ours(RowSet set);
 
-// batch/boxes ...: the same pairs at once, by single queries, and with each vector width.
-void register_batches();
-
 // nearness/cold/KIND/GAP and nearness/tracked/KIND/GAP for every kind of nearness.cpp, with 60
 // random pairs at each gap. Gaps are 1e-9 to 1e3 of the bodies' larger semi-axes. They show whether
 // a query of curved bodies costs more for nearer or thinner bodies. Counters: iterations, the mean

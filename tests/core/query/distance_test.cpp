@@ -265,6 +265,51 @@ TEST(Distance, SaysWhichMethodHasAnswered) {
   EXPECT_EQ(path(column, leaning), DistancePath::kGjk);
 }
 
+// Every state that names features of both bodies.
+std::vector<TrackingState> states_of(const ConvexBody& a, const ConvexBody& b) {
+  const auto sides = [](const ConvexBody& body) {
+    std::vector<TrackingState::Side> all;
+    for (const FeatureKind kind : {FeatureKind::kVertex, FeatureKind::kEdge, FeatureKind::kFacet}) {
+      for (std::uint32_t i = 0; i < body.features[static_cast<std::size_t>(kind)]; ++i) {
+        all.push_back({kind, false, static_cast<std::int32_t>(i), body.interior});
+      }
+    }
+    return all;
+  };
+  std::vector<TrackingState> states;
+  for (const auto& on_a : sides(a)) {
+    for (const auto& on_b : sides(b)) {
+      for (const bool penetrating : {false, true}) {
+        states.push_back({on_a, on_b});
+        states.back().a.penetrating = penetrating;
+      }
+    }
+  }
+  return states;
+}
+
+TEST(Distance, OfTwoUnboundedBodiesIsLeftToTheSearchWhateverFeaturesTheStateNames) {
+  const ConvexBody floor = half_space({0, 0, 1}, 0.0);
+  const HalfSpace rows[] = {{{-1, 0, -0.1}, 0.0}, {{0, -1, -0.1}, 0.0}, {{1, 1, -0.3}, 0.0}};
+  const ConvexBody corner = made(polyhedron_from_halfspaces(rows));
+  const ConvexBody column = unbounded_prism({{1, 1, 0}, {-1, 1, 0}, {0, -1, 0}});
+  const struct {
+    const ConvexBody &a, &b;
+    Pose a_from_b;
+    double truth;
+  } cases[] = {{floor, corner, at(0.3, 0.2, 2.0), 2.0},
+               {corner, floor, at(0.3, 0.2, -2.0), 2.0},
+               {column, column, at(0, 3.0, 0), 2.0}};
+  for (const auto& [a, b, a_from_b, truth] : cases) {
+    for (TrackingState& state : states_of(a, b)) {
+      const DistanceResult r = distance(a, b, relative_pose(Pose{}, a_from_b), state);
+      EXPECT_TRUE(r.path == DistancePath::kActiveSet || r.path == DistancePath::kGjk);
+      EXPECT_LE(r.lower, truth);
+      EXPECT_GE(r.upper, truth);
+    }
+  }
+}
+
 TEST(Distance, NamesEveryStatus) {
   EXPECT_STREQ(name(DistanceStatus::kConverged), "converged");
   EXPECT_STREQ(name(DistanceStatus::kTouching), "touching");

@@ -58,8 +58,7 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
     }
   }
   for (const char* name :
-       {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "batch/boxes", "batch/links",
-        "batch/own/boxes", "batch/single/boxes", "overlap/tracked/boxes/middle",
+       {"tracked/boxes", "tracked/parallel-boxes", "cold/links", "overlap/tracked/boxes/middle",
         "cell/tracked/two_arms", "cell/batch/two_arms",
         "robot/kinematics/seven_joint_arms/iterations:20000/manual_time"}) {
     EXPECT_TRUE(there.contains(name)) << name;
@@ -73,8 +72,8 @@ TEST(BenchRows, HaveTheNamesThatAreAnInterface) {
 }
 
 TEST(BenchRows, SayTimeErrorAndFailuresInJson) {
-  const nlohmann::json rows = rows_of("^(tracked|cold|batch)/boxes$");
-  ASSERT_EQ(rows.size(), 3u);
+  const nlohmann::json rows = rows_of("^(tracked|cold)/boxes$");
+  ASSERT_EQ(rows.size(), 2u);
   for (const auto& row : rows) {
     SCOPED_TRACE(row.dump());
     EXPECT_GT(row.at("ns").get<double>(), 0.0);
