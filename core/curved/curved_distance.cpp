@@ -157,7 +157,7 @@ bool overlapping(const ConvexBody& a, const ConvexBody& b, const RelativePose& a
   return search.ended() && r.status != DistanceStatus::kIterationLimit;
 }
 
-DistanceResult searched(const Query& q, CurvedTrackingState& state) noexcept {
+DistanceResult found_by_search(const Query& q, CurvedTrackingState& state) noexcept {
   if (state.overlap != Overlap::kNo) {
     DistanceResult r;
     CurvedTrackingState hint = state;
@@ -166,7 +166,7 @@ DistanceResult searched(const Query& q, CurvedTrackingState& state) noexcept {
       return r;
     }
     if (state.overlap == Overlap::kStationary) state.normal.setZero();
-    state.overlap = Overlap::kTried;
+    state.overlap = Overlap::kNoDepth;
     if (newton_distance(q.a, q.b, q.a_from_b, state, r)) return r;
   }
   Search search(q.a, q.b, q.a_from_b, state);
@@ -205,7 +205,7 @@ DistanceResult thorough_distance(const Query& q, CurvedTrackingState& state) noe
   assert(is_good(q.a_from_b));
   return q.a.is_half_space() || q.b.is_half_space()
              ? half_space_distance(q.a, q.b, q.a_from_b, state)
-             : searched(q, state);
+             : found_by_search(q, state);
 }
 
 }  // namespace clearance

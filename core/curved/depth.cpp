@@ -31,7 +31,7 @@ constexpr double kLarger = 1.0 + 0x1p-20;  // the cap than the ring on it
 // triangles.
 struct Corner {
   Vec3 normal;
-  double past;
+  double value;
   Vec3 point;
 };
 
@@ -129,7 +129,7 @@ class DepthSearch {
   Corner corner(const Vec3& n) noexcept {
     const SupportPair at = pair_.support(n);
     ++found_.supports;
-    return {n, -at.value - taken_off_, -at.points.gap() - taken_off_ * n};
+    return {n, -at.value - ball_left_out_, -at.points.gap() - ball_left_out_ * n};
   }
 
   // True: the depth is certified to be at least the best known, less the tolerance.
@@ -156,12 +156,12 @@ class DepthSearch {
     const DepthCap cap = best_cap(tolerance);
     axis_ = pair_.bounds.normal;
     const double best = depth();
-    taken_off_ = std::min(ball_, 0.5 * best);
+    ball_left_out_ = std::min(ball_, 0.5 * best);
     target_ = best - tolerance;
     found_.lower = std::max(found_.lower, cap.lower);
     if (cap.lower >= target_) return PassEnd::kCovered;
     known_count_ = 0;
-    for (const Vec3& p : cap.ring) known_[known_count_++] = p - taken_off_ * axis_;
+    for (const Vec3& p : cap.ring) known_[known_count_++] = p - ball_left_out_ * axis_;
     count_ = 0;
     begin(cap.angle);
     while (count_ > 0) {
@@ -256,7 +256,7 @@ class DepthSearch {
   [[nodiscard]] bool is_covered(const Triangle& t) const noexcept {
     const auto& [a, b, c] = t.corners;
     return is_covered({a.normal, b.normal, c.normal}) ||
-           (target_ > taken_off_ && TriangleBound(t).reaches(target_ - taken_off_));
+           (target_ > ball_left_out_ && TriangleBound(t).reaches(target_ - ball_left_out_));
   }
   // Without the support points of the triangle.
   [[nodiscard]] bool is_covered(const std::array<Vec3, 3>& n) const noexcept {
@@ -265,7 +265,7 @@ class DepthSearch {
     };
     if (least(axis_) >= least_cosine_) return true;
     for (std::size_t i = 0; i < known_count_; ++i) {
-      if (least(known_[i]) >= target_ - taken_off_) return true;
+      if (least(known_[i]) >= target_ - ball_left_out_) return true;
     }
     // A ball inside the inscribed one, of at most the depth, moved towards the triangle's middle.
     const double radius = std::min(inscribed_.radius, target_);
@@ -289,12 +289,12 @@ class DepthSearch {
     const Corner middle = corner(Vec3(a.normal + b.normal).normalized());
     stack_[count_++] = {{a, middle, c}};
     stack_[count_++] = {{middle, b, c}};
-    if (a.past < b.past) std::swap(stack_[count_ - 1], stack_[count_ - 2]);
+    if (a.value < b.value) std::swap(stack_[count_ - 1], stack_[count_ - 2]);
   }
 
   CurvedPair& pair_;
   ActiveParts active_;
-  double ball_, taken_off_ = 0.0;
+  double ball_, ball_left_out_ = 0.0;
   // One cover has these: the value that all directions have to have, the cap, and points of A - B
   // without the ball.
   Ball inscribed_;  // in A - B

@@ -70,7 +70,7 @@ HWY_INLINE bool newton(const ConvexBody& a, const ConvexBody& b, const RelativeP
   const auto run = [&](const auto& squares_a, const auto& squares_b) HWY_ATTR {
     Newton<std::remove_cvref_t<decltype(squares_a)>, std::remove_cvref_t<decltype(squares_b)>>
         newton(side_a, side_b, a_from_b, squares_a, squares_b, 0x1p-50 * size, x,
-               state.overlap != Overlap::kTried, state.active);
+               state.overlap != Overlap::kNoDepth, state.active);
     if (!newton.run()) {
       if (newton.end.overlap) {
         state.normal = vec3(newton.end.normal);

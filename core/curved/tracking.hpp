@@ -13,7 +13,7 @@ enum class Overlap : std::uint8_t {
   kNo,
   kLastQuery,
   kStationary,  // Newton's method has ended at an overlap
-  kTried,       // no depth was found from there
+  kNoDepth,     // no depth was found from there
 };
 
 // A hint and never a fact.

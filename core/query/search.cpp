@@ -116,7 +116,7 @@ Answer disjoint_answer(ActiveFeature& a, ActiveFeature& b, const RelativePose& a
 }
 
 // `known`: the depth, if it is known already.
-Answer searched(const Query& q, const std::optional<Depth>& known) noexcept {
+Answer active_set_answer(const Query& q, const std::optional<Depth>& known) noexcept {
   ActiveFeature a(q.a, nullptr), b(q.b, &q.a_from_b);
   const double between_origins = q.a_from_b.translation.norm();
   a.place_near(q.state.a, b, between_origins);
@@ -142,7 +142,7 @@ Answer search(const Query& q) noexcept {
   const bool tracked =
       q.state.a.penetrating && q.depth &&
       (track_penetration(q, answer, depth) || track_features(q, answer) == TrackingEnd::kCertified);
-  if (!tracked) answer = searched(q, depth);
+  if (!tracked) answer = active_set_answer(q, depth);
   assert(keeps_promises(answer));
   return answer;
 }
