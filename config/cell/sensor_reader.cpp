@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <initializer_list>
 #include <map>
 #include <optional>
 #include <string>
@@ -27,6 +28,7 @@ constexpr double kMapRange = 20.0;                             // m, from the or
 constexpr Range kFrameRates{.least = 0.01, .most = 10'000.0};  // Hz
 constexpr Range kStampErrors{.least = 0.0, .most = 1000.0};    // ms
 constexpr Range kSpacings{.least = 0.0, .most = 0.1};
+constexpr Range kShares{.least = 0.0, .most = 1.0};
 
 // A place is unseen if it is in the cone of a pixel. A cloud, organised or not, states no
 // intrinsics, so a point that is missing leaves its cone open.
@@ -50,11 +52,15 @@ class SensorReader {
  private:
   void read_topics(const YamlNode& node, MapReader& map, Sensor& sensor);
   [[nodiscard]] std::string read_topic(const YamlNode& node) const;
+  // Keys that are there, but belong to other sensors.
+  void refuse(std::initializer_list<std::pair<const YamlNode*, const char*>> keys,
+              const char* of) const;
   void read_error(MapReader& map, Sensor& sensor) const;
   void read_range(const YamlNode& node, Sensor& sensor) const;
   void read_capacity(MapReader& map, Sensor& sensor) const;
   void read_points(MapReader& map, Sensor& sensor) const;
   void read_shell(MapReader& map, Sensor& sensor) const;
+  void read_liveness(MapReader& map, Sensor& sensor) const;
   void read_persistence(const YamlNode& node, Sensor& sensor) const;
   void refuse_large_error(const YamlNode& node, const Sensor& sensor) const;
   void read_object(MapReader& map, Object& object, bool& groups_known) const;
@@ -72,6 +78,14 @@ std::string SensorReader::read_topic(const YamlNode& node) const {
                                      "/camera/depth/image_rect_raw",
                                      *topic));
   return "";
+}
+
+void SensorReader::refuse(std::initializer_list<std::pair<const YamlNode*, const char*>> keys,
+                          const char* of) const {
+  for (const auto& [node, key] : keys) {
+    if (node != nullptr)
+      diagnostics_.add(*node, fmt::format("found '{}'; expected it of {}", key, of));
+  }
 }
 
 // Drivers publish CameraInfo beside their images.
@@ -99,11 +113,7 @@ void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sen
                                         "line {})",
                                         sensor.topic, same->second));
   }
-  if (image == nullptr) {
-    if (info != nullptr)
-      diagnostics_.add(*info, "found 'camera_info'; expected it of depth images only");
-    return;
-  }
+  if (image == nullptr) return refuse({{info, "camera_info"}}, "depth images only");
   sensor.camera_info = info != nullptr
                            ? read_topic(*info)
                            : sensor.topic.substr(0, sensor.topic.rfind('/') + 1) + "camera_info";
@@ -168,11 +178,8 @@ void SensorReader::read_capacity(MapReader& map, Sensor& sensor) const {
   sensor.rows = 480;
   sensor.most_points = sensor.columns * sensor.rows;
   const bool is_image = sensor.kind == SensorKind::kDepthImage;
-  if (const YamlNode* other = is_image ? most : size) {
-    diagnostics_.add(*other,
-                     fmt::format("found '{}'; expected it of {}", is_image ? "most_points" : "size",
-                                 is_image ? "points only" : "depth images only"));
-  }
+  refuse({{is_image ? most : nullptr, "most_points"}}, "points only");
+  refuse({{is_image ? nullptr : size, "size"}}, "depth images only");
   if (is_image && size != nullptr) {
     if (size->kind != YamlNode::Kind::kSequence || size->items.size() != 2) {
       diagnostics_.add(*size, fmt::format("found {}; expected the columns and rows of the largest "
@@ -203,14 +210,8 @@ void SensorReader::read_capacity(MapReader& map, Sensor& sensor) const {
 void SensorReader::read_points(MapReader& map, Sensor& sensor) const {
   const YamlNode* spacing = map.optional("spacing");
   const YamlNode* along = map.optional("depth_along");
-  if (sensor.kind != SensorKind::kPoints) {
-    for (const YamlNode* of_points : {spacing, along}) {
-      if (of_points == nullptr) continue;
-      diagnostics_.add(*of_points, fmt::format("found '{}'; expected it of points only",
-                                               of_points == spacing ? "spacing" : "depth_along"));
-    }
-    return;
-  }
+  if (sensor.kind != SensorKind::kPoints)
+    return refuse({{spacing, "spacing"}, {along, "depth_along"}}, "points only");
   sensor.by_neighbours = spacing != nullptr && spacing->text == "neighbours";
   if (spacing != nullptr && !sensor.by_neighbours) {
     sensor.spacing = read_number(*spacing, kSpacings,
@@ -246,6 +247,35 @@ void SensorReader::read_shell(MapReader& map, Sensor& sensor) const {
     }
   }
   sensor.most_shell = std::max(sensor.most_shell, sensor.own_shell);
+  if (const YamlNode* trusted = map.optional("trusted_shell")) {
+    sensor.trusted_shell =
+        quantities_
+            .length(*trusted, "the thickest shell beside which other objects are trusted",
+                    kNotNegative)
+            .value_or(0.0);
+  }
+  sensor.trusted_shell = std::max(sensor.trusted_shell, sensor.own_shell);
+  if (const YamlNode* knows = map.optional("knows"))
+    sensor.knows = read_flag(*knows, diagnostics_).value_or(false);
+}
+
+// A map is made of many pictures: it may stay as it is, and what it shows is no share of a picture.
+void SensorReader::read_liveness(MapReader& map, Sensor& sensor) const {
+  const YamlNode* noise = map.optional("noise");
+  const YamlNode* least = map.optional("least_seen");
+  if (sensor.kind == SensorKind::kOctomap)
+    return refuse({{noise, "noise"}, {least, "least_seen"}}, "depth images and points only");
+  if (noise != nullptr) {
+    const auto said = read_text(*noise, "none, of a simulation", diagnostics_);
+    sensor.has_noise = said != "none";
+    if (said && sensor.has_noise)
+      diagnostics_.add(*noise, fmt::format("found '{}'; expected none, of a simulation", *said));
+  }
+  if (least != nullptr) {
+    sensor.least_seen =
+        read_number(*least, kShares, "the least share of elements with depth, 0 to 1", diagnostics_)
+            .value_or(0.0);
+  }
 }
 
 void SensorReader::read_persistence(const YamlNode& node, Sensor& sensor) const {
@@ -303,6 +333,7 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   read_capacity(map, sensor);
   read_points(map, sensor);
   read_shell(map, sensor);
+  read_liveness(map, sensor);
   if (const YamlNode* rate = map.optional("most_hz")) {
     const auto hz =
         read_number(*rate, kFrameRates, "the largest rate of frames in Hz", diagnostics_);

@@ -17,7 +17,7 @@ inline constexpr std::size_t kMaxSensors = 16;  // of a cell
 
 enum class SensorKind : std::uint8_t {
   kDepthImage,  // sensor_msgs/Image with CameraInfo: each pixel is a slab of its cone
-  kPoints,      // sensor_msgs/PointCloud2: each point is a ball
+  kPoints,      // sensor_msgs/PointCloud2 or LaserScan: each point is a ball
   kOctomap,  // octomap_msgs/Octomap, or MoveIt's in a PlanningScene: each occupied leaf is a cube
 };
 
@@ -84,9 +84,21 @@ struct Sensor {
   // are not taken for its image, m. For a ball, the centre counts, to within its own error. At
   // least own_shell.
   double most_shell = 0.3;
+  // Where the shell of a link is thicker than this, what was left out there counts for all other
+  // objects, m: their lower bounds do not exceed the distance to it. At least own_shell.
+  double trusted_shell = 0.1;
+  // Elements that come within own_shell of a fixed or tracked body of the cell are left out, too,
+  // as the images of links are.
+  bool knows = false;
 
   // A frame whose stamp is less than this after that of the frame before is refused; 0: none is.
   std::int64_t least_interval_ns = 0;
+
+  // False: it has no noise, so a still scene gives the same depth again. Otherwise, a frame that
+  // repeats one of the last ones is frozen.
+  bool has_noise = true;
+  // A frame that shows depth within the range for a smaller share of its elements is refused.
+  double least_seen = 0.0;
 
   // The true time of a frame is within this of its stamp. The poses of links and mounts at that
   // time are known accordingly less well, and what is seen counts as seen that much earlier.
@@ -132,8 +144,13 @@ struct Sensor {
 [[nodiscard]] std::vector<std::string> notes_of(const Sensor& sensor);
 
 struct Scene;
-// The published pairs of a sensor and a link, or what it carries: their own image is left out of
-// the sensor's frames. Indices into Scene::pairs, ascending.
+// Fixed and tracked bodies that are no links, and that a sensor with Sensor::knows leaves out.
+// Indices into Scene::objects, ascending; none without such a sensor. A body that is absent is not
+// there to be seen.
+[[nodiscard]] std::vector<std::uint32_t> known_bodies(const Scene& scene);
+
+// The published pairs of a sensor and a link, what it carries, or a body that the sensor knows:
+// their own image is left out of the sensor's frames. Indices into Scene::pairs, ascending.
 [[nodiscard]] std::vector<std::uint32_t> hidden_pairs(const Scene& scene);
 
 }  // namespace clearance

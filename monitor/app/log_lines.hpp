@@ -111,6 +111,10 @@ inline constexpr LogLine<Text> kFramesUnplaced{
 inline constexpr LogLine<Text> kFramesBack{"frames-back", kInfo, "frames of sensor {} are back"};
 inline constexpr LogLine<Text, Text> kFramesSilent{"frames-silent", kWarn,
                                                    "no usable frame of sensor {} has come: {}"};
+inline constexpr LogLine<Text, double, Text> kShellThick{
+    "shell-thick", kWarn,
+    "sensor {}: what it sees within {:.3f} m of '{}' is left out, since that body may be anywhere "
+    "there. Pairs of other objects count what was left out as an obstacle"};
 
 // ---- Joints
 

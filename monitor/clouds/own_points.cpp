@@ -69,6 +69,8 @@ class SlabShelf {
       if (!has_near_middle(slab) && !is_near(slab)) continue;
       cloud_.remove(b, lane);
       ++blind_.elements;
+      blind_.shell = shell_;
+      blind_.add(slab.middle(), slab.diameter());
       blind_.thickness = std::max(blind_.thickness, shell_ + slab.diameter());
     }
   }
@@ -157,6 +159,8 @@ class BallShelf {
       const double near = is_cube ? radius : reach(p, radius);
       if (is_cube ? !is_near(cloud_.cube(b, lane)) : !is_near(p, near)) continue;
       blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
+      blind_.shell = shell_;
+      blind_.add(p, radius);
       // A surface between the point and a neighbour that stays may be hidden up to that neighbour.
       blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * radius);
     }

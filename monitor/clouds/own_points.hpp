@@ -1,6 +1,7 @@
 // Shelves the elements of a cloud in which a robot sees itself.
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 
 #include "core/convex_body.hpp"
@@ -16,6 +17,22 @@ namespace clearance {
 struct BlindShell {
   std::size_t elements = 0;
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
+  double shell = 0.0;      // m: the widest that shelved one
+  // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
+  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
+
+  // Adds what is within the radius of a point.
+  void add(const Vec3& point, double radius) noexcept {
+    low = low.cwiseMin((point.array() - radius).matrix());
+    high = high.cwiseMax((point.array() + radius).matrix());
+  }
+  void add(const BlindShell& other) noexcept {
+    elements += other.elements;
+    thickness = std::max(thickness, other.thickness);
+    shell = std::max(shell, other.shell);
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
 };
 
 // The true place of a ball's point is within the stated error of its centre. The rest of the radius

@@ -29,6 +29,8 @@ struct HiddenNear {
 // All memory is allocated at the start. It is built by one thread, and may then be read by any.
 class SeenCloud {
  public:
+  static constexpr std::uint32_t kNoObject = std::numeric_limits<std::uint32_t>::max();
+
   [[nodiscard]] static SeenCloud of_images(std::uint32_t most_columns, std::uint32_t most_rows) {
     return SeenCloud(DepthCloud(most_columns, most_rows));
   }
@@ -49,18 +51,37 @@ class SeenCloud {
   }
 
   // `body` is scratch memory of the caller. Elements that were cropped count: `lower` is a bound of
-  // their distance, too.
-  [[nodiscard]] NearestElement nearest(
-      const ConvexBody& part, const RelativePose& part_from_cloud, SlabBody& body,
-      CloudTracking& tracking, std::uint32_t most_overlap_work = kMostOverlapWork) const noexcept {
+  // their distance, too. So do those that were left out in a shell which is thicker than trusted,
+  // unless that is the shell of `object`.
+  [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,
+                                       SlabBody& body, CloudTracking& tracking,
+                                       std::uint32_t most_overlap_work = kMostOverlapWork,
+                                       std::uint32_t object = kNoObject) const noexcept {
     NearestElement found =
         depth() != nullptr
             ? nearest_element(part, *depth(), body, part_from_cloud, tracking, most_overlap_work)
             : nearest_element(part, *points(), part_from_cloud, tracking, most_overlap_work);
-    if (crop_.radius < kInfinity && found.answer == CloudAnswer::kNearest)
+    if (found.answer != CloudAnswer::kNearest) return found;
+    if (crop_.radius < kInfinity)
       found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
+    for (const HiddenNear& near : hidden_) {
+      if (near.shell.elements > 0 && near.shell.shell > trusted_shell_ && near.object != object)
+        found.lower = std::min(found.lower, to_hidden(near.shell, part, part_from_cloud));
+    }
+    found.upper += excess() * (1.0 + 0x1p-40);
     return found;
   }
+  // No element exceeds what was measured by more than this, m: they are rounded outward, so that
+  // `lower` holds. `upper` grows by it: what exceeds a set by this is nearer to any body by at most
+  // this, and deeper in it. A depth is rounded by one step of a float, and a corner of its slab
+  // moves along its ray; a ball's radius by two steps.
+  [[nodiscard]] double excess() const noexcept {
+    if (depth() != nullptr) return 0x1.1p-23 * depth()->extent();
+    if (points()->shape() == ElementShape::kCube || points()->levels() == 0) return excess_;
+    return excess_ + 0x1.1p-22 * double{points()->node(points()->levels() - 1, 0).radius};
+  }
+  // Of elements whose message gives them another excess than the rounding of their radii.
+  void note_excess(double excess) noexcept { excess_ = excess; }
   // The elements outside of this ball, in the frame of the cloud, may have been left out from now
   // on. Infinity: none were, as after a build.
   void note_crop(const CloudCrop& crop) noexcept { crop_ = crop; }
@@ -102,6 +123,8 @@ class SeenCloud {
       return shelve_own_points(part, part_from_cloud, shell, *slabs, body);
     return shelve_own_points(part, part_from_cloud, shell, *points(), limit);
   }
+  // Shells thicker than this count for the parts of other objects, m; as after the last build.
+  void trust_shells(double thickest) noexcept { trusted_shell_ = thickest; }
   // By the caller, in ascending order of objects.
   [[nodiscard]] std::span<const HiddenNear> hidden() const noexcept { return hidden_; }
   [[nodiscard]] std::vector<HiddenNear>& hidden() noexcept { return hidden_; }
@@ -124,11 +147,24 @@ class SeenCloud {
            part.position_error - error;
   }
 
+  // No point of the box is nearer to the part than this, m.
+  [[nodiscard]] static double to_hidden(const BlindShell& shell, const ConvexBody& part,
+                                        const RelativePose& part_from_cloud) noexcept {
+    const Vec3 origin = -(part_from_cloud.rotation.transpose() * part_from_cloud.translation);
+    const Vec3 nearest = origin.cwiseMax(shell.low).cwiseMin(shell.high);
+    const double lengths = origin.norm() + nearest.norm() + part.bounding_radius + part.radius;
+    const double error = part_from_cloud.translation_error +
+                         part_from_cloud.rotation_error * origin.norm() + 0x1p-46 * lengths;
+    return (origin - nearest).norm() - part.bounding_radius - part.radius - part.position_error -
+           error;
+  }
+
   explicit SeenCloud(std::variant<DepthCloud, PointCloud> cloud) : cloud_(std::move(cloud)) {}
 
   std::variant<DepthCloud, PointCloud> cloud_;
   std::vector<HiddenNear> hidden_;
   CloudCrop crop_{.centre = Vec3::Zero(), .radius = kInfinity};
+  double excess_ = 0.0, trusted_shell_ = kInfinity;
 };
 
 }  // namespace clearance

@@ -42,6 +42,7 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       wait_(participant, {}),
       where_(participant.where()),
       silence_said_(cell.scene.sensors.size()),
+      is_shell_thick_(cell.scene.sensors.size()),
       last_(cell.scene.sensors.size()),
       names_(cell.scene),
       sent_(cell.scene.sensors.size()) {
@@ -248,6 +249,7 @@ void SensorReader::log_news() {
                 code(news.cause));
   }
   tell_of_silence();
+  tell_of_shells();
 }
 
 void SensorReader::tell_of_silence() {
@@ -258,6 +260,21 @@ void SensorReader::tell_of_silence() {
     silence_said_[i] = true;
     const Sensor& sensor = cell_->scene.sensors[i];
     log_line(lines::kFramesSilent, sensor.name, why_silent(sensor, status));
+  }
+}
+
+// Each time that a shell becomes thicker than trusted.
+void SensorReader::tell_of_shells() {
+  for (std::uint32_t i = 0; i < is_shell_thick_.size(); ++i) {
+    const Sensor& sensor = cell_->scene.sensors[i];
+    const SensorStatus status = sensors_->status(i);
+    const auto thickest = std::ranges::max_element(status.own, {}, &OwnImageStatus::shell);
+    const bool is_thick = thickest != status.own.end() && thickest->shell > sensor.trusted_shell;
+    if (is_thick && !is_shell_thick_[i]) {
+      log_line(lines::kShellThick, sensor.name, thickest->thickness,
+               cell_->scene.objects[thickest->object].name);
+    }
+    is_shell_thick_[i] = is_thick;
   }
 }
 

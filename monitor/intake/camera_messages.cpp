@@ -6,24 +6,13 @@
 #include <cmath>
 #include <string_view>
 
+#include "monitor/intake/layout.hpp"
+
 namespace clearance {
 namespace {
 
 constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
 constexpr bool kIsBigEndian = std::endian::native == std::endian::big;
-
-// Products of the message's 32-bit numbers do not overflow 64 bits.
-FrameFault size_of(std::uint32_t width, std::uint32_t height, std::size_t most) noexcept {
-  if (width == 0 || height == 0) return FrameFault::kNoPixels;
-  if (std::uint64_t{width} * height > most) return FrameFault::kTooManyPixels;
-  return FrameFault::kNoFault;
-}
-
-// The last row may end without its padding.
-bool has_rows(std::size_t bytes, std::uint64_t row, std::uint64_t step,
-              std::uint32_t rows) noexcept {
-  return bytes >= row && (bytes - row) / step >= rows - 1;
-}
 
 std::span<const std::byte> bytes_of(const dds_sequence_octet& data) noexcept {
   return std::as_bytes(std::span(data._buffer, data._length));
@@ -45,6 +34,21 @@ bool find_field(const sensor_msgs_msg_dds__PointCloud2_& message, std::string_vi
   return found == 1;
 }
 
+// Bytes of a number of each sensor_msgs/PointField; 0: not known.
+constexpr std::array<std::uint8_t, 9> kFieldBytes{0, 1, 1, 2, 2, 4, 4, 4, 8};
+
+// True if a field of another name shares bytes with the float32 at this offset.
+bool is_shared(const sensor_msgs_msg_dds__PointCloud2_& message, std::string_view name,
+               std::size_t offset) noexcept {
+  const std::span fields(message.fields._buffer, message.fields._length);
+  return std::ranges::any_of(fields, [&](const sensor_msgs_msg_dds__PointField_& field) {
+    if (name == field.name || field.datatype >= kFieldBytes.size()) return false;
+    const std::uint64_t bytes =
+        std::uint64_t{kFieldBytes[field.datatype]} * std::max(field.count, 1U);
+    return field.offset < offset + sizeof(float) && offset < field.offset + bytes;
+  });
+}
+
 bool is_identity_or_zero(const double (&r)[9]) noexcept {
   constexpr std::array<double, 9> kIdentity{1, 0, 0, 0, 1, 0, 0, 0, 1};
   return std::equal(kIdentity.begin(), kIdentity.end(), r) ||
@@ -62,7 +66,7 @@ const char* text(FrameFault fault) noexcept {
     case FrameFault::kEncoding:
       return "the encoding is neither 16UC1 nor 32FC1";
     case FrameFault::kByteOrder:
-      return "the byte order is not that of this machine";
+      return "the byte order is not that of this machine, or not the one that it states";
     case FrameFault::kNoPixels:
       return "the width or height is 0";
     case FrameFault::kTooManyPixels:
@@ -73,6 +77,8 @@ const char* text(FrameFault fault) noexcept {
       return "it has fewer bytes than its size says";
     case FrameFault::kFields:
       return "x, y and z are not one float32 each within the point";
+    case FrameFault::kLayout:
+      return "numbers overlap, or the rows or angles are not those of its numbers";
     case FrameFault::kIntrinsics:
       return "the intrinsics are not those of a pinhole camera";
     case FrameFault::kDistorted:
@@ -92,7 +98,7 @@ const char* text(FrameFault fault) noexcept {
     case FrameFault::kOldStamp:
       return "its stamp is not newer than that of the frame before";
     case FrameFault::kFrozen:
-      return "its depth is bit for bit that of the frame before";
+      return "its depth is that of one of the last frames, but for less than one element in fifty";
     case FrameFault::kSecondPublisher:
       return "another publisher sends frames as well";
     case FrameFault::kTooOften:
@@ -116,10 +122,16 @@ const char* text(FrameFault fault) noexcept {
     case FrameFault::kOctree:
       return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
     case FrameFault::kWideRays:
-      return "the rays of pixels beside each other are more than 0.1 rad apart: state 'spacing' as "
-             "a number";
+      return "rays beside each other are more than 0.1 rad apart: of points, state 'spacing' as a "
+             "number";
     case FrameFault::kUnknownRays:
       return "no two points in one row, or none in one column, show how far apart its rays are";
+    case FrameFault::kLongScan:
+      return "its rays were measured over more time than 'stamp_error_ms' states";
+    case FrameFault::kFewSeen:
+      return "a smaller share of it has depth within the range than 'least_seen' states";
+    case FrameFault::kSeenFell:
+      return "far less of it has depth within the range than of the frame before: it may be torn";
     case FrameFault::kRobotElsewhere:
       return "tf has the base of a robot elsewhere than the cell, so the sensor may be misplaced";
   }
@@ -146,6 +158,8 @@ const char* name(FrameFault fault) noexcept {
       return "half a frame";
     case FrameFault::kFields:
       return "fields that are no points";
+    case FrameFault::kLayout:
+      return "a layout that cannot be";
     case FrameFault::kIntrinsics:
       return "no pinhole camera";
     case FrameFault::kDistorted:
@@ -192,6 +206,12 @@ const char* name(FrameFault fault) noexcept {
       return "rays too far apart";
     case FrameFault::kUnknownRays:
       return "rays unknown";
+    case FrameFault::kLongScan:
+      return "a scan longer than its stamp error";
+    case FrameFault::kFewSeen:
+      return "less seen than the cell states";
+    case FrameFault::kSeenFell:
+      return "far less seen than before";
     case FrameFault::kRobotElsewhere:
       return "tf has a robot elsewhere";
   }
@@ -204,12 +224,16 @@ FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pix
   const bool is_millimetres = encoding == "16UC1";
   if (!is_millimetres && encoding != "32FC1") return FrameFault::kEncoding;
   if ((message.is_bigendian != 0) != kIsBigEndian) return FrameFault::kByteOrder;
-  const FrameFault size = size_of(message.width, message.height, most_pixels);
-  if (size != FrameFault::kNoFault) return size;
-  const std::uint64_t row = std::uint64_t{message.width} * (is_millimetres ? 2 : 4);
-  if (message.step < row) return FrameFault::kStep;
   const std::span<const std::byte> bytes = bytes_of(message.data);
-  if (!has_rows(bytes.size(), row, message.step, message.height)) return FrameFault::kShortData;
+  const FrameFault fault =
+      judge({.number = is_millimetres ? Layout::Number::kMillimetres16 : Layout::Number::kMetres32,
+             .columns = message.width,
+             .rows = message.height,
+             .element_step = is_millimetres ? 2U : 4U,
+             .row_step = message.step,
+             .bytes = bytes},
+            most_pixels);
+  if (fault != FrameFault::kNoFault) return fault;
   out = {is_millimetres ? DepthImage::Format::kMillimetres16 : DepthImage::Format::kMetres32,
          message.width, message.height, message.step, bytes};
   return FrameFault::kNoFault;
@@ -223,15 +247,24 @@ FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t mo
       !find_field(message, "z", found.z)) {
     return FrameFault::kFields;
   }
-  const FrameFault size = size_of(message.width, message.height, most_points);
-  if (size != FrameFault::kNoFault) return size;
   // A row_step of 0 is common where there is one row.
   const std::uint64_t row = std::uint64_t{message.width} * message.point_step;
   const std::uint64_t step =
       message.height == 1 ? std::max<std::uint64_t>(row, message.row_step) : message.row_step;
-  if (step < row) return FrameFault::kStep;
   const std::span<const std::byte> bytes = bytes_of(message.data);
-  if (!has_rows(bytes.size(), row, step, message.height)) return FrameFault::kShortData;
+  const FrameFault fault = judge({.columns = message.width,
+                                  .rows = message.height,
+                                  .element_step = message.point_step,
+                                  .row_step = step,
+                                  .offsets = {found.x, found.y, found.z},
+                                  .numbers = 3,
+                                  .bytes = bytes},
+                                 most_points);
+  if (fault != FrameFault::kNoFault) return fault;
+  if (is_shared(message, "x", found.x) || is_shared(message, "y", found.y) ||
+      is_shared(message, "z", found.z)) {
+    return FrameFault::kLayout;
+  }
   found.width = message.width;
   found.height = message.height;
   found.point_step = message.point_step;

@@ -22,12 +22,14 @@ enum class FrameFault : std::uint8_t {
   // Faults that one message shows by itself.
   kUndecodable,    // the bytes are not a message of the type: cut, or with lengths that lie
   kEncoding,       // neither 16UC1 nor 32FC1
-  kByteOrder,      // not that of this machine
+  kByteOrder,      // not that of this machine, or not the stated one
   kNoPixels,       // a width or height of 0
   kTooManyPixels,  // more than the memory that the cell fixes
   kStep,           // rows or points overlap: step 0, or below the size of their content
   kShortData,      // fewer bytes than the size says: half a frame
   kFields,         // x, y or z is missing, twice there, no single float32, or outside of the point
+  kLayout,         // numbers overlap, or rows, angles or counts are not those of its numbers
+  kLongScan,       // a scan whose rays were measured over more time than the stamp is off
   kIntrinsics,  // focal lengths that are not positive, numbers that are not finite, or P unlike K
   kDistorted,   // a distortion, rotation, binning or region: the image is not a plain pinhole's
   // Faults that the messages before it show.
@@ -38,7 +40,7 @@ enum class FrameFault : std::uint8_t {
   kNoStamp,            // a stamp of 0
   kOtherClock,         // the stamp is far from the time of sending
   kOldStamp,           // not newer than the frame before
-  kFrozen,             // bit for bit the depth of one of the last frames, under a newer stamp
+  kFrozen,             // nearly all of the depth of one of the last frames, under a newer stamp
   kSecondPublisher,    // the writer of the frames in use is still heard
   kTooOften,           // more frames than the cell states
   kFrameChanged,       // its frame_id is not that of the first frame of the stream
@@ -54,9 +56,11 @@ enum class FrameFault : std::uint8_t {
   kOctree,       // of a map: the tree is cut, too deep, of an unknown kind or without a resolution
   kWideRays,     // of organised points: no ball may span the distance from one ray to the next
   kUnknownRays,  // of organised points: too few show how far apart the rays are
+  kFewSeen,      // a smaller share of its elements has depth than the cell states
+  kSeenFell,     // far fewer of its elements have depth than of the frame before
   kRobotElsewhere,  // tf places the camera, and a robot elsewhere than the cell does
 };
-inline constexpr std::size_t kFrameFaults = 33;
+inline constexpr std::size_t kFrameFaults = 37;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

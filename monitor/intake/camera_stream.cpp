@@ -1,34 +1,9 @@
 #include "monitor/intake/camera_stream.hpp"
 
-#include <algorithm>
-#include <span>
-
-#include "monitor/intake/digest.hpp"
+#include <utility>
 
 namespace clearance {
 namespace {
-
-// The content of rows without their padding: equal depth has the same digest. A frame that differs
-// and has the same one by chance is refused.
-std::uint64_t digest_of(std::span<const std::byte> bytes, std::size_t row, std::size_t step,
-                        std::uint32_t rows) noexcept {
-  Digest digest;
-  for (std::uint32_t v = 0; v < rows; ++v) digest.add(bytes.subspan(v * step, row));
-  return digest.value();
-}
-
-// Only of where the points are: a camera whose depth stands still may go on with its colours.
-std::uint64_t digest_of(const PointsView& points) noexcept {
-  Digest digest;
-  for (std::uint32_t row = 0; row < points.height; ++row) {
-    for (std::uint32_t column = 0; column < points.width; ++column) {
-      const auto point = points.bytes.subspan(row * points.row_step + column * points.point_step);
-      for (const std::size_t field : {points.x, points.y, points.z})
-        digest.add(point.subspan(field, sizeof(float)));
-    }
-  }
-  return digest.value();
-}
 
 std::uint64_t frame_of(const std_msgs_msg_dds__Header_& header) noexcept {
   return digest_of_frame(header.frame_id == nullptr ? "" : header.frame_id);
@@ -68,60 +43,30 @@ FrameFault CameraStream::take(const sensor_msgs_msg_dds__CameraInfo_& message) n
   return counted(FrameFault::kNoFault);
 }
 
-FrameFault CameraStream::take(const sensor_msgs_msg_dds__Image_& message, const FrameOrigin& origin,
-                              DepthImage& out) noexcept {
-  DepthImage image;
-  FrameFault fault = view(message, options_.most_pixels, image);
-  if (fault != FrameFault::kNoFault) return counted(fault);
-  if (!camera_) {
-    return counted(first_ ? FrameFault::kCameraInfoChanged : FrameFault::kNoCameraInfo);
+FrameFault CameraStream::take(const MessageCloud& cloud, const FrameOrigin& origin) {
+  const FrameFault fault = judge(cloud, origin);
+  if (fault == FrameFault::kNoFault) {
+    last_ = origin;
+    form_.use(cloud.form);
   }
-  if (image.width != camera_->width || image.height != camera_->height) {
-    return counted(FrameFault::kSizeChanged);
-  }
-  if (are_named_unlike(frame_of(message.header), frame_)) {
-    return counted(FrameFault::kOtherCamera);
-  }
-  const MessageForm form = form_of(origin.frame, image);
-  fault = judge(origin, form);
-  if (fault != FrameFault::kNoFault) return counted(fault);
-  const std::size_t pixel = image.format == DepthImage::Format::kMillimetres16 ? 2 : 4;
-  fault = accept(origin, form,
-                 digest_of(image.bytes, image.width * pixel, image.step, image.height), kRing);
-  if (fault == FrameFault::kNoFault) out = image;
   return counted(fault);
 }
 
-FrameFault CameraStream::take(const sensor_msgs_msg_dds__PointCloud2_& message,
-                              const FrameOrigin& origin, PointsView& out) noexcept {
-  PointsView points;
-  FrameFault fault = view(message, options_.most_pixels, points);
-  const MessageForm form = form_of(origin.frame, points);
-  if (fault == FrameFault::kNoFault) fault = judge(origin, form);
-  if (fault != FrameFault::kNoFault) return counted(fault);
-  fault = accept(origin, form, digest_of(points), kRing);
-  if (fault == FrameFault::kNoFault) out = points;
-  return counted(fault);
+FrameFault CameraStream::judge(const MessageCloud& cloud, const FrameOrigin& origin) {
+  FrameFault fault = cloud.fault;
+  if (fault == FrameFault::kNoFault && cloud.image() != nullptr)
+    fault = judge(*cloud.image(), cloud.form.frame);
+  if (fault == FrameFault::kNoFault) fault = judge(origin);
+  if (fault == FrameFault::kNoFault) fault = form_.refuses(cloud.form);
+  if (fault == FrameFault::kNoFault && repeats(cloud)) fault = FrameFault::kFrozen;
+  return fault;
 }
 
-FrameFault CameraStream::take(const octomap_msgs_msg_dds__Octomap_& message,
-                              const FrameOrigin& origin, OctomapView& out) noexcept {
-  OctomapView map;
-  FrameFault fault = view(message, map);
-  const MessageForm form = form_of(origin.frame, map);
-  if (fault == FrameFault::kNoFault) fault = judge(origin, form);
-  if (fault == FrameFault::kNoFault && !origin.is_stamped) {
-    fault = accept(origin, form, digest_of(map.bytes, map.bytes.size(), 0, 1), 1);
-  }
-  if (fault != FrameFault::kNoFault) return counted(fault);
-  use(origin, form);
-  out = map;
-  return counted(FrameFault::kNoFault);
-}
-
-FrameFault CameraStream::judge(const FrameOrigin& origin, const MessageForm& form) const noexcept {
-  const FrameFault fault = judge(origin);
-  return fault == FrameFault::kNoFault ? form_.refuses(form) : fault;
+FrameFault CameraStream::judge(const DepthImage& image, std::uint64_t frame) const noexcept {
+  if (!camera_) return first_ ? FrameFault::kCameraInfoChanged : FrameFault::kNoCameraInfo;
+  if (image.width != camera_->width || image.height != camera_->height)
+    return FrameFault::kSizeChanged;
+  return are_named_unlike(frame, frame_) ? FrameFault::kOtherCamera : FrameFault::kNoFault;
 }
 
 FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
@@ -146,23 +91,17 @@ FrameFault CameraStream::judge(const FrameOrigin& origin) const noexcept {
   return FrameFault::kNoFault;
 }
 
-// Refuses a frame that repeats one of the last `ring` frames bit for bit: a driver that hangs may
-// send the buffers of its ring again and again, under fresh stamps. The stamp in use stays that of
-// the first of them. A map is compared with the last one only, since it may change back.
-FrameFault CameraStream::accept(const FrameOrigin& origin, const MessageForm& form,
-                                std::uint64_t digest, std::uint64_t ring) noexcept {
-  const std::uint64_t kept = std::min({digests_, ring, std::uint64_t{kRing}});
-  for (std::uint64_t i = 1; i <= kept && !options_.may_repeat; ++i)
-    if (digest_[(digests_ - i) % kRing] == digest) return FrameFault::kFrozen;
-  digest_[digests_++ % kRing] = digest;
-  use(origin, form);
-  return FrameFault::kNoFault;
-}
-
-void CameraStream::use(const FrameOrigin& origin, const MessageForm& form) noexcept {
-  last_ = origin;
-  last_.frame = {};  // of the message's memory
-  form_.use(form);
+// The stamp in use stays that of the first of those that are the same. A map that nothing has
+// changed may come again as it was, if its stamp says so. Without a stamp, it may be an old one
+// that was sent again. It is compared with the last one only, since it may change back.
+bool CameraStream::repeats(const MessageCloud& cloud) {
+  if (cloud.is_map()) {
+    if (cloud.is_stamped) return false;
+    return cloud.depth_digest(0) == std::exchange(last_map_, cloud.depth_digest(0));
+  }
+  has_repeated_ = last_depths_.has(cloud);
+  if (!has_repeated_) last_depths_.add();
+  return has_repeated_ && !options_.may_repeat;
 }
 
 }  // namespace clearance

@@ -3,33 +3,28 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
-#include <string_view>
 
-#include "monitor/intake/camera_messages.hpp"
-#include "monitor/intake/message_form.hpp"
+#include "monitor/intake/last_depths.hpp"
+#include "monitor/intake/message_cloud.hpp"
 
 namespace clearance {
 
 struct CameraStreamOptions {
-  std::size_t most_pixels = 0;  // of an image or cloud: the memory that is fixed
   // A stamp farther than this from the time of sending is of another clock.
   std::int64_t clock_limit_ns = 10'000'000'000;
   // A publisher that was silent for this long has lost the stream, and another may take it.
   std::int64_t silence_ns = 500'000'000;
   // Frames may come at most this much sooner than the frame before; 0: at any rate.
   std::int64_t least_interval_ns = 0;
-  bool may_repeat = false;  // a simulated camera without noise repeats its depth bit for bit
+  bool may_repeat = false;  // a simulated camera without noise repeats its depth
 };
 
 // When and by whom a message was sent.
 struct FrameOrigin {
-  std::int64_t stamp_ns = 0;  // of the header
+  std::int64_t stamp_ns = 0;  // of the frame
   std::int64_t sent_ns = 0;   // the sender's clock at sending; in a log, the time of recording
   std::uint64_t writer = 0;
-  bool is_stamped = true;       // false: the header has none, and `stamp_ns` is the time of sending
-  std::string_view frame = {};  // in which it was measured
 };
 
 // To be used by one thread. Stamps increase, unless the clock was set back: after a silence, a
@@ -41,16 +36,11 @@ class CameraStream {
 
   explicit CameraStream(const CameraStreamOptions& options) : options_(options) {}
 
-  // Each returns kNoFault if the message can be used. The views are those of camera_messages.hpp.
+  // Each returns kNoFault if the message can be used.
   [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__CameraInfo_& message) noexcept;
-  [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__Image_& message,
-                                const FrameOrigin& origin, DepthImage& out) noexcept;
-  [[nodiscard]] FrameFault take(const sensor_msgs_msg_dds__PointCloud2_& message,
-                                const FrameOrigin& origin, PointsView& out) noexcept;
-  // A map that nothing has changed may come again as it was, if its stamp says so. Without a stamp,
-  // it may be an old one that was sent again.
-  [[nodiscard]] FrameFault take(const octomap_msgs_msg_dds__Octomap_& message,
-                                const FrameOrigin& origin, OctomapView& out) noexcept;
+  [[nodiscard]] FrameFault take(const MessageCloud& cloud, const FrameOrigin& origin);
+  // True if the last frame that was used repeats one of those before it, as it may.
+  [[nodiscard]] bool has_repeated() const noexcept { return has_repeated_; }
   // Counts bytes that could not be decoded.
   void refuse() noexcept { static_cast<void>(counted(FrameFault::kUndecodable)); }
   // Does not count the message that was refused last, because it is kept for later.
@@ -67,21 +57,21 @@ class CameraStream {
 
  private:
   FrameFault counted(FrameFault fault) noexcept;
-  [[nodiscard]] FrameFault judge(const FrameOrigin& origin, const MessageForm& form) const noexcept;
+  [[nodiscard]] FrameFault judge(const MessageCloud& cloud, const FrameOrigin& origin);
+  // An image is refused that is not of the camera whose CameraInfo came.
+  [[nodiscard]] FrameFault judge(const DepthImage& image, std::uint64_t frame) const noexcept;
   [[nodiscard]] FrameFault judge(const FrameOrigin& origin) const noexcept;
-  // None of the last `ring` frames may have the same content.
-  [[nodiscard]] FrameFault accept(const FrameOrigin& origin, const MessageForm& form,
-                                  std::uint64_t digest, std::uint64_t ring) noexcept;
-  void use(const FrameOrigin& origin, const MessageForm& form) noexcept;
+  // True if the cloud repeats one of the last ones. Otherwise, it is one of them from now on.
+  [[nodiscard]] bool repeats(const MessageCloud& cloud);
 
   CameraStreamOptions options_;
   std::optional<PinholeCamera> first_, camera_;
   std::uint64_t frame_ = 0;  // of the first CameraInfo: a digest of its name; 0: it has none
-  FrameOrigin last_;         // of the last frame that was used, without its frame's name
+  FrameOrigin last_;         // of the last frame that was used
   FirstForm form_;
-  static constexpr std::size_t kRing = 8;
-  std::array<std::uint64_t, kRing> digest_{};  // of the depth of the last frames that were used
-  std::uint64_t digests_ = 0;                  // so far
+  LastDepths last_depths_;
+  std::uint32_t last_map_ = 0;
+  bool has_repeated_ = false;
   std::array<std::uint64_t, kFrameFaults> counts_{};
 };
 

@@ -2,6 +2,8 @@
 // differ have the same one by chance only, once in 2^64.
 #pragma once
 
+#include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
@@ -32,5 +34,10 @@ class Digest {
   }
   std::uint64_t value_ = 0xCBF29CE484222325U;
 };
+
+// A digest of one depth; 0 for what is none: NaN, infinity and 0.
+[[nodiscard]] inline std::uint32_t digest_of_depth(float depth) noexcept {
+  return std::isfinite(depth) && depth != 0.0F ? std::bit_cast<std::uint32_t>(depth) : 0;
+}
 
 }  // namespace clearance

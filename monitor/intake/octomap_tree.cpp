@@ -28,8 +28,13 @@ struct Place {
 
 class Reader {
  public:
-  Reader(const OctomapView& map, std::size_t most, std::vector<MeasuredPoint>& cubes)
-      : map_(map), most_(most), cubes_(cubes), node_bytes_(map.id == "ColorOcTree" ? 8 : 5) {}
+  Reader(const OctomapView& map, std::size_t most, std::vector<MeasuredPoint>& cubes,
+         double& excess)
+      : map_(map),
+        most_(most),
+        cubes_(cubes),
+        node_bytes_(map.id == "ColorOcTree" ? 8 : 5),
+        excess_(excess) {}
 
   // The root of the full form has a value of its own; that of the binary form has none.
   [[nodiscard]] OctomapFault run() {
@@ -38,9 +43,11 @@ class Reader {
     if (fault != OctomapFault::kNoFault) return fault;
     // Leaves of one depth keep one size.
     for (MeasuredPoint& cube : cubes_) {
-      cube.radius =
-          std::nextafter(static_cast<float>(half_at(static_cast<int>(cube.radius)) + rounding_),
-                         std::numeric_limits<float>::infinity());
+      const double half = half_at(static_cast<int>(cube.radius));
+      cube.radius = std::nextafter(static_cast<float>(half + rounding_),
+                                   std::numeric_limits<float>::infinity());
+      // Along each axis, a face is off by the growth of the half and the rounding of the centre.
+      excess_ = std::max(excess_, kCubeRadius * (double{cube.radius} - half + rounding_));
     }
     return at_ == map_.bytes.size() ? OctomapFault::kNoFault : OctomapFault::kCut;
   }
@@ -112,6 +119,7 @@ class Reader {
   std::vector<MeasuredPoint>& cubes_;
   std::size_t node_bytes_, at_ = 0;
   double rounding_ = 0.0;  // of any coordinate, m
+  double& excess_;
 };
 
 static_assert(sizeof(float) + kColour + 1 == 8);
@@ -119,13 +127,14 @@ static_assert(sizeof(float) + kColour + 1 == 8);
 }  // namespace
 
 OctomapFault occupied_cubes(const OctomapView& map, std::size_t most,
-                            std::vector<MeasuredPoint>& cubes) {
+                            std::vector<MeasuredPoint>& cubes, double& excess) {
   cubes.clear();
+  excess = 0.0;
   const bool is_known = map.id == "OcTree" || map.id == "ColorOcTree";
   if (!is_known) return OctomapFault::kKind;
   if (!(map.resolution > 0.0 && map.resolution <= kLargestResolution))
     return OctomapFault::kResolution;
-  return Reader(map, most, cubes).run();
+  return Reader(map, most, cubes, excess).run();
 }
 
 }  // namespace clearance

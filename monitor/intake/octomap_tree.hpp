@@ -35,10 +35,10 @@ enum class OctomapFault : std::uint8_t {
 inline constexpr double kLargestResolution = 10.0;  // m
 
 // Replaces `cubes` by the occupied leaves: centre and half of the side, in the frame of the map, m.
-// Each contains the exact cube, and exceeds it by the largest rounding of a centre to float32. An
-// empty tree has none. After a fault, the content of `cubes` means nothing. At most `most` are kept
-// in memory.
+// Each contains the exact cube, and no point of it is farther from that than `excess`, m: the
+// largest rounding of a centre to float32. An empty tree has none. After a fault, the content of
+// `cubes` means nothing. At most `most` are kept in memory.
 [[nodiscard]] OctomapFault occupied_cubes(const OctomapView& map, std::size_t most,
-                                          std::vector<MeasuredPoint>& cubes);
+                                          std::vector<MeasuredPoint>& cubes, double& excess);
 
 }  // namespace clearance

@@ -3,45 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
+#include "monitor/intake/frame_decoders.hpp"
 #include "monitor/wire/camera_types.hpp"
-#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 namespace {
 
 using MessageType = RawSensorMessage::Type;
 
-// A row a kind of topic: the key of a sensor that names it.
-struct SensorInput {
-  std::string Sensor::*topic;
-  SensorKind of;
-  std::string_view type;
-  const RosType* delivery;
-  MessageType message;
-};
-constexpr std::array<SensorInput, 5> kSensorInputs = {{
-    {&Sensor::topic, SensorKind::kDepthImage, "sensor_msgs/msg/Image", &kRosImage,
-     MessageType::kImage},
-    {&Sensor::camera_info, SensorKind::kDepthImage, "sensor_msgs/msg/CameraInfo", &kRosCameraInfo,
-     MessageType::kCameraInfo},
-    {&Sensor::topic, SensorKind::kPoints, "sensor_msgs/msg/PointCloud2", &kRosPointCloud2,
-     MessageType::kPoints},
-    {&Sensor::topic, SensorKind::kOctomap, "octomap_msgs/msg/Octomap", &kRosOctomap,
-     MessageType::kOctomap},
-    {&Sensor::topic, SensorKind::kOctomap, "moveit_msgs/msg/PlanningScene", &kRosPlanningScene,
-     MessageType::kPlanningScene},
-}};
-
 }  // namespace
-
-bool is_frame_type(SensorKind kind, std::string_view type) noexcept {
-  return std::ranges::any_of(kSensorInputs, [&](const SensorInput& input) {
-    return input.of == kind && input.topic == &Sensor::topic && input.type == type;
-  });
-}
 
 bool needs_transforms(const Scene& scene) noexcept {
   return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) { return sensor.is_on_tf(); });
@@ -50,22 +22,31 @@ bool needs_transforms(const Scene& scene) noexcept {
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
   if (!use_) return std::nullopt;
   if (topic.type == kTransformsType) return wants_transforms(topic.name);
-  for (const SensorInput& input : kSensorInputs) {
-    if (topic.type != input.type) continue;
-    const auto sensor = std::ranges::find_if(scene_->sensors, [&](const Sensor& each) {
-      return each.kind == input.of && each.*input.topic == topic.name;
-    });
-    if (sensor == scene_->sensors.end()) continue;
-    const std::size_t before = topics_.size();
-    const std::uint32_t port = port_of({input.message, topic.name});
-    if (port == before) {
-      out_.tell({.cause = News::Cause::kTopicHeard,
-                 .is_warning = false,
-                 .text = fmt::format("sensor '{}' on {}", sensor->name, topic.name)});
-    }
-    return Wanted{port, input.delivery};
+  for (const FrameDecoder& each : frame_decoders()) {
+    if (topic.type != each.type) continue;
+    if (auto wanted = wants(topic, each.kind, &Sensor::topic, each.message, *each.delivery))
+      return wanted;
   }
-  return std::nullopt;
+  if (topic.type != "sensor_msgs/msg/CameraInfo") return std::nullopt;
+  return wants(topic, SensorKind::kDepthImage, &Sensor::camera_info, MessageType::kCameraInfo,
+               kRosCameraInfo);
+}
+
+std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic, SensorKind kind,
+                                                     std::string Sensor::*key, MessageType type,
+                                                     const RosType& delivery) {
+  const auto sensor = std::ranges::find_if(scene_->sensors, [&](const Sensor& each) {
+    return each.kind == kind && each.*key == topic.name;
+  });
+  if (sensor == scene_->sensors.end()) return std::nullopt;
+  const std::size_t before = topics_.size();
+  const std::uint32_t port = port_of({type, topic.name});
+  if (port == before) {
+    out_.tell({.cause = News::Cause::kTopicHeard,
+               .is_warning = false,
+               .text = fmt::format("sensor '{}' on {}", sensor->name, topic.name)});
+  }
+  return Wanted{port, &delivery};
 }
 
 std::optional<Decoder::Wanted> SensorMessages::wants_transforms(const std::string& name) {

@@ -23,6 +23,7 @@ struct RawSensorMessage {
     kPlanningScene,  // of MoveIt, with an octomap
     kTransforms,
     kStaticTransforms,
+    kLaserScan,
   };
   Type type = Type::kImage;
   std::string topic = {};  // of all but transforms
@@ -35,9 +36,6 @@ using UseSensorMessage = std::function<void(RawSensorMessage message)>;
 
 // The type of /tf and /tf_static. Where an intake has ros_transforms, these come through it.
 inline constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
-
-// True if messages of this type are frames of such a sensor.
-[[nodiscard]] bool is_frame_type(SensorKind kind, std::string_view type) noexcept;
 
 // True if a sensor of the cell stands in a frame of tf.
 [[nodiscard]] bool needs_transforms(const Scene& scene) noexcept;
@@ -59,6 +57,10 @@ class SensorMessages final : public Decoder {
     std::string name;
   };
   [[nodiscard]] std::optional<Wanted> wants_transforms(const std::string& name);
+  // The topic is that of a sensor of the kind, under this key.
+  [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic, SensorKind kind,
+                                            std::string Sensor::*key, RawSensorMessage::Type type,
+                                            const RosType& delivery);
   [[nodiscard]] std::uint32_t port_of(const Topic& topic);
 
   const Scene* scene_;

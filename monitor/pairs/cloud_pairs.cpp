@@ -9,12 +9,13 @@
 namespace clearance {
 namespace {
 
-DistanceStatus status_of(const NearestElement& found) noexcept {
+// `excess` is no width that more work would take away.
+DistanceStatus status_of(const NearestElement& found, double excess) noexcept {
   if (!found.within_work_limit) return DistanceStatus::kIterationLimit;
   if (found.upper < 0.0) return DistanceStatus::kOverlapping;
   if (found.lower <= 0.0) return DistanceStatus::kTouching;
-  return are_tight(found.lower, found.upper) ? DistanceStatus::kConverged
-                                             : DistanceStatus::kIterationLimit;
+  return are_tight(found.lower, found.upper - excess) ? DistanceStatus::kConverged
+                                                      : DistanceStatus::kIterationLimit;
 }
 
 }  // namespace
@@ -53,12 +54,12 @@ CloudPairs::Answer CloudPairs::query(const Content& content, const PosedPart& se
   if (content.cloud == nullptr) return answer;
   const NearestElement found =
       content.cloud->nearest(*part.shape, relative_pose(part.world_from_part, seen.world_from_part),
-                             body, tracking, most_overlap_work);
+                             body, tracking, most_overlap_work, part.object);
   answer.overlap_work = found.overlap_work;
   if (found.answer != CloudAnswer::kNearest) return answer;
   const double error = rounded_up(placing_error(seen, part) + content.pose_error);
   answer.bounds = {rounded_down(found.lower - error), rounded_up(found.upper + error)};
-  answer.status = status_of(found);
+  answer.status = status_of(found, content.cloud->excess());
   const Mat3& turn = part.world_from_part_rotation;
   answer.witness_a = turn * found.point_on_element + part.world_from_part.position;
   answer.witness_b = turn * found.point_on_part + part.world_from_part.position;

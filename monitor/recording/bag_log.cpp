@@ -9,6 +9,7 @@
 
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
+#include "monitor/intake/frame_decoders.hpp"
 
 namespace clearance {
 namespace {

@@ -1,6 +1,8 @@
 // The part of Sensors that makes a cloud of a frame.
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
@@ -8,13 +10,10 @@
 #include <utility>
 
 #include "monitor/bodies/directed_rounding.hpp"
-#include "monitor/sensors/measured_points.hpp"
 #include "monitor/sensors/sensor_state.hpp"
 
 namespace clearance {
 namespace {
-
-using Type = RawSensorMessage::Type;
 
 const CloudCrop kNoCrop{.centre = Vec3::Zero(), .radius = kInfinity};
 
@@ -56,25 +55,27 @@ std::optional<CloudCrop> crop_of(const Sensor& sensor, const PastPose& place,
 // the robot is an obstacle.
 void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use) {
   postures_.place(frame.stamp_ns, state.sensor.stamp_error_ns);
-  mounts_.judge(state.sensor, frame.frame, frames_, now_);
-  PastPose place = mounts_.find(state.sensor, frame.frame, frame.stamp_ns, frames_, postures_);
+  mounts_.judge(state.sensor, frame.cloud->frame, frames_, now_);
+  PastPose place =
+      mounts_.find(state.sensor, frame.cloud->frame, frame.stamp_ns, frames_, postures_);
   if (state.sensor.kind == SensorKind::kOctomap)
-    place = carried(place, frame.frame_from_sensor, 0.0, 0.0);
+    place = carried(place, frame.cloud->frame_from_sensor, 0.0, 0.0);
   FrameFault fault = FrameFault::kNoFault;
   std::string elsewhere;
   if (!place.known) {
-    fault = mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_)
+    fault = mounts_.awaits_transforms(state.sensor, frame.cloud->frame, frame.stamp_ns, frames_)
                 ? FrameFault::kLateTransforms
                 : FrameFault::kNoPlace;
-  } else if (elsewhere =
-                 mounts_.robot_elsewhere(state.sensor, frame.frame, frame.stamp_ns, frames_, place);
+  } else if (elsewhere = mounts_.robot_elsewhere(state.sensor, frame.cloud->frame, frame.stamp_ns,
+                                                 frames_, place);
              !elsewhere.empty()) {
     fault = FrameFault::kRobotElsewhere;
   } else if (state.sensor.kind != SensorKind::kOctomap && !postures_.began_by(frame.stamp_ns)) {
     fault = FrameFault::kBeforeJoints;
   } else {
-    const Carrier carrier = mounts_.carrier(state.sensor, frame.frame, frame.stamp_ns, frames_);
-    fault = build_at(state, frame, place, carrier, cloud, use);
+    const Carrier carrier =
+        mounts_.carrier(state.sensor, frame.cloud->frame, frame.stamp_ns, frames_);
+    fault = build_at(state, frame, place, carrier, cloud, use, false);
   }
   state.status.robot_elsewhere = std::move(elsewhere);
   if (fault != FrameFault::kNoFault) ++state.not_built[static_cast<std::size_t>(fault)];
@@ -83,7 +84,7 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
 // The postures are placed. What a frame leaves behind for later ones is left by each frame that is
 // kept, even if it shows nothing.
 FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose& place,
-                             const Carrier& carrier, SeenCloud& cloud, const Use& use) {
+                             const Carrier& carrier, SeenCloud& cloud, const Use& use, bool again) {
   const auto began = std::chrono::steady_clock::now();
   const SensorFrame out{.cloud = &cloud,
                         .stamp_ns = frame.stamp_ns,
@@ -92,8 +93,10 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
                         .carrier = carrier};
   if (!(rounded_up(state.sensor.extent() + out.pose_error) <= state.sensor.view_radius()))
     return FrameFault::kNoPlace;
-  if (const FrameFault fault = fill(state, frame, place, cloud); fault != FrameFault::kNoFault)
+  if (const FrameFault fault = fill(state, frame, place, cloud, again);
+      fault != FrameFault::kNoFault)
     return fault;
+  if (!again && has_left_its_image(state, frame, cloud)) return FrameFault::kFrozen;
   if (options_.keep) {
     options_.keep({.sensor = state.index,
                    .stamp_ns = frame.stamp_ns,
@@ -106,6 +109,7 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   }
   leave_out(state, frame, place, cloud);
   if (cloud.size() == 0) return FrameFault::kNothingSeen;
+  if (!again) state.seen_share.use();
   SensorStatus& status = state.status;
   ++status.frames;
   status.stamp_ns = frame.stamp_ns;
@@ -119,32 +123,6 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   return FrameFault::kNoFault;
 }
 
-template <class Message, class View>
-bool Sensors::decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out) {
-  return decoder_.decode(built.message.cdr, sample, built.message.bytes) &&
-         view(*sample, cell_.scene.sensors[built.sensor].most_points, out) == FrameFault::kNoFault;
-}
-
-bool Sensors::decode_again(const BuiltFrame& built, Waiting& frame) {
-  switch (built.message.type) {
-    case Type::kImage:
-      return decode_again(built, frame.image_sample, frame.image);
-    case Type::kPoints:
-      return decode_again(built, frame.points_sample, frame.points);
-    case Type::kOctomap:
-      return decoder_.decode(built.message.cdr, frame.map_sample, built.message.bytes) &&
-             view(*frame.map_sample, frame.map) == FrameFault::kNoFault;
-    case Type::kPlanningScene:
-      return decoder_.decode(built.message.cdr, frame.scene_sample, built.message.bytes) &&
-             view(frame.scene_sample->world.octomap.octomap, frame.map) == FrameFault::kNoFault;
-    case Type::kCameraInfo:
-    case Type::kTransforms:
-    case Type::kStaticTransforms:
-      return false;
-  }
-  return false;
-}
-
 bool Sensors::has_room(std::uint32_t sensor, const IsUsed& is_used) const {
   return !std::ranges::all_of(states_[sensor]->clouds,
                               [&](const auto& cloud) { return is_used(cloud.get()); });
@@ -156,48 +134,79 @@ bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use&
     return false;
   }
   State& state = *states_[built.sensor];
-  if (state.sensor.kind != kind_of(built.message.type)) return false;
+  const FrameDecoder* const decoder = frame_decoder(built.message.type);
+  if (decoder == nullptr || state.sensor.kind != decoder->kind) return false;
   Waiting frame;
+  frame.cloud = decoder->decode(built.message, state.sensor, decoder_);
   frame.camera = built.camera;
   frame.stamp_ns = built.stamp_ns;
   if (options_.keep) frame.message = built.message;
   const auto cloud =
       std::ranges::find_if(state.clouds, [&](const auto& each) { return !is_used(each.get()); });
-  if (cloud == state.clouds.end() || !decode_again(built, frame) ||
-      !postures_.place(built.postures)) {
+  if (cloud == state.clouds.end() || frame.cloud == nullptr ||
+      frame.cloud->fault != FrameFault::kNoFault || !postures_.place(built.postures)) {
     return false;
   }
-  const FrameFault fault = build_at(state, frame, built.place, built.carrier, **cloud, use);
+  const FrameFault fault = build_at(state, frame, built.place, built.carrier, **cloud, use, true);
   return fault == FrameFault::kNoFault || fault == FrameFault::kNothingSeen;
+}
+
+// The depth is that of a frame before, as it may be while nothing moves. If most of what was the
+// robot's image then is nowhere near it now, the robot has moved, and the picture has not.
+bool Sensors::has_left_its_image(State& state, const Waiting& frame, const SeenCloud& cloud) {
+  std::size_t own = 0;
+  for (const HiddenNear& near : cloud.hidden()) own += near.shell.elements;
+  if (frame.repeats) return 2 * own < state.own_elements;
+  state.own_elements = own;
+  return false;
+}
+
+FrameFault Sensors::judge_share(State& state, const Waiting& frame, std::size_t seen, bool again) {
+  const double least = state.sensor.least_seen;
+  if (again || seen == 0) return FrameFault::kNoFault;
+  if (!frame.cloud->is_picture())
+    return least > 0.0 ? FrameFault::kNotOrganised : FrameFault::kNoFault;
+  const double all = static_cast<double>(frame.cloud->columns) * frame.cloud->rows;
+  return state.seen_share.judge(static_cast<double>(seen) / all, least, frame.stamp_ns);
 }
 
 // Fills a cloud with what the frame shows, without the robot's own image.
 FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& place,
-                         SeenCloud& cloud) {
+                         SeenCloud& cloud, bool again) {
   const Sensor& sensor = state.sensor;
   cloud.note_crop(kNoCrop);
   if (DepthCloud* const depth = cloud.depth()) {
     const DepthBuild built =
-        depth->build(frame.camera, frame.image,
+        depth->build(frame.camera, *frame.cloud->image(),
                      {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
                      {.least = sensor.least_depth, .greatest = sensor.greatest_depth});
     if (built != DepthBuild::kBuilt) return FrameFault::kCannotBuild;
-    own_image_.leave_out(sensor, place, postures_, cloud, body_);
+    if (const FrameFault fault = judge_share(state, frame, depth->size(), again);
+        fault != FrameFault::kNoFault) {
+      return fault;
+    }
+    own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
     return FrameFault::kNoFault;
   }
   const bool is_map = sensor.kind == SensorKind::kOctomap;
-  if (is_map) {
-    const OctomapFault fault = occupied_cubes(frame.map, sensor.most_points, points_);
-    if (fault != OctomapFault::kNoFault) {
-      return fault == OctomapFault::kTooMany ? FrameFault::kTooManyPixels : FrameFault::kOctree;
-    }
-  } else {
-    if (!measured_points(frame.points, sensor, points_)) return FrameFault::kCannotBuild;
-    if (sensor.by_neighbours) {
-      narrow_ = points_;
-      const FrameFault fault = organised_.widen(frame.points.width, frame.points.height, points_);
-      if (fault != FrameFault::kNoFault) return fault;
-    }
+  const MessageCloud& shown = *frame.cloud;
+  double excess = 0.0;
+  if (const FrameFault fault = shown.elements(sensor, points_, excess);
+      fault != FrameFault::kNoFault) {
+    return fault;
+  }
+  cloud.note_excess(excess);
+  const auto seen = std::ranges::count_if(points_, [](const MeasuredPoint& point) {
+    return !std::isnan(point.x) && !std::isnan(point.radius);
+  });
+  if (const FrameFault fault = judge_share(state, frame, static_cast<std::size_t>(seen), again);
+      fault != FrameFault::kNoFault) {
+    return fault;
+  }
+  if (sensor.by_neighbours) {
+    narrow_ = points_;
+    const FrameFault fault = organised_.widen(shown.columns, shown.rows, points_);
+    if (fault != FrameFault::kNoFault) return fault;
   }
   PointCloud& points = *cloud.points();
   // False: it cannot be built.
@@ -207,7 +216,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
     if (built != CloudBuild::kBuilt || points.extent() > sensor.extent()) return false;
     state.status.cropped = points.cropped();
     cloud.note_crop(points.cropped() > 0 ? crop : kNoCrop);
-    own_image_.leave_out(sensor, place, postures_, cloud, body_);
+    own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
     return true;
   };
   // A map is cropped to the range, and nothing of it is dropped.
@@ -220,14 +229,14 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
   // If all but the robot is beyond the links' reach, none is cropped: the frame shows something.
   if (points.size() == 0 && points.cropped() > 0 && !build_within(whole))
     return FrameFault::kCannotBuild;
-  if (sensor.by_neighbours) narrow(frame.points, points);
+  if (sensor.by_neighbours) narrow(shown, points);
   return FrameFault::kNoFault;
 }
 
 // Own points count as rays from now on: no ball reaches towards them, into the robot. A surface
 // between an own point and a neighbour is in the blind shell, which was found with balls that reach
 // that far, so the whole distance is no longer than the diameter of the own point's ball.
-void Sensors::narrow(const PointsView& frame, PointCloud& points) {
+void Sensors::narrow(const MessageCloud& frame, PointCloud& points) {
   for (std::size_t b = 0; b < points.blocks(); ++b) {
     const PointCloud::Block& block = points.block(b);
     for (std::size_t lane = 0; lane < PointCloud::kFanOut; ++lane) {
@@ -236,7 +245,7 @@ void Sensors::narrow(const PointsView& frame, PointCloud& points) {
     }
   }
   // The rays are those of the frame that was widened before, so there is no fault.
-  static_cast<void>(organised_.widen(frame.width, frame.height, narrow_));
+  static_cast<void>(organised_.widen(frame.columns, frame.rows, narrow_));
   points.narrow(narrow_);
 }
 
@@ -265,6 +274,7 @@ void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& plac
               .elements = near.shell.elements,
               .thickness = near.shell.thickness,
               .thickest = std::max(own[i].thickest, near.shell.thickness),
+              .shell = near.shell.shell,
               .unseen = near.unseen};
   }
 }

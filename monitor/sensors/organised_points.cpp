@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "monitor/sensors/measured_points.hpp"
+#include "monitor/intake/measured_points.hpp"
 
 namespace clearance {
 namespace {

@@ -14,6 +14,12 @@ double radius_of(const Part& part) noexcept {
          part.shape.position_error;
 }
 
+// No point of the part is farther than this from its place, m. A body without bounds has a place
+// only if it does not turn.
+double error_of(const PastPose& past, const Part& part) noexcept {
+  return past.turn_error > 0.0 ? past.error(radius_of(part)) : past.shift_error;
+}
+
 }  // namespace
 
 OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
@@ -27,16 +33,22 @@ OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
     const std::vector<RobotLink>& links = scene.robots[robot].links;
     for (std::uint32_t link = 0; link < links.size(); ++link) {
       if (links[link].object != RobotLink::kNoObject)
-        links_.push_back({links[link].object, robot, link, group});
+        bodies_.push_back({links[link].object, robot, link, group});
     }
   }
-  std::ranges::sort(links_, {}, &Link::object);
+  for (const std::uint32_t object : known_bodies(scene)) bodies_.push_back({.object = object});
+  std::ranges::sort(bodies_, {}, &Body::object);
   for (const Sensor& sensor : scene.sensors) {
     unseen_.push_back(sensor.unseen ? std::make_unique<Unseen>(sensor, groups_.size()) : nullptr);
   }
 }
 
+PastPose OwnImage::place_of(const Body& body, const PostureHistory& postures) noexcept {
+  return body.robot == kNone ? postures.object(body.object) : postures.link(body.robot, body.link);
+}
+
 bool OwnImage::hang_together(std::uint32_t group, std::uint32_t other) const noexcept {
+  if (other == kNone) return false;
   const auto stands_on = [&](std::uint32_t above, std::uint32_t below) {
     while (above != below && scene_.robots[above].base.kind == RobotBase::Kind::kLink)
       above = scene_.robots[above].base.robot;
@@ -45,12 +57,12 @@ bool OwnImage::hang_together(std::uint32_t group, std::uint32_t other) const noe
   return stands_on(groups_[group], groups_[other]) || stands_on(groups_[other], groups_[group]);
 }
 
-void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
+void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
                          const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
   const double place_error = place.error(sensor.extent());
   CentreLimit limit{
       .error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
-      .along_ray = sensor.along_ray};
+      .along_ray = along_ray};
   Unseen* const places = of_sensor(sensor);
   if (places != nullptr) {
     places->is_built = std::ranges::all_of(places->clouds, [&](DepthCloud& each) {
@@ -60,13 +72,15 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
     std::ranges::fill(places->others, *cloud.depth());
   }
   cloud.hidden().clear();
-  for (const Link& link : links_) {
+  cloud.trust_shells(sensor.trusted_shell);
+  for (const Body& each : bodies_) {
     HiddenNear& near = cloud.hidden().emplace_back();
-    near.object = link.object;
-    const PastPose past = postures.link(link.robot, link.link);
+    near.object = each.object;
+    if (each.robot == kNone && !sensor.knows) continue;
+    const PastPose past = place_of(each, postures);
     if (!past.known) continue;
-    for (const Part& part : scene_.objects[link.object].parts) {
-      const double error = place_error + past.error(radius_of(part));
+    for (const Part& part : scene_.objects[each.object].parts) {
+      const double error = place_error + error_of(past, part);
       const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
       const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
       // The distance of an organised point to its neighbours says nothing about whose image it is.
@@ -74,11 +88,11 @@ void OwnImage::leave_out(const Sensor& sensor, const PastPose& place,
       const RelativePose part_from_cloud = relative_pose(world_from_part, place.world_from_body);
       const BlindShell blind = cloud.shelve(part.shape, part_from_cloud, shell, limit, body);
       for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
-        if (!hang_together(group, link.group))
+        if (!hang_together(group, each.group))
           static_cast<void>(
               shelve_own_points(part.shape, part_from_cloud, shell, places->others[group], body));
       }
-      near.shell.elements += blind.elements;
+      near.shell.add(blind);
       if (blind.elements > 0)
         near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));
     }
@@ -99,14 +113,17 @@ void OwnImage::find_unseen(const Sensor& sensor, const PastPose& place,
                            const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
   if (unseen(sensor).empty()) return;
   const double place_error = place.error(sensor.extent());
-  for (std::size_t i = 0; i < links_.size(); ++i) {
-    const PastPose past = postures.link(links_[i].robot, links_[i].link);
-    if (past.known)
-      find_unseen(links_[i], past, place, place_error, body, *of_sensor(sensor), cloud.hidden()[i]);
+  for (std::size_t i = 0; i < bodies_.size(); ++i) {
+    if (bodies_[i].robot == kNone) continue;
+    const PastPose past = place_of(bodies_[i], postures);
+    if (past.known) {
+      find_unseen(bodies_[i], past, place, place_error, body, *of_sensor(sensor),
+                  cloud.hidden()[i]);
+    }
   }
 }
 
-void OwnImage::find_unseen(const Link& of, const PastPose& past, const PastPose& place,
+void OwnImage::find_unseen(const Body& of, const PastPose& past, const PastPose& place,
                            double place_error, SlabBody& body, Unseen& unseen,
                            HiddenNear& near) const {
   near.unseen = kInfinity;

@@ -2,18 +2,18 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
+#include "monitor/intake/frame_decoders.hpp"
 #include "monitor/sensors/info_pairing.hpp"
 #include "monitor/sensors/persistence.hpp"
+#include "monitor/sensors/seen_share.hpp"
 #include "monitor/sensors/sensors.hpp"
-#include "monitor/wire/camera_types.hpp"
-#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 
@@ -22,53 +22,13 @@ inline SeenCloud cloud_of(const Sensor& sensor) {
                                                 : SeenCloud::of_points(sensor.most_points);
 }
 
-// Returns the kind of sensor that sends such messages; CameraInfo and transforms count as those of
-// images.
-inline SensorKind kind_of(RawSensorMessage::Type type) noexcept {
-  using Type = RawSensorMessage::Type;
-  switch (type) {
-    case Type::kPoints:
-      return SensorKind::kPoints;
-    case Type::kOctomap:
-    case Type::kPlanningScene:
-      return SensorKind::kOctomap;
-    case Type::kImage:
-    case Type::kCameraInfo:
-    case Type::kTransforms:
-    case Type::kStaticTransforms:
-      return SensorKind::kDepthImage;
-  }
-  return SensorKind::kDepthImage;
-}
-
-// A frame that was judged and is not built yet. The views are of the sample's memory.
+// A frame that was judged and is not built yet.
 struct Sensors::Waiting {
-  Sample<sensor_msgs_msg_dds__Image_> image_sample;
-  Sample<sensor_msgs_msg_dds__PointCloud2_> points_sample;
-  Sample<octomap_msgs_msg_dds__Octomap_> map_sample;
-  Sample<moveit_msgs_msg_dds__PlanningScene_> scene_sample;
-  DepthImage image;
-  PointsView points;
-  OctomapView map;
-  Pose frame_from_sensor;  // of a map of MoveIt
+  std::unique_ptr<MessageCloud> cloud;
   PinholeCamera camera;
-  std::string frame;         // of tf
   RawSensorMessage message;  // if it is kept
   std::int64_t stamp_ns = 0, came_ns = 0;
-
-  [[nodiscard]] auto& sample(const sensor_msgs_msg_dds__Image_*) noexcept { return image_sample; }
-  [[nodiscard]] auto& sample(const sensor_msgs_msg_dds__PointCloud2_*) noexcept {
-    return points_sample;
-  }
-  [[nodiscard]] auto& sample(const octomap_msgs_msg_dds__Octomap_*) noexcept { return map_sample; }
-  [[nodiscard]] auto& sample(const moveit_msgs_msg_dds__PlanningScene_*) noexcept {
-    return scene_sample;
-  }
-  [[nodiscard]] DepthImage& view(const sensor_msgs_msg_dds__Image_*) noexcept { return image; }
-  [[nodiscard]] PointsView& view(const sensor_msgs_msg_dds__PointCloud2_*) noexcept {
-    return points;
-  }
-  [[nodiscard]] OctomapView& view(const octomap_msgs_msg_dds__Octomap_*) noexcept { return map; }
+  bool repeats = false;  // the depth of a frame before it
 };
 
 struct Sensors::State {
@@ -76,8 +36,8 @@ struct Sensors::State {
       : index(the_index),
         sensor(the_sensor),
         age_limit_ns(object.age_limit_ns),
-        stream({.most_pixels = the_sensor.most_points,
-                .least_interval_ns = the_sensor.least_interval_ns}) {
+        stream({.least_interval_ns = the_sensor.least_interval_ns,
+                .may_repeat = !the_sensor.has_noise}) {
     for (std::size_t i = 0; i < kClouds; ++i)
       clouds.push_back(std::make_unique<SeenCloud>(cloud_of(sensor)));
     if (sensor.persist_frames > 1) persistence.emplace(sensor, object.max_speed);
@@ -92,6 +52,8 @@ struct Sensors::State {
   // The last image before the first CameraInfo: drivers publish the info of a frame after its
   // image. It counts as refused once another one replaces it.
   RawSensorMessage without_info;
+  SeenShare seen_share;
+  std::size_t own_elements = 0;            // of bodies in the last picture that was new
   std::optional<Persistence> persistence;  // none: all elements stay
   std::array<std::uint64_t, kFrameFaults> not_built{};
   SensorStatus status;

@@ -1,14 +1,13 @@
 #include "monitor/sensors/sensors.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <type_traits>
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tf_tree.hpp"
 #include "monitor/sensors/sensor_state.hpp"
+#include "monitor/wire/camera_types.hpp"
 #include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
@@ -35,7 +34,7 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNu
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
     states_.push_back(
         std::make_unique<State>(i, scene.sensors[i], scene.objects[scene.sensors[i].object]));
-    states_.back()->status.own.resize(own_image_.links());
+    states_.back()->status.own.resize(own_image_.bodies());
   }
 }
 Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)
@@ -99,55 +98,25 @@ void Sensors::add_transforms(const RawSensorMessage& message) {
   mounts_.judge(frames_, now_);
 }
 
-template <class Message>
-void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns) {
+void Sensors::add_frame(const RawSensorMessage& message, const FrameDecoder& decoder, State& state,
+                        std::int64_t now_ns) {
   ++state.status.heard;
   auto frame = std::make_unique<Waiting>();
-  Sample<Message>& sample = frame->sample(static_cast<const Message*>(nullptr));
-  if (!decoder_.decode(message.cdr, sample, message.bytes)) return state.stream.refuse();
+  frame->cloud = decoder.decode(message, state.sensor, decoder_);
+  if (frame->cloud == nullptr) return;
+  const MessageCloud& cloud = *frame->cloud;
   frame->came_ns = now_ns;
-  FrameFault fault = FrameFault::kNoFault;
-  if constexpr (std::is_same_v<Message, moveit_msgs_msg_dds__PlanningScene_>) {
-    const octomap_msgs_msg_dds__OctomapWithPose_& map = sample->world.octomap;
-    if (map.octomap.data._length == 0) return;  // a change of something else
-    // MoveIt leaves the stamp at 0.
-    const std::int64_t stamp = stamp_ns(map.header);
-    frame->stamp_ns = stamp == 0 ? message.sent_ns : stamp;
-    frame->frame = frame_name(map.header.frame_id);
-    const auto& [position, orientation] = map.origin;
-    frame->frame_from_sensor.position = {position.x, position.y, position.z};
-    frame->frame_from_sensor.orientation.coeffs() << orientation.x, orientation.y, orientation.z,
-        orientation.w;
-    // The negated comparison refuses NaN.
-    if (!(std::abs(frame->frame_from_sensor.orientation.norm() - 1.0) <= kSampleUnitTolerance &&
-          frame->frame_from_sensor.position.allFinite())) {
-      ++state.not_built[static_cast<std::size_t>(FrameFault::kNoPlace)];
-      return;
-    }
-    fault = state.stream.take(map.octomap,
-                              {.stamp_ns = frame->stamp_ns,
-                               .sent_ns = message.sent_ns,
-                               .writer = message.writer,
-                               .is_stamped = stamp != 0,
-                               .frame = frame->frame},
-                              frame->map);
-    // A changed cell has no frame yet: the map that is sent again has the time of the first one.
-    if (fault == FrameFault::kFrozen && state.status.frames == 0 && state.waiting.empty()) {
-      state.stream.take_back(fault);
-      frame->stamp_ns = state.stream.stamp_ns();
-      fault = clearance::view(map.octomap, frame->map);
-    }
-  } else {
-    frame->stamp_ns = stamp_ns(sample->header);
-    frame->frame = frame_name(sample->header.frame_id);
-    fault = state.stream.take(*sample,
-                              {.stamp_ns = frame->stamp_ns,
-                               .sent_ns = message.sent_ns,
-                               .writer = message.writer,
-                               .frame = frame->frame},
-                              frame->view(static_cast<const Message*>(nullptr)));
+  frame->stamp_ns = cloud.stamp_ns;
+  FrameFault fault = state.stream.take(
+      cloud, {.stamp_ns = cloud.stamp_ns, .sent_ns = message.sent_ns, .writer = message.writer});
+  // A changed cell has no frame yet: the map that is sent again has the time of the first one.
+  if (fault == FrameFault::kFrozen && !cloud.is_stamped && state.status.frames == 0 &&
+      state.waiting.empty()) {
+    state.stream.take_back(fault);
+    frame->stamp_ns = state.stream.stamp_ns();
+    fault = FrameFault::kNoFault;
   }
-  if constexpr (std::is_same_v<Message, sensor_msgs_msg_dds__Image_>)
+  if (cloud.image() != nullptr && fault != FrameFault::kUndecodable)
     state.pairing.take_image(frame->stamp_ns);
   if (fault == FrameFault::kNoCameraInfo) {
     state.stream.take_back(fault);
@@ -155,6 +124,7 @@ void Sensors::add_frame(const RawSensorMessage& message, State& state, std::int6
     state.without_info = message;
   }
   if (fault != FrameFault::kNoFault) return;
+  frame->repeats = state.stream.has_repeated();
   if (state.stream.camera()) frame->camera = *state.stream.camera();
   if (options_.keep) frame->message = message;
   // The frames that have waited for longest stay: what they wait for comes first.
@@ -177,7 +147,7 @@ void Sensors::take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& sta
   }
   if (state.without_info.cdr.empty()) return;
   const RawSensorMessage first = std::exchange(state.without_info, {});
-  add_frame<sensor_msgs_msg_dds__Image_>(first, state, now_ns);
+  add_frame(first, *frame_decoder(first.type), state, now_ns);
 }
 
 void Sensors::add(const RawSensorMessage& message, const Now& now) {
@@ -185,6 +155,7 @@ void Sensors::add(const RawSensorMessage& message, const Now& now) {
   now_.monotonic_ns = now.monotonic_ns;
   if (message.type == Type::kTransforms || message.type == Type::kStaticTransforms)
     return add_transforms(message);
+  const FrameDecoder* const decoder = frame_decoder(message.type);
   const std::int64_t now_ns = now.monotonic_ns;
   for (const std::unique_ptr<State>& state : states_) {
     const Sensor& sensor = state->sensor;
@@ -197,15 +168,9 @@ void Sensors::add(const RawSensorMessage& message, const Now& now) {
       } else {
         state->stream.refuse();
       }
-    } else if (sensor.topic == message.topic && sensor.kind == kind_of(message.type)) {
-      if (message.type == Type::kImage)
-        add_frame<sensor_msgs_msg_dds__Image_>(message, *state, now_ns);
-      if (message.type == Type::kPoints)
-        add_frame<sensor_msgs_msg_dds__PointCloud2_>(message, *state, now_ns);
-      if (message.type == Type::kOctomap)
-        add_frame<octomap_msgs_msg_dds__Octomap_>(message, *state, now_ns);
-      if (message.type == Type::kPlanningScene)
-        add_frame<moveit_msgs_msg_dds__PlanningScene_>(message, *state, now_ns);
+    } else if (decoder != nullptr && sensor.topic == message.topic &&
+               sensor.kind == decoder->kind) {
+      add_frame(message, *decoder, *state, now_ns);
     }
   }
 }
@@ -215,7 +180,7 @@ void Sensors::add(const RawSensorMessage& message, const Now& now) {
 bool Sensors::is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const {
   const std::int64_t waited_ns = elapsed(frame.came_ns, now_ns);
   const bool has_no_transform =
-      mounts_.awaits_transforms(state.sensor, frame.frame, frame.stamp_ns, frames_);
+      mounts_.awaits_transforms(state.sensor, frame.cloud->frame, frame.stamp_ns, frames_);
   if (has_no_transform && !state.sensor.mount_speed.is_stated())
     return waited_ns >= std::max(options_.patience_ns, state.age_limit_ns / 2);
   return waited_ns >= options_.patience_ns ||

@@ -23,6 +23,8 @@
 
 namespace clearance {
 
+struct FrameDecoder;
+
 // A frame that was built, with all that a second build of it needs.
 struct BuiltFrame {
   std::uint32_t sensor = 0;
@@ -49,10 +51,11 @@ struct SensorsOptions {
 // The part of the robot's surroundings that a frame cannot show, because it is left out with the
 // robot's own image.
 struct OwnImageStatus {
-  std::uint32_t object = 0;    // a link
-  std::size_t elements = 0;    // of the last frame
-  double thickness = 0.0;      // m: anything this close to the link may be left out with it
-  double thickest = 0.0;       // the largest of all frames
+  std::uint32_t object = 0;  // a link
+  std::size_t elements = 0;  // of the last frame
+  double thickness = 0.0;    // m: anything this close to the link may be left out with it
+  double thickest = 0.0;     // the largest of all frames
+  double shell = 0.0;        // m: the part of the thickness that the body's place and the cell make
   double unseen = -kInfinity;  // m: lower bound to the nearest unseen place, if asked for
 };
 
@@ -128,20 +131,23 @@ class Sensors {
   void note_time(std::int64_t came_ns);
   [[nodiscard]] bool is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept;
   void add_transforms(const RawSensorMessage& message);
-  template <class Message>
-  void add_frame(const RawSensorMessage& message, State& state, std::int64_t now_ns);
+  void add_frame(const RawSensorMessage& message, const FrameDecoder& decoder, State& state,
+                 std::int64_t now_ns);
   void take_info(const sensor_msgs_msg_dds__CameraInfo_& info, State& state, std::int64_t now_ns);
   [[nodiscard]] bool is_ready(const State& state, const Waiting& frame, std::int64_t now_ns) const;
   void build(State& state, const Waiting& frame, SeenCloud& cloud, const Use& use);
   [[nodiscard]] FrameFault build_at(State& state, const Waiting& frame, const PastPose& place,
-                                    const Carrier& carrier, SeenCloud& cloud, const Use& use);
-  [[nodiscard]] bool decode_again(const BuiltFrame& built, Waiting& frame);
-  template <class Message, class View>
-  [[nodiscard]] bool decode_again(const BuiltFrame& built, Sample<Message>& sample, View& out);
+                                    const Carrier& carrier, SeenCloud& cloud, const Use& use,
+                                    bool again);
   [[nodiscard]] FrameFault fill(State& state, const Waiting& frame, const PastPose& place,
-                                SeenCloud& cloud);
+                                SeenCloud& cloud, bool again);
+  [[nodiscard]] static bool has_left_its_image(State& state, const Waiting& frame,
+                                               const SeenCloud& cloud);
+  // `seen` elements of the frame have depth within the range. What is built again is not judged.
+  [[nodiscard]] static FrameFault judge_share(State& state, const Waiting& frame, std::size_t seen,
+                                              bool again);
   void leave_out(State& state, const Waiting& frame, const PastPose& place, SeenCloud& cloud);
-  void narrow(const PointsView& frame, PointCloud& points);
+  void narrow(const MessageCloud& frame, PointCloud& points);
 
   const Cell& cell_;
   SensorsOptions options_;

@@ -2,6 +2,7 @@
 
 #include <limits>
 
+#include "monitor/intake/frame_decoders.hpp"
 #include "monitor/sensors/sensors.hpp"
 #include "monitor/visual/seen_points.hpp"
 
@@ -11,9 +12,10 @@ namespace {
 // The clock of a viewer's machine may be behind the others: no stamp is ahead of this time.
 constexpr std::int64_t kAnyTime = std::numeric_limits<std::int64_t>::max();
 
-bool is_frame(const RawSensorMessage& message) {
-  return message.type == RawSensorMessage::Type::kImage ||
-         message.type == RawSensorMessage::Type::kPoints;
+// Maps come seldom, and may be small parts of messages about something else.
+bool is_frequent(const RawSensorMessage& message) {
+  const FrameDecoder* const decoder = frame_decoder(message.type);
+  return decoder != nullptr && decoder->kind != SensorKind::kOctomap;
 }
 
 }  // namespace
@@ -40,7 +42,7 @@ void SeenFrames::hear(const PoseBatch& batch) {
 }
 
 void SeenFrames::hear(const RawSensorMessage& message, std::int64_t now_ns) {
-  if (is_frame(message)) {
+  if (is_frequent(message)) {
     const auto [last, is_first] = heard_ns_.try_emplace(message.topic, now_ns);
     const std::int64_t since = now_ns - last->second;
     if (!is_first && since >= 0 && since < kLeastIntervalNs) return;

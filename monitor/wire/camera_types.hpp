@@ -21,6 +21,11 @@ template <>
 topic_descriptor<sensor_msgs_msg_dds__PointCloud2_>() noexcept {
   return sensor_msgs_msg_dds__PointCloud2__desc;
 }
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<sensor_msgs_msg_dds__LaserScan_>() noexcept {
+  return sensor_msgs_msg_dds__LaserScan__desc;
+}
 
 // Drivers of cameras publish best effort and keep few messages. Only the newest counts. Some send
 // CameraInfo once, and keep it for late readers.
@@ -38,5 +43,8 @@ inline constexpr RosType kRosCameraInfo{
 inline constexpr RosType kRosPointCloud2{
     &sensor_msgs_msg_dds__PointCloud2__desc,
     "typehash=RIHS01_9198cabf7da3796ae6fe19c4cb3bdd3525492988c70522628af5daa124bae2b5;", false, 2};
+inline constexpr RosType kRosLaserScan{
+    &sensor_msgs_msg_dds__LaserScan__desc,
+    "typehash=RIHS01_64c191398013af96509d518dac71d5164f9382553fce5c1f8cca5be7924bd828;", false, 2};
 
 }  // namespace clearance

@@ -11,7 +11,7 @@
 #include "core/shapes.hpp"
 #include "monitor/clouds/nearest_element.hpp"
 #include "monitor/intake/camera_messages.hpp"
-#include "monitor/sensors/measured_points.hpp"
+#include "monitor/intake/measured_points.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "tools/bench/clocks.hpp"

@@ -72,6 +72,30 @@ TEST(SensorsOfACell, StateTheirShellsAndTheirRate) {
               in_line(5, "'neighbors'", "'neighbours'"));
 }
 
+TEST(SensorsOfACell, StateWhatTheyKnowAndWhenTheirPicturesLive) {
+  const auto sensor = [](const std::string& keys) {
+    return scene_of(with_sensor(kDepth + keys)).sensors[0];
+  };
+  EXPECT_EQ(sensor("").trusted_shell, 0.1);
+  EXPECT_EQ(sensor(", trusted_shell: 0.05").trusted_shell, 0.05);
+  EXPECT_EQ(sensor(", own_shell: 0.2").trusted_shell, 0.2);
+  EXPECT_TRUE(sensor("").has_noise);
+  EXPECT_FALSE(sensor(", noise: none").has_noise);
+  EXPECT_EQ(sensor(", least_seen: 0.7").least_seen, 0.7);
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", noise: some")), in_line(5, "'some'", "none"));
+  EXPECT_THAT(errors_of(with_sensor(kDepth + ", least_seen: 1.1")), in_line(5, "1.1"));
+  for (const char* const key : {"noise: none", "least_seen: 0.5"}) {
+    EXPECT_THAT(errors_of(with_sensor(std::string("octomap: /map, ") + key)),
+                in_line(5, "depth images and points only"));
+  }
+
+  EXPECT_FALSE(sensor("").knows);
+  EXPECT_TRUE(known_bodies(scene_of(with_sensor(kDepth))).empty());
+  const Scene scene = scene_of(with_sensor(kDepth + ", knows: true"));
+  EXPECT_EQ(known_bodies(scene), (std::vector<std::uint32_t>{0, 1, 2})) << "floor and boxes";
+  EXPECT_EQ(hidden_pairs(scene).size(), 2u) << "of the sensor with each box";
+}
+
 TEST(SensorsOfACell, ContainAllThatTheySeeInABall) {
   for (const std::string& keys :
        {kDepth, kPoints + ", spacing: 0.01", kPoints + ", spacing: neighbours"}) {

@@ -80,7 +80,8 @@ void expect_same(const char* id) {
     for (const bool is_binary : {true, false}) {
       const std::string bytes = bytes_of(tree, is_binary);
       std::vector<MeasuredPoint> found;
-      ASSERT_EQ(occupied_cubes(view_of(bytes, is_binary, resolution, id), 100000, found),
+      double excess = 0.0;
+      ASSERT_EQ(occupied_cubes(view_of(bytes, is_binary, resolution, id), 100000, found, excess),
                 OctomapFault::kNoFault);
       std::ranges::sort(found, {},
                         [](const MeasuredPoint& p) { return std::tuple(p.x, p.y, p.z); });
@@ -92,6 +93,10 @@ void expect_same(const char* id) {
         EXPECT_LT(off, 1e-5);
         EXPECT_GE(found[i].radius, half) << "it contains the exact cube";
         EXPECT_LT(found[i].radius, half + 1e-5);
+        // A corner of the cube is within the excess of the exact one.
+        const double corner = std::hypot(off + found[i].radius - half, off + found[i].radius - half,
+                                         off + found[i].radius - half);
+        EXPECT_LE(corner, excess * (1.0 + 1e-9));
         ++cubes;
         coarse += half > 0.75 * resolution ? 1 : 0;
       }
@@ -115,7 +120,9 @@ TEST(OctomapTree, CubesContainTheExactOnesInSpiteOfRounding) {
     tree.updateNode(octomap::OcTreeKey(at(0), at(1), at(2)), true);
     const std::string bytes = bytes_of(tree, true);
     std::vector<MeasuredPoint> found;
-    ASSERT_EQ(occupied_cubes(view_of(bytes, true, resolution), 10, found), OctomapFault::kNoFault);
+    double excess = 0.0;
+    ASSERT_EQ(occupied_cubes(view_of(bytes, true, resolution), 10, found, excess),
+              OctomapFault::kNoFault);
     ASSERT_EQ(found.size(), 1u);
     const std::array<float, 3> centre{found[0].x, found[0].y, found[0].z};
     for (std::size_t k = 0; k < 3; ++k) {
@@ -130,13 +137,15 @@ TEST(OctomapTree, CutAndDamagedTreesAreRefusedOrReadWithinTheirBytes) {
   Random random(7);
   octomap::OcTree tree = drawn<octomap::OcTree>(random, 0.1);
   std::vector<MeasuredPoint> found;
+  double excess = 0.0;
   for (const bool is_binary : {true, false}) {
     const std::string whole = bytes_of(tree, is_binary);
     for (std::size_t size = 1; size < whole.size(); ++size) {
-      EXPECT_EQ(occupied_cubes(view_of(whole.substr(0, size), is_binary, 0.1), 100000, found),
-                OctomapFault::kCut);
+      EXPECT_EQ(
+          occupied_cubes(view_of(whole.substr(0, size), is_binary, 0.1), 100000, found, excess),
+          OctomapFault::kCut);
     }
-    EXPECT_EQ(occupied_cubes(view_of(whole + "x", is_binary, 0.1), 100000, found),
+    EXPECT_EQ(occupied_cubes(view_of(whole + "x", is_binary, 0.1), 100000, found, excess),
               OctomapFault::kCut);
     for (int i = 0; i < 3000; ++i) {
       std::string damaged = whole;
@@ -144,27 +153,29 @@ TEST(OctomapTree, CutAndDamagedTreesAreRefusedOrReadWithinTheirBytes) {
         damaged[static_cast<std::size_t>(random.integer(0, static_cast<int>(whole.size()) - 1))] =
             static_cast<char>(random.integer(0, 255));
       }
-      static_cast<void>(occupied_cubes(view_of(damaged, is_binary, 0.1), 50, found));
+      static_cast<void>(occupied_cubes(view_of(damaged, is_binary, 0.1), 50, found, excess));
       EXPECT_LE(found.size(), 50u);
     }
     // Children without an end.
-    EXPECT_EQ(occupied_cubes(view_of(std::string(1000, '\xFF'), is_binary, 0.1), 100000, found),
-              OctomapFault::kTooDeep);
+    EXPECT_EQ(
+        occupied_cubes(view_of(std::string(1000, '\xFF'), is_binary, 0.1), 100000, found, excess),
+        OctomapFault::kTooDeep);
   }
 }
 
 TEST(OctomapTree, OtherKindsAndSizesAreRefusedByCause) {
   std::vector<MeasuredPoint> found;
+  double excess = 0.0;
   const std::string bytes(2, '\xAA');  // eight occupied leaves
-  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1, "OcTreeStamped"), 9, found),
+  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1, "OcTreeStamped"), 9, found, excess),
             OctomapFault::kKind);
-  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.0), 9, found), OctomapFault::kResolution);
-  EXPECT_EQ(occupied_cubes(view_of(bytes, true, std::nan("")), 9, found),
+  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.0), 9, found, excess), OctomapFault::kResolution);
+  EXPECT_EQ(occupied_cubes(view_of(bytes, true, std::nan("")), 9, found, excess),
             OctomapFault::kResolution);
-  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1), 7, found), OctomapFault::kTooMany);
-  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1), 8, found), OctomapFault::kNoFault);
+  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1), 7, found, excess), OctomapFault::kTooMany);
+  EXPECT_EQ(occupied_cubes(view_of(bytes, true, 0.1), 8, found, excess), OctomapFault::kNoFault);
   EXPECT_EQ(found.size(), 8u);
-  EXPECT_EQ(occupied_cubes(view_of("", true, 0.1), 8, found), OctomapFault::kNoFault);
+  EXPECT_EQ(occupied_cubes(view_of("", true, 0.1), 8, found, excess), OctomapFault::kNoFault);
   EXPECT_TRUE(found.empty());
 }
 

@@ -24,9 +24,9 @@ using Type = RawSensorMessage::Type;
 
 inline constexpr std::int64_t kStart = test::camera::kStart, kFrame = test::camera::kFrame;
 
-// `objects` contains further ones: ", {name: ...}".
+// `objects` contains further ones: ", {name: ...}"; `pairs` lines of their pairs.
 inline Cell cell_with(const std::string& sensor, const std::string& ros = "",
-                      const std::string& objects = "") {
+                      const std::string& objects = "", const std::string& pairs = "") {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);
   return read_good(
@@ -34,7 +34,7 @@ inline Cell cell_with(const std::string& sensor, const std::string& ros = "",
           "robots: [{name: arm, urdf: scara.urdf}]\nobjects: [{name: cart, sphere: {radius: "
           "0.1}}" +
           objects + "]\nsensors:\n  - {name: eye, " + sensor +
-          "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n",
+          "}\npairs:\n  - {between: [arm, eye]}\n  - {between: [cart, eye]}\n" + pairs,
       folder / "cell.yaml");
 }
 inline const std::string kImage =
@@ -72,9 +72,9 @@ inline InfoText narrow() {
 
 class SensorsTest : public testing::Test {
  protected:
-  void make(const std::string& sensor, const std::string& ros = "",
-            const std::string& objects = "") {
-    cell = cell_with(sensor, ros, objects);
+  void make(const std::string& sensor, const std::string& ros = "", const std::string& objects = "",
+            const std::string& pairs = "") {
+    cell = cell_with(sensor, ros, objects, pairs);
     sensors = std::make_unique<Sensors>(cell, SensorsOptions{.is_log = false});
   }
   void add(Type type, const std::vector<std::byte>& cdr, std::int64_t sent_ns,

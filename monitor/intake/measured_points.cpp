@@ -1,4 +1,4 @@
-#include "monitor/sensors/measured_points.hpp"
+#include "monitor/intake/measured_points.hpp"
 
 #include <cmath>
 #include <cstring>
