@@ -3,6 +3,11 @@
 // Oracle: what the test did to the picture: which pixels go on, and how many are there.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include "tests/monitor/sensors/small_camera.hpp"
 #include "tests/shared/random.hpp"
 
@@ -15,8 +20,8 @@ const std::string kLarge =
 
 class LivePictures : public SensorsTest {
  protected:
-  void begin(const std::string& more) {
-    make(kLarge + more + kAbove);
+  void begin(const std::string& more, const std::string& mount = kAbove) {
+    make(kLarge + more + mount);
     add_joints(0.0, kStart - 100'000'000);
     add_joints(0.0, kStart);
     InfoText info;
@@ -38,10 +43,10 @@ class LivePictures : public SensorsTest {
     }
     return text;
   }
-  // True if it is used, as the next frame.
-  bool uses(ImageText image) {
+  // True if it is used, as the next frame, while the shoulder is at this angle.
+  bool uses(ImageText image, double shoulder = 0.0) {
     image.stamp_ns = kStart + ++number_ * kFrame;
-    add_joints(0.0, image.stamp_ns);
+    add_joints(shoulder, image.stamp_ns);
     add(image);
     return !settle(image.stamp_ns + 25'000'000).empty();
   }
@@ -86,6 +91,28 @@ TEST_F(LivePictures, WithoutNoiseMayRepeatIfTheCellSaysSo) {
   const ImageText image = wall(0.0);
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(uses(image));
   EXPECT_EQ(count(FrameFault::kFrozen), 0u);
+}
+
+// The upper arm lies along x below the camera, before a floor.
+TEST_F(LivePictures, WithoutNoiseAreFrozenIfTheRobotHasLeftItsImageInThem) {
+  begin(", noise: none, own_shell: 0.03",
+        ", mount: {pose: {xyz: [0.5, 0, 2], rpy: [3.141592653589793, 0, 0]}}");
+  ImageText image = wall(0.0);
+  for (std::uint32_t v = 0; v < kRows; ++v) {
+    for (std::uint32_t u = 0; u < kColumns; ++u) {
+      const double x = 1.95 * (u - 31.5) / 60.0, y = 1.95 * (v - 23.5) / 60.0;
+      const bool is_arm = std::abs(x) < 0.38 && std::abs(y) < 0.04;
+      put(image, v * std::size_t{kColumns} + u, is_arm ? 1950 : 3000);
+    }
+  }
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(uses(image)) << "it stands still";
+  EXPECT_GT(sensors->status(0).own[1].elements, 40u) << "the upper arm";
+  // As fast as the joint may turn, and back.
+  for (int i = 1; i < 10; ++i) static_cast<void>(uses(image, 0.06 * i));
+  EXPECT_FALSE(uses(image, 0.6)) << "it has turned, and its image has not";
+  EXPECT_GT(count(FrameFault::kFrozen), 0u);
+  for (int i = 9; i > 0; --i) static_cast<void>(uses(image, 0.06 * i));
+  EXPECT_TRUE(uses(image, 0.0)) << "it is back";
 }
 
 TEST_F(LivePictures, ThatLoseAPartAtOnceAreTornUntilItIsBackOrTenSecondsHavePassed) {
