@@ -78,7 +78,7 @@ TEST(CameraOnALossyNetwork, GivesWholeFramesOrNone) {
       const clearance_msg_PairDistance& pair = report->pairs._buffer[i];
       if (pair.status >= static_cast<std::uint8_t>(PairStatus::kStale)) continue;
       EXPECT_LE(pair.lower, kExact + 1e-9);
-      EXPECT_GE(pair.upper, kExact - kRounding);
+      EXPECT_GE(pair.upper, kExact - 1e-9);
     }
   }
   const auto came = static_cast<std::int64_t>(used.size());
