@@ -91,13 +91,24 @@ def test_no_object_is_made_without_its_initialisation(name):
 
 def test_objects_are_not_copied_or_pickled_half():
     for thing in (clearance.box([1, 1, 1]), clearance.Pose(), clearance.TrackingState()):
-        for attempt in (copy.copy, copy.deepcopy, pickle.dumps):
+        pickled = [lambda x, p=p: pickle.dumps(x, p) for p in range(pickle.HIGHEST_PROTOCOL + 1)]
+        reduced = [lambda x, p=p: x.__reduce_ex__(p) for p in range(-1, pickle.HIGHEST_PROTOCOL + 2)]
+        for attempt in (copy.copy, copy.deepcopy, lambda x: x.__reduce__(), *pickled, *reduced):
             with pytest.raises(TypeError):
                 attempt(thing)
 
 
+# Python's own pickling calls the class that all of them have in common.
+def test_no_object_is_made_of_the_common_base():
+    base = clearance.Pose.__mro__[-2]
+    for attempt in (base, lambda: base(clearance.Pose()), type("Derived", (base,), {})):
+        with pytest.raises(TypeError):
+            attempt()
+
+
+# Includes those of `object`.
 def members_of(thing):
-    return [n for n in vars(type(thing)) if n != "__init__" and not n.startswith(("__sub", "__init_sub"))]
+    return [n for n in dir(thing) if n != "__init__" and not n.startswith(("__sub", "__init_sub"))]
 
 
 def test_methods_and_members_with_garbage_give_values_or_exceptions(planar, arm_files):

@@ -63,6 +63,7 @@ from ._clearance import (
     segment,
     truncated_cone,
 )
+from ._clearance import __version__ as __version__
 
 __all__ = [
     "Body",

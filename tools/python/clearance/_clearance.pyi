@@ -12,6 +12,8 @@ _PoseLike = Union["Pose", ArrayLike]
 _Floats = NDArray[np.float64]
 _Self = TypeVar("_Self")
 
+__version__: str
+
 class ShapeError(ValueError): ...
 
 class CellError(ValueError):

@@ -1,5 +1,8 @@
 #include "tools/python/module/module.hpp"
 
+#include <exception>
+#include <utility>
+
 #include "tools/python/module/waiting.hpp"
 
 namespace clearance::python {
@@ -9,6 +12,25 @@ namespace py = pybind11;
 
 PyTypeObject* base_type() {
   return reinterpret_cast<PyTypeObject*>(py::detail::get_internals().instance_base);
+}
+
+newfunc make_with_memory = nullptr;  // pybind11's own
+
+// pybind11 throws where the class is none of its own, as in copyreg's call of the common base. An
+// exception of C++ that passed through Python would end the interpreter.
+PyObject* make_without_throwing(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
+  try {
+    return make_with_memory(type, arguments, keywords);
+  } catch (const std::exception&) {
+    PyErr_Format(PyExc_TypeError, "cannot make, copy or pickle an object by '%s'", type->tp_name);
+    return nullptr;
+  }
+}
+
+void refuse_the_common_base() {
+  if (base_type()->tp_new == make_without_throwing) return;
+  make_with_memory = std::exchange(base_type()->tp_new, make_without_throwing);
+  PyType_Modified(base_type());
 }
 
 PyObject* make(PyTypeObject* type, PyObject* arguments, PyObject* keywords) {
@@ -34,6 +56,7 @@ void refuse_new_without_init(const py::module_& module) {
 PYBIND11_MODULE(_clearance, module) {
   using namespace clearance::python;
   module.doc() = "Clearance in C++. Import clearance instead, which has the same names.";
+  module.attr("__version__") = CLEARANCE_VERSION;
   watch_for_the_end();
   add_bodies(module);
   add_distance(module);
@@ -44,5 +67,6 @@ PYBIND11_MODULE(_clearance, module) {
   add_shared_cell(module);
   add_writers(module);
   add_commands(module);
+  refuse_the_common_base();
   refuse_new_without_init(module);
 }
