@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <memory>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "monitor/app/log_lines.hpp"
@@ -64,16 +66,17 @@ bool OtherDaemons::has_met(dds_instance_handle_t writer) const {
   return std::ranges::find(met_, writer) != met_.end();
 }
 
-// There are two partners at most: a third one would ask both for their states again and again.
+// There are two partners at most: a third one would ask both for their states again and again. A
+// younger twin of a partner ends by itself, and says nothing of who is third.
 void OtherDaemons::note_partner(dds_instance_handle_t writer, const DaemonIdentity& partner) {
   met_.push_back(writer);
   partners_.push_back({writer, partner});
   log_line(lines::kPartnerMet, partner.described(), topic_);
-  const bool is_third =
-      partners_.size() > 1 && std::ranges::all_of(partners_, [this](const Partner& each) {
-        return yields_to(own_, each.identity);
-      });
-  if (!is_third) return;
+  std::set<std::string> older;  // names
+  for (const Partner& each : partners_) {
+    if (yields_to(own_, each.identity)) older.insert(each.identity.partner);
+  }
+  if (older.size() < 2) return;
   log_line(lines::kOtherDaemonFirst, partner.described(), topic_);
   yields_ = true;
 }

@@ -73,6 +73,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
     : topics_(&cell.topics),
       undecodable_before_(undecodable_samples()),
       where_(participant.where()),
+      partition_(participant.partition()),
       sensors_(cell.scene.sensors.empty() ? nullptr
                                           : std::make_unique<SensorReader>(cell, participant)),
       intake_(cell,
@@ -170,6 +171,12 @@ std::string PoseReader::senders_of_joints() const {
   }
   for (const auto& [handle, writer] : ros_.present().writers()) {
     if (writer.type != kRosJointState.descriptor->m_typename) continue;
+    if (writer.partition == partition_ && !writer.topic.ends_with("/joint_states")) {
+      return fmt::format(
+          "{} has joint states, and is not read: expected {}, rt/joint_states in any "
+          "namespace, or that a robot names its topic (joint_states)",
+          writer.topic, topics_->joint_states);
+    }
     return fmt::format("{} is published in {} and does not reach {}", writer.topic,
                        writer.partition.empty() ? "the default partition"
                                                 : fmt::format("partition {}", writer.partition),

@@ -110,7 +110,7 @@ class PoseReader final : public PoseSource {
   std::uint64_t undecodable_before_;
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};
-  std::string where_;
+  std::string where_, partition_;
   // Guards the intake, and what `ros_` knows of other programs. The taking and the publishing
   // thread use it, never the tick thread.
   mutable std::mutex mutex_;

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <cstring>
+#include <string_view>
 
 #include "config/text/sentences.hpp"
 
@@ -32,6 +33,13 @@ std::string first_partition(const dds_qos_t* qos) {
 bool is_latched(const dds_qos_t* qos) {
   dds_durability_kind_t kind = DDS_DURABILITY_VOLATILE;
   return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
+}
+
+// What every node of ROS 2 publishes: services, parameters, its log.
+bool is_of_ros_itself(std::string_view topic) {
+  for (const std::string_view prefix : {"rq/", "rr/", "rs/"})
+    if (topic.starts_with(prefix)) return true;
+  return topic == "ros_discovery_info" || topic == "rt/rosout" || topic == "rt/parameter_events";
 }
 
 PresentWriter writer_of(const dds_builtintopic_endpoint_t& endpoint) {
@@ -75,8 +83,11 @@ bool PresentTopics::poll() {
 
 std::string PresentTopics::listed() const {
   std::map<std::string, std::size_t> counts;
-  for (const auto& [handle, writer] : writers_) ++counts[writer.topic];
-  if (counts.empty()) return "no other program";
+  for (const auto& [handle, writer] : writers_) {
+    if (!is_of_ros_itself(writer.topic)) ++counts[writer.topic];
+  }
+  if (writers_.empty()) return "no other program";
+  if (counts.empty()) return "no topic but ROS 2's own";
   std::vector<std::string> topics;
   for (const auto& [topic, count] : counts) {
     topics.push_back(count > 1 ? fmt::format("{} ({} writers)", topic, count) : topic);

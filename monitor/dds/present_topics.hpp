@@ -35,7 +35,8 @@ class PresentTopics {
   [[nodiscard]] const std::map<std::uint64_t, PresentWriter>& writers() const noexcept {
     return writers_;
   }
-  // "rt/tf (2), rt/scan", at most ten topics; "no other program" if no other program publishes.
+  // "rt/tf (2), rt/scan", at most ten topics, without those that every node of ROS 2 publishes; "no
+  // other program" if no other program publishes.
   [[nodiscard]] std::string listed() const;
 
  private:

@@ -15,15 +15,28 @@ namespace {
 // The most lines of one update; it then logs how many it left out.
 constexpr std::size_t kLinesAtOnce = 5;
 
+constexpr int kFirstPauseS = 10, kLongestPauseS = 640;
+constexpr int kOverS = 60;  // growth is new again after this time without any
+
 // Logs by how much a count has grown.
-template <class... Noun>
-void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t now,
-                std::uint64_t& before, Noun... noun) {
-  if (now > before) log_line(line, counted(now - before, noun...), now);
-  before = now;
+template <class Growth, class... Noun>
+void log_growth(const LogLine<lines::Text, lines::Count>& line, std::uint64_t now, Growth& growth,
+                Noun... noun) {
+  if (const std::uint64_t grown = growth.update(now)) log_line(line, counted(grown, noun...), now);
 }
 
 }  // namespace
+
+std::uint64_t HealthLog::Growth::update(std::uint64_t now) noexcept {
+  ++silent_s;
+  quiet_s = now > before ? 0 : quiet_s + 1;
+  before = now;
+  if (quiet_s > kOverS && now == told) pause_s = 0;
+  if (now <= told || silent_s < pause_s) return 0;
+  silent_s = 0;
+  pause_s = std::clamp(2 * pause_s, kFirstPauseS, kLongestPauseS);
+  return now - std::exchange(told, now);
+}
 
 HealthLog::HealthLog(const Scene& scene) : joints_(scene) { note_sensors(scene); }
 
@@ -39,7 +52,8 @@ void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) 
   } else if (now.is_of_sensor && now.stale) {
     log_line(lines::kFramesLate, input.name, age_ms);
   } else if (now.is_of_sensor) {
-    log_line(lines::kFramesBack, input.name);
+    // A changed scene may have let go of the frame, so that none is late any more.
+    if (input.age_ns >= 0) log_line(lines::kFramesBack, input.name);
   } else if (!now.stale) {
     log_line(lines::kPosesBack, input.name);
   } else if (input.contradicted) {

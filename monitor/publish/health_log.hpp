@@ -48,7 +48,15 @@ class HealthLog {
   JointLog joints_;
   std::uint64_t clock_steps_ = 0;
   std::int64_t clock_offset_ns_ = 0;
-  std::uint64_t lost_ = 0, undecodable_ = 0, foreign_ = 0, overruns_ = 0, dropped_ = 0;
+  // A count whose growth is told: at once, then after pauses that double while it goes on growing.
+  struct Growth {
+    std::uint64_t before = 0, told = 0;
+    int silent_s = 0, quiet_s = 0;  // since the last line; since it grew last
+    int pause_s = 0;                // until the next line
+    // Called each second. Returns by how much it has grown since the last line; 0: no line is due.
+    [[nodiscard]] std::uint64_t update(std::uint64_t now) noexcept;
+  };
+  Growth lost_, undecodable_, foreign_, overruns_, dropped_;
 };
 
 }  // namespace clearance

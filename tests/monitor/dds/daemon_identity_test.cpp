@@ -13,6 +13,9 @@ TEST(DaemonIdentity, GoesThroughUserDataAndBack) {
   EXPECT_EQ(read->start_ns, made.start_ns);
   EXPECT_EQ(read->pid, made.pid);
   EXPECT_EQ(read->host, made.host);
+  EXPECT_FALSE(read->boot.empty());
+  EXPECT_EQ(read->boot, made.boot);
+  EXPECT_EQ(read->up_ns, made.up_ns);
   EXPECT_NE(made.id, 0u);
   EXPECT_NE(make_identity().id, made.id);
 }
@@ -32,6 +35,17 @@ TEST(DaemonIdentity, ExactlyOneOfTwoGivesWay) {
   EXPECT_FALSE(yields_to(early, late));
   EXPECT_TRUE(yields_to(as_late, late));
   EXPECT_FALSE(yields_to(late, as_late));
+}
+
+TEST(DaemonIdentity, AgesOnOneMachineAreNotToldByItsWallClock) {
+  const DaemonIdentity runs{.id = 1, .start_ns = 160, .boot = "b", .up_ns = 100};
+  const DaemonIdentity late{.id = 2, .start_ns = 100, .boot = "b", .up_ns = 105};
+  EXPECT_TRUE(gives_way(late, runs)) << "its wall clock is behind";
+  EXPECT_FALSE(gives_way(runs, late));
+  DaemonIdentity elsewhere = late;
+  elsewhere.boot = "c";
+  EXPECT_FALSE(gives_way(elsewhere, runs));
+  EXPECT_TRUE(gives_way(runs, elsewhere));
 }
 
 }  // namespace

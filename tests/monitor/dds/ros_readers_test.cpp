@@ -90,6 +90,17 @@ TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {
       [&] { return inputs.senders_of_joints().find("no publisher") == std::string::npos; }));
 }
 
+TEST_F(RosReadersTest, OnATopicOfAnotherNameAreNamedAndNotSaidToBeOutOfReach) {
+  test::RosJoints joints(robot, "rt/joint_statez");
+  const dds_entity_t service = robot.ros_writer(kRosTf, "rq/node/get_parametersRequest");
+  EXPECT_GT(service, 0);
+  EXPECT_TRUE(test::eventually([&] {
+    return inputs.senders_of_joints().find("rt/joint_statez has joint states, and is not read") !=
+           std::string::npos;
+  }));
+  EXPECT_EQ(inputs.senders_of_joints().find("rq/"), std::string::npos);
+}
+
 TEST_F(RosReadersTest, OfAnotherPartitionAreNamed) {
   DdsOptions elsewhere = dds;
   elsewhere.partition = "elsewhere";

@@ -70,5 +70,22 @@ TEST_F(HealthLogTest, TellsAgainOfAnObjectThatWasAwayForAChange) {
   EXPECT_EQ(lines("poses-late"), 2u) << logged_->text();
 }
 
+TEST_F(HealthLogTest, TellsOfOverrunsThatGoOnInPausesThatDouble) {
+  std::uint64_t overruns = 0;
+  std::vector<int> told;
+  for (int s = 0; s < 200; ++s) {
+    const std::size_t before = lines("overruns");
+    second(first_, "", overruns += 7);
+    if (lines("overruns") > before) told.push_back(s);
+  }
+  EXPECT_EQ(told, (std::vector<int>{0, 10, 30, 70, 150}));
+  EXPECT_EQ(logged_->text().find("1400") == std::string::npos, true) << "not told yet";
+  for (int s = 0; s < 400; ++s) second(first_, "", overruns);
+  EXPECT_NE(logged_->text().find("1400"), std::string::npos) << "the last ones are told, too";
+  const std::size_t before = lines("overruns");
+  second(first_, "", overruns + 1);
+  EXPECT_EQ(lines("overruns"), before + 1) << "after a minute without any it is news";
+}
+
 }  // namespace
 }  // namespace clearance::test
