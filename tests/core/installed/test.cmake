@@ -22,3 +22,7 @@ function(refused user switch)
 endfunction()
 refused(refused_row_major EIGEN_DEFAULT_TO_ROW_MAJOR)
 refused(refused_debug_containers _GLIBCXX_DEBUG)
+
+# The build tree has the name of the installed package.
+run("${CMAKE_COMMAND}" -S "${CMAKE_CURRENT_LIST_DIR}/in_build_tree" -B "${FOLDER}/added"
+    "-DCLEARANCE=${CMAKE_CURRENT_LIST_DIR}/../../..")
