@@ -21,7 +21,7 @@
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_line.hpp"
+#include "monitor/app/log_lines.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -284,7 +284,10 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
     }
   }
   route_dds_log();
-  client::Connection connection(arguments.dds.resolve(cell), cell.topics);
+  const auto dds = arguments.dds.resolve(cell);
+  if (!arguments.robot.ros_topic.empty() && !dds.partition.empty())
+    log_line(lines::kPartitionWithoutRos, dds.partition);
+  client::Connection connection(dds, cell.topics);
   SimulationTime time;
   SimulatedRobot robot(cell, connection, arguments.robot, motion);
   std::optional<LatencyMeter> latency;
@@ -341,6 +344,7 @@ int run(int argc, char** argv, StopSignal& signal) {
     print(stderr, "clearance-robot: {}\n", log.error());
     return kBadCell;
   }
+  if (!log.note().empty()) spdlog::warn("{}: {}", arguments.joints, log.note());
   if (arguments.seconds == 0.0) {
     arguments.seconds = log.seconds();
     spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);

@@ -1,6 +1,10 @@
 #include "monitor/intake/own_batches.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <string>
+#include <string_view>
 
 #include "monitor/wire/convert.hpp"
 
@@ -48,11 +52,29 @@ std::optional<Decoder::Wanted> OwnJointStates::wants(const TopicName& topic) {
 bool OwnJointStates::decode(std::uint32_t, const RawMessage& message, const Now&, TopicCounts&) {
   if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   from_wire(*message_, names_, batch_);
+  note_unknown();
   const std::size_t used = std::min(batch_.joints.size(), most_);
   const std::size_t cut = batch_.joints.size() - used;
   batch_.joints.resize(used);
   out_.give(batch_, message.writer, cut);
   return true;
+}
+
+// The tick refuses such a joint without its name, which it does not know.
+void OwnJointStates::note_unknown() {
+  std::string added;
+  for (std::uint32_t i = 0; i < message_->names._length; ++i) {
+    const std::string_view name = message_->names._buffer[i];
+    if (names_.find(name) != JointNames::kUnknown || unknown_names_.contains(name)) continue;
+    if (unknown_names_.size() >= kMostUnknownNames) break;
+    unknown_names_.emplace(name);
+    added += (added.empty() ? "" : ", ") + std::string(name);
+  }
+  if (added.empty()) return;
+  out_.tell({.cause = News::Cause::kUnknownJoints,
+             .is_warning = true,
+             .text = fmt::format("joints from '{}' that the cell does not have are refused: {}",
+                                 batch_.source.view(), added)});
 }
 
 PoseBatch* OwnBatches::decode(TopicKind kind, std::span<const std::byte> cdr) {

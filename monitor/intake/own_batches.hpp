@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <set>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,8 +55,12 @@ class OwnJointStates final : public Decoder {
   void change(const Cell& cell) override { names_ = JointNames(cell.scene); }
 
  private:
+  static constexpr std::size_t kMostUnknownNames = 64;
+  void note_unknown();
+
   std::string topic_;
   JointNames names_;
+  std::set<std::string, std::less<>> unknown_names_;  // that were told
   std::size_t most_;
   Outlet& out_;
   CdrDecoder decoder_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/text/sentences.hpp"
 #include "monitor/files/table.hpp"
 #include "tools/shared/joint_sweep.hpp"
 
@@ -27,6 +28,7 @@ JointLogMotion::JointLogMotion(const std::filesystem::path& file, const Scene& s
     columns.push_back(scene.variables[i].name);
     variables_.push_back(i);
   }
+  note_columns(header, scene);
   CsvTable table(file, columns);
   while (table.next()) {
     Row row{0, std::vector<double>(variables_.size())};
@@ -41,6 +43,24 @@ JointLogMotion::JointLogMotion(const std::filesystem::path& file, const Scene& s
     error_ = fmt::format("{}: found no {}; expected t_ns and a column for each joint, by its name",
                          file.string(), rows_.empty() ? "rows" : "joint of the cell");
   }
+}
+
+void JointLogMotion::note_columns(const std::vector<std::string>& header, const Scene& scene) {
+  constexpr std::size_t kNamed = 6;
+  std::vector<std::string> unknown, resting;
+  for (const std::string& column : header) {
+    if (column != "t_ns" &&
+        std::ranges::find(scene.variables, column, &JointVariable::name) == scene.variables.end())
+      unknown.push_back(column);
+  }
+  for (const JointVariable& variable : scene.variables) {
+    if (std::ranges::find(header, variable.name) == header.end()) resting.push_back(variable.name);
+  }
+  if (!unknown.empty())
+    note_ = fmt::format("found columns of no joint of the cell: {}", listed(unknown, kNamed));
+  if (!resting.empty())
+    note_ += fmt::format("{}joints without a column rest: {}", note_.empty() ? "" : "; ",
+                         listed(resting, kNamed));
 }
 
 double JointLogMotion::seconds() const noexcept {

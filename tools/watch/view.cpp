@@ -25,6 +25,11 @@ const char* status_name(std::uint8_t status) {
   return *known != 0 ? known : "?";
 }
 
+// The name of a zone comes with its first message; the catalogue may have it before.
+std::string name_of(const Feed& feed, std::uint32_t zone, const char* name) {
+  return name != nullptr && *name != 0 ? std::string(name) : feed.zone_name(zone);
+}
+
 Style status_style(std::uint8_t status) {
   switch (static_cast<PairStatus>(status)) {
     case PairStatus::kConverged:
@@ -158,7 +163,8 @@ void add_zones(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   Line& line = lines.emplace_back(width);
   line.add("zones     ", Style::kDim);
   for (const auto& [id, zone] : feed.zones()) {
-    line.add(fmt::format("{} {}{}", zone.name, zone.active ? "ACTIVE" : "clear", cause(feed, zone)),
+    line.add(fmt::format("{} {}{}", name_of(feed, id, zone.name), zone.active ? "ACTIVE" : "clear",
+                         cause(feed, zone)),
              zone.active ? Style::kAlarm : Style::kGood)
         .add("  ");
   }
@@ -327,7 +333,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   for (const auto& [id, zone] : feed.zones()) {
     if (!zone.active) continue;
     const std::string why = cause(feed, zone);
-    text += fmt::format("  zone {}{}", zone.name,
+    text += fmt::format("  zone {}{}", name_of(feed, id, zone.name),
                         why.empty() ? fmt::format(" ({})", feed.pair_name(zone.pair)) : why);
   }
   for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);

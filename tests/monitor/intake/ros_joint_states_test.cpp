@@ -4,6 +4,8 @@
 #include <cmath>
 #include <map>
 
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/convert.hpp"
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 
@@ -43,6 +45,24 @@ TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHav
   EXPECT_TRUE(batch.joints[0].has_velocity);
   EXPECT_EQ(heard.intake.joint_states().unknown_names(), (std::set<std::string>{"wheel"}));
   take({{"wheel"}, {1.0}});
+  EXPECT_EQ(heard.told(News::Cause::kUnknownJoints), 1u) << "each name once";
+}
+
+// The tick refuses such a joint without a name: only the message has it.
+TEST_F(RosJointStatesTest, OfOurOwnTopicWithANameThatTheCellDoesNotHaveAreTold) {
+  PoseBatch sent{SourceName("arm"), 1, 0, {}};
+  sent.joints = {joint(0, 0.1, now())};
+  const auto states = make_joint_states(sent, cell.scene);
+  dds_string_free(states->names._buffer[0]);
+  states->names._buffer[0] = dds_string_dup("left_sholder");
+  CdrEncoder encoder;
+  const auto bytes = encoder.encode(*states);
+  RosMessage message = joint_state(now(), now(), {});
+  message.topic = cell.topics.joint_states;
+  message.type = topic(TopicKind::kJointStates).type->m_typename;
+  message.cdr.assign(bytes.begin(), bytes.end());
+  EXPECT_TRUE(heard.take(message));
+  EXPECT_TRUE(heard.take(message));
   EXPECT_EQ(heard.told(News::Cause::kUnknownJoints), 1u) << "each name once";
 }
 
