@@ -36,7 +36,7 @@ A motion is a JSON object:
   poses       {"OBJECT": [x, y, z, qw, qx, qy, qz]} of objects that are neither fixed nor part of a robot;
               such an object comes nearer by its max_speed x time, or with "others": "still" not at all
   turn_speeds {"OBJECT": rad/s} of such objects on which robots stand; without it they may rotate by any angle
-  margins     m, instead of --margin
+  margins     m, instead of --margin; or {"between": ["A", "B"], "m": 0.05}, {"zone": "Z", "m": 0.05} for some pairs
   beside      [{joints, times_s, positions, velocities}] of other robots, which rest before and after
   moving      {"OBJECT": {"times_s": [...], "poses": [[x, y, z, qw, qx, qy, qz], ...]}}: stated motions of objects
   payloads    [{"name", "link", "pose", "touch": [...]}]: what links carry, an object of the cell or a new one with
@@ -82,6 +82,10 @@ int run(const AskOptions& options) {
     }
   }
   Answering answering(options);
+  if (const std::string wrong = answering.read_margins(); !wrong.empty()) {
+    print(stderr, "clearance-ask: {}\n", wrong);
+    return kUsage;
+  }
   if (!answering.read()) return kBadCell;
   std::ofstream file_out;
   if (options.out != "-") {
@@ -112,8 +116,11 @@ int main(int argc, char** argv) {
                  "File of motions, one a line, or a ROS 2 bag; - is standard input")
       ->required();
   app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
-  app.add_option("--margin", options.margins, "Margins, m; 0 asks for contact; repeatable")
-      ->check(clearance::number_from_zero())
+  app.add_option(
+         "--margin", options.margins,
+         "Margins, m; 0 asks for contact; repeatable. A,B=0.05 is one of the pairs of two "
+         "objects or groups, ZONE=0.05 of a zone. Others count for all pairs but those that "
+         "a robot's own build keeps nearer in every posture")
       ->capture_default_str();
   app.add_option("--tolerance", options.tolerance, "Largest gap between lower and upper, m")
       ->check(clearance::positive_number())

@@ -253,6 +253,12 @@ void AttachmentReader::leave_out_touching() {
     for (const std::string& group : list_.objects[i].groups) named[group].push_back(i);
   }
   for (const auto& [object, names] : touching_) {
+    if (names->items.size() > kMaxObjects) {
+      diagnostics_.add(*names,
+                       fmt::format("found {} names that '{}' may touch; expected at most {}",
+                                   names->items.size(), list_.objects[object].name, kMaxObjects));
+      continue;
+    }
     for (const YamlNode& item :
          read_list(*names, "objects and groups that it may touch", diagnostics_)) {
       const auto name = read_name(item, "an object or a group", diagnostics_);
@@ -260,7 +266,9 @@ void AttachmentReader::leave_out_touching() {
       const auto found = named.find(*name);
       if (found != named.end()) {
         for (const std::uint32_t other : found->second) {
-          if (other != object) list_.left_out.push_back(pair_key(object, other));
+          if (other == object) continue;
+          list_.left_out.push_back(pair_key(object, other));
+          list_.touching.push_back(pair_key(object, other));
         }
       } else if (list_.names_known && !links_.contains(*name)) {
         std::vector<std::string> known;

@@ -292,12 +292,13 @@ struct CellReadings::State {
   State(std::filesystem::path of, CellOptions how)
       : file(std::move(of)),
         options(std::move(how)),
-        revision(options.root),
-        meshes(file, revision, options.tell, options.is_of_urdf ? Advice::kUrdf : Advice::kCell) {}
+        revision(options.root, options.may_read),
+        meshes(file, revision, options.tell, options.is_of_urdf ? Advice::kUrdf : Advice::kCell,
+               options.meshes_ahead) {}
 
   Cell read(const YamlNode& document, const std::string& yaml, Diagnostics& diagnostics) {
     Cell cell;
-    revision = Revision(options.root);
+    revision = Revision(options.root, options.may_read);
     revision.add(without_partner(document, yaml));
     CellReader(file, options, meshes, shapes, diagnostics, revision).read(document, cell);
     return cell;
@@ -325,7 +326,8 @@ CellResult CellReadings::read(const YamlNode& document, const std::string& yaml)
                           s.options.is_of_urdf ? CellText::kOfUrdf : CellText::kWritten);
   s.meshes.begin_reading();
   Cell cell = s.read(document, yaml, diagnostics);
-  if (diagnostics.empty() && s.meshes.has_put_off()) {
+  const bool wants = s.options.meshes_ahead != nullptr && !s.options.meshes_ahead->wanted.empty();
+  if (diagnostics.empty() && s.meshes.has_put_off() && !wants) {
     s.meshes.split_from_here();
     cell = s.read(document, yaml, diagnostics);
   }

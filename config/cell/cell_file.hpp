@@ -10,11 +10,13 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "config/scene/revision.hpp"
 #include "config/yaml/cell_error.hpp"
 
 namespace clearance {
 
 struct YamlNode;
+struct MeshesAhead;
 
 // A cell, or every error that can be found in one pass. Mesh paths are relative to the file.
 using CellResult = std::variant<Cell, std::vector<CellError>>;
@@ -34,6 +36,10 @@ struct CellOptions {
   std::filesystem::path root = {};
   // The share of the cell to which it is reduced (select_share). If empty, it stays whole.
   std::string share = {};
+  MayRead may_read = {};  // may be empty; not asked of the cell's own file
+  // If not null, meshes come from another thread where it asks for that. A reading that wants some
+  // has found no mistake, but its cell has stand-ins and must not be used.
+  MeshesAhead* meshes_ahead = nullptr;
 };
 
 // Reads a cell again and again, as changes edit its YAML tree. Bodies, meshes and their parts that

@@ -7,6 +7,8 @@
 #include <map>
 #include <string>
 
+#include "config/scene/people.hpp"
+
 namespace clearance {
 namespace {
 
@@ -75,16 +77,11 @@ std::string ContactReader::read_sentence(MapReader& map, const char* key,
 }
 
 void ContactReader::refuse_people(const YamlNode& node, const AllowedContact& contact) const {
-  for (const Zone& zone : zones_) {
-    if (!zone.separation) continue;
-    const auto found = std::ranges::find_if(contact.pairs, [&](std::uint32_t pair) {
-      return std::ranges::find(zone.pairs, pair) != zone.pairs.end();
-    });
-    if (found == contact.pairs.end()) continue;
-    diagnostics_.add(node, fmt::format("found {} in the zone '{}' with separation; expected no "
-                                       "contact between a person and a robot",
-                                       names_of(*found), zone.name));
-    return;
+  for (const std::uint32_t pair : contact.pairs) {
+    const ObjectPair& of = pairs_.pairs[pair];
+    const auto why =
+        contact_with_people(objects_.objects, pairs_.pairs, zones_, of.first, of.second);
+    if (why) return diagnostics_.add(node, *why);
   }
 }
 
@@ -94,7 +91,7 @@ void ContactReader::fill(const YamlNode& node, const Between& between, AllowedCo
   for (const PairKey key : group_index_.pairs(between)) {
     if (const auto index = pair_index(pairs_.pairs, key)) contact.pairs.push_back(*index);
   }
-  if (contact.pairs.empty() && pairs_.complete) {
+  if (contact.pairs.empty() && pairs_.complete && !between.may_be_empty) {
     diagnostics_.add(
         node, fmt::format("found a contact over no pair: none between '{}' and '{}' is watched; "
                           "expected at least one, or that the contact is withdrawn",

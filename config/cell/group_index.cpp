@@ -106,6 +106,8 @@ std::optional<Between> GroupIndex::read_between(MapReader& map, Attached attache
     return std::nullopt;
   }
   Between between{};
+  if (const YamlNode* flag = map.optional("may_be_empty"))
+    between.may_be_empty = read_flag(*flag, diagnostics_).value_or(false);
   for (std::size_t side = 0; side < 2; ++side) {
     const YamlNode& item = node->items[side];
     if (const auto name = read_name(item, "a group or an object", diagnostics_)) {

@@ -18,7 +18,9 @@ namespace clearance {
 struct Between {
   std::array<std::string, 2> names;
   std::array<const std::vector<std::uint32_t>*, 2> objects;  // ascending; owned by GroupIndex
-  bool may_be_empty = false;  // a side is a declared group, whose members come and go
+  // True if covering no pair is no mistake: the cell says so, or a side is a declared group, whose
+  // members come and go.
+  bool may_be_empty = false;
 };
 
 // Names of groups and objects share one namespace, so that `between` needs no prefix. A rule that
@@ -35,7 +37,7 @@ class GroupIndex {
   // Objects that are attached to an object count where that one is named, or do not.
   enum class Attached : std::uint8_t { kCount, kDoNot };
 
-  // Reads the key `between` of a map. Returns nothing after a diagnostic.
+  // Reads the keys `between` and `may_be_empty` of a map. Returns nothing after a diagnostic.
   [[nodiscard]] std::optional<Between> read_between(MapReader& map,
                                                     Attached attached = Attached::kCount);
 

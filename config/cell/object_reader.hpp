@@ -60,6 +60,7 @@ struct ObjectList {
   // without shapes has no entry in `attachments`.
   std::vector<Attachment> attachments;  // ascending by object, a carrier before what it carries
   std::vector<PairKey> left_out;  // ascending: of attached objects, and `rigid`; never watched
+  std::vector<PairKey> touching;  // those of them that may touch by a rule of `touch`
   std::vector<PairKey> rigid =
       {};                   // ascending: of what stands on one body, but for links of one robot
   bool names_known = true;  // false: a name or group could not be read, so others may seem unknown

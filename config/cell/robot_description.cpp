@@ -26,7 +26,7 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
                                       files.why_not_found(*name, packages_from(diagnostics))));
     return std::nullopt;
   }
-  const auto bytes = read_bytes(path->string());
+  const auto bytes = revision.read(*path, *name);
   if (const auto* fault = std::get_if<FileFault>(&bytes)) {
     diagnostics.add(node,
                     fmt::format("found a file that cannot be used: {}; expected {}", fault->reason,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "config/scene/people.hpp"
 #include "config/text/sentences.hpp"
 
 namespace clearance {
@@ -127,6 +128,17 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
         node, fmt::format("found '{}' on both sides of the zone; expected people on one and the "
                           "robot on the other",
                           objects.objects[person].name));
+    return separation;
+  }
+  const auto is_of = [](const std::vector<std::uint32_t>& members, std::uint32_t object) {
+    return std::ranges::binary_search(members, object);
+  };
+  for (const PairKey key : objects.touching) {
+    const std::uint32_t a = first_of(key), b = second_of(key);
+    if (!(is_of(people, a) && is_of(robots, b)) && !(is_of(people, b) && is_of(robots, a)))
+      continue;
+    quantities.diagnostics().add(
+        node, no_contact_with_people(objects.objects[a], objects.objects[b], zone));
     return separation;
   }
   // A sensor measures no speed of what it sees.

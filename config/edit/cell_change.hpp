@@ -56,6 +56,9 @@ struct Attach {
   // The greatest depth by which it may overlap its carrier and what it may touch, m. A running
   // monitor checks that once, when the object is attached. Nothing: the monitor's default.
   std::optional<double> overlap = {};
+  // True if it may lie farther than 0.5 m from its carrier and from all that it may touch. A
+  // running daemon refuses that otherwise.
+  bool far = false;
 };
 
 // An attached object becomes a fixed one.

@@ -87,9 +87,23 @@ bool is_overruled(const SetPair& pair, std::span<const CellChange> later) {
   });
 }
 
+// A contact over no pair allows nothing. Later changes may leave one without pairs.
+std::optional<EditRefusal> void_contact(const AllowContact& wanted, std::size_t place,
+                                        const Scene& scene) {
+  const auto found = std::ranges::find(scene.contacts, wanted.contact, &AllowedContact::name);
+  if (found == scene.contacts.end() || !found->pairs.empty()) return std::nullopt;
+  return EditRefusal{place, fmt::format("contacts[{}]", wanted.contact),
+                     fmt::format("found a contact over no pair: none between '{}' and '{}' is "
+                                 "watched; expected at least one",
+                                 wanted.a, wanted.b)};
+}
+
 // A rule that other rules make void would be accepted and change nothing.
 std::optional<EditRefusal> void_rule(std::span<const CellChange> changes, const Scene& scene) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
+    if (const auto* contact = std::get_if<AllowContact>(&changes[i])) {
+      if (auto refused = void_contact(*contact, i, scene)) return refused;
+    }
     const auto* wanted = std::get_if<SetPair>(&changes[i]);
     if (wanted == nullptr || is_overruled(*wanted, changes.subspan(i + 1))) continue;
     if (!has_object(scene, wanted->a) || !has_object(scene, wanted->b)) continue;
@@ -105,8 +119,8 @@ std::optional<EditRefusal> void_rule(std::span<const CellChange> changes, const 
         wanted->rule == SetPair::Rule::kPublish || wanted->rule == SetPair::Rule::kWatch;
     if (is_rule && !pair) {
       return EditRefusal{i, fmt::format("pairs[{}, {}]", wanted->a, wanted->b),
-                         fmt::format("found {} left out by an exception with other names, or by a "
-                                     "robot's description; expected none",
+                         fmt::format("found {} left out by an exception with other names or by a "
+                                     "robot's description, or rigid; expected none of these",
                                      sides)};
     }
   }

@@ -300,6 +300,8 @@ Fault ChangeMaker::operator()(const SetPair& change) {
   } else {
     set(node, "between", list_of({change.a, change.b}));
   }
+  // Later changes may leave it nothing to cover: an attached object has its carrier's pairs.
+  set(node, "may_be_empty", flag_node(true));
   if (is_exception) {
     set(node, "reason", text_node(change.reason));
   } else {

@@ -52,6 +52,8 @@ class ChangeKeys {
     names("touch", change.touch);
     if (const YamlNode* overlap = map_.optional("overlap"))
       change.overlap = quantities_.length(*overlap, "the greatest overlap", kNotNegative);
+    if (const YamlNode* far = map_.optional("far"))
+      change.far = read_flag(*far, diagnostics_).value_or(false);
   }
   void read(Detach& change) {
     name("object", change.object);

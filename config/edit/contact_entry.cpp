@@ -24,6 +24,7 @@ YamlNode contact_entry(const AllowContact& change,
   YamlNode entry;
   set(entry, "name", text_node(change.contact));
   set(entry, "between", std::move(between));
+  set(entry, "may_be_empty", flag_node(true));
   set(entry, "depth", length(change.depth));
   const ContactEnd& end = change.end;
   YamlNode until;

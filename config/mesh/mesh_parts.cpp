@@ -67,19 +67,31 @@ std::optional<MeshParts> bodies_of(const ConvexParts& parts) {
 
 }  // namespace
 
+// A library with a revision of its own.
+struct ReadMeshes {
+  ReadMeshes(const std::filesystem::path& cell, const std::filesystem::path& root,
+             const std::function<void(const std::string&)>& tell, Advice advice)
+      : revision(root), library(cell, revision, tell, advice) {}
+  Revision revision;
+  MeshLibrary library;
+};
+
 // The cell of a recording has no folder of its own: its parts are in the user's cache.
 MeshLibrary::MeshLibrary(const std::filesystem::path& cell, Revision& revision,
-                         std::function<void(const std::string&)> tell, Advice advice)
+                         std::function<void(const std::string&)> tell, Advice advice,
+                         MeshesAhead* ahead)
     : directory_(cell.parent_path()),
       revision_(revision),
       cache_(revision.root().empty() ? std::optional(directory_) : std::nullopt),
       tell_(std::move(tell)),
-      advice_(advice) {}
+      advice_(advice),
+      ahead_(ahead) {}
 
 // A file that could not be used may have been replaced since.
 void MeshLibrary::begin(bool splits) {
   splits_ = splits;
   has_put_off_ = false;
+  not_made_.clear();
   std::erase_if(files_, [](const auto& entry) { return entry.second.refusal.has_value(); });
   for (auto& [path, file] : files_) file.counted = false;
   for (auto& [key, made] : made_) made.counted = false;
@@ -217,7 +229,38 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
             "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it"));
 }
 
+// What was read ahead and is refused stays so until the command that wants it is done.
+std::optional<std::variant<MeshParts, MeshRefusal>> MeshLibrary::from_ahead(const MeshUse& use) {
+  const std::filesystem::path path = path_of(use);
+  const auto here = files_.find(path.string());
+  const bool is_here = here != files_.end() && !here->second.refusal;
+  if (is_here && made_.contains(key_of(use, here->second.bytes))) return std::nullopt;
+  if (const MeshLibrary* const read = ahead_->read ? &ahead_->read->library : nullptr;
+      read != nullptr && read->files_.contains(path.string())) {
+    const File& found = read->files_.at(path.string());
+    if (found.refusal) return *found.refusal;
+    File& file = files_[path.string()];
+    const bool was_counted = is_here && file.counted;
+    file = found;
+    file.counted = was_counted;
+    const std::string key = key_of(use, file.bytes);
+    if (const auto refused = read->not_made_.find(key); refused != read->not_made_.end())
+      return refused->second;
+    if (const auto made = read->made_.find(key); made != read->made_.end()) {
+      made_.emplace(key, Made{.parts = made->second.parts});
+      return std::nullopt;
+    }
+  }
+  if (!ahead_->asks || revision_.refusal(path, use.file)) return std::nullopt;
+  ahead_->wanted.push_back(use);
+  has_put_off_ = true;
+  return stand_in();
+}
+
 std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
+  if (ahead_ != nullptr) {
+    if (auto found = from_ahead(use)) return *std::move(found);
+  }
   File& file = load(use);
   if (file.refusal) return *file.refusal;
   const std::string key = key_of(use, file.bytes);
@@ -227,7 +270,10 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
     if (!bodies && !splits_) return put_off(use, file);
     if (!bodies) {
       auto result = make(use, key, file);
-      if (std::holds_alternative<MeshRefusal>(result)) return result;
+      if (const auto* refusal = std::get_if<MeshRefusal>(&result)) {
+        not_made_.insert_or_assign(key, *refusal);
+        return result;
+      }
       bodies = std::get<MeshParts>(std::move(result));
     }
     warn_of_error(use, *bodies);
@@ -238,6 +284,16 @@ std::variant<MeshParts, MeshRefusal> MeshLibrary::parts(const MeshUse& use) {
     for (const ConvexBody& shape : parts.shapes) revision_.add(bytes_of(shape.anchors));
   }
   return parts;
+}
+
+std::shared_ptr<const ReadMeshes> read_meshes(const std::filesystem::path& cell,
+                                              const std::filesystem::path& root,
+                                              const std::function<void(const std::string&)>& tell,
+                                              Advice advice, const std::vector<MeshUse>& meshes) {
+  const auto read = std::make_shared<ReadMeshes>(cell, root, tell, advice);
+  read->library.split_from_here();
+  for (const MeshUse& use : meshes) (void)read->library.parts(use);
+  return read;
 }
 
 }  // namespace clearance

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -48,6 +49,16 @@ struct MeshRefusal {
 // cell. A person who gave a URDF has to write a cell first.
 enum class Advice : std::uint8_t { kCell, kUrdf };
 
+struct ReadMeshes;
+
+// What readings of a cell share with a thread that reads and splits meshes ahead of them, so that
+// the reading thread never waits for a disk or for a large mesh.
+struct MeshesAhead {
+  bool asks = false;            // a reading notes meshes that it does not have, in place of them
+  std::vector<MeshUse> wanted;  // by the readings since this was cleared
+  std::shared_ptr<const ReadMeshes> read;  // what the other thread has made of them; null: nothing
+};
+
 // Files are read once, and parts of the same use are made once, as long as this lives.
 //
 // A cell is read twice where a mesh has to be split. The first reading finds its mistakes, with a
@@ -59,7 +70,8 @@ class MeshLibrary {
   // into, go into `revision` once. `tell` gets a line, without its end, when a mesh is being split.
   // It also gets one when the error of the parts exceeds the tolerance. It may be empty.
   MeshLibrary(const std::filesystem::path& cell, Revision& revision,
-              std::function<void(const std::string&)> tell, Advice advice = Advice::kCell);
+              std::function<void(const std::string&)> tell, Advice advice = Advice::kCell,
+              MeshesAhead* ahead = nullptr);
 
   [[nodiscard]] std::variant<MeshParts, MeshRefusal> parts(const MeshUse& use);
 
@@ -83,6 +95,9 @@ class MeshLibrary {
     MeshParts parts;
     bool counted = false;  // in the revision
   };
+  // Takes the mesh from what was read ahead, or notes that it is wanted and returns a stand-in.
+  // Nothing: it is here, or has to be read here.
+  std::optional<std::variant<MeshParts, MeshRefusal>> from_ahead(const MeshUse& use);
   [[nodiscard]] std::filesystem::path path_of(const MeshUse& use) const;
   File& load(const MeshUse& use);
   // Returns the mesh in metres, or refuses one that is too large.
@@ -106,7 +121,15 @@ class MeshLibrary {
   Advice advice_;
   bool splits_ = false, has_put_off_ = false;
   std::map<std::string, File> files_;
-  std::map<std::string, Made> made_;  // by key
+  std::map<std::string, Made> made_;             // by key
+  std::map<std::string, MeshRefusal> not_made_;  // by key, in this reading
+  MeshesAhead* ahead_;
 };
+
+// Reads these meshes and splits them. To be called in any thread; never asks whether it may.
+[[nodiscard]] std::shared_ptr<const ReadMeshes> read_meshes(
+    const std::filesystem::path& cell, const std::filesystem::path& root,
+    const std::function<void(const std::string&)>& tell, Advice advice,
+    const std::vector<MeshUse>& meshes);
 
 }  // namespace clearance

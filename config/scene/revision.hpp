@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -39,18 +41,32 @@ namespace clearance {
 // Ends a sentence that begins with the name of a file for which leads_out_of() is true.
 inline constexpr std::string_view kLeadsOut = "leads out of the files that are kept with the cell";
 
+// Asked before a file that a cell names is touched. Returns why it may not be read, as a FileFault
+// does; nothing: it may.
+using MayRead = std::function<std::optional<std::string>(const std::filesystem::path&)>;
+
 class Revision {
  public:
-  // `root` as in path_in().
-  explicit Revision(std::filesystem::path root = {}) : root_(std::move(root)) {}
+  // `root` as in path_in(). Without `may_read`, every file may be read.
+  explicit Revision(std::filesystem::path root = {}, MayRead may_read = {})
+      : root_(std::move(root)), may_read_(std::move(may_read)) {}
   [[nodiscard]] const std::filesystem::path& root() const noexcept { return root_; }
 
   // Returns the bytes of a file that the cell calls `name`. A path that leads out of the root is
   // not read.
   [[nodiscard]] std::variant<std::string, FileFault> read(const std::filesystem::path& path,
                                                           const std::string& name) const {
-    if (leads_out_of(root_, path)) return FileFault{"'" + name + "' " + std::string(kLeadsOut)};
+    if (auto refused = refusal(path, name)) return *std::move(refused);
     return read_bytes(path.string());
+  }
+  // Why read() does not touch the file; nothing: it may.
+  [[nodiscard]] std::optional<FileFault> refusal(const std::filesystem::path& path,
+                                                 const std::string& name) const {
+    if (leads_out_of(root_, path)) return FileFault{"'" + name + "' " + std::string(kLeadsOut)};
+    if (may_read_) {
+      if (auto reason = may_read_(path)) return FileFault{*std::move(reason)};
+    }
+    return std::nullopt;
   }
 
   void add(std::string_view bytes) noexcept { hash_.add(bytes); }
@@ -72,6 +88,7 @@ class Revision {
  private:
   Fnv1a hash_;
   std::filesystem::path root_;
+  MayRead may_read_;
   std::vector<std::filesystem::path> files_;
 };
 

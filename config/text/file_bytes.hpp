@@ -1,17 +1,32 @@
-// Reads the files that a cell names.
+// Opens and reads the files that cells, command lines and bags name.
 #pragma once
 
+#include <cstdio>
+#include <filesystem>
+#include <memory>
 #include <string>
 #include <variant>
 
 namespace clearance {
+
+// Opens a regular file for reading, and waits for no writer, as that of a FIFO. Returns the
+// descriptor, which the caller closes, or -1 with errno: EISDIR for a folder, EINVAL for a FIFO, a
+// device or a socket.
+[[nodiscard]] int open_to_read(const std::filesystem::path& path) noexcept;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const noexcept { std::fclose(file); }
+};
+// Null: it was not opened; errno as from open_to_read().
+[[nodiscard]] std::unique_ptr<std::FILE, CloseFile> open_file(
+    const std::filesystem::path& path) noexcept;
 
 // `reason` ends a sentence: "'x.stl' cannot be opened: ...".
 struct FileFault {
   std::string reason;
 };
 
-// Returns the bytes of a file, at most 256 MiB, or why there are none.
+// Returns the bytes of a regular file, at most 256 MiB, or why there are none.
 [[nodiscard]] std::variant<std::string, FileFault> read_bytes(const std::string& path);
 
 }  // namespace clearance

@@ -18,7 +18,11 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   if (auto text = set_variable(stated.name, stated.position, variable)) return text;
   if (!(stated.age >= 0.0) || !std::isfinite(stated.age))
     return "the age of joint \"" + stated.name + "\" is not a number from 0 on";
-  if (others == OthersMove::kNot) return std::nullopt;
+  // What rests by assumption is as little a matter of the question as what moves by one.
+  if (others == OthersMove::kNot) {
+    free_variables_.push_back({.variable = variable});
+    return std::nullopt;
+  }
   const JointVariable& joint = scene_.variables[variable];
   FreeVariable free{.variable = variable, .speed = joint.max_speed, .age = stated.age};
   const double most = std::max(joint.upper - stated.position, stated.position - joint.lower) +
@@ -33,28 +37,31 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   return std::nullopt;
 }
 
-std::optional<std::string> Posture::free_carriers(const Question& question) {
-  if (question.others == OthersMove::kNot) return std::nullopt;
+void Posture::free_carriers(const Question& question) {
   for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
     const RobotBase& base = scene_.robots[r].base;
     if (base.kind != RobotBase::Kind::kObject || present_[base.object] == 0) continue;
     const double age = age_[base.object], v = speed_[base.object], w = turn_speed_[base.object];
     const std::uint32_t variable = chains_.of_carrier(r);
+    const bool is_stated = std::ranges::find(moving_objects_, base.object) != moving_objects_.end();
+    const bool may_move = !is_stated && scene_.objects[base.object].max_speed > 0.0;
+    if (may_move && question.others == OthersMove::kNot)
+      free_variables_.push_back({.variable = variable});
     if (v > 0.0) free_variables_.push_back({.variable = variable, .speed = v, .age = age});
     // An object that does not move at all does not rotate.
     if (v > 0.0 && w > 0.0)
       free_variables_.push_back({.variable = variable + 1, .speed = w, .age = age});
   }
-  return std::nullopt;
 }
 
 // A link counts for the question if something states its motion: or if nothing may move it.
 void Posture::note_free() {
-  any_free_ = !free_variables_.empty();
+  const auto deviates = [](const FreeVariable& free) { return free.speed > 0.0; };
+  any_free_ = std::ranges::any_of(free_variables_, deviates);
   std::fill(freedom_.begin(), freedom_.end(), Nearing());
   std::fill(is_of_question_.begin(), is_of_question_.end(), std::uint8_t{1});
   std::fill(may_deviate_.begin(), may_deviate_.end(), std::uint8_t{0});
-  if (!any_free_) return;
+  if (free_variables_.empty()) return;
   std::vector<std::uint8_t> is_free(bounds_.size(), 0), is_stated(bounds_.size(), 0);
   for (const FreeVariable& free : free_variables_) is_free[free.variable] = 1;
   for (const std::uint32_t moved : trajectory_.moved()) is_stated[moved] = 1;
@@ -71,7 +78,7 @@ void Posture::note_free() {
       free = free || is_free[v] != 0;
       stated = stated || is_stated[v] != 0;
     });
-    may_deviate_[i] = free;
+    may_deviate_[i] = free && any_free_;
     is_of_question_[i] = stated || !free;
   }
 }

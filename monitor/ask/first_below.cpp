@@ -1,9 +1,13 @@
 // Margins: whether a motion is above them at all instants, and else the first instant that is not.
 #include <algorithm>
 #include <cmath>
+#include <set>
+#include <utility>
 
+#include "config/scene/pairs_between.hpp"
 #include "monitor/ask/motion_search.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/pairs/kept_near.hpp"
 
 namespace clearance {
 namespace {
@@ -23,10 +27,38 @@ bool is_below(double upper, double limit) noexcept {
 
 }  // namespace
 
+// What is exempt depends on the margin. Then nothing follows from what was proven for another one.
+void MotionSearch::exempt_kept(double margin) {
+  const auto [kept, is_new] = kept_.try_emplace(margin);
+  if (is_new) kept->second = kept_nearer(scene_, margin);
+  exempt_.clear();
+  if (kept->second.empty()) return;
+  exempt_.assign(pairs_.pairs().size(), 0);
+  mark(kept->second, 1);
+  proven_until_ = posture_.trajectory().begin();
+}
+
+void MotionSearch::exempt_all_but(const MarginBetween& margin) {
+  exempt_.assign(pairs_.pairs().size(), 1);
+  mark(pairs_between(scene_, margin.a, margin.b), 0);
+  proven_until_ = posture_.trajectory().begin();
+}
+
+void MotionSearch::mark(const std::vector<std::uint32_t>& pairs, std::uint8_t value) {
+  std::set<std::pair<std::uint32_t, std::uint32_t>> objects;
+  for (const std::uint32_t pair : pairs)
+    objects.emplace(scene_.pairs[pair].first, scene_.pairs[pair].second);
+  for (std::uint32_t pair = 0; pair < exempt_.size(); ++pair) {
+    std::uint32_t first = 0, second = 0;
+    note_pair(pair, first, second);
+    if (objects.contains(std::minmax(first, second))) exempt_[pair] = value;
+  }
+}
+
 // A larger margin is violated no later than a smaller one.
 void MotionSearch::decide_margins() {
   proven_until_ = posture_.trajectory().begin();
-  if (!question_->margins.empty()) end_contacts();
+  if (!question_->margins.empty() || !question_->margins_between.empty()) end_contacts();
   const std::vector<double>& margins = question_->margins;
   double last = kInfinity;
   for (std::size_t n = 0; n < margins.size(); ++n) {
@@ -37,13 +69,24 @@ void MotionSearch::decide_margins() {
     if (next < 0.0) break;
     last = next;
     MarginAnswer decided{.margin = next};
+    exempt_kept(next);
     decide(decided);
-    const bool keeps_distance = decided.verdict == Verdict::kFree && contacts_.empty();
+    if (!exempt_.empty()) proven_until_ = posture_.trajectory().begin();
+    const bool keeps_distance =
+        decided.verdict == Verdict::kFree && contacts_.empty() && exempt_.empty();
     if (keeps_distance && question_->only_margins) answer_->lower = std::max(answer_->lower, next);
     for (std::size_t i = 0; i < margins.size(); ++i) {
       if (margins[i] == next) answer_->margins[i] = decided;
     }
   }
+  for (std::size_t i = 0; i < question_->margins_between.size(); ++i) {
+    const MarginBetween& of = question_->margins_between[i];
+    exempt_all_but(of);
+    MarginAnswer& decided = answer_->margins[margins.size() + i];
+    decided = {.margin = of.margin};
+    decide(decided);
+  }
+  exempt_.clear();
 }
 
 void MotionSearch::decide(MarginAnswer& answer) noexcept {
@@ -53,7 +96,7 @@ void MotionSearch::decide(MarginAnswer& answer) noexcept {
   }
   const Stretch whole = posture_.trajectory().whole();
   answer.above_until = whole.from;
-  const bool any_pair_counts = question_->only_verdicts && contacts_.empty();
+  const bool any_pair_counts = question_->only_verdicts && contacts_.empty() && exempt_.empty();
   if (any_pair_counts && is_below(answer_->upper, answer.margin)) {
     answer.verdict = Verdict::kBelow;
     answer.below_at = answer_->time;
@@ -108,6 +151,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
       const std::uint32_t pair = order[i];
       const Pair at = pair_at(pair, motion);
       const double limit = limit_until(stretch.to, pair, answer.margin);
+      if (limit == -kInfinity) continue;
       const double enough = limit != 0.0 ? limit : 1e-300;
       double apart = gap(at, pair, rounded_up(enough + at.loss));
       // Boxes and spheres say nothing of a depth.

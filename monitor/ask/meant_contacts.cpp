@@ -3,6 +3,7 @@
 #include <cmath>
 #include <tuple>
 
+#include "config/scene/people.hpp"
 #include "monitor/ask/motion_search.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 
@@ -46,8 +47,11 @@ std::optional<std::string> MotionSearch::take_contacts(const Question& question)
       if (!(stated.depth > 0.0)) return "the depth of a contact is not above 0";
       if (std::isnan(stated.until) || std::isnan(stated.distance))
         return "the end of a contact is not a number";
-      contacts_.push_back({std::min(objects[0], objects[1]), std::max(objects[0], objects[1]),
-                           -stated.depth, stated.until, stated.distance});
+      const auto [first, second] = std::minmax(objects[0], objects[1]);
+      if (auto text =
+              contact_with_people(scene_.objects, scene_.pairs, scene_.zones, first, second))
+        return text;
+      contacts_.push_back({first, second, -stated.depth, stated.until, stated.distance});
     }
   }
   if (contacts_.empty()) return std::nullopt;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "config/scene/pairs_between.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 
 namespace clearance {
@@ -50,6 +51,13 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
   for (const double margin : question.margins) {
     if (!(margin >= 0.0) || !std::isfinite(margin)) return "a margin is not a number from 0 on";
   }
+  for (const MarginBetween& of : question.margins_between) {
+    if (!(of.margin >= 0.0) || !std::isfinite(of.margin))
+      return "a margin is not a number from 0 on";
+    if (!pairs_between(scene_, of.a, of.b).empty()) continue;
+    return of.b.empty() ? "the cell has no zone \"" + of.a + "\" with a watched pair"
+                        : "the cell watches no pair between \"" + of.a + "\" and \"" + of.b + "\"";
+  }
   if (!question.profile) return std::nullopt;
   const ProfileRequest& profile = *question.profile;
   if (!(profile.tolerance > 0.0) || profile.most_points == 0)
@@ -92,7 +100,7 @@ void MotionSearch::begin(const Question& question, Answer& answer) {
   answer.margins = std::move(margins);
   answer.profile = std::move(profile);
   answer.profile.clear();
-  answer.margins.assign(question.margins.size(), {});
+  answer.margins.assign(question.margins.size() + question.margins_between.size(), {});
   answer.upper = kInfinity;
   duration_ = posture_.trajectory().end() - posture_.trajectory().begin();
   pairs_.forget();

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -102,6 +103,7 @@ class MotionSearch {
   // The distance that a pair has to keep up to an instant, m: a margin, or less for a contact.
   [[nodiscard]] double limit_until(double instant, std::uint32_t pair,
                                    double margin) const noexcept {
+    if (!exempt_.empty() && exempt_[pair] != 0) return -kInfinity;
     if (contacts_.empty() || contact_of_[pair] == kNotMeant) return margin;
     const Meant& meant = contacts_[contact_of_[pair]];
     return instant <= meant.until ? meant.least_allowed : margin;
@@ -110,6 +112,10 @@ class MotionSearch {
   // The margins (first_below.cpp).
   void decide_margins();
   void decide(MarginAnswer& answer) noexcept;
+  // A margin counts for no other pairs from now on; all pairs: none is exempt.
+  void exempt_kept(double margin);
+  void exempt_all_but(const MarginBetween& margin);
+  void mark(const std::vector<std::uint32_t>& pairs, std::uint8_t value);  // of objects; in exempt_
   void find_first(const Stretch& stretch, const OpenList& list, MarginAnswer& answer) noexcept;
 
   // The distance over time (profile.cpp).
@@ -140,6 +146,10 @@ class MotionSearch {
   static constexpr std::uint32_t kNotMeant = ~0u;
   std::vector<Meant> contacts_;            // in ascending order of objects
   std::vector<std::uint32_t> contact_of_;  // by pair of parts, unless there is no contact
+
+  std::vector<std::uint8_t> exempt_;  // by pair of parts: the margin does not count; empty: none is
+  // By margin, the pairs of objects that no posture keeps it for. They depend on the scene alone.
+  std::map<double, std::vector<std::uint32_t>> kept_;
 
   const Question* question_ = nullptr;
   Answer* answer_ = nullptr;

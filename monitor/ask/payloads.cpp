@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "config/scene/chain_rounding.hpp"
+#include "config/scene/people.hpp"
 #include "config/scene/rigid_root.hpp"
 
 namespace clearance {
@@ -157,6 +158,8 @@ std::optional<std::string> Attacher::attach(const Payload& payload) {
           std::find(other.groups.begin(), other.groups.end(), touched) != other.groups.end();
       if (other.name != touched && !in_group) continue;
       is_known = true;
+      if (auto text = contact_with_people(scene_.objects, scene_.pairs, scene_.zones, object, i))
+        return "payload \"" + payload.name + "\" may touch \"" + touched + "\": " + *text;
       left_out_.insert(key_of(object, i));
     }
     if (!is_known)

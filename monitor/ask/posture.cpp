@@ -88,7 +88,7 @@ std::optional<std::string> Posture::take(const Question& question) {
   if (auto text = take_poses(question)) return text;
   if (auto text = take_motions(question)) return text;
   if (auto text = open_object(question)) return text;
-  if (auto text = free_carriers(question)) return text;
+  free_carriers(question);
   note_free();
   place_bases();
   return std::nullopt;

@@ -97,7 +97,7 @@ class Posture {
   [[nodiscard]] std::optional<std::string> set_free(const StatedJoint& stated, OthersMove others);
   [[nodiscard]] std::optional<std::string> set_variable(const std::string& name, double position,
                                                         std::uint32_t& variable);
-  [[nodiscard]] std::optional<std::string> free_carriers(const Question& question);
+  void free_carriers(const Question& question);
   void note_free();
   [[nodiscard]] std::optional<std::string> open_joint() const;
   [[nodiscard]] std::optional<std::string> slide_out_of_limits() const;

@@ -40,6 +40,8 @@ void MoveItPort::close() {
 // `identity`: 0 if the messages are not shared.
 MadeCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
   MadeCommand queued;
+  queued.sender = "moveit";
+  queued.put_off = [this] { keeper_.take_back(); };
   queued.bytes = message->cdr.size();
   queued.make = [this, message, identity](const Cell& cell, const AskPose& pose) {
     if (identity != 0 && !begins(identity, cell.scene.revision)) return Command{};

@@ -9,10 +9,10 @@
 
 namespace clearance {
 
-McapFile::McapFile(const std::filesystem::path& path) : file_(std::fopen(path.c_str(), "rb")) {
+McapFile::McapFile(const std::filesystem::path& path) : file_(open_file(path)) {
   struct stat status {};
   if (!file_) return;
-  if (::fstat(::fileno(file_.get()), &status) != 0 || !S_ISREG(status.st_mode)) {
+  if (::fstat(::fileno(file_.get()), &status) != 0) {
     file_.reset();
     return;
   }

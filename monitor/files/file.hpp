@@ -3,10 +3,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <span>
+
+#include "config/text/file_bytes.hpp"
 
 namespace clearance {
 
@@ -23,10 +24,7 @@ class McapFile {
   [[nodiscard]] bool read(std::uint64_t offset, std::span<std::byte> out);
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
   std::span<const std::byte> memory_;
   std::uint64_t size_ = 0;
   std::uint64_t position_ = 0;

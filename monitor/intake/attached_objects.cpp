@@ -46,7 +46,7 @@ void MessageTranslator::attach_as_it_is(const AttachedCollisionObject& message,
   object.carrier = message.link_name;
   object.pose = carrier_from_object;
   result_.changes.emplace_back(
-      Attach{id, message.link_name, carrier_from_object, std::move(touch), kAnyDepth});
+      Attach{id, message.link_name, carrier_from_object, std::move(touch), kAnyDepth, true});
 }
 
 void MessageTranslator::attach_with_shapes(const AttachedCollisionObject& message,

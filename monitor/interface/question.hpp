@@ -102,6 +102,12 @@ struct ProfileRequest {
   std::uint32_t most_points = 1000;  // fewer if that is enough for the tolerance
 };
 
+// A margin of the watched pairs of two objects or groups, or of the zone `a` if `b` is empty.
+struct MarginBetween {
+  std::string a, b;
+  double margin = 0.0;  // m, from 0 on
+};
+
 struct Question {
   JointTrajectory motion;
   std::vector<JointTrajectory> beside;  // of other robots, which rest before and after it
@@ -119,8 +125,11 @@ struct Question {
   // into force then. `lower`, `upper` and the profile count these pairs like others.
   std::optional<std::vector<MeantContact>> contacts;
   OthersMove others = OthersMove::kWithinMaxSpeed;
-  std::vector<double> margins = {0.0};  // m, from 0 on
-  double tolerance = 1e-3;              // m: `upper` - `lower` at the end
+  // m, from 0 on. A margin counts for all pairs but those that a robot's own build keeps nearer in
+  // every posture (monitor/pairs/kept_near.hpp).
+  std::vector<double> margins = {0.0};
+  std::vector<MarginBetween> margins_between;  // their answers follow those of `margins`
+  double tolerance = 1e-3;                     // m: `upper` - `lower` at the end
   // m: a margin is undecided if the least distance is nearer to it than this.
   double margin_tolerance = 1e-10;
   // m: a motion that is certainly farther away than this is not examined more closely.

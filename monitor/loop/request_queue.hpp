@@ -1,6 +1,7 @@
 // Requests of clients that wait until a thread handles them: in order, and never too many.
 #pragma once
 
+#include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
@@ -38,10 +39,17 @@ class RequestQueue {
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
     if (closed_) return std::nullopt;
-    Item item = std::move(waiting_.front());
-    waiting_.pop_front();
-    bytes_ -= bytes_of(item);
-    return item;
+    return take_first();
+  }
+  // The same, but returns nothing after this time, too.
+  [[nodiscard]] std::optional<Item> next_within(std::chrono::milliseconds patience) {
+    std::unique_lock lock(mutex_);
+    changed_.wait_for(lock, patience, [this] { return closed_ || !waiting_.empty(); });
+    return closed_ || waiting_.empty() ? std::nullopt : std::optional(take_first());
+  }
+  [[nodiscard]] bool is_closed() {
+    const std::lock_guard lock(mutex_);
+    return closed_;
   }
   // Drops the requests that wait.
   void close() {
@@ -55,6 +63,13 @@ class RequestQueue {
   }
 
  private:
+  Item take_first() {
+    Item item = std::move(waiting_.front());
+    waiting_.pop_front();
+    bytes_ -= bytes_of(item);
+    return item;
+  }
+
   const std::size_t most_, most_bytes_;
   std::mutex mutex_;
   std::condition_variable changed_;

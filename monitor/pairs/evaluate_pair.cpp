@@ -239,6 +239,29 @@ void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noe
   budget.spend();
 }
 
+DistanceBounds queried_bounds(std::uint32_t pair, double level, const TickView& view) noexcept {
+  const PairTable& table = view.pairs;
+  DistanceBounds all{kInfinity, kInfinity};
+  for (std::uint32_t p = table.first_part_pair(pair); p < table.end_part_pair(pair); ++p) {
+    const PosedPart& a = view.parts[table.part_a(p)];
+    const PosedPart& b = view.parts[table.part_b(p)];
+    DistanceBounds bounds;
+    if (is_of_cloud(p, view)) {
+      bounds = view.clouds->query(p, a, b).bounds;
+    } else {
+      TrackingState tracking = table.evaluations[p].tracking;
+      bounds = for_exact_poses(
+          distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, tracking), a, b);
+    }
+    all.lower = std::min(all.lower, bounds.lower);
+    all.upper = std::min(all.upper, bounds.upper);
+    if (all.upper < level) break;
+  }
+  // The part pairs that are left may be nearer.
+  if (all.upper < level) all.lower = -kInfinity;
+  return all;
+}
+
 std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, const OpenTick& tick,
                            Budget& budget) noexcept {
   std::size_t done = 0;

@@ -26,6 +26,11 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 // objects are known.
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept;
 
+// Returns bounds of a pair's distance at the poses of this tick, as far as queries are needed to
+// decide whether it is at least `level`, m. Changes no bound of the table, and needs no budget.
+[[nodiscard]] DistanceBounds queried_bounds(std::uint32_t pair, double level,
+                                            const TickView& view) noexcept;
+
 // Evaluates different pairs in their order while the budget has queries left, and returns how many.
 // None of them was evaluated in this tick before.
 std::size_t evaluate_pairs(std::span<const std::uint32_t> pairs, const OpenTick& tick,

@@ -53,6 +53,9 @@ class FromWire {
   }
   void take(const std::string& path, const dds_sequence_string& from, std::vector<std::string>& to,
             ChangeText kind) const {
+    if (from._length > clearance_msg_kMaxObjects)
+      return refuse(path, fmt::format("found {} names; expected at most {}", from._length,
+                                      clearance_msg_kMaxObjects));
     for (std::uint32_t i = 0; i < from._length; ++i)
       take(fmt::format("{}[{}]", path, i), from._buffer[i], to.emplace_back(), kind);
   }

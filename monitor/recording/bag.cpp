@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <string_view>
 
+#include "config/text/file_bytes.hpp"
 #include "monitor/files/compression.hpp"
 #include "monitor/recording/bag_folder.hpp"
 #include "monitor/recording/mcap_bag.hpp"
@@ -22,10 +23,7 @@ constexpr std::string_view kZstdMagic = "\x28\xb5\x2f\xfd"sv;
 
 // The first bytes of a file: fewer if it is shorter, none if it cannot be read.
 std::string beginning_of(const std::filesystem::path& path) {
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) return {};
-  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "rb"),
-                                                             &std::fclose);
+  const auto file = open_file(path);
   if (file == nullptr) return {};
   std::string bytes(kSqliteMagic.size(), '\0');
   bytes.resize(std::fread(bytes.data(), 1, bytes.size(), file.get()));
@@ -99,9 +97,10 @@ std::unique_ptr<Bag> open_bag(const std::filesystem::path& path) {
       break;
   }
   if (beginning_of(path).starts_with(kZstdMagic)) {
-    return std::make_unique<NoBag>(
-        fmt::format("{} is compressed as a whole file; decompress it beside itself: zstd -d {}",
-                    path.string(), path.string()));
+    return std::make_unique<NoBag>(fmt::format(
+        "{} is compressed as a whole file; decompress it beside itself, and read {} or its folder: "
+        "zstd -d {}",
+        path.string(), (path.parent_path() / path.stem()).string(), path.string()));
   }
   // The reader of MCAP reports files that are not MCAP or cannot be read.
   return std::make_unique<McapBag>(path);

@@ -5,10 +5,9 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <variant>
 
+#include "config/text/file_bytes.hpp"
 #include "config/yaml/yaml_node.hpp"
 #include "monitor/files/file_error.hpp"
 
@@ -36,10 +35,9 @@ bool before(const std::filesystem::path& a, const std::filesystem::path& b) {
 // The file names in `metadata`, or the reason why it cannot be used.
 std::variant<std::vector<std::string>, std::string> named_files(
     const std::filesystem::path& metadata) {
-  std::ifstream stream(metadata, std::ios::binary);
-  if (!stream) return cannot_read(metadata);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  const auto parsed = parse_yaml(text);
+  const auto text = read_bytes(metadata.string());
+  if (std::holds_alternative<FileFault>(text)) return cannot_read(metadata);
+  const auto parsed = parse_yaml(std::get<std::string>(text));
   if (const auto* fault = std::get_if<YamlFault>(&parsed)) {
     return fmt::format("{}:{}:{}: {}", metadata.string(), fault->line, fault->column,
                        fault->reason);
@@ -65,7 +63,20 @@ BagFolder::BagFolder(const std::filesystem::path& folder) {
   readable_ = error_.empty();
 }
 
-// If metadata.yaml names a compressed file, the file may have been decompressed since.
+namespace {
+
+// A file that is compressed as a whole may have been decompressed beside itself.
+std::filesystem::path readable_form_of(const std::filesystem::path& file) {
+  std::error_code none;
+  const std::filesystem::path decompressed = file.parent_path() / file.stem();
+  const bool is_compressed = file.extension() == ".zstd" || file.extension() == ".zst";
+  const bool is_there = std::filesystem::exists(file, none);
+  return is_compressed && (!is_there || std::filesystem::exists(decompressed, none)) ? decompressed
+                                                                                     : file;
+}
+
+}  // namespace
+
 void BagFolder::find_files(const std::filesystem::path& folder) {
   const std::filesystem::path metadata = folder / "metadata.yaml";
   std::error_code none;
@@ -81,18 +92,17 @@ void BagFolder::find_files(const std::filesystem::path& folder) {
       if (!std::filesystem::exists(file, none)) {
         file = folder / std::filesystem::path(name).filename();
       }
-      const bool decompressed = file.extension() == ".zstd" && !std::filesystem::exists(file, none);
-      files_.push_back(decompressed ? file.parent_path() / file.stem() : file);
+      files_.push_back(readable_form_of(file));
     }
     return;
   }
   for (const auto& entry : std::filesystem::directory_iterator(folder, none)) {
     const std::string extension = entry.path().extension().string();
-    if (extension == ".mcap" || extension == ".db3" || extension == ".zstd") {
-      files_.push_back(entry.path());
-    }
+    if (extension == ".mcap" || extension == ".db3" || extension == ".zstd")
+      files_.push_back(readable_form_of(entry.path()));
   }
   std::ranges::sort(files_, before);
+  files_.erase(std::ranges::unique(files_).begin(), files_.end());
   if (files_.empty()) {
     error_ = fmt::format(
         "{} is no bag: it has neither metadata.yaml nor .mcap or .db3 files; expected a folder "

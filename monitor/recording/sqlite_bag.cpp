@@ -4,8 +4,7 @@
 #include <fmt/format.h>
 #include <sqlite3.h>
 
-#include <cstdio>
-
+#include "config/text/file_bytes.hpp"
 #include "monitor/files/file_error.hpp"
 
 namespace clearance {
@@ -43,10 +42,7 @@ void SqliteBag::Close::operator()(sqlite3* file) const { sqlite3_close(file); }
 void SqliteBag::Close::operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
 
 SqliteBag::SqliteBag(const std::filesystem::path& file) : path_(file) {
-  std::error_code none;
-  if (!std::filesystem::is_regular_file(file, none)) {
-    const std::unique_ptr<std::FILE, int (*)(std::FILE*)> tried(std::fopen(file.c_str(), "rb"),
-                                                                &std::fclose);
+  if (open_file(file) == nullptr) {
     error_ = cannot_read(file);
     return;
   }

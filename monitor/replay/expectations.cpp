@@ -8,8 +8,10 @@
 #include <numeric>
 #include <utility>
 
+#include "config/scene/pairs_between.hpp"
 #include "config/text/sentences.hpp"
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/pairs/kept_near.hpp"
 #include "monitor/replay/metres.hpp"
 
 namespace clearance {
@@ -29,27 +31,6 @@ std::optional<std::uint32_t> zone_index(const Scene& scene, const std::string& n
   const auto found = std::ranges::find(scene.zones, name, &Zone::name);
   if (found == scene.zones.end()) return std::nullopt;
   return static_cast<std::uint32_t>(found - scene.zones.begin());
-}
-
-bool is_named(const Object& object, const std::string& name) {
-  return object.name == name || std::ranges::count(object.groups, name) > 0;
-}
-
-// The watched pairs of two objects or groups, or of a zone.
-std::vector<std::uint32_t> pairs_between(const Scene& scene, const std::string& a,
-                                         const std::string& b) {
-  if (b.empty()) {
-    const auto zone = zone_index(scene, a);
-    return zone ? scene.zones[*zone].pairs : std::vector<std::uint32_t>{};
-  }
-  std::vector<std::uint32_t> pairs;
-  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-    const Object& first = scene.objects[scene.pairs[p].first];
-    const Object& second = scene.objects[scene.pairs[p].second];
-    if ((is_named(first, a) && is_named(second, b)) || (is_named(first, b) && is_named(second, a)))
-      pairs.push_back(p);
-  }
-  return pairs;
 }
 
 std::string subject_of(const std::optional<ExpectedDistance>& distance, const std::string& zone) {
@@ -81,8 +62,16 @@ void Expectations::rest_on(Expectation& expectation) {
   if (is_zone) {
     expectation.pairs = pairs_between(*scene_, expectation.zone, "");
   } else if (expectation.all_pairs) {
+    const double metres = expectation.distance->metres;
+    const std::vector<std::uint32_t> kept = kept_nearer(*scene_, metres);
     expectation.pairs.resize(scene_->pairs.size());
     std::iota(expectation.pairs.begin(), expectation.pairs.end(), 0u);
+    std::erase_if(expectation.pairs,
+                  [&](std::uint32_t pair) { return std::ranges::binary_search(kept, pair); });
+    if (!kept.empty()) {
+      std::string note = kept_nearer_text(*scene_, metres, kept);
+      if (std::ranges::find(notes_, note) == notes_.end()) notes_.push_back(std::move(note));
+    }
   } else {
     expectation.pairs = pairs_between(*scene_, expectation.distance->a, expectation.distance->b);
   }
@@ -101,7 +90,10 @@ std::string Expectations::unknown_name(const Expectation& expectation) const {
     if (expectation.index) return {};
     return fmt::format("the cell has no zone '{}'; {}", expectation.zone, zone_names(*scene_));
   }
-  if (expectation.all_pairs || !expectation.pairs.empty()) return {};
+  if (!expectation.pairs.empty()) return {};
+  if (expectation.all_pairs)
+    return "no pair is left to expect a distance of; expected a smaller distance, or pairs of two "
+           "objects or groups (--between)";
   if (expectation.distance->b.empty())
     return fmt::format("the cell has no zone '{}'; {}", expectation.distance->a,
                        zone_names(*scene_));

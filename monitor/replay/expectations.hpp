@@ -65,8 +65,9 @@ class Expectations {
   struct Expectation {
     std::optional<ExpectedDistance> distance;  // none: a zone
     std::string zone;
-    std::optional<std::uint32_t> index;    // of the zone; none: the scene has no such zone
-    bool all_pairs = false;                // of the scene
+    std::optional<std::uint32_t> index;  // of the zone; none: the scene has no such zone
+    // Of the scene, but those that a robot's own build keeps nearer.
+    bool all_pairs = false;
     std::vector<std::uint32_t> pairs;      // in ascending order
     std::vector<std::uint32_t> objects;    // the moving ones of these
     bool begun = false, broken = false;    // broken: and returned

@@ -28,14 +28,19 @@ const Cell* MoveItChanges::next(const Monitor& monitor) {
     return nullptr;
   }
   while (!waiting_.empty()) {
-    const std::shared_ptr<const moveit::RawScene> message = std::move(waiting_.front());
+    const std::shared_ptr<const moveit::RawScene> message = waiting_.front();
+    moveit::SceneKeeper::Work work;
+    try {
+      work = keeper_.take(*message, *cell_, [&](const std::string& name) -> std::optional<Pose> {
+        const auto body = find_body(name, cell_->scene);
+        if (!body) return std::nullopt;
+        return pose_or_late(name, cell_->scene, present_pose(*body, monitor));
+      });
+    } catch (const PoseIsLate&) {
+      keeper_.take_back();
+      return nullptr;  // it waits for a later tick
+    }
     waiting_.pop_front();
-    auto work = keeper_.take(*message, *cell_, [&](const std::string& name) -> std::optional<Pose> {
-      const auto body = find_body(name, cell_->scene);
-      const PresentPose pose = body ? present_pose(*body, monitor) : PresentPose{};
-      if (pose.state != PresentPose::State::kUsable) return std::nullopt;
-      return pose.world_from_body;
-    });
     for (const std::string& sentence : work.news) notes_.push_back("MoveIt's " + sentence);
     if (work.changes.empty()) continue;
     auto proposed = editor_->propose(

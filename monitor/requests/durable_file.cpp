@@ -2,9 +2,11 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 
@@ -32,6 +34,23 @@ bool sync_folder(const std::filesystem::path& folder) {
 }
 
 }  // namespace
+
+void remove_unfinished(const std::filesystem::path& folder, std::string_view name) {
+  constexpr std::string_view kEnd = ".new";
+  std::error_code error;
+  for (std::filesystem::directory_iterator at(folder, error), last; !error && at != last;
+       at.increment(error)) {
+    const std::string found = at->path().filename().string();
+    if (!found.ends_with(kEnd)) continue;
+    const std::string_view stem = std::string_view(found).substr(0, found.size() - kEnd.size());
+    const std::size_t dot = stem.rfind('.');
+    if (dot == stem.npos || (!name.empty() && stem.substr(0, dot) != name)) continue;
+    pid_t writer = 0;
+    const char* const to = stem.data() + stem.size();
+    if (std::from_chars(stem.data() + dot + 1, to, writer).ptr != to || writer <= 0) continue;
+    if (::kill(writer, 0) != 0 && errno == ESRCH) ::unlink(at->path().c_str());
+  }
+}
 
 std::string write_durably(const std::filesystem::path& file, std::string_view bytes) {
   const std::string beside = fmt::format("{}.{}.new", file.string(), ::getpid());

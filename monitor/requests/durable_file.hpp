@@ -11,4 +11,8 @@ namespace clearance {
 // why that failed, as a sentence; then the former file is unchanged. Empty: it is kept.
 [[nodiscard]] std::string write_durably(const std::filesystem::path& file, std::string_view bytes);
 
+// Removes what write_durably() left in this folder when its process was killed: of the file of this
+// name, or of all files. Files of processes that run stay.
+void remove_unfinished(const std::filesystem::path& folder, std::string_view name = {});
+
 }  // namespace clearance

@@ -21,6 +21,7 @@ constexpr std::size_t kDigits = 16;
 std::variant<std::optional<KeptScene>, std::string> read_kept_scene(
     const std::filesystem::path& file) {
   std::error_code error;
+  remove_unfinished(file.has_parent_path() ? file.parent_path() : ".", file.filename().string());
   if (!std::filesystem::exists(file, error) && !error) return std::nullopt;
   const auto read = read_bytes(file.string());
   if (const auto* fault = std::get_if<FileFault>(&read)) return fault->reason;

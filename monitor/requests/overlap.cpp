@@ -7,6 +7,7 @@
 
 #include "config/scene/rigid_root.hpp"
 #include "core/distance.hpp"
+#include "core/shapes.hpp"
 
 namespace clearance {
 namespace {
@@ -36,19 +37,27 @@ struct PutsElsewhere {
   }
 };
 
-// m; 0 if they are disjoint, or if it is not known that they overlap.
-double depth_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
-  double depth = 0.0;
+// m; minus the depth if they certainly overlap, or else an upper bound of the distance.
+double distance_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
+  double least = kInfinity;
   for (const Part& of_a : a.parts) {
     for (const Part& of_b : b.parts) {
       TrackingState state;
       const DistanceResult result =
           distance(of_a.shape, of_b.shape, of_a.object_from_part,
                    compose(a_from_object_b, of_b.object_from_part), state);
-      if (result.upper < 0.0) depth = std::max(depth, -result.distance);
+      least = std::min(least, result.upper < 0.0 ? result.distance : result.upper);
     }
   }
-  return depth;
+  return least;
+}
+
+// A frame without a shape.
+Object origin_named(const std::string& name) {
+  Object origin;
+  origin.name = name;
+  origin.parts.push_back({name, std::get<ConvexBody>(point(Vec3::Zero(), 0.0)), Pose()});
+  return origin;
 }
 
 }  // namespace
@@ -97,12 +106,11 @@ std::vector<std::string> left_out_with(const Attach& change, const Scene& scene)
   return names;
 }
 
-std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
-                                       const std::vector<std::string>& others,
-                                       const PresentPoses& poses,
-                                       const std::map<std::string, double>& mesh_errors) {
+Fit fit_of(const Attach& change, const Scene& scene, const std::vector<std::string>& others,
+           const PresentPoses& poses, const std::map<std::string, double>& mesh_errors) {
+  Fit fit;
   const Object* attached = find_object(scene, change.object);
-  if (attached == nullptr || !change.carrier_from_object) return std::nullopt;
+  if (attached == nullptr || !change.carrier_from_object) return fit;
   const auto usable = [&](const std::string& name) -> const Pose* {
     const auto pose = poses.find(name);
     const bool is = pose != poses.end() && pose->second.state == PresentPose::State::kUsable;
@@ -113,9 +121,10 @@ std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
     return error == mesh_errors.end() ? 0.0 : error->second;
   };
   const Pose* const world_from_carrier = usable(change.to);
-  std::optional<Overlap> deepest;
+  const Object carrier = origin_named(change.to);
   for (const std::string& name : others) {
     const Object* other = find_object(scene, name);
+    if (other == nullptr && name == change.to) other = &carrier;
     if (other == nullptr) continue;
     Pose other_from_object = *change.carrier_from_object;
     if (name != change.to) {
@@ -124,11 +133,18 @@ std::optional<Overlap> deepest_overlap(const Attach& change, const Scene& scene,
       other_from_object =
           compose(a_from_b(*world_from_other, *world_from_carrier), *change.carrier_from_object);
     }
-    const double depth =
-        depth_of(*other, *attached, other_from_object) - error_of(name) - error_of(change.object);
-    if (depth > 0.0 && (!deepest || depth > deepest->depth)) deepest = Overlap{name, depth};
+    const double apart = distance_of(*other, *attached, other_from_object);
+    const double depth = -apart - error_of(name) - error_of(change.object);
+    if (depth > fit.depth) {
+      fit.deepest = name;
+      fit.depth = depth;
+    }
+    if (std::max(0.0, apart) < fit.distance) {
+      fit.nearest = name;
+      fit.distance = std::max(0.0, apart);
+    }
   }
-  return deepest;
+  return fit;
 }
 
 }  // namespace clearance

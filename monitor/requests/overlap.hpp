@@ -1,4 +1,5 @@
-// Measures the overlap of an attached object with the bodies that it may touch from then on.
+// Measures the overlap and the distance of an attached object and the bodies that it may touch from
+// then on.
 #pragma once
 
 #include <map>
@@ -17,6 +18,10 @@ namespace clearance {
 // of both objects' parts against their meshes are added.
 inline constexpr double kDefaultOverlap = 1e-3;
 
+// An attached object that lies farther than this from its carrier and from all that it may touch is
+// refused, m, unless the change says that it is far.
+inline constexpr double kFarFromCarrier = 0.5;
+
 // Returns the change with the pose that the object has in `scene`, to which the whole list leads.
 // `later`: the changes after this one. Nothing: by one of them it is not attached there any more,
 // or is attached once more.
@@ -28,17 +33,19 @@ inline constexpr double kDefaultOverlap = 1e-3;
 // connected to its carrier, and those that it may touch. Sorted.
 [[nodiscard]] std::vector<std::string> left_out_with(const Attach& change, const Scene& scene);
 
-struct Overlap {
-  std::string object;
-  double depth = 0.0;  // m
+// How an attached object lies beside what it is not watched against.
+struct Fit {
+  std::string deepest, nearest;  // names; empty: it overlaps none, or none has a known distance
+  double depth = 0.0;            // m, of the overlap with `deepest`
+  double distance = kInfinity;   // m, from `nearest`, at most; 0 if they overlap
 };
 
-// Returns the deepest overlap of an object with one of these. `poses` has the poses of the
-// others and of the carrier in this scene, at one instant; those that are not usable are left out,
-// except the carrier's own parts, which need none. `mesh_errors` has, by object, how far parts
-// exceed meshes, m, and lowers the depth.
-[[nodiscard]] std::optional<Overlap> deepest_overlap(
-    const Attach& change, const Scene& scene, const std::vector<std::string>& others,
-    const PresentPoses& poses, const std::map<std::string, double>& mesh_errors);
+// Compares an object with these. `poses` has the poses of the others and of the carrier in this
+// scene, at one instant; those that are not usable are left out, except the carrier's own parts,
+// which need none. A carrier without parts is its origin. `mesh_errors` has, by object, how far
+// parts exceed meshes, m, and lowers the depth.
+[[nodiscard]] Fit fit_of(const Attach& change, const Scene& scene,
+                         const std::vector<std::string>& others, const PresentPoses& poses,
+                         const std::map<std::string, double>& mesh_errors);
 
 }  // namespace clearance

@@ -8,7 +8,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "config/text/file_bytes.hpp"
+#include "config/text/spelling.hpp"
 #include "monitor/requests/kept_scene.hpp"
 #include "monitor/requests/overlap.hpp"
 
@@ -24,16 +24,6 @@ std::size_t bytes_of(const Cell& cell) {
     if (!error) bytes += size;
   }
   return bytes;
-}
-
-bool is_below(const std::filesystem::path& file, const std::filesystem::path& folder) {
-  std::error_code error;
-  const auto real_file = std::filesystem::weakly_canonical(file, error);
-  if (error) return false;
-  const auto real_folder = std::filesystem::weakly_canonical(folder, error);
-  if (error) return false;
-  const auto end = std::ranges::mismatch(real_folder, real_file).in1;
-  return end == real_folder.end() && real_file != real_folder;
 }
 
 // Tells whether a change may put one of these bodies elsewhere, or make it absent.
@@ -73,6 +63,10 @@ SceneCommander::SceneCommander(SceneChanger& changer, TickLoop& loop,
       most_bytes_(bytes_of(changer.cell()) + changer.cell().capacity.bytes),
       sent_(changer.cell().file) {
   options_.reading.mesh_errors = &mesh_errors_;
+  options_.reading.meshes_ahead = &ahead_;
+  options_.reading.may_read = [this](const std::filesystem::path& file) {
+    return refusal_of(file);
+  };
 }
 
 // A text that cannot be read is refused with the first command.
@@ -91,6 +85,10 @@ CommandResult SceneCommander::execute(const Command& command, bool is_own,
   CommandResult result{.client = command.client, .request = command.request};
   Work work{command, is_own, command.changes, options_.began_with, complete};
   Refusal refusal;
+  may_read_all_ = is_own;
+  not_read_.clear();
+  ahead_.wanted.clear();
+  ahead_.asks = ahead_.asks && !is_own;
   try {
     refusal = do_all(work, may_change, result);
   } catch (const std::exception& error) {
@@ -99,6 +97,7 @@ CommandResult SceneCommander::execute(const Command& command, bool is_own,
   }
   if (refusal) {
     sent_.take_back();
+    ahead_.wanted.clear();
     result.status = refusal->status;
     result.change = static_cast<std::uint32_t>(refusal->change);
     result.path = std::move(refusal->path);
@@ -125,7 +124,17 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
   if (Refusal refusal = open(work.changes)) return refusal;
   if (Refusal refusal = take_poses(work)) return refusal;
   auto proposed = editor_->propose(work.changes, work.complete);
+  if (!ahead_.wanted.empty() && std::holds_alternative<Cell>(proposed)) {
+    sent_.take_back();
+    editor_->take_back();
+    return std::nullopt;
+  }
+  ahead_.wanted.clear();
   if (auto* refused = std::get_if<EditRefusal>(&proposed)) {
+    if (!not_read_.empty()) {
+      return CommandRefusal{CommandStatus::kFileRefused, refused->change, std::move(refused->path),
+                            std::move(not_read_)};
+    }
     return CommandRefusal{CommandStatus::kRefused, refused->change, std::move(refused->path),
                           std::move(refused->reason)};
   }
@@ -154,64 +163,18 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
 SceneCommander::Refusal SceneCommander::open(std::span<const CellChange> changes) {
   if (editor_) return std::nullopt;
   const Cell& cell = changer_.cell();
+  // What is in force is read here.
+  const bool asks = std::exchange(ahead_.asks, false);
   auto opened = CellEditor::open(cell.yaml, cell.file, options_.reading);
   const auto* whole = changes.empty() ? nullptr : std::get_if<ReplaceCell>(&changes.front());
   if (std::holds_alternative<std::vector<CellError>>(opened) && whole != nullptr)
     opened = CellEditor::open(whole->yaml, cell.file, options_.reading);
+  ahead_.asks = asks;
   if (const auto* errors = std::get_if<std::vector<CellError>>(&opened)) {
     return CommandRefusal{whole == nullptr ? CommandStatus::kFileRefused : CommandStatus::kRefused,
                           0, "", errors->front().text};
   }
   editor_.emplace(std::get<CellEditor>(std::move(opened)));
-  return std::nullopt;
-}
-
-SceneCommander::Refusal SceneCommander::take_files(Work& work) {
-  if (work.command.files.empty()) return std::nullopt;
-  auto kept = sent_.keep(work.command.files);
-  if (auto* reason = std::get_if<std::string>(&kept))
-    return CommandRefusal{CommandStatus::kFileRefused, 0, "files", std::move(*reason)};
-  const auto& paths = std::get<std::map<std::string, std::string>>(kept);
-  for (CellChange& change : work.changes) {
-    std::visit(
-        [&](auto& each) {
-          if constexpr (requires { each.yaml; }) each.yaml = with_paths(each.yaml, paths);
-        },
-        change);
-  }
-  return std::nullopt;
-}
-
-SceneCommander::Refusal SceneCommander::take_texts(Work& work) {
-  const std::filesystem::path& own = changer_.cell().file;
-  for (std::size_t i = 0; i < work.changes.size(); ++i) {
-    const auto* again = std::get_if<ReadCellAgain>(&work.changes[i]);
-    if (again == nullptr) continue;
-    const bool is_own = again->file.empty();
-    const std::filesystem::path file = is_own ? own : own.parent_path() / again->file;
-    const auto refused = [&](std::string reason) {
-      return CommandRefusal{CommandStatus::kFileRefused, i, "file", std::move(reason)};
-    };
-    if (!is_own && !work.is_own && !is_allowed(file)) {
-      return refused(
-          fmt::format("found '{}'; expected a file below one of the folders that the "
-                      "cell states (commands: folders)",
-                      file.string()));
-    }
-    std::string text;
-    if (is_own && options_.own_text) {
-      text = options_.own_text();
-    } else {
-      auto read = read_bytes(file.string());
-      if (auto* fault = std::get_if<FileFault>(&read)) return refused(std::move(fault->reason));
-      text = std::get<std::string>(std::move(read));
-    }
-    work.changes[i] = ReplaceCell{std::move(text)};
-    if (!is_own || options_.keep_scene.empty()) continue;
-    if (Refusal refusal = open(work.changes)) return refusal;
-    const auto read = editor_->dry_run(std::span(work.changes).subspan(i, 1));
-    if (const auto* cell = std::get_if<Cell>(&read)) work.began_with = cell->scene.revision;
-  }
   return std::nullopt;
 }
 
@@ -238,9 +201,14 @@ std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& na
     pose = pose_in_changed(name, changed, running, poses);
   }
   if (!is_known) {
-    return no_pose(
-        change, name,
-        fmt::format("found no object or link '{}' in the scene; expected one, or a pose", name));
+    std::vector<std::string> names;
+    for (const Object& object : running.objects) names.push_back(object.name);
+    for (const Robot& robot : running.robots) {
+      for (const RobotLink& link : robot.links) names.push_back(link.name);
+    }
+    return CommandRefusal{CommandStatus::kRefused, change, fmt::format("objects[{}]", name),
+                          fmt::format("found no object or link '{}' in the scene; expected one{}",
+                                      name, did_you_mean(name, names))};
   }
   if (pose.state == PresentPose::State::kUsable) return pose.world_from_body;
   return no_pose(change, name,
@@ -250,13 +218,10 @@ std::variant<Pose, CommandRefusal> SceneCommander::pose_of(const std::string& na
 }
 
 // All poses are of one tick, so that a carrier that moves takes the object with it exactly.
-std::optional<Pose> SceneCommander::present_pose(const std::string& name) {
+std::optional<PresentPose> SceneCommander::present_pose(const std::string& name) {
   const auto poses = present_poses({name}, cell().scene, loop_, loop_ended_);
-  if (!poses) return std::nullopt;
-  const auto found = poses->find(name);
-  if (found == poses->end() || found->second.state != PresentPose::State::kUsable)
-    return std::nullopt;
-  return found->second.world_from_body;
+  if (!poses || !poses->contains(name)) return std::nullopt;
+  return poses->at(name);
 }
 
 SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
@@ -295,16 +260,7 @@ SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
   return std::nullopt;
 }
 
-bool SceneCommander::is_allowed(const std::filesystem::path& file) const {
-  return is_below(file, sent_.folder()) ||
-         std::ranges::any_of(changer_.cell().commands.folders,
-                             [&](const auto& folder) { return is_below(file, folder); });
-}
-
 SceneCommander::Refusal SceneCommander::check(const Work& work, const Cell& cell) {
-  if (!work.is_own) {
-    if (Refusal refusal = check_files(cell)) return refusal;
-  }
   if (const std::size_t bytes = bytes_of(cell); bytes > most_bytes_) {
     return CommandRefusal{CommandStatus::kBeyondCapacity, 0, "",
                           fmt::format("found {} bytes of the cell and its files; expected at most "
@@ -315,19 +271,6 @@ SceneCommander::Refusal SceneCommander::check(const Work& work, const Cell& cell
   if (auto checked = changer_.check(cell); !checked.refusal.empty())
     return CommandRefusal{checked.status, 0, "", std::move(checked.refusal)};
   return check_overlaps(work, cell);
-}
-
-// Files that the cell in force names are the daemon's.
-SceneCommander::Refusal SceneCommander::check_files(const Cell& cell) const {
-  const auto& known = changer_.cell().files;
-  for (const std::filesystem::path& file : cell.files) {
-    if (std::ranges::find(known, file) != known.end() || is_allowed(file)) continue;
-    return CommandRefusal{CommandStatus::kFileRefused, 0, "file",
-                          fmt::format("found '{}'; expected a file below one of the folders that "
-                                      "the cell states (commands: folders), or one that is sent",
-                                      file.string())};
-  }
-  return std::nullopt;
 }
 
 SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const Cell& cell) {
@@ -348,13 +291,21 @@ SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const C
     for (const std::string& name : others)
       changed[name] = pose_in_changed(name, cell.scene, running, *poses);
     const double most = attach->overlap.value_or(kDefaultOverlap);
-    const auto deepest = deepest_overlap(*attach, cell.scene, others, changed, mesh_errors_);
-    if (!deepest || deepest->depth <= most) continue;
-    return CommandRefusal{CommandStatus::kOverlap, i,
-                          fmt::format("objects[{}].attached.pose", attach->object),
+    const Fit fit = fit_of(*attach, cell.scene, others, changed, mesh_errors_);
+    const std::string path = fmt::format("objects[{}].attached.pose", attach->object);
+    if (!attach->far && fit.distance > kFarFromCarrier && !fit.nearest.empty()) {
+      return CommandRefusal{
+          CommandStatus::kRefused, i, path,
+          fmt::format(
+              "found that it is {:.4g} m from '{}'; expected at most {:g} m from its carrier "
+              "or from what it may touch, or far: true",
+              fit.distance, fit.nearest, kFarFromCarrier)};
+    }
+    if (fit.depth <= most) continue;
+    return CommandRefusal{CommandStatus::kOverlap, i, path,
                           fmt::format("found that it overlaps '{}' by {:.4g} m; expected at most "
                                       "{:.4g} m (overlap)",
-                                      deepest->object, deepest->depth, most)};
+                                      fit.deepest, fit.depth, most)};
   }
   return std::nullopt;
 }

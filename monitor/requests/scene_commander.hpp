@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -15,6 +16,7 @@
 #include <vector>
 
 #include "config/edit/cell_editor.hpp"
+#include "config/mesh/mesh_parts.hpp"
 #include "monitor/interface/command.hpp"
 #include "monitor/requests/command_refusal.hpp"
 #include "monitor/requests/present_poses.hpp"
@@ -52,6 +54,19 @@ class SceneCommander {
                                       const std::function<bool()>& may_change,
                                       const CompleteChanges& complete = {});
 
+  // Meshes that the last command wants and that are not read here: it was not done, and has no
+  // result. They are to be read in another thread, and the command executed again with them.
+  // Empty: it was done.
+  [[nodiscard]] const std::vector<MeshUse>& wanted() const noexcept { return ahead_.wanted; }
+  // The next execute() has these meshes, and reads what else it needs itself. Null: it wants those
+  // that it does not have.
+  void set_read_meshes(std::shared_ptr<const ReadMeshes> meshes) {
+    ahead_.asks = meshes == nullptr;
+    ahead_.read = std::move(meshes);
+  }
+  // Reads meshes in any thread, as the cell in force would.
+  [[nodiscard]] std::function<std::shared_ptr<const ReadMeshes>()> reader_of_wanted() const;
+
   // Keeps the files of a command for a cell that another daemon makes, and this one takes over.
   [[nodiscard]] CommandResult keep_files(const std::vector<SentFile>& files) {
     std::string reason = sent_.keep_awaited(files);
@@ -65,8 +80,9 @@ class SceneCommander {
 
   // The cell in force.
   [[nodiscard]] const Cell& cell() const noexcept { return changer_.cell(); }
-  // Returns where an object or a link is now, in the world; nothing if its pose is not usable.
-  [[nodiscard]] std::optional<Pose> present_pose(const std::string& name);
+  // Returns where an object or a link is now, in the world; nothing if the scene has none of this
+  // name, or the loop ends.
+  [[nodiscard]] std::optional<PresentPose> present_pose(const std::string& name);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return changer_.cell().scene.revision; }
 
@@ -88,7 +104,8 @@ class SceneCommander {
   std::variant<Pose, CommandRefusal> pose_of(const std::string& name, const Work& work,
                                              std::size_t change, const PresentPoses& poses);
   Refusal check(const Work& work, const Cell& cell);
-  Refusal check_files(const Cell& cell) const;
+  // Returns why a client's command may not have this file read; nothing: it may.
+  std::optional<std::string> refusal_of(const std::filesystem::path& file);
   Refusal check_overlaps(const Work& work, const Cell& cell);
   Refusal put_in_force(const Work& work, Cell cell);
   [[nodiscard]] bool is_allowed(const std::filesystem::path& file) const;
@@ -102,6 +119,9 @@ class SceneCommander {
   std::map<std::string, double> mesh_errors_;
   std::optional<CellEditor> editor_;  // opened by read_ahead() or the first command
   std::uint64_t in_force_from_ = 0;
+  MeshesAhead ahead_;
+  bool may_read_all_ = true;  // the command in hand is the daemon's own
+  std::string not_read_;      // why a file that this command names was not read; empty: all were
 };
 
 }  // namespace clearance

@@ -29,6 +29,13 @@ AnswerCommand* answer_of(SceneTask& task) noexcept {
       task);
 }
 
+std::string sender_of(const SceneTask& task) {
+  if (const auto* given = std::get_if<GivenCommand>(&task))
+    return given->is_own ? std::string() : "client " + given->command.client;
+  const auto* made = std::get_if<MadeCommand>(&task);
+  return made == nullptr ? std::string() : made->sender;
+}
+
 std::size_t bytes_of(const SceneTask& task) {
   return std::visit([](const auto& each) { return bytes_of(each); }, task);
 }

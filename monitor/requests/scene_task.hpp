@@ -33,6 +33,12 @@ struct GivenCommand {
 
 // A command of the daemon's own that depends on the cell in force when its turn comes.
 struct MadeCommand {
+  // The tasks of one sender are done in their order. If make() throws PoseIsLate, it waits with
+  // those that follow until the pose is back, while tasks of others are done. Not empty where
+  // make() asks for poses.
+  std::string sender = {};
+  // To be called if it waits, after a make() that has not returned. May be empty.
+  std::function<void()> put_off = {};
   // A command without changes is not done, and has no result.
   std::function<Command(const Cell& cell, const AskPose& pose)> make;
   std::size_t bytes = 0;  // that `make` holds
@@ -53,6 +59,9 @@ struct OtherWork {
 };
 
 using SceneTask = std::variant<GivenCommand, MadeCommand, KeptFiles, OtherWork>;
+
+// Tasks of the same sender are done in the order in which they came. Empty: it has none.
+[[nodiscard]] std::string sender_of(const SceneTask& task);
 
 // Null: the task has no result.
 [[nodiscard]] AnswerCommand* answer_of(SceneTask& task) noexcept;

@@ -1,11 +1,23 @@
 #include "monitor/requests/scene_thread.hpp"
 
+#include <fmt/format.h>
+
 #include <exception>
+#include <utility>
 #include <variant>
 
+#include "config/text/sentences.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/tick/present_body.hpp"
 
 namespace clearance {
+namespace {
+
+// How long a task that waits for a pose waits until it is tried again, and how soon one whose
+// meshes were read goes on.
+constexpr std::chrono::milliseconds kPatience{5};
+
+}  // namespace
 
 SceneThread::~SceneThread() {
   queue_.close();
@@ -21,40 +33,118 @@ void SceneThread::run() {
   if (!enter(Phase::kReading)) return;
   commander_.read_ahead();
   if (!enter(Phase::kChanging)) return;
-  while (auto task = queue_.next()) {
-    if (const auto* const work = std::get_if<OtherWork>(&*task)) {
-      work->run();
+  while (auto task = next()) {
+    if (!perform(*std::move(task))) return;
+  }
+}
+
+// The tasks of senders that wait do not overtake each other.
+std::optional<SceneTask> SceneThread::next() {
+  while (true) {
+    if (auto task = next_of_lanes()) return task;
+    auto task = lanes_.empty() ? queue_.next() : queue_.next_within(kPatience);
+    if (!task && queue_.is_closed()) return std::nullopt;
+    if (!task) continue;
+    const auto lane = lanes_.find(sender_of(*task));
+    if (lane == lanes_.end()) return task;
+    if (lane->second.tasks.size() < SceneQueue::kMost) {
+      lane->second.tasks.push_back(*std::move(task));
       continue;
     }
-    if (!enter(Phase::kReading)) return;
-    const std::optional<CommandResult> result = std::visit(
-        [this](const auto& each) -> std::optional<CommandResult> {
-          if constexpr (requires { perform(each); }) return perform(each);
-          return std::nullopt;
-        },
-        *task);
-    if (!enter(Phase::kChanging)) return;
     const AnswerCommand* const answer = answer_of(*task);
-    if (result && answer != nullptr && *answer) (*answer)(*result);
+    if (answer != nullptr && *answer) {
+      (*answer)({.status = CommandStatus::kBusy,
+                 .reason = fmt::format("{} of this sender wait already; expected fewer",
+                                       counted(SceneQueue::kMost, "command"))});
+    }
   }
+}
+
+std::optional<SceneTask> SceneThread::next_of_lanes() {
+  for (auto& [sender, lane] : lanes_) {
+    const bool waits =
+        lane.reading ? !lane.reading->is_done : std::chrono::steady_clock::now() < lane.again;
+    if (waits) continue;
+    commander_.set_read_meshes(lane.reading ? lane.reading->meshes : nullptr);
+    lane.reading.reset();
+    SceneTask task = std::move(lane.tasks.front());
+    lane.tasks.pop_front();
+    return task;
+  }
+  commander_.set_read_meshes(nullptr);
+  return std::nullopt;
+}
+
+bool SceneThread::perform(SceneTask task) {
+  if (const auto* const work = std::get_if<OtherWork>(&task)) {
+    work->run();
+    return true;
+  }
+  if (!enter(Phase::kReading)) return false;
+  has_to_wait_ = false;
+  const std::optional<CommandResult> result = std::visit(
+      [this](const auto& each) -> std::optional<CommandResult> {
+        if constexpr (requires { result_of(each); }) return result_of(each);
+        return std::nullopt;
+      },
+      task);
+  if (!enter(Phase::kChanging)) return false;
+  if (has_to_wait_) {
+    wait(std::move(task));
+    return true;
+  }
+  const auto lane = lanes_.find(sender_of(task));
+  if (lane != lanes_.end() && lane->second.tasks.empty()) lanes_.erase(lane);
+  const AnswerCommand* const answer = answer_of(task);
+  if (result && answer != nullptr && *answer) (*answer)(*result);
+  return true;
+}
+
+// A disk may hang for ever: each reading has a thread, which nothing waits for.
+void SceneThread::wait(SceneTask task) {
+  Lane& lane = lanes_[sender_of(task)];
+  lane.tasks.push_front(std::move(task));
+  lane.again = std::chrono::steady_clock::now() + kPatience;
+  if (commander_.wanted().empty()) return;
+  lane.reading = std::make_shared<Reading>();
+  ++*readings_;
+  std::thread([reading = lane.reading, count = readings_, read = commander_.reader_of_wanted()] {
+    name_thread("meshes");
+    try {
+      reading->meshes = read();
+    } catch (const std::exception&) {
+      // The scene thread then reads them itself, and says why that fails.
+    }
+    reading->is_done = true;
+    --*count;
+  }).detach();
 }
 
 std::optional<CommandResult> SceneThread::execute(const Command& command, bool is_own,
                                                   const CompleteChanges& complete) {
-  return commander_.execute(
+  CommandResult result = commander_.execute(
       command, is_own, [this] { return enter(Phase::kChanging); }, complete);
+  has_to_wait_ = !commander_.wanted().empty();
+  return result;
 }
 
-std::optional<CommandResult> SceneThread::perform(const GivenCommand& given) {
+std::optional<CommandResult> SceneThread::result_of(const GivenCommand& given) {
   return execute(given.command, given.is_own, {});
 }
 
 // A message of another program may have any size.
-std::optional<CommandResult> SceneThread::perform(const MadeCommand& made) {
+std::optional<CommandResult> SceneThread::result_of(const MadeCommand& made) {
   Command command;
   try {
-    command = made.make(commander_.cell(),
-                        [this](const std::string& name) { return commander_.present_pose(name); });
+    command = made.make(commander_.cell(), [&](const std::string& name) -> std::optional<Pose> {
+      const auto pose = commander_.present_pose(name);
+      if (!pose) return std::nullopt;
+      return pose_or_late(name, commander_.cell().scene, *pose);
+    });
+  } catch (const PoseIsLate&) {
+    if (made.put_off) made.put_off();
+    has_to_wait_ = true;
+    return std::nullopt;
   } catch (const std::exception& error) {
     return CommandResult{.status = CommandStatus::kFailed, .reason = error.what()};
   }
@@ -62,7 +152,7 @@ std::optional<CommandResult> SceneThread::perform(const MadeCommand& made) {
   return execute(command, true, made.complete);
 }
 
-std::optional<CommandResult> SceneThread::perform(const KeptFiles& files) {
+std::optional<CommandResult> SceneThread::result_of(const KeptFiles& files) {
   try {
     return commander_.keep_files(files.make(commander_.cell()));
   } catch (const std::exception& error) {
@@ -91,7 +181,7 @@ bool SceneThread::end() {
     return false;
   }
   if (thread_.joinable()) thread_.join();
-  return true;
+  return *readings_ == 0;
 }
 
 }  // namespace clearance

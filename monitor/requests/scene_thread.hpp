@@ -1,9 +1,15 @@
-// The thread that does the tasks of its queue, one after another.
+// The thread that does the tasks of its queue, one after another. A task that has to wait, for
+// meshes that a thread of its own reads or for a pose, lets those of other senders overtake.
 #pragma once
 
 #include <atomic>
+#include <chrono>
+#include <deque>
+#include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <thread>
 
 #include "monitor/requests/scene_commander.hpp"
@@ -32,11 +38,27 @@ class SceneThread {
 
  private:
   enum class Phase { kReading, kChanging, kEnded };
+  // What a thread of its own has read; it may outlive this.
+  struct Reading {
+    std::atomic<bool> is_done = false;
+    std::shared_ptr<const ReadMeshes> meshes;
+  };
+  // The tasks of one sender of which the first waits: for a reading, or until this time.
+  struct Lane {
+    std::deque<SceneTask> tasks;
+    std::chrono::steady_clock::time_point again;
+    std::shared_ptr<Reading> reading;  // null: none
+  };
   void run();
+  std::optional<SceneTask> next();
+  [[nodiscard]] std::optional<SceneTask> next_of_lanes();
+  // Returns false after end().
+  bool perform(SceneTask task);
+  void wait(SceneTask task);
   // Each returns the result; nothing: there is none.
-  std::optional<CommandResult> perform(const GivenCommand& given);
-  std::optional<CommandResult> perform(const MadeCommand& made);
-  std::optional<CommandResult> perform(const KeptFiles& files);
+  std::optional<CommandResult> result_of(const GivenCommand& given);
+  std::optional<CommandResult> result_of(const MadeCommand& made);
+  std::optional<CommandResult> result_of(const KeptFiles& files);
   std::optional<CommandResult> execute(const Command& command, bool is_own,
                                        const CompleteChanges& complete);
   // Returns false after end(); then nothing may be read any more.
@@ -44,6 +66,9 @@ class SceneThread {
 
   SceneQueue queue_;
   SceneCommander commander_;
+  std::map<std::string, Lane> lanes_;  // by sender
+  bool has_to_wait_ = false;           // the task in hand
+  std::shared_ptr<std::atomic<int>> readings_ = std::make_shared<std::atomic<int>>(0);
   std::mutex mutex_;
   Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing
   bool is_ending_ = false;

@@ -33,7 +33,9 @@ std::string content_name(const std::string& bytes) {
 }  // namespace
 
 SentFiles::SentFiles(const std::filesystem::path& cell_file)
-    : folder_(cell_file.parent_path() / "clearance.sent") {}
+    : folder_(cell_file.parent_path() / "clearance.sent") {
+  remove_unfinished(folder_);
+}
 
 std::variant<std::map<std::string, std::string>, std::string> SentFiles::keep(
     const std::vector<SentFile>& files) {

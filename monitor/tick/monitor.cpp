@@ -179,18 +179,6 @@ SensorFrame Monitor::frame_in_use(std::uint32_t sensor) const noexcept {
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
 
-SweptBounds Monitor::sweep(std::uint32_t pair, double level) const noexcept {
-  const State& s = *state_;
-  const PairBounds known = s.bounds(pair);
-  SweptBounds bounds{known.swept_lower, known.swept_upper};
-  if (!is_known(known.status) || bounds.lower >= level) return bounds;
-  Budget unlimited(std::numeric_limits<std::uint32_t>::max());
-  const SweptBounds found = swept_bounds_of(pair, level, s.view(), unlimited);
-  bounds.lower = std::min(known.lower, std::max(bounds.lower, found.lower));
-  bounds.upper = std::min(bounds.upper, found.upper);
-  return bounds;
-}
-
 InputAge Monitor::input_age(std::uint32_t object) const noexcept {
   const TrackedObject& state = state_->inputs.objects[object];
   return {.age_ns = state.input.age_ns(state_->inputs.time.now_ns),

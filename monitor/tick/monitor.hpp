@@ -140,6 +140,10 @@ class Monitor {
   // tick.
   [[nodiscard]] PairReport pair(std::uint32_t pair) const noexcept;
 
+  // The same. If the lower bound is below `level`, m, queries without a budget decide whether the
+  // distance is. Changes nothing.
+  [[nodiscard]] PairReport pair_at_least(std::uint32_t pair, double level) const noexcept;
+
   // Bounds of a pair's distance between the last two ticks: PairReport::swept_lower. If that is
   // below `level`, m, a closer search runs until it has decided, without a budget. Changes nothing.
   [[nodiscard]] SweptBounds sweep(std::uint32_t pair, double level) const noexcept;

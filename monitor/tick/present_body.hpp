@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <optional>
+#include <stdexcept>
 #include <string>
 
 #include "monitor/tick/monitor.hpp"
@@ -37,6 +38,26 @@ struct SceneBody {
                                               const Monitor& monitor) noexcept {
   return body.is_link ? monitor.present_link(body.robot, body.link)
                       : monitor.present_pose(body.object);
+}
+
+// A pose that a message depends on is not usable now, and is expected back.
+struct PoseIsLate : std::runtime_error {
+  PoseIsLate() : std::runtime_error("a pose is late, contradicted or not heard yet") {}
+};
+
+// Returns the pose of the body of this name. Throws PoseIsLate if the last one is late or
+// contradicted, or if it is a link whose joints were not heard yet: a message that depends on it
+// waits. Nothing: no pose is expected of it.
+[[nodiscard]] inline std::optional<Pose> pose_or_late(const std::string& name, const Scene& scene,
+                                                      const PresentPose& pose) {
+  using State = PresentPose::State;
+  if (pose.state == State::kUsable) return pose.world_from_body;
+  const bool was_heard = pose.state == State::kLate || pose.state == State::kContradicted;
+  const bool is_link = std::ranges::any_of(scene.robots, [&](const Robot& robot) {
+    return std::ranges::find(robot.links, name, &RobotLink::name) != robot.links.end();
+  });
+  if (was_heard || (is_link && pose.state == State::kUnknown)) throw PoseIsLate();
+  return std::nullopt;
 }
 
 }  // namespace clearance

@@ -106,7 +106,8 @@ TEST_F(DaemonCommands, AttachAndDetachWhereTheObjectIs) {
   const auto planner = client("planner");
   ASSERT_TRUE(planner->result_of({AddFromTemplate{"bin", "bin_1", {}, at(-0.5, 0, 4)}}).done());
   robot.send(0.0);
-  const CommandResult attached = planner->result_of({Attach{"bin_1", "left"}});
+  const CommandResult attached =
+      planner->result_of({Attach{.object = "bin_1", .to = "left", .far = true}});
   ASSERT_TRUE(attached.done()) << attached.reason;
   robot.send(0.1);
   const CommandResult detached = planner->result_of({Detach{"bin_1"}});
@@ -120,7 +121,8 @@ TEST_F(DaemonCommands, OfDifferentKindsInTurnAreReadByThemselves) {
   ASSERT_TRUE(planner->result_of({kBin}).done());
   for (int i = 0; i < 100; ++i) {
     const std::vector<std::vector<CellChange>> lists = {
-        {Attach{"bin_1", "left", at(0, 0, 1), {"right"}}, SetMargin{"floor", 0.1}},
+        {Attach{"bin_1", "left", at(0, 0, 1), {"right"}, std::nullopt, true},
+         SetMargin{"floor", 0.1}},
         {Detach{"bin_1", at(0, 3, 3)}, SetPair{"bin_1", "left", SetPair::Rule::kPublish}},
         {SetPair{"bin_1", "left", SetPair::Rule::kUnstated}, SetZoneThresholds{"near", 0.3, 0.4}},
         {Place{"bin_1", at(0, 4, 3)}, SetMaxSpeed{"left", 4.0}, SetSource{"left", std::nullopt}}};
@@ -304,8 +306,8 @@ TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
     robot.send(0.0);
     ASSERT_TRUE(planner->result_of({kBin}).done());
     const Command remove = planner->command({RemoveObject{"bin_1"}});
-    const Command attach =
-        other->command({Attach{"bin_1", "left", at(0, 0, 1)}, SetAbsent{"bin_1"}});
+    const Command attach = other->command(
+        {Attach{"bin_1", "left", at(0, 0, 1), {}, std::nullopt, true}, SetAbsent{"bin_1"}});
     planner->send(remove);
     other->send(attach);
     const CommandResult first = planner->result_of(remove), second = other->result_of(attach);
@@ -315,7 +317,8 @@ TEST_F(DaemonCommands, ThatNameWhatIsJustBeingRemovedAreRefusedOrDoneBefore) {
   // Both wait in one queue, and the removal is the first in it.
   ASSERT_TRUE(planner->result_of({kBin}).done());
   const Command remove = planner->command({RemoveObject{"bin_1"}}),
-                attach = planner->command({Attach{"bin_1", "left", at(0, 0, 1)}});
+                attach = planner->command(
+                    {Attach{"bin_1", "left", at(0, 0, 1), {}, std::nullopt, true}});
   planner->send(remove);
   planner->send(attach);
   EXPECT_TRUE(planner->result_of(remove).done());

@@ -1,6 +1,7 @@
 #include "tools/ask/answering.hpp"
 
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <istream>
 #include <ostream>
@@ -11,8 +12,10 @@
 #include "monitor/app/program.hpp"
 #include "monitor/ask/completion.hpp"
 #include "monitor/ask/robots_of_question.hpp"
+#include "monitor/pairs/kept_near.hpp"
 #include "tools/ask/bag_inputs.hpp"
 #include "tools/ask/motion_json.hpp"
+#include "tools/shared/named_distance.hpp"
 
 namespace clearance {
 namespace {
@@ -29,12 +32,29 @@ double percentile(std::vector<double>& sorted, double share) {
 Answering::Answering(const AskOptions& options)
     : options_(options),
       report_(options.files, options.motions + " in " + options.cell, options.expected) {
-  defaults_.margins = options.margins;
   defaults_.tolerance = options.tolerance;
   defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
   if (options.others_still) defaults_.others = OthersMove::kNot;
-  if (options.expected) defaults_.margins.push_back(*options.expected);
   if (options.files.any()) defaults_.profile.emplace();
+}
+
+std::string Answering::read_margins() {
+  defaults_.margins.clear();
+  for (const std::string& text : options_.margins) {
+    double plain = 0.0;
+    const char* const end = text.data() + text.size();
+    if (std::from_chars(text.data(), end, plain).ptr == end && plain >= 0.0) {
+      defaults_.margins.push_back(plain);
+      continue;
+    }
+    auto found = read_named_distance(text);
+    if (const auto* wrong = std::get_if<std::string>(&found)) return "--margin: " + *wrong;
+    auto& named = std::get<NamedDistance>(found);
+    if (!named.metres || *named.metres < 0.0)
+      return "--margin: found '" + text + "'; expected m from 0 on, or A,B=0.05, or ZONE=0.05";
+    defaults_.margins_between.push_back({std::move(named.a), std::move(named.b), *named.metres});
+  }
+  return {};
 }
 
 bool Answering::read() {
@@ -124,6 +144,8 @@ AskedPlace& Answering::place_of(const Cell& cell) {
 
 void Answering::take(AskedMotion motion, std::ostream& out) {
   ++lines_;
+  // After what the motion itself states.
+  if (options_.expected) motion.question.margins.push_back(*options_.expected);
   if (options_.threads > 1) {
     waiting_.push_back(std::move(motion));
     if (waiting_.size() >= kWaitingForThread * options_.threads) answer_waiting(out);
@@ -208,8 +230,15 @@ int Answering::conclude(std::string error, const std::string& expected, std::ost
 
 bool Answering::add(const std::string& scene, const std::filesystem::path& file) {
   std::optional<Cell> cell = cell_or_errors(read_cell(file, told_on_stderr()));
-  if (cell) places_[scene] = std::make_unique<AskedPlace>(std::move(*cell));
-  return cell.has_value();
+  if (!cell) return false;
+  std::vector<double> margins = defaults_.margins;
+  if (options_.expected) margins.push_back(*options_.expected);
+  for (const double margin : margins) {
+    const std::vector<std::uint32_t> kept = kept_nearer(cell->scene, margin);
+    if (!kept.empty()) print(stderr, "{}\n", kept_nearer_text(cell->scene, margin, kept));
+  }
+  places_[scene] = std::make_unique<AskedPlace>(std::move(*cell));
+  return true;
 }
 
 AskedPlace& Answering::place_of(const nlohmann::json& motion) {
@@ -244,7 +273,7 @@ Question Answering::question_of(const BagMotion& motion, const Scene& scene) con
 void Answering::expect(AskedMotion& motion) {
   const Answer& answer = motion.answer;
   if (!options_.expected || answer.margins.empty()) return;
-  const MarginAnswer& margin = answer.margins.back();
+  const MarginAnswer& margin = answer.margins[motion.question.margins.size() - 1];
   if (margin.verdict == Verdict::kFree) return;
   ++failed_;
   motion.as_expected = false;

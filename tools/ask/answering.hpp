@@ -20,7 +20,8 @@ namespace clearance {
 
 struct AskOptions {
   std::string cell, motions, out;
-  std::vector<double> margins{0.0, 0.01, 0.05};
+  // m, or with names: "A,B=0.05", "ZONE=0.05".
+  std::vector<std::string> margins{"0", "0.01", "0.05"};
   double tolerance = 1e-3;
   std::optional<double> expected;
   bool others_still = false, only_verdicts = false;
@@ -33,6 +34,8 @@ class Answering {
  public:
   // The options must outlive this.
   explicit Answering(const AskOptions& options);
+  // Returns what is wrong with the options; empty: nothing.
+  [[nodiscard]] std::string read_margins();
   // Reads the cell of all motions; a folder is read as motions name its cells.
   [[nodiscard]] bool read();
   [[nodiscard]] std::string begin_report();
@@ -61,7 +64,7 @@ class Answering {
   AskedPlace& place_of(const nlohmann::json& motion);
   // A bag has joint states of robots that the cell does not have, too.
   [[nodiscard]] Question question_of(const BagMotion& motion, const Scene& scene) const;
-  // The expected distance is the last margin.
+  // The expected distance is the last of the margins of all pairs.
   void expect(AskedMotion& motion);
   void summarise();
 

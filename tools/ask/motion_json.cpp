@@ -164,7 +164,34 @@ OrderedJson scaling_of(const TimeScaling& scaling, const Names& names) {
   return entry;
 }
 
+// A margin is a number for all pairs, or a map for some.
+void read_margins(const Json& margins, Question& question) {
+  question.margins.clear();
+  question.margins_between.clear();
+  for (const Json& margin : margins) {
+    if (margin.is_number()) {
+      question.margins.push_back(margin.get<double>());
+      continue;
+    }
+    MarginBetween& of = question.margins_between.emplace_back();
+    of.margin = margin.at("m").get<double>();
+    if (margin.contains("zone")) {
+      of.a = margin["zone"].get<std::string>();
+    } else {
+      const auto sides = margin.at("between").get<std::array<std::string, 2>>();
+      of.a = sides[0];
+      of.b = sides[1];
+    }
+  }
+}
+
 }  // namespace
+
+std::string margin_text(const Question& question, std::size_t place) {
+  if (place < question.margins.size()) return fmt::format("{:g}", question.margins[place]);
+  const MarginBetween& of = question.margins_between[place - question.margins.size()];
+  return fmt::format("{}{}{}={:g}", of.a, of.b.empty() ? "" : ",", of.b, of.margin);
+}
 
 Question read_question(const Json& line, const Question& defaults) {
   if (!line.is_object()) throw BadMotion("the line is not a JSON object");
@@ -219,7 +246,7 @@ Question read_question(const Json& line, const Question& defaults) {
   if (line.contains("profile")) question.profile = profile_of(line["profile"]);
   if (line.contains("time_scaling")) question.time_scaling = line["time_scaling"].get<bool>();
   if (line.contains("others")) question.others = others_of(line["others"].get<std::string>());
-  if (line.contains("margins")) question.margins = line["margins"].get<std::vector<double>>();
+  if (line.contains("margins")) read_margins(line["margins"], question);
   return question;
 }
 
@@ -239,8 +266,9 @@ OrderedJson answer_line(const Answer& answer, const Scene& scene, const Question
   }
   line["first_below"] = OrderedJson::object();
   line["verdict"] = OrderedJson::object();
-  for (const MarginAnswer& margin : answer.margins) {
-    const std::string key = fmt::format("{:g}", margin.margin);
+  for (std::size_t i = 0; i < answer.margins.size(); ++i) {
+    const MarginAnswer& margin = answer.margins[i];
+    const std::string key = margin_text(question, i);
     line["first_below"][key] = first_below(margin, names);
     line["verdict"][key] = name(margin.verdict);
   }

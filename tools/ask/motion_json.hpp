@@ -1,6 +1,7 @@
 // A question as a line of JSON, and its answer as another. `clearance-ask --help` has the keys.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -18,6 +19,9 @@ struct BadMotion : std::runtime_error {
 // Reads the keys of a motion into `defaults`. Throws BadMotion, or nlohmann::json::exception for a
 // value of another type.
 [[nodiscard]] Question read_question(const nlohmann::json& line, const Question& defaults);
+
+// Names the margin of an answer, by its place in Answer::margins: "0.05", "arm,table=0.05".
+[[nodiscard]] std::string margin_text(const Question& question, std::size_t place);
 
 [[nodiscard]] nlohmann::ordered_json answer_line(const Answer& answer, const Scene& scene,
                                                  const Question& question);

@@ -11,6 +11,7 @@
 #include "monitor/files/file_error.hpp"
 #include "monitor/files/temporary_folder.hpp"
 #include "tools/ask/html.hpp"
+#include "tools/ask/motion_json.hpp"
 #include "tools/plot/gnuplot.hpp"
 
 namespace clearance {
@@ -54,9 +55,10 @@ void MotionReport::add(const AskedMotion& motion) {
     row.time = answer.time;
     if (answer.has_pair && answer.upper < kInfinity)
       row.pair = name(answer.first) + " - " + name(answer.second);
-    for (const MarginAnswer& margin : answer.margins) {
-      row.verdicts += fmt::format("{}{:g} m: {}", row.verdicts.empty() ? "" : ", ", margin.margin,
-                                  clearance::name(margin.verdict));
+    for (std::size_t i = 0; i < answer.margins.size(); ++i) {
+      const MarginAnswer& margin = answer.margins[i];
+      row.verdicts += fmt::format("{}{} m: {}", row.verdicts.empty() ? "" : ", ",
+                                  margin_text(motion.question, i), clearance::name(margin.verdict));
       if (margin.verdict == Verdict::kBelow)
         row.verdicts += fmt::format(" from {:.6g} s on", margin.above_until);
     }

@@ -1,8 +1,6 @@
 #include <fmt/format.h>
 
-#include <charconv>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -23,6 +21,7 @@
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/replay/share_balance.hpp"
+#include "tools/shared/named_distance.hpp"
 #include "tools/shared/progress_bar.hpp"
 
 namespace clearance {
@@ -117,31 +116,15 @@ void print_summary(const OfflineReplay& replay, const CheckArguments& arguments,
 // Reads --between: "A,B=METRES", where B and the distance may be left out. Returns what is wrong.
 std::string read_between(const CheckArguments& arguments, std::vector<ExpectedDistance>& read) {
   for (const std::string& text : arguments.between) {
-    std::optional<double> metres = arguments.expect_min_distance;
-    std::string names = text;
-    if (const std::size_t at = text.rfind('='); at != std::string::npos) {
-      const char* const end = text.data() + text.size();
-      double stated = 0.0;
-      if (std::from_chars(text.data() + at + 1, end, stated).ptr != end || at + 1 == text.size() ||
-          !std::isfinite(stated)) {
-        return fmt::format("--between: found '{}' after '=' in '{}'; expected a distance, m",
-                           text.substr(at + 1), text);
-      }
-      metres = stated;
-      names.resize(at);
-    }
-    if (!metres) {
+    auto found = read_named_distance(text);
+    if (const auto* wrong = std::get_if<std::string>(&found)) return "--between: " + *wrong;
+    auto& named = std::get<NamedDistance>(found);
+    if (!named.metres) named.metres = arguments.expect_min_distance;
+    if (!named.metres) {
       return fmt::format("--between {}: no distance; expected '{}=0.05', or --expect-min-distance",
                          text, text);
     }
-    ExpectedDistance expected{*metres};
-    const std::size_t comma = names.find(',');
-    expected.a = names.substr(0, comma);
-    if (comma != std::string::npos) expected.b = names.substr(comma + 1);
-    if (expected.a.empty() || (comma != std::string::npos && expected.b.empty())) {
-      return fmt::format("--between: found '{}'; expected two objects or groups, A,B, or a zone",
-                         text);
-    }
+    ExpectedDistance expected{*named.metres, std::move(named.a), std::move(named.b)};
     read.push_back(std::move(expected));
   }
   return {};

@@ -81,6 +81,20 @@ TEST(ContactKeys, EachMistakeIsRefusedAtItsPlace) {
   EXPECT_TRUE(refuses(cell_with(two))) << "one pair in two contacts";
 }
 
+// What the robot carries may not touch a person either: the pair would not be watched.
+TEST(ContactKeys, WhatIsAttachedToARobotMayNotTouchAPerson) {
+  const auto carried = [](const std::string& touch) {
+    std::string text = cell_with("");
+    const std::string rigid = "{between: [part, robot]}, ";
+    text.erase(text.find(rigid), rigid.size());
+    const std::string part = "{name: part, groups: [things], sphere: {radius: 1}";
+    return text.replace(text.find(part), part.size(),
+                        part + ", attached: {to: robot, touch: [" + touch + "]}");
+  };
+  EXPECT_TRUE(errors_of(carried("table")).empty());
+  EXPECT_FALSE(errors_of(carried("person")).empty());
+}
+
 // The entries of both scenes are those of the same names and terms.
 TEST(ContactKeys, AChangedSceneKnowsWhichContactsGoOn) {
   const Scene before = scene_of(one("between: [things, table], depth: 0.002"));

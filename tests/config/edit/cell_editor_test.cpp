@@ -225,6 +225,25 @@ TEST_F(CellEdits, AContactThatTheLoaderRefusesIsRefused) {
   EXPECT_EQ(refused({good, change}).path, "contacts[again]") << "one contact for a pair";
 }
 
+// While the box is attached, it has the pairs of its carrier, and none with it.
+TEST_F(CellEdits, WhatAClientHasSaidOfAPairForbidsNoLaterAttachOrDetach) {
+  for (const SetPair::Rule rule :
+       {SetPair::Rule::kPublish, SetPair::Rule::kWatch, SetPair::Rule::kLeaveOut}) {
+    for (const char* other : {"hand", "table", "cart"}) {
+      editor_.emplace(open(kEditedCell));
+      const SetPair set{"box", other, rule, "tested"};
+      const std::vector<CellChange> before = {set};
+      if (std::holds_alternative<EditRefusal>(editor_->edit(before))) continue;
+      edit({Attach{"box", "hand", test::at(0.1, 0, 0)}});
+      edit({Detach{"box", test::at(0, 0, 1.5)}});
+      const std::vector<CellChange> again = {Attach{"box", "hand", test::at(0.1, 0, 0)}};
+      edit(again);
+      if (std::holds_alternative<EditRefusal>(editor_->edit(before))) continue;
+      edit({Detach{"box", test::at(0, 0, 1.5)}});
+    }
+  }
+}
+
 TEST_F(CellEdits, WhatOthersNameIsNotRemoved) {
   EXPECT_THAT(refused({RemoveObject{"cart"}}).reason, HasSubstr("pairs[spare, cart]"));
   EXPECT_THAT(refused({RemoveObject{"table"}}).reason, HasSubstr("zones[stop]"));
@@ -302,7 +321,6 @@ TEST_F(CellEdits, EachImpossibleChangeIsRefused) {
       SetPair{"hand", "nothing", SetPair::Rule::kPublish},
       SetPair{"table", "box", SetPair::Rule::kPublish},
       SetPair{"hand", "cart", SetPair::Rule::kLeaveOut, ""},
-      SetPair{"spare", "box", SetPair::Rule::kLeaveOut, "not watched anyway"},
       SetZoneThresholds{"stap", 0.1, 0.2},
       SetZoneThresholds{"stop", 0.1, 0.05},
   };

@@ -119,9 +119,12 @@ class DrawnChange {
   CellChange make(std::type_identity<RemoveObject>) { return RemoveObject{object()}; }
   CellChange make(std::type_identity<SetAbsent>) { return SetAbsent{object(), one_in(2)}; }
   CellChange make(std::type_identity<Attach>) {
-    return Attach{object(), carrier(), maybe_pose(),
+    return Attach{object(),
+                  carrier(),
+                  maybe_pose(),
                   one_in(2) ? std::vector{object_or_group()} : std::vector<std::string>{},
-                  one_in(4) ? std::optional(random_.uniform(-0.01, 0.3)) : std::nullopt};
+                  one_in(4) ? std::optional(random_.uniform(-0.01, 0.3)) : std::nullopt,
+                  true};
   }
   CellChange make(std::type_identity<Detach>) {
     return Detach{names_.attached.empty() || one_in(4) ? object() : one_of(names_.attached),

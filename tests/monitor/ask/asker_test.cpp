@@ -220,5 +220,40 @@ TEST(Asker, AnswersOfManyQuestionsHaveTheSameBitsForAnyNumberOfThreads) {
   EXPECT_EQ(faults_of_one[4], "");
 }
 
+// No posture takes the finger farther than 1.3 m from the upper link. It is 1.25 m away here, and
+// 0.15 m from the post.
+TEST(Asker, AMarginCountsForNoPairThatTheBuildKeepsNearerInEveryPosture) {
+  const Scene scene = test::scara_beside(
+      "fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.5, 0, 0]}",
+      "zones: [{name: stop, between: [post, finger], enter_below: 0, leave_above: 0}]\n");
+  Question question = test::swing(0.0, 0.0);
+  question.held = {{"elbow", 0.0}, {"push", 0.2}};
+  question.margins = {0.15, 0.14, 0.19, 1.24};
+  question.margins_between = {
+      {"upper", "finger", 1.24}, {"upper", "finger", 1.26}, {"stop", "", 0.14}, {"stop", "", 0.16}};
+  for (const bool only : {false, true}) {
+    question.only_margins = question.only_verdicts = only;
+    const Answer answer = test::answered(scene, question);
+    ASSERT_EQ(answer.margins.size(), 8u);
+    EXPECT_EQ(answer.margins[1].verdict, Verdict::kFree);
+    for (const std::size_t i : {2u, 3u}) {
+      ASSERT_EQ(answer.margins[i].verdict, Verdict::kBelow) << i;
+      EXPECT_EQ(scene.objects[answer.margins[i].first].name, "post") << i;
+    }
+    EXPECT_EQ(answer.margins[4].verdict, Verdict::kFree);
+    EXPECT_EQ(answer.margins[5].verdict, Verdict::kBelow);
+    EXPECT_EQ(answer.margins[6].verdict, Verdict::kFree);
+    EXPECT_EQ(answer.margins[7].verdict, Verdict::kBelow);
+  }
+  question.poses = {};
+  question.margins_between = {{"upper", "nothing", 0.1}};
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+  const Scene far =
+      test::scara_beside("fixed: true, sphere: {radius: 0.1}, pose: {xyz: [9, 0, 0]}");
+  question.margins_between.clear();
+  question.margins = {1.4};
+  EXPECT_EQ(test::answered(far, question).margins[0].verdict, Verdict::kFree);
+}
+
 }  // namespace
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "tests/monitor/ask/scara_questions.hpp"
 
@@ -122,7 +123,51 @@ TEST(AssumedMotion, PairsOfOtherRobotsAloneDoNotCount) {
   question.motion.times = {1.0, 1.05};
   EXPECT_GT(answered(scene, question).lower, 0.5);
   question.others = OthersMove::kNot;
-  EXPECT_LT(answered(scene, question).upper, 0.2) << "the right finger is beside the post";
+  EXPECT_GT(answered(scene, question).lower, 0.5) << "whatever is assumed of its motion";
+  question.joints.clear();
+  for (const auto& [name, position] : {std::pair("right_shoulder", 1.57), {"right_elbow", 0.0}})
+    question.held.push_back({name, position});
+  question.held.push_back({"right_push", 0.0});
+  EXPECT_LT(answered(scene, question).upper, 0.2) << "the question states that it stays there";
+}
+
+// To assume that others rest is stronger than to assume that they move by max_speed.
+TEST(AssumedMotion, AnAnswerIsNeverWorseForTheStrongerAssumption) {
+  const Scene scene = two_arms(),
+              carried = arm_on_a_cart(", max_speed: 0.05", ", {between: [arm, cart]}");
+  std::mt19937_64 engine(57);
+  const auto between = [&](double low, double high) {
+    return low + (high - low) * static_cast<double>(engine() >> 11) * 0x1p-53;
+  };
+  const auto expect_law = [](const Scene& of, Question question, int round) {
+    question.tolerance = 1e-6;
+    const Answer moving = answered(of, question);
+    question.others = OthersMove::kNot;
+    const Answer resting = answered(of, question);
+    EXPECT_EQ(resting.has_pair, moving.has_pair) << round;
+    EXPECT_GE(resting.upper, moving.lower) << round;
+    EXPECT_GE(resting.lower, moving.lower - question.tolerance) << round;
+    if (moving.margins[0].verdict == Verdict::kFree) {
+      EXPECT_EQ(resting.margins[0].verdict, Verdict::kFree) << round;
+    }
+  };
+  for (int round = 0; round < 100; ++round) {
+    expect_law(scene,
+               beside_the_right_arm({{"right_shoulder", between(-3.0, 3.0), between(0.0, 0.2)},
+                                     {"right_elbow", between(-2.5, 2.5), 0.1},
+                                     {"right_push", between(0.0, 0.15), 0.1}}),
+               round);
+    Question cart = test::swing(between(-1.0, 1.0), between(-1.0, 1.0));
+    cart.poses = {
+        {.object = "cart",
+         .world_from_object = {.position = {between(-0.5, 0.5), between(0.0, 1.0), 0.0}}}};
+    cart.poses[0].age = between(0.0, 1.0);
+    expect_law(carried, cart, round);
+    // A joint of the arm rests by assumption, too.
+    cart.held = {{"elbow", between(-2.0, 2.0)}};
+    cart.joints = {{"push", 0.1, 0.0}};
+    expect_law(carried, cart, round);
+  }
 }
 
 TEST(AssumedMotion, AJointWithoutAnyLimitIsRefusedByItsName) {

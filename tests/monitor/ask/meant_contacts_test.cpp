@@ -115,6 +115,35 @@ TEST(MeantContacts, OfTheQuestionTakeThePlaceOfThoseOfTheScene) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
 }
 
+// What a cell refuses of a contact, a question refuses by the same sentence.
+TEST(MeantContacts, AreNoneWithPeople) {
+  const char* zone =
+      "zones:\n  - {name: people, between: [post, finger], enter_below: 0.01, leave_above: 0.02, "
+      "separation: {human: post, human_speed: 0.1, reaction_time_ms: 500, stopping_time_ms: 500, "
+      "stopping_distance: 0.1, intrusion_distance: 0}}\n";
+  const Scene scene = scara_beside(kNearPin, zone);
+  const auto fault = [&](const Question& question) {
+    const auto answer = ask(scene, question);
+    const auto* text = std::get_if<std::string>(&answer);
+    return text == nullptr ? "" : *text;
+  };
+  const std::string why = "in the zone 'people' with separation";
+  Question question = swing(-1.0, 0.6);
+  question.contacts = {{{.first = "finger", .second = "post", .depth = 0.1}}};
+  EXPECT_NE(fault(question).find(why), std::string::npos) << fault(question);
+  question.contacts = {{{.first = "lower", .second = "post", .depth = 0.1}}};
+  EXPECT_EQ(fault(question), "") << "the zone has no such pair";
+  question.contacts.reset();
+  question.payloads = {{.name = "ball",
+                        .shape = std::get<ConvexBody>(point(Vec3::Zero(), 0.02)),
+                        .link = "finger",
+                        .link_from_object = {},
+                        .touch = {"post"}}};
+  EXPECT_NE(fault(question).find(why), std::string::npos) << fault(question);
+  question.payloads[0].link = "upper";
+  EXPECT_EQ(fault(question), "");
+}
+
 // Each of these takes another path through the search.
 TEST(MeantContacts, CountInVerdictsAloneAndBesidePayloads) {
   const Scene allowed = scene_with("0.051"), deep = scene_with("0.04");

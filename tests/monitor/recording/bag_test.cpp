@@ -128,8 +128,11 @@ TEST(Bag, FilesThatWereCompressedAsAWholeSayWhatToDo) {
   EXPECT_FALSE(refused.readable);
   EXPECT_THAT(refused.error, HasSubstr("bag_0.db3.zstd is compressed as a whole file"));
   EXPECT_THAT(refused.error, HasSubstr("zstd -d "));
-  std::filesystem::remove(folder / "bag/bag_0.db3.zstd");  // as zstd -d --rm does
   write_sqlite_bag(folder / "bag/bag_0.db3", some_messages());
+  expect_same(some_messages(), read_bag(folder / "bag").messages);
+  std::filesystem::remove(folder / "bag/metadata.yaml");
+  expect_same(some_messages(), read_bag(folder / "bag").messages);
+  std::filesystem::remove(folder / "bag/bag_0.db3.zstd");  // as zstd -d --rm does
   expect_same(some_messages(), read_bag(folder / "bag").messages);
 }
 

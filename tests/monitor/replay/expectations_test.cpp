@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "tests/monitor/replay/offline_replay_run.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance::test {
 namespace {
@@ -245,6 +246,35 @@ TEST_F(ReplayExpectations, BetweenTwoObjectsOrOfAZoneMeanTheirPairsAlone) {
   ASSERT_EQ(1u, two.failures.size()) << "each has a distance of its own";
   EXPECT_THAT(replay({.expect_between = {{0.09, "hand", "bxo"}}}).error, HasSubstr("'bxo'"));
   EXPECT_THAT(replay({.expect_between = {{0.09, "halt", ""}}}).error, HasSubstr("its zones are"));
+}
+
+// The finger is never farther than 1.3 m from the upper link, nor the lower link from the foot.
+// Foot and finger keep 1.4 m while the arm is stretched, although their bounds need only certify
+// the minimum of 1.25 m.
+TEST(ReplayOfARobotAlone, ExpectsNoDistanceThatItsBuildNeverKeeps) {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const Cell cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n"
+      "pairs: [{between: [arm, arm]}]\n",
+      folder / "cell.yaml");
+  const auto replay_with_elbow = [&](double elbow, double expected) {
+    std::string csv = "t_ns,shoulder,elbow,push\n";
+    for (int i = 0; i < 60; ++i) {
+      csv += std::to_string(i * 10'000'000) + "," + std::to_string(0.005 * i) + "," +
+             std::to_string(elbow + 0.005 * i) + ",0.2\n";
+    }
+    write_text(folder / "joints.csv", csv);
+    return replay_offline(cell, folder / "joints.csv", {.expect_min_distance = expected});
+  };
+  const OfflineReplay stretched = replay_with_elbow(0.0, 1.4);
+  EXPECT_TRUE(stretched.ok()) << stretched.text();
+  EXPECT_THAT(stretched.notes, testing::Contains(testing::AllOf(HasSubstr("upper - finger"),
+                                                                HasSubstr("in every posture"))));
+  const OfflineReplay folded = replay_with_elbow(2.8, 1.4);
+  ASSERT_EQ(folded.failures.size(), 1u) << folded.text();
+  EXPECT_THAT(folded.failures[0].what, HasSubstr("foot - finger"));
+  EXPECT_FALSE(replay_with_elbow(0.0, 1e3).ok()) << "foot and finger: nothing is proved of them";
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Two things stay on the disk: the last accepted scene, and files that commands send.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -38,6 +39,27 @@ TEST(KeptScene, IsWhatWasKeptLast) {
   EXPECT_EQ(kept->began_with, 0xfedcba9876543210);
   EXPECT_EQ(kept->yaml, "name: b\n# end\n");
   EXPECT_EQ(files_in(folder / "."), 1u) << "nothing else is left";
+}
+
+// A process that was killed while it wrote. No process has a number above that of the kernel's
+// limit.
+TEST(KeptScene, AndSentFilesLeaveNothingUnfinishedBehind) {
+  const ScratchFolder folder;
+  const auto file = folder / "scene.yaml";
+  constexpr const char* kGone = "scene.yaml.99999999.new";
+  const std::string running = "scene.yaml." + std::to_string(::getpid()) + ".new";
+  for (const std::string& name : {std::string(kGone), running, std::string("other.99999999.new"),
+                                  std::string("scene.yaml.new")})
+    std::ofstream(folder / name) << "half";
+  EXPECT_EQ(std::get<0>(read_kept_scene(file)), std::nullopt);
+  EXPECT_FALSE(std::filesystem::exists(folder / kGone));
+  EXPECT_TRUE(std::filesystem::exists(folder / running)) << "its process runs";
+  EXPECT_EQ(files_in(folder / "."), 3u) << "other files are not ours";
+  std::filesystem::create_directory(folder / "clearance.sent");
+  std::ofstream(folder / "clearance.sent" / "0123.stl.99999999.new") << "half";
+  std::ofstream(folder / "clearance.sent" / "0123.stl") << "whole";
+  const SentFiles sent(folder / "cell.yaml");
+  EXPECT_EQ(files_in(folder / "clearance.sent"), 1u);
 }
 
 TEST(KeptScene, OfAnotherProgramOrCutOffIsRefused) {

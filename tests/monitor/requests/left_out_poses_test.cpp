@@ -14,6 +14,8 @@ const std::string kPartElsewhere =
     "{name: part, groups: [things], fixed: true, pose: {xyz: [0.5, 0.7, 0]}, "
     "box: {size: [0.1, 0.1, 0.1]}}";
 
+const Attach kWhereItIs{.object = "part", .to = "hand", .far = true};
+
 class LeftOutPoses : public test::CommandedCell {
  protected:
   void begin() {
@@ -42,8 +44,8 @@ class LeftOutPoses : public test::CommandedCell {
 
 TEST_F(LeftOutPoses, AreThoseAfterTheChangesBefore) {
   begin();
-  expect_part_at({ReplaceObject{kPartElsewhere}, Attach{"part", "hand"}}, Vec3(0.5, 0.7, 0));
-  expect_part_at({Place{"part", at(0.5, 0.6, 0)}, Attach{"part", "hand"}}, Vec3(0.5, 0.6, 0));
+  expect_part_at({ReplaceObject{kPartElsewhere}, kWhereItIs}, Vec3(0.5, 0.7, 0));
+  expect_part_at({Place{"part", at(0.5, 0.6, 0)}, kWhereItIs}, Vec3(0.5, 0.6, 0));
   const Vec3 in_hand = Vec3(0.5, 0, 0.2) + test::turned(Vec3::UnitZ(), 0.5) * Vec3(0.3, 0, 0);
   expect_part_at({Attach{"part", "hand", at(0.3, 0, 0)}}, in_hand);
   expect_part_at(

@@ -101,7 +101,8 @@ TEST_F(SceneCommands, AttachWithoutAPoseOfTheCarrierIsRefused) {
   poses->settle();
   EXPECT_TRUE(execute({Attach{"part", "hand"}}).done());
   expect_refused({SetMargin{"table", 0.1}, Attach{"table", "finger"}}, CommandStatus::kNoPose);
-  expect_refused({Attach{"table", "nothing"}}, CommandStatus::kNoPose);
+  const CommandResult misspelt = expect_refused({Attach{"part", "hnd"}}, CommandStatus::kRefused);
+  EXPECT_THAT(misspelt.reason, HasSubstr("did you mean 'hand'"));
 }
 
 TEST_F(SceneCommands, AttachWhereAnEarlierChangeOfTheSameCommandHasPutTheObject) {
@@ -126,6 +127,17 @@ TEST_F(SceneCommands, AttachingTooDeepIsRefusedWithTheDepthUnlessThatIsStated) {
   EXPECT_TRUE(execute({Attach{"part", "hand", Pose{}, {}, 0.151}}).done());
 }
 
+// Cubes of 0.2 and 0.1 m: their surfaces are 0.15 m nearer than their centres.
+TEST_F(SceneCommands, AttachingWhatLiesFarAwayIsRefusedUnlessThatIsStated) {
+  start();
+  EXPECT_TRUE(execute({Attach{"part", "hand", at(0.6, 0, 0)}}).done());
+  const CommandResult result =
+      expect_refused({Attach{"part", "hand", at(1.05, 0, 0)}}, CommandStatus::kRefused);
+  EXPECT_THAT(result.reason, HasSubstr("0.9 m from 'hand'"));
+  EXPECT_THAT(result.path, HasSubstr("part"));
+  EXPECT_TRUE(execute({Attach{"part", "hand", at(1.05, 0, 0), {}, std::nullopt, true}}).done());
+}
+
 TEST_F(SceneCommands, AttachingALittleDeepIsNot) {
   start();
   EXPECT_TRUE(execute({Attach{"part", "hand", at(0.15 - 0.0009, 0, 0)}}).done());
@@ -138,7 +150,9 @@ TEST_F(SceneCommands, AttachingIntoWhatMayBeTouchedIsRefused) {
   poses->settle();
   const Attach into_table{"part", "hand", at(-0.5, 0, -1), {"table"}};
   EXPECT_THAT(expect_refused({into_table}, CommandStatus::kOverlap).reason, HasSubstr("'table'"));
-  EXPECT_TRUE(execute({Place{"table", at(0, 3, -1)}, into_table}).done());
+  Attach far = into_table;
+  far.far = true;
+  EXPECT_TRUE(execute({Place{"table", at(0, 3, -1)}, far}).done());
 }
 
 TEST_F(SceneCommands, BeyondTheCapacityAreRefusedWithItsKey) {
@@ -188,6 +202,14 @@ TEST_F(SceneCommands, NameFilesOfStatedFoldersOnlyAndSendThem) {
     EXPECT_FALSE(result.done()) << file;
   }
   expect_refused({object_of("secret.obj", "m")}, CommandStatus::kFileRefused);
+  std::string reasons[2];
+  for (const int there : {0, 1}) {
+    const std::string file = there == 1 ? "secret.obj" : "nothing.obj";
+    std::string& reason = reasons[there];
+    reason = expect_refused({object_of(file, "m")}, CommandStatus::kFileRefused).reason;
+    reason.replace(reason.find(file), file.size(), "FILE");
+  }
+  EXPECT_EQ(reasons[0], reasons[1]) << "the answer does not tell what exists";
   std::filesystem::create_symlink(folder / "secret.obj", folder / "allowed" / "link.obj");
   expect_refused({object_of("allowed/link.obj", "m")}, CommandStatus::kFileRefused);
   EXPECT_TRUE(execute({object_of("allowed/a.obj", "m")}).done());

@@ -1,12 +1,17 @@
 // Commands of several clients that come at once, or faster than they can be done.
 #include <gtest/gtest.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <array>
 #include <chrono>
+#include <filesystem>
 #include <optional>
+#include <string>
 #include <thread>
 #include <vector>
 
+#include "config/text/file_bytes.hpp"
 #include "monitor/requests/scene_thread.hpp"
 #include "tests/monitor/requests/commanded_cell.hpp"
 
@@ -116,6 +121,118 @@ TEST_F(SceneThreadTest, AnswersEachCommandThatItTookOnceHoweverFastTheyCome) {
   EXPECT_EQ(order.size(), taken);
   EXPECT_TRUE(std::ranges::is_sorted(order));
   EXPECT_EQ(object("table").margin, order.back() % 2 == 0 ? 0.01 : 0.02);
+}
+
+// Splits of this mesh wait as long as this lives, as for another program that splits it.
+class HeldMesh {
+ public:
+  explicit HeldMesh(const std::filesystem::path& file) : file_(open_to_read(file)) {
+    EXPECT_EQ(::flock(file_, LOCK_EX), 0);
+  }
+  ~HeldMesh() { ::close(file_); }
+  HeldMesh(const HeldMesh&) = delete;
+  HeldMesh& operator=(const HeldMesh&) = delete;
+
+ private:
+  int file_;
+};
+
+constexpr const char* kTetrahedron =
+    "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+
+TEST_F(SceneThreadTest, CommandsOfOthersOvertakeOneWhoseMeshIsBeingRead) {
+  begin();
+  std::filesystem::create_directories(folder / "allowed");
+  test::write_text(folder / "allowed" / "a.obj", kTetrahedron);
+  std::optional<HeldMesh> held(folder / "allowed" / "a.obj");
+  std::vector<std::string> order;  // by the scene thread alone, until all have answered
+  const auto put_named = [&](const std::string& name, Command command) {
+    EXPECT_TRUE(thread->put(GivenCommand{.command = std::move(command),
+                                         .answer = [&, name](const CommandResult& result) {
+                                           order.push_back(result.done() ? name : result.reason);
+                                           ++answered;
+                                         }}));
+  };
+  put_named("mesh", {.client = "planner",
+                     .request = 1,
+                     .changes = {AddObject{"{name: m, groups: [things], fixed: true, pose: {xyz: "
+                                           "[3, 0, 0]}, mesh: {file: allowed/a.obj}}"}}});
+  put_named("after it", {.client = "planner", .request = 2, .changes = {SetMargin{"m", 0.01}}});
+  put_named("other", {.client = "operator", .request = 1, .changes = {SetMargin{"table", 0.01}}});
+  await(1);
+  put_named("other again",
+            {.client = "operator", .request = 2, .changes = {SetMargin{"table", 0.02}}});
+  await(2);
+  held.reset();
+  await(4);
+  EXPECT_EQ(order, (std::vector<std::string>{"other", "other again", "mesh", "after it"}));
+}
+
+// Mesh files of commands are refused as before, whoever reads them.
+TEST_F(SceneThreadTest, AMeshThatIsNoneIsRefusedOnceItWasRead) {
+  begin();
+  std::filesystem::create_directories(folder / "allowed");
+  test::write_text(folder / "allowed" / "b.obj", "no mesh");
+  CommandResult missing, damaged, elsewhere;
+  const auto add = [](const char* file) {
+    return AddObject{"{name: m, groups: [things], fixed: true, mesh: {file: " + std::string(file) +
+                     "}}"};
+  };
+  put({.client = "planner", .request = 1, .changes = {add("allowed/none.obj")}}, missing);
+  put({.client = "planner", .request = 2, .changes = {add("allowed/b.obj")}}, damaged);
+  put({.client = "planner", .request = 3, .changes = {add("b.obj")}}, elsewhere);
+  await(3);
+  EXPECT_EQ(missing.status, CommandStatus::kRefused) << missing.reason;
+  EXPECT_EQ(damaged.status, CommandStatus::kRefused) << damaged.reason;
+  EXPECT_EQ(elsewhere.status, CommandStatus::kFileRefused) << elsewhere.reason;
+}
+
+// As of MoveIt: the message is taken with the place that the hand has once it is known again.
+TEST_F(SceneThreadTest, ACommandThatDependsOnALatePoseWaitsForItAndOthersDoNot) {
+  std::string text = test::kCommandedCell;
+  text.replace(text.find("age_limit_ms: 60000"), 19, "age_limit_ms: 20");
+  start(text);
+  poses->put(at(0.5, 0, 0));
+  poses->settle();
+  poses->repeat(0);
+  const auto hand = [&] {
+    return (*present_poses({"hand"}, cell->scene, *loop, loop_ended)).at("hand").state;
+  };
+  while (hand() != PresentPose::State::kLate) std::this_thread::yield();
+  thread.emplace(*changer, *loop, loop_ended, CommanderOptions{});
+  thread->start();
+  std::vector<std::string> order;
+  int put_off = 0;
+  const auto answer_as = [&](const char* name) {
+    return [&, name](const CommandResult& result) {
+      order.push_back(result.done() ? name : result.reason);
+      ++answered;
+    };
+  };
+  const auto make = [](const Cell&, const AskPose& pose) {
+    const auto place = pose("hand");
+    EXPECT_TRUE(place);
+    return Command{.changes = {Place{"part", place ? *place : Pose{}}}};
+  };
+  const auto later = [](const Cell&, const AskPose&) {
+    return Command{.changes = {SetMargin{"part", 0.01}}};
+  };
+  EXPECT_TRUE(thread->put(MadeCommand{.sender = "moveit",
+                                      .put_off = [&] { ++put_off; },
+                                      .make = make,
+                                      .answer = answer_as("placed")}));
+  EXPECT_TRUE(
+      thread->put(MadeCommand{.sender = "moveit", .make = later, .answer = answer_as("after it")}));
+  EXPECT_TRUE(thread->put(GivenCommand{
+      .command = {.client = "planner", .request = 1, .changes = {SetMargin{"table", 0.01}}},
+      .answer = answer_as("other")}));
+  await(1);
+  poses->put(at(0.7, 0, 0));
+  poses->repeat(1);
+  await(3);
+  EXPECT_EQ(order, (std::vector<std::string>{"other", "placed", "after it"}));
+  EXPECT_GE(put_off, 1);
+  EXPECT_EQ(object("part").world_from_object.position, Vec3(0.7, 0, 0));
 }
 
 }  // namespace
