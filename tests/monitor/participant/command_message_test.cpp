@@ -28,7 +28,7 @@ std::vector<CellChange> every_change() {
           RemoveObject{"bin_7"},
           SetAbsent{"bin", true},
           SetAbsent{"bin", false},
-          Attach{"part", "hand", turned(), {"finger", "palm"}, 0.002},
+          Attach{"part", "hand", turned(), {"finger", "palm"}, 0.002, true},
           Attach{"part", "hand"},
           Detach{"part", turned()},
           Detach{"part"},
@@ -106,6 +106,7 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   EXPECT_EQ(attach.carrier_from_object->orientation.coeffs(), turned().orientation.coeffs());
   EXPECT_THAT(attach.touch, testing::ElementsAre("finger", "palm"));
   EXPECT_EQ(attach.overlap, 0.002);
+  EXPECT_TRUE(attach.far);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).carrier_from_object);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).overlap);
   EXPECT_EQ(std::get<SetPair>(read.changes[20]).rule, SetPair::Rule::kLeaveOut);
@@ -201,6 +202,22 @@ TEST(CommandMessage, IsRefusedByTheFieldThatHasNoValue) {
 }
 
 // Values that are not stated are not read.
+TEST(CommandMessage, NamesNoMoreThanACellCanHold) {
+  for (const std::size_t names : {4096u, 4097u}) {
+    const Command command{
+        .client = "planner",
+        .request = 1,
+        .changes = {Attach{"part", "hand", Pose{}, std::vector<std::string>(names, "table")}}};
+    const auto message = to_wire(command);
+    const auto read = from_wire(*message);
+    const auto* fault = std::get_if<MalformedField>(&read);
+    ASSERT_EQ(fault != nullptr, names > 4096u);
+    if (fault != nullptr) {
+      EXPECT_EQ(fault->path, "changes[0].attach.touch");
+    }
+  }
+}
+
 TEST(CommandMessage, MayHaveAnythingInFieldsThatAreNotStated) {
   auto message = to_wire({.client = "c", .request = 1, .changes = {Attach{"a", "b"}}});
   message->changes._buffer[0]._u.attach.carrier_from_object.value.position.x = NAN;
