@@ -40,12 +40,12 @@ TEST(DaemonIdentity, ExactlyOneOfTwoGivesWay) {
 TEST(DaemonIdentity, AgesOnOneMachineAreNotToldByItsWallClock) {
   const DaemonIdentity runs{.id = 1, .start_ns = 160, .boot = "b", .up_ns = 100};
   const DaemonIdentity late{.id = 2, .start_ns = 100, .boot = "b", .up_ns = 105};
-  EXPECT_TRUE(gives_way(late, runs)) << "its wall clock is behind";
-  EXPECT_FALSE(gives_way(runs, late));
+  EXPECT_TRUE(yields_to(late, runs)) << "its wall clock is behind";
+  EXPECT_FALSE(yields_to(runs, late));
   DaemonIdentity elsewhere = late;
   elsewhere.boot = "c";
-  EXPECT_FALSE(gives_way(elsewhere, runs));
-  EXPECT_TRUE(gives_way(runs, elsewhere));
+  EXPECT_FALSE(yields_to(elsewhere, runs));
+  EXPECT_TRUE(yields_to(runs, elsewhere));
 }
 
 }  // namespace
