@@ -125,7 +125,10 @@ SceneCommander::Refusal SceneCommander::do_all(Work& work, const std::function<b
   if (Refusal refusal = take_poses(work)) return refusal;
   auto proposed = editor_->propose(work.changes, work.complete);
   if (!ahead_.wanted.empty() && std::holds_alternative<Cell>(proposed)) {
+    // The other thread reads files that came with the command where they are kept.
     sent_.take_back();
+    if (std::string reason = sent_.keep_awaited(work.command.files); !reason.empty())
+      return CommandRefusal{CommandStatus::kFileRefused, 0, "files", std::move(reason)};
     editor_->take_back();
     return std::nullopt;
   }

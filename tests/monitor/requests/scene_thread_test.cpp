@@ -173,7 +173,7 @@ TEST_F(SceneThreadTest, AMeshThatIsNoneIsRefusedOnceItWasRead) {
   begin();
   std::filesystem::create_directories(folder / "allowed");
   test::write_text(folder / "allowed" / "b.obj", "no mesh");
-  CommandResult missing, damaged, elsewhere;
+  CommandResult missing, damaged, elsewhere, sent;
   const auto add = [](const char* file) {
     return AddObject{"{name: m, groups: [things], fixed: true, mesh: {file: " + std::string(file) +
                      "}}"};
@@ -181,7 +181,13 @@ TEST_F(SceneThreadTest, AMeshThatIsNoneIsRefusedOnceItWasRead) {
   put({.client = "planner", .request = 1, .changes = {add("allowed/none.obj")}}, missing);
   put({.client = "planner", .request = 2, .changes = {add("allowed/b.obj")}}, damaged);
   put({.client = "planner", .request = 3, .changes = {add("b.obj")}}, elsewhere);
-  await(3);
+  put({.client = "planner",
+       .request = 4,
+       .changes = {add("\"sent:c.obj\"")},
+       .files = {{"c.obj", kTetrahedron}}},
+      sent);
+  await(4);
+  EXPECT_TRUE(sent.done()) << sent.reason;
   EXPECT_EQ(missing.status, CommandStatus::kRefused) << missing.reason;
   EXPECT_EQ(damaged.status, CommandStatus::kRefused) << damaged.reason;
   EXPECT_EQ(elsewhere.status, CommandStatus::kFileRefused) << elsewhere.reason;
