@@ -54,7 +54,7 @@ struct MadeCamera {
 
 class RosCamera {
  public:
-  // Each frame differs from the one before in the depth of its last rows, which are behind the
+  // Each frame differs from the 699 before it in the depth of its last rows, which are behind the
   // wall.
   RosCamera(Participant& participant, const MadeCamera& the_made, const std::string& ns = "/cam")
       : made(the_made),
@@ -154,7 +154,7 @@ class RosCamera {
  private:
   [[nodiscard]] double depth_of(const MadeScene& scene, std::uint32_t u, std::uint32_t v) const {
     const bool is_last = v + std::max(2U, made.height / 20) >= made.height;
-    return is_last ? scene.wall + 0.5 + 0.001 * (frames_ % 100) : made.depth(scene, u, v);
+    return is_last ? scene.wall + 0.5 + 0.001 * (frames_ % 700) : made.depth(scene, u, v);
   }
   void next() {
     if (!is_frozen) ++frames_;
