@@ -3,7 +3,7 @@
 #include "monitor/files/table.hpp"
 
 #include <fmt/format.h>
-
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
@@ -11,6 +11,7 @@
 #include <cmath>
 #include <system_error>
 
+#include "config/text/file_bytes.hpp"
 #include "monitor/files/file_error.hpp"
 
 namespace clearance {
@@ -44,6 +45,14 @@ std::string joined(std::span<const std::string_view> names) {
   return text;
 }
 
+// Null: it was not opened. A FIFO is not waited for.
+gzFile open_gzip(const std::filesystem::path& path) noexcept {
+  const int file = open_to_read(path);
+  const gzFile opened = file < 0 ? nullptr : gzdopen(file, "rb");
+  if (file >= 0 && opened == nullptr) ::close(file);
+  return opened;
+}
+
 }  // namespace
 
 // Reads at most kLongestLine bytes of the first line, because a file that is no table may have no
@@ -51,7 +60,7 @@ std::string joined(std::span<const std::string_view> names) {
 std::vector<std::string> csv_column_names(const std::filesystem::path& file) {
   constexpr std::size_t kUsualLine = 65536;
   std::vector<std::string> names;
-  const gzFile opened = gzopen(file.c_str(), "rb");
+  const gzFile opened = open_gzip(file);
   if (opened == nullptr) return names;
   std::string line(kUsualLine, '\0');
   const bool read = gzgets(opened, line.data(), static_cast<int>(line.size())) != nullptr;
@@ -75,7 +84,7 @@ void CsvTable::CloseGzip::operator()(void* file) const { gzclose(static_cast<gzF
 CsvTable::CsvTable(const std::filesystem::path& file, std::span<const std::string_view> columns)
     : path_(file),
       columns_(columns.begin(), columns.end()),
-      file_(gzopen(file.c_str(), "rb")),
+      file_(open_gzip(file)),
       place_(columns.size()) {
   if (!file_) {
     error_ = cannot_read(file);

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <zlib.h>
 
 #include <random>
@@ -75,6 +76,16 @@ TEST_F(CsvPoses, ReadLinesThatCrossTheBuffer) {
   for (int i = 0; i < 5000; ++i) {
     EXPECT_EQ(i, poses[static_cast<std::size_t>(i)].world_from_object.position.z());
   }
+}
+
+// Opening one for reading waits for a program that writes.
+TEST_F(CsvPoses, AFifoIsRefusedWithoutWaiting) {
+  const std::string fifo = (folder / "log.csv").string();
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  CsvPoseLog log(fifo);
+  CsvPose pose;
+  EXPECT_FALSE(log.next(pose));
+  EXPECT_THAT(log.error(), HasSubstr(fifo));
 }
 
 TEST_F(CsvPoses, ReadsGzipAndPlainAlike) {

@@ -59,7 +59,11 @@ class CameraStreamTest : public testing::Test {
   }
 
   CameraStream stream{{.least_interval_ns = 10'000'000}};
-  const Sensor sensor{.most_points = 100};
+  const Sensor sensor = [] {
+    Sensor of_hundred;
+    of_hundred.most_points = 100;
+    return of_hundred;
+  }();
   CdrDecoder decoder;
   Sample<sensor_msgs_msg_dds__CameraInfo_> info;
   std::unique_ptr<MessageCloud> cloud;  // of the last message

@@ -69,7 +69,9 @@ class LaserScans : public SensorsTest {
     add_joints(0.0, kStart);
   }
   FrameFault fault(const ScanText& text) {
-    const Sensor sensor{.most_points = 50, .stamp_error_ns = 40'000'000};
+    Sensor sensor;
+    sensor.most_points = 50;
+    sensor.stamp_error_ns = 40'000'000;
     CdrDecoder decoder;
     const auto cloud = frame_decoder(Type::kLaserScan)->decode(raw(text), sensor, decoder);
     return cloud->fault;

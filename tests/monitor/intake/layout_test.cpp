@@ -22,7 +22,8 @@ using Fault = FrameFault;
 using Type = RawSensorMessage::Type;
 
 Fault fault_of(Type type, const std::vector<std::byte>& cdr) {
-  const Sensor sensor{.most_points = 200};
+  Sensor sensor;
+  sensor.most_points = 200;
   CdrDecoder decoder;
   return frame_decoder(type)->decode({.type = type, .cdr = cdr}, sensor, decoder)->fault;
 }

@@ -144,7 +144,7 @@ TEST_F(SceneThreadTest, CommandsOfOthersOvertakeOneWhoseMeshIsBeingRead) {
   begin();
   std::filesystem::create_directories(folder / "allowed");
   test::write_text(folder / "allowed" / "a.obj", kTetrahedron);
-  std::optional<HeldMesh> held(folder / "allowed" / "a.obj");
+  auto held = std::make_unique<HeldMesh>(folder / "allowed" / "a.obj");
   std::vector<std::string> order;  // by the scene thread alone, until all have answered
   const auto put_named = [&](const std::string& name, Command command) {
     EXPECT_TRUE(thread->put(GivenCommand{.command = std::move(command),

@@ -16,6 +16,8 @@
 namespace clearance::sensors_test {
 namespace {
 
+using Long = long double;
+
 class OutwardElements : public SensorsTest {
  protected:
   static constexpr double kRadius = 0.05;
@@ -51,7 +53,7 @@ TEST_F(OutwardElements, OfDepthImagesLeaveTheExactDistanceBetweenTheBounds) {
     add(image);
     const auto frames = settle(kStart + 25'000'000);
     ASSERT_EQ(frames.size(), 1u);
-    expect_bounds(*frames[0].cloud, (long double){depth} - 0.01L - (long double){kRadius});
+    expect_bounds(*frames[0].cloud, Long{depth} - 0.01L - Long{kRadius});
   }
 }
 
@@ -68,8 +70,8 @@ TEST_F(OutwardElements, OfPointsLeaveTheExactDistanceBetweenTheBounds) {
     add(Type::kPoints, cloud.cdr(), kStart);
     const auto frames = settle(kStart + 25'000'000);
     ASSERT_EQ(frames.size(), 1u);
-    const long double range = std::sqrt((long double){x} * x + (long double){z} * z);
-    expect_bounds(*frames[0].cloud, range - 0.01L * range / z - (long double){kRadius});
+    const long double range = std::sqrt(Long{x} * x + Long{z} * z);
+    expect_bounds(*frames[0].cloud, range - 0.01L * range / z - Long{kRadius});
   }
 }
 
@@ -91,7 +93,7 @@ TEST_F(OutwardElements, OfMapsLeaveTheExactDistanceBetweenTheBounds) {
                  {.realtime_ns = kStart, .monotonic_ns = kStart});
     const auto frames = settle(kStart + 25'000'000);
     ASSERT_EQ(frames.size(), 1u);
-    expect_bounds(*frames[0].cloud, (long double)near * resolution - (long double){kRadius});
+    expect_bounds(*frames[0].cloud, (long double)near * resolution - Long{kRadius});
   }
 }
 
