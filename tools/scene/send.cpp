@@ -29,7 +29,6 @@ namespace {
 
 // Commands that are repeated wait so long at most, by parts that cover the interval evenly.
 constexpr std::chrono::duration<double, std::milli> kLongestWait{4.0};
-constexpr std::chrono::seconds kTimeout{10};  // for a result
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 constexpr const char* kSendFooter =
@@ -97,8 +96,9 @@ int print_result(const CommandResult& result, bool dry_run) {
 // The time from each command to the first report that holds it.
 class Latencies {
  public:
-  Latencies(client::Connection& connection, client::Commands& commands)
-      : commands_(commands), reports_(connection, {.depth = 256}) {}
+  Latencies(client::Connection& connection, client::Commands& commands,
+            std::chrono::nanoseconds timeout)
+      : commands_(commands), reports_(connection, {.depth = 256}), timeout_(timeout) {}
 
   // Returns the daemon's refusal, or a result without a status other than done. Nothing when no
   // result or report came in time.
@@ -107,11 +107,11 @@ class Latencies {
     while (reports_.next()) {
     }
     const std::int64_t began_ns = client::now_ns();
-    auto result = commands_.send(changes, options, kTimeout);
+    auto result = commands_.send(changes, options, timeout_);
     if (!result || !result->done()) return result;
     const std::int64_t answered_ns = client::now_ns();
     while (reports_->cycle < result->in_force_from) {
-      if (!reports_.next(kTimeout)) return std::nullopt;
+      if (!reports_.next(timeout_)) return std::nullopt;
     }
     // A report that came before the result waits, and has its time of publishing.
     const std::int64_t held_ns =
@@ -145,6 +145,7 @@ class Latencies {
 
   client::Commands& commands_;
   client::Reports reports_;
+  std::chrono::nanoseconds timeout_;
   std::array<std::vector<double>, 2> in_force_, answered_;  // ms
 };
 
@@ -152,7 +153,7 @@ int no_result(const SendArguments& arguments, const client::Connection& connecti
               const client::Commands& commands) {
   if (commands.is_heard()) {
     print(stderr, "clearance-scene: no result came within {} s; the changes may be made or not\n",
-          kTimeout.count());
+          arguments.timeout_s);
   } else {
     print(stderr,
           "clearance-scene: no daemon takes commands on {} ({}); a cell allows them with "
@@ -178,6 +179,9 @@ CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
                    "Send this file along; changes name it as \"sent:NAME\"; repeatable")
       ->check(CLI::ExistingFile)
       ->allow_extra_args(false);
+  send->add_option("--timeout", arguments.timeout_s, "Wait for each result for this time, s")
+      ->check(positive_number())
+      ->capture_default_str();
   send->add_flag("--dry-run", arguments.dry_run, "Only ask whether the changes would be accepted");
   CLI::Option* const back = send->add_option("--back", arguments.back,
                                              "A file with changes that take those of CHANGES back");
@@ -219,10 +223,12 @@ int send_changes(const SendArguments& arguments) {
     options.files.push_back({file.filename().string(), *std::move(bytes)});
   }
 
+  const auto timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
+      std::chrono::duration<double>(arguments.timeout_s));
   client::Connection connection(arguments.dds.resolve(), arguments.topics);
   client::Commands commands(connection, arguments.client);
   if (arguments.repeats == 0) {
-    const auto result = commands.send(changes, options, kTimeout);
+    const auto result = commands.send(changes, options, timeout);
     return result ? print_result(*result, arguments.dry_run)
                   : no_result(arguments, connection, commands);
   }
@@ -230,7 +236,7 @@ int send_changes(const SendArguments& arguments) {
   const auto text = text_of(arguments.back);
   if (!text) return kFailed;
   if (const int failed = add_changes(*text, arguments.back, back); failed != kOk) return failed;
-  Latencies latencies(connection, commands);
+  Latencies latencies(connection, commands, timeout);
   for (std::uint64_t i = 0; i < 2 * arguments.repeats; ++i) {
     // A command that follows a report at once would always meet the ticks at the same time.
     std::this_thread::sleep_for(kLongestWait *

@@ -19,6 +19,7 @@ struct SendArguments {
   std::string client = "clearance-scene";
   std::vector<std::filesystem::path> files;  // that changes name as "sent:NAME"
   bool dry_run = false;
+  double timeout_s = 10.0;    // for each result
   std::string back;           // a file with changes that take CHANGES back
   std::uint64_t repeats = 0;  // 0: once, and no latency
   DdsArguments dds;
