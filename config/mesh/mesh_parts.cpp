@@ -229,7 +229,7 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
             "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it"));
 }
 
-// What was read ahead and is refused stays so until the command that wants it is done.
+// Keeps the refusal of a mesh that was read ahead until the command that wants it is done.
 std::optional<std::variant<MeshParts, MeshRefusal>> MeshLibrary::from_ahead(const MeshUse& use) {
   const std::filesystem::path path = path_of(use);
   const auto here = files_.find(path.string());

@@ -51,8 +51,8 @@ enum class Advice : std::uint8_t { kCell, kUrdf };
 
 struct ReadMeshes;
 
-// What readings of a cell share with a thread that reads and splits meshes ahead of them, so that
-// the reading thread never waits for a disk or for a large mesh.
+// Meshes that another thread reads and splits before a cell is read, so that the thread that reads
+// the cell never waits for a disk or for a large mesh.
 struct MeshesAhead {
   bool asks = false;            // a reading notes meshes that it does not have, in place of them
   std::vector<MeshUse> wanted;  // by the readings since this was cleared

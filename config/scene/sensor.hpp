@@ -84,8 +84,8 @@ struct Sensor {
   // are not taken for its image, m. For a ball, the centre counts, to within its own error. At
   // least own_shell.
   double most_shell = 0.3;
-  // Where the shell of a link is thicker than this, what was left out there counts for all other
-  // objects, m: their lower bounds do not exceed the distance to it. At least own_shell.
+  // Limit of a link's shell, m, at least own_shell. Elements left out of a thicker shell count for
+  // all other objects: their lower bounds do not exceed the distance to them.
   double trusted_shell = 0.1;
   // Elements that come within own_shell of a fixed or tracked body of the cell are left out, too,
   // as the images of links are.

@@ -18,7 +18,7 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   if (auto text = set_variable(stated.name, stated.position, variable)) return text;
   if (!(stated.age >= 0.0) || !std::isfinite(stated.age))
     return "the age of joint \"" + stated.name + "\" is not a number from 0 on";
-  // What rests by assumption is as little a matter of the question as what moves by one.
+  // An object that rests by assumption is no part of the question, like one that moves by one.
   if (others == OthersMove::kNot) {
     free_variables_.push_back({.variable = variable});
     return std::nullopt;

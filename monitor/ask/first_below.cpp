@@ -27,7 +27,7 @@ bool is_below(double upper, double limit) noexcept {
 
 }  // namespace
 
-// What is exempt depends on the margin. Then nothing follows from what was proven for another one.
+// Pairs are exempt by margin, so a proof for one margin says nothing about another.
 void MotionSearch::exempt_kept(double margin) {
   const auto [kept, is_new] = kept_.try_emplace(margin);
   if (is_new) kept->second = kept_nearer(scene_, margin);

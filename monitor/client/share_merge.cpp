@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// What joining does with each field of a report. Without a line here, a new field does not compile.
+// Lists the fields that joining treats, so that a new field does not compile before it is treated.
 constexpr std::string_view kJoined[] = {
     // of the cell: the caller names itself
     "daemon", "partner", "lineage", "checksum", "state_checksum", "delivery_checksum",

@@ -80,7 +80,7 @@ class SeenCloud {
     if (points()->shape() == ElementShape::kCube || points()->levels() == 0) return excess_;
     return excess_ + 0x1.1p-22 * double{points()->node(points()->levels() - 1, 0).radius};
   }
-  // Of elements whose message gives them another excess than the rounding of their radii.
+  // Replaces the excess that follows from the rounding of radii, where the message gives another.
   void note_excess(double excess) noexcept { excess_ = excess; }
   // The elements outside of this ball, in the frame of the cloud, may have been left out from now
   // on. Infinity: none were, as after a build.

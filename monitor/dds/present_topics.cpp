@@ -35,7 +35,7 @@ bool is_latched(const dds_qos_t* qos) {
   return dds_qget_durability(qos, &kind) && kind != DDS_DURABILITY_VOLATILE;
 }
 
-// What every node of ROS 2 publishes: services, parameters, its log.
+// True for topics that every node of ROS 2 publishes: services, parameters, its log.
 bool is_of_ros_itself(std::string_view topic) {
   for (const std::string_view prefix : {"rq/", "rr/", "rs/"})
     if (topic.starts_with(prefix)) return true;

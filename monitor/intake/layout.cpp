@@ -11,7 +11,7 @@ namespace {
 
 // Elements that are looked at, spread evenly.
 constexpr std::uint64_t kMostLookedAt = 4096;
-// Numbers of the right order beyond which a picture makes sense.
+// Tolerates this many numbers that look like lengths only by chance, in a picture without depth.
 constexpr std::size_t kFewNumbers = 8;
 
 std::size_t size_of(Layout::Number number) noexcept {

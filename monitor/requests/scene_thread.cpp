@@ -100,7 +100,7 @@ bool SceneThread::perform(SceneTask task) {
   return true;
 }
 
-// A disk may hang for ever: each reading has a thread, which nothing waits for.
+// Gives each reading a thread that nothing waits for, since a disk may never answer.
 void SceneThread::wait(SceneTask task) {
   Lane& lane = lanes_[sender_of(task)];
   lane.tasks.push_front(std::move(task));

@@ -43,7 +43,7 @@ class SceneThread {
     std::atomic<bool> is_done = false;
     std::shared_ptr<const ReadMeshes> meshes;
   };
-  // The tasks of one sender of which the first waits: for a reading, or until this time.
+  // Holds the tasks of one sender. The first one waits for a reading, or until `again`.
   struct Lane {
     std::deque<SceneTask> tasks;
     std::chrono::steady_clock::time_point again;

@@ -20,7 +20,7 @@ TEST(FileBytes, AreThoseOfARegularFile) {
   EXPECT_EQ(std::get<std::string>(read_bytes((folder / "link").string())), bytes);
 }
 
-// No program writes into the FIFO: an opener that waited for that would wait for ever.
+// Nothing writes into the FIFO, so an opener that waits for a writer never returns.
 TEST(FileBytes, OfNothingElseAreReadOrWaitedFor) {
   const test::ScratchFolder folder;
   ASSERT_EQ(::mkfifo((folder / "fifo").c_str(), 0600), 0);

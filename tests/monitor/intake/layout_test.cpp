@@ -30,7 +30,7 @@ Fault fault_of(Type type, const std::vector<std::byte>& cdr) {
 Fault fault_of(const ImageText& text) { return fault_of(Type::kImage, text.cdr()); }
 Fault fault_of(const CloudText& text) { return fault_of(Type::kPoints, text.cdr()); }
 
-// A wall that leans, 30 x 4 pixels. `one` is the unit, m.
+// Makes an image of a tilted wall, 30 x 4 pixels. `one` is the length of one depth unit, m.
 template <class Number>
 ImageText leaning_wall(const std::string& encoding, double one) {
   ImageText text;
