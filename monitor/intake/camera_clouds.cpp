@@ -19,15 +19,21 @@ Number read_number(std::span<const std::byte> bytes, std::size_t at) noexcept {
   return number;
 }
 
+// Reads what images and points have in common, and judges their layout.
+template <class Message, class Seen>
+void read_grid(const Message& message, const Sensor& sensor, Seen& seen, MessageCloud& cloud) {
+  cloud.stamp_ns = stamp_ns(message.header);
+  cloud.frame = frame_name(message.header.frame_id);
+  cloud.fault = view(message, sensor.most_points, seen);
+  cloud.form = form_of(cloud.frame, seen);
+  cloud.columns = seen.width;
+  cloud.rows = seen.height;
+}
+
 }  // namespace
 
 bool ImageCloud::read(const RawSensorMessage&, const Sensor& sensor) {
-  stamp_ns = clearance::stamp_ns(sample->header);
-  frame = frame_name(sample->header.frame_id);
-  fault = view(*sample, sensor.most_points, image_);
-  form = form_of(frame, image_);
-  columns = image_.width;
-  rows = image_.height;
+  read_grid(*sample, sensor, image_, *this);
   return true;
 }
 
@@ -39,12 +45,7 @@ std::uint32_t ImageCloud::depth_digest(std::size_t i) const noexcept {
 }
 
 bool PointsCloud::read(const RawSensorMessage&, const Sensor& sensor) {
-  stamp_ns = clearance::stamp_ns(sample->header);
-  frame = frame_name(sample->header.frame_id);
-  fault = view(*sample, sensor.most_points, points_);
-  form = form_of(frame, points_);
-  columns = points_.width;
-  rows = points_.height;
+  read_grid(*sample, sensor, points_, *this);
   return true;
 }
 
