@@ -105,6 +105,7 @@ std::optional<AttachmentReader::Carrier> AttachmentReader::carrier(const YamlNod
     if (of.object != RobotLink::kNoObject) found.object = of.object;
     if (const auto place = robots_.at_rest.find(*name); place != robots_.at_rest.end()) {
       found.base.base_from_root = place->second;
+      found.base.resting_on = {.kind = RestingOn::Kind::kLink, .robot = robot, .link = index};
     } else {
       found.base.kind = RobotBase::Kind::kLink;
       found.base.robot = robot;
@@ -117,6 +118,7 @@ std::optional<AttachmentReader::Carrier> AttachmentReader::carrier(const YamlNod
     found.object = object->second;
     if (of.fixed) {
       found.base.base_from_root = of.world_from_object;
+      found.base.resting_on = {.kind = RestingOn::Kind::kObject, .object = object->second};
     } else {
       found.base.kind = RobotBase::Kind::kObject;
       found.base.object = object->second;
@@ -183,6 +185,7 @@ void AttachmentReader::attach(StatedAttachment& stated) {
   if (base.kind == RobotBase::Kind::kWorld) {
     object.fixed = true;
     object.world_from_object = base.base_from_root;
+    object.resting_on = base.resting_on;
     object.max_speed = 0.0;
     if (found && stated.max_speed != nullptr) {
       diagnostics_.add(*stated.max_speed,

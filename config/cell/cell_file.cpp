@@ -13,6 +13,7 @@
 #include "config/cell/command_reader.hpp"
 #include "config/cell/contact_reader.hpp"
 #include "config/cell/dds_reader.hpp"
+#include "config/cell/error_reader.hpp"
 #include "config/cell/link_margins.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
@@ -140,6 +141,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* allowed_node = map.optional("allowed_collisions");
   const YamlNode* zones_node = map.optional("zones");
   const YamlNode* contacts_node = map.optional("contacts");
+  const YamlNode* errors_node = map.optional("errors");
   const YamlNode* simulation_node = map.optional("simulation");
   shares_ = map.optional("shares");
 
@@ -163,6 +165,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (margins_node != nullptr) read_link_margins(*margins_node, robots, quantities, list);
   attach_objects(quantities, robots, list);
   mount_sensors(robots, list, quantities, sensors);
+  if (errors_node != nullptr)
+    cell.scene.attached_error = read_errors(*errors_node, quantities, robots, list);
   allow_by_matrices(list, robots.may_touch);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
@@ -200,6 +204,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
   crop_sensors(sensors, diagnostics_, cell.scene);
+  if (errors_node != nullptr && diagnostics_.empty())
+    refuse_large_angles(*errors_node, cell.scene, diagnostics_);
 }
 
 // Reads the top level. Units come first, since every other section needs them.

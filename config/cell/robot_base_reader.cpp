@@ -100,8 +100,12 @@ void read_what_carries(const YamlNode& node, const std::vector<Robot>& robots,
       names.push_back(links[link].name);
       if (links[link].name != *name) continue;
       const auto place = at_rest.find(*name);
-      if (place != at_rest.end()) base.base_from_root = compose(place->second, base.base_from_root);
-      if (place == at_rest.end()) base.kind = RobotBase::Kind::kLink;
+      if (place != at_rest.end()) {
+        base.base_from_root = compose(place->second, base.base_from_root);
+        base.resting_on = {.kind = RestingOn::Kind::kLink, .robot = robot, .link = link};
+      } else {
+        base.kind = RobotBase::Kind::kLink;
+      }
       base.robot = robot;
       base.link = link;
       return;
@@ -114,6 +118,7 @@ void read_what_carries(const YamlNode& node, const std::vector<Robot>& robots,
     if (object.name != *name) continue;
     if (object.fixed) {
       base.base_from_root = compose(object.world_from_object, base.base_from_root);
+      base.resting_on = {.kind = RestingOn::Kind::kObject, .object = i};
     } else {
       base.kind = RobotBase::Kind::kObject;
       base.object = i;

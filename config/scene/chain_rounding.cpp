@@ -24,20 +24,6 @@ double largest(const JointVariable& variable, double multiplier, double offset) 
   return std::abs(multiplier) * length + std::abs(offset);
 }
 
-// Returns the largest length by which the joint moves its link, as ForwardKinematics computes it.
-double slide_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
-  switch (joint.type) {
-    case JointType::kPrismatic:
-      return largest(variables[joint.variable], joint.multiplier, joint.offset);
-    case JointType::kPlanar:
-      return 2.0 * kLargestLength;
-    case JointType::kFloating:
-      return 3.0 * kLargestLength;
-    default:
-      return 0.0;
-  }
-}
-
 // Returns the largest angle of the joint that rounding errors depend on, rad.
 double angle_of(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
   constexpr double kLargestAngle = 1e6;
@@ -63,6 +49,19 @@ LinkBound carried(const LinkBound& parent, double step, double slide, double ang
 
 }  // namespace
 
+double largest_slide(const RobotJoint& joint, const std::vector<JointVariable>& variables) {
+  switch (joint.type) {
+    case JointType::kPrismatic:
+      return largest(variables[joint.variable], joint.multiplier, joint.offset);
+    case JointType::kPlanar:
+      return 2.0 * kLargestLength;
+    case JointType::kFloating:
+      return 3.0 * kLargestLength;
+    default:
+      return 0.0;
+  }
+}
+
 std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
                                        const std::vector<JointVariable>& variables) {
   std::vector<std::vector<LinkBound>> bounds;
@@ -75,7 +74,7 @@ std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,
     links.push_back(carried(parent, robot.base.base_from_root.position.norm(), 0.0, 0.0));
     for (const RobotJoint& joint : robot.joints) {
       links.push_back(carried(links[joint.parent], joint.parent_from_joint.position.norm(),
-                              slide_of(joint, variables), angle_of(joint, variables)));
+                              largest_slide(joint, variables), angle_of(joint, variables)));
     }
   }
   std::vector<ChainError> errors;

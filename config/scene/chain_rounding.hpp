@@ -30,6 +30,11 @@ struct ChainError {
   double turn = 0.0;   // rad
 };
 
+// Returns the largest length by which the joint moves its link, as ForwardKinematics computes it,
+// m.
+[[nodiscard]] double largest_slide(const RobotJoint& joint,
+                                   const std::vector<JointVariable>& variables);
+
 // Returns the error of every link of the last robot, in the order of Robot::links. The robots
 // before it are needed because it may stand on them.
 [[nodiscard]] std::vector<ChainError> chain_rounding(const std::vector<Robot>& robots,

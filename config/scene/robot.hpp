@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "config/scene/place_error.hpp"
 #include "config/scene/ros_stamps.hpp"
 #include "core/pose.hpp"
 
@@ -86,6 +87,7 @@ struct RobotJoint {
   // of that one: position = multiplier * variable + offset.
   std::uint32_t variable = 0;
   double multiplier = 1.0, offset = 0.0;
+  JointError error = {};  // stated
 
   // False if the position is the variable itself, without any rounding.
   [[nodiscard]] bool rescales() const noexcept {
@@ -106,6 +108,7 @@ struct RobotBase {
   std::uint32_t object = 0;           // index into Scene::objects: a moving one
   std::uint32_t robot = 0, link = 0;  // an earlier robot
   Pose base_from_root;                // in the frame of the world, object or link
+  RestingOn resting_on = {};          // with kWorld
   // The frame of tf that the base follows, and the root link's pose in it. The robot then gets an
   // additional first joint, a floating one, that no description contains. Empty if the base follows
   // no frame.
@@ -121,6 +124,7 @@ struct Robot {
   std::string joint_states;
   RosStamps stamps = RosStamps::kMessage;
   RobotBase base;
+  PlaceError base_error = {};  // stated; of the root link in what it stands on
   // One link without a joint: an object of the cell that moves with the base. It has the object's
   // name, and is no robot to a person.
   bool is_attached = false;

@@ -31,15 +31,6 @@ double travel(const RobotJoint& joint, const std::vector<JointVariable>& variabl
   return kInfinity;
 }
 
-double radius_of(const Object& object) {
-  double radius = 0.0;
-  for (const Part& part : object.parts) {
-    radius = std::max(radius, part.object_from_part.position.norm() + part.shape.bounding_radius +
-                                  part.shape.radius + part.shape.position_error);
-  }
-  return radius;
-}
-
 bool follows_a_frame(const Robot& robot) { return !robot.base.frame.empty(); }
 
 // The ball without its radius: around the base of this robot.
@@ -65,6 +56,16 @@ std::vector<double> distances(const Robot& robot, double root,
 }
 
 }  // namespace
+
+double radius_of(const Object& object) {
+  double radius = 0.0;
+  for (const Part& part : object.parts) {
+    if (!part.shape.bounded()) return kInfinity;
+    radius = std::max(radius, part.object_from_part.position.norm() + part.shape.bounding_radius +
+                                  part.shape.radius + part.shape.position_error);
+  }
+  return radius;
+}
 
 // Robots on a link are in the ball of the robot that carries them. What is attached to a moving
 // object has no ball, since no robot carries it.

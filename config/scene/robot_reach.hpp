@@ -10,6 +10,9 @@
 
 namespace clearance {
 
+// Returns the radius of the ball around the object's origin that contains all its parts, m.
+[[nodiscard]] double radius_of(const Object& object);
+
 // Returns one ball around the base of each robot that stands on no other robot. While joints are
 // within their limits, the balls contain all links and what they carry. If there is no robot, or a
 // joint slides without limits, returns the reason as the end of a sentence.

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/scene/contact.hpp"
+#include "config/scene/place_error.hpp"
 #include "config/scene/robot.hpp"
 #include "config/scene/sensor.hpp"
 #include "config/scene/separation.hpp"
@@ -49,9 +50,13 @@ struct Object {
   // point from its place by forward kinematics, m. The errors of its parts include it. 0: poses are
   // sent.
   double pose_error = 0.0;
-  bool may_jump = false;  // its poses may jump, as a simulation's do
-  bool absent = false;    // known not to be there when the monitor starts (Monitor::set_absent)
-  bool is_read = true;    // false: no pair of this share of a cell depends on it (select_share)
+  // Stated: of the pose of a fixed object, of poses as sent, or of a sensor's mount; not of a link.
+  PlaceError place_error = {};
+  double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
+  RestingOn resting_on = {};  // of a fixed object that is attached to another
+  bool may_jump = false;      // its poses may jump, as a simulation's do
+  bool absent = false;        // known not to be there when the monitor starts (Monitor::set_absent)
+  bool is_read = true;        // false: no pair of this share of a cell depends on it (select_share)
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none
@@ -96,7 +101,8 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  bool gradients = false;  // of published pairs by the joints of robots, in every report
+  PlaceError attached_error = {};  // stated; of what is attached and states none of its own
+  bool gradients = false;          // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;
   std::vector<Sensor> sensors;  // in the order of their objects, which come before all links
   // Each stands on the world, an object, or an earlier robot. Their links come after all other

@@ -169,7 +169,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         // An object that may move without a limit may be at any depth.
         const double nearing = at.approach.nearing.until_middle;
         const double upper =
-            nearing < kInfinity ? rounded_up(found.upper + motion.rounding - nearing) : -kInfinity;
+            nearing < kInfinity ? rounded_up(found.upper + motion.error - nearing) : -kInfinity;
         note_upper(found, std::max(0.0, upper), middle, pair);
         if (proves(lower, limit)) continue;
         below = is_below(upper, limit_until(middle, pair, answer.margin));

@@ -40,7 +40,7 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
   const TipMotion motion = tip_motion(bundle, whole, middle, posture_);
   note_upper(
       found,
-      std::max(0.0, rounded_up(found.upper + motion.rounding - at.approach.nearing.until_middle)),
+      std::max(0.0, rounded_up(found.upper + motion.error - at.approach.nearing.until_middle)),
       middle, closest);
 }
 
@@ -85,7 +85,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
       double speed = 0.0;
       if (!decided && worth) {
         const PairAtMiddle found = query(at, pair);
-        const double now = found.upper + motion.rounding - at.approach.nearing.until_middle;
+        const double now = found.upper + motion.error - at.approach.nearing.until_middle;
         note_upper(found, std::max(0.0, rounded_up(now)), middle, pair);
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough()));

@@ -160,9 +160,8 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
     nearing.until_begin += rounded_down(motion.nearing.until_begin + of_base.until_begin);
     approach = &approach_;
   }
-  return {
-      base, tip, *approach,
-      rounded_up(motion.moved + motion.rounding + approach->moved + approach->nearing.until_end)};
+  return {base, tip, *approach,
+          rounded_up(motion.moved + motion.error + approach->moved + approach->nearing.until_end)};
 }
 
 double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) const noexcept {

@@ -81,8 +81,8 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
   TipMotion motion;
   motion.half = rounded_up(std::max(stretch.to - middle, middle - stretch.from));
   motion.moved = chains.displacement(bundle.chain, sphere, posture.bounds());
-  motion.rounding = posture.trajectory().position_rounding() * bundle.sum_of_reaches +
-                    posture.carrier_rounding(sphere, bundle.object_base);
+  motion.error = posture.trajectory().position_rounding() * bundle.sum_of_reaches +
+                 posture.carrier_rounding(sphere, bundle.object_base) + bundle.model_error;
   if (posture.any_free()) {
     motion.nearing = chains.nearing(bundle.chain, bundle.object_tip, sphere, posture.bounds(),
                                     posture.free_variables());
@@ -164,7 +164,7 @@ PairAtMiddle query_seen(const CloudPairs::Content& content, const PosedPart& bas
 double lower_over(const PairAtMiddle& found, const PosedPart& base, const PosedPart& tip,
                   bool tip_keeps_direction, const TipMotion& motion, const ObjectApproach& approach,
                   double enough) noexcept {
-  const double loss = rounded_up(motion.rounding + approach.nearing.until_end);
+  const double loss = rounded_up(motion.error + approach.nearing.until_end);
   double lower = rounded_down(found.lower - rounded_up(motion.moved + approach.moved + loss));
   if (lower >= enough || !found.separated || !motion.has_twist) return lower;
   if (!tip_keeps_direction || !base.keeps_direction) return lower;
@@ -180,7 +180,7 @@ double lower_over(const PairAtMiddle& found, const PosedPart& base, const PosedP
 // The closest points at the middle stay on the bodies, so the distance is never above theirs.
 double upper_over(const PairAtMiddle& found, const PosedPart& tip, const TipMotion& motion,
                   const ObjectApproach& approach) noexcept {
-  double upper = found.upper + motion.moved + approach.moved + motion.rounding;
+  double upper = found.upper + motion.moved + approach.moved + motion.error;
   if (motion.has_twist && found.separated) {
     const Vec3 arm = found.on_tip - tip.sphere_in_world.centre;
     const Vec3 velocity =
@@ -190,7 +190,7 @@ double upper_over(const PairAtMiddle& found, const PosedPart& tip, const TipMoti
         std::max(length(gap + motion.half * velocity), length(gap - motion.half * velocity));
     const double bend = 0.5 * motion.acceleration * motion.half * motion.half;
     const double sizes = most + length(arm) + length(found.on_tip) + tip.extent;
-    upper = std::min(upper, most + (found.upper - found.lower) + bend + motion.rounding +
+    upper = std::min(upper, most + (found.upper - found.lower) + bend + motion.error +
                                 approach.turned + kSlabRounding * sizes);
   }
   return std::max(0.0, rounded_up(rounded_up(upper) - approach.nearing.until_begin));

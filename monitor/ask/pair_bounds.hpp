@@ -11,8 +11,9 @@ namespace clearance {
 struct TipMotion {
   double half = 0.0;   // s: the longer of the stretch's parts before and after its middle
   double moved = 0.0;  // m: no point of the tip's sphere leaves its place at the middle by more
-  // m: the error of the distance from the rounding of positions of joints.
-  double rounding = 0.0;
+  // m: the error of the distance from the rounding of positions of joints, and from the stated
+  // errors of the model.
+  double error = 0.0;
   bool has_twist = false;  // the rest is known: the stretch is in one segment
   // At the middle a point x of the tip moves at linear + angular x (x - centre of the sphere).
   Twist twist;

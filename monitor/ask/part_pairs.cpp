@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <tuple>
 
+#include "config/scene/stated_errors.hpp"
 #include "core/model/curved_extent.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 
@@ -68,6 +69,7 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
   std::sort(directed.begin(), directed.end(),
             [&](const Directed& a, const Directed& b) { return key(a) < key(b); });
 
+  const StatedErrors errors(scene);
   const auto first = posture.first_part();
   const auto same = [](const Directed& a, const Directed& b) {
     return a.tip == b.tip && a.is_of_a_kind() == b.is_of_a_kind() &&
@@ -77,6 +79,9 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
     while (to < directed.size() && same(directed[from], directed[to])) ++to;
     const Directed& any = directed[from];
     const Chain chain = chains.between(any.base, any.tip);
+    double model_error = 0.0;
+    for (std::size_t i = from; i < to; ++i)
+      model_error = std::max(model_error, errors.largest(directed[i].base, any.tip));
     for (std::uint32_t tip = first[any.tip]; tip < first[any.tip + 1]; ++tip) {
       const PosedPart& part = posture.parts()[tip];
       Bundle bundle{.tip = tip,
@@ -87,6 +92,7 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
                     .keeps_direction = part.keeps_direction && part.shape->bounded(),
                     .chain = chain,
                     .sum_of_reaches = chains.sum_of_reaches(chain),
+                    .model_error = model_error,
                     .first = static_cast<std::uint32_t>(pairs_.size())};
       for (std::size_t i = from; i < to; ++i) {
         for (std::uint32_t base = first[directed[i].base]; base < first[directed[i].base + 1];

@@ -23,6 +23,8 @@ struct Bundle {
   bool keeps_direction = false;   // the tip does
   Chain chain;
   double sum_of_reaches = 0.0;
+  // No stated error changes the distance of one of the pairs by more, m.
+  double model_error = 0.0;
   std::uint32_t first = 0, end = 0;  // into PartPairs
 };
 

@@ -92,6 +92,7 @@ void Attacher::carry(std::uint32_t object, const Place& place, const Pose& link_
   robot.base.link = place.link;
   robot.base.base_from_root = link_from_object;
   robot.links.push_back({.name = robot.name, .object = object});
+  robot.base_error = scene_.attached_error;
   scene_.robots.push_back(std::move(robot));
   account_for(chain_rounding(scene_.robots, scene_.variables).back(), scene_.objects[object]);
 }

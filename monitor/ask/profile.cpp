@@ -75,8 +75,7 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
                                      lower_over(found, at.base, at.tip, bundle.keeps_direction,
                                                 motion, at.approach, kInfinity)));
     upper = std::min(upper, upper_over(found, at.tip, motion, at.approach));
-    const double now =
-        std::max(0.0, found.upper + motion.rounding - at.approach.nearing.until_middle);
+    const double now = std::max(0.0, found.upper + motion.error - at.approach.nearing.until_middle);
     if (now < closest) {
       closest = now;
       note_pair(pair, point.first, point.second);

@@ -116,7 +116,7 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
     const double radius = at.tip.sphere_in_world.radius;
     const double fastest = largest_tip_speed(motion, radius);
     const double apart = gap(at, separated.pair, kInfinity);
-    const double loss = rounded_up(motion.moved + motion.rounding + approach.moved);
+    const double loss = rounded_up(motion.moved + motion.error + approach.moved);
     double lower = factor_of(terms, rounded_down(apart - loss - separated.margins), fastest);
     if (lower < enough()) {
       const PairAtMiddle found = query(at, separated.pair);
@@ -124,7 +124,7 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
           lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
       lower = std::max(lower, factor_of(terms, rounded_down(over - separated.margins), fastest));
       const double slowest = largest_tip_speed({.twist = motion.twist, .nearing = {}}, radius);
-      const double now = rounded_up(found.upper + motion.rounding - separated.margins);
+      const double now = rounded_up(found.upper + motion.error - separated.margins);
       const double upper = rounded_up(rounded_up(factor_of(terms, now, (1.0 - 0x1p-40) * slowest)));
       if (upper < scaling.factor_above) {
         scaling.factor_above = upper;

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "config/cell/error_reader.hpp"
 #include "config/cell/partner_reader.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/text/sentences.hpp"
@@ -161,6 +162,7 @@ void print_summary(const Scene& scene) {
     for (const std::string& note : notes_of(sensor))
       print(stderr, "sensor '{}': {}\n", sensor.name, note);
   }
+  if (const std::string left = unstated_errors(scene); !left.empty()) print(stderr, "{}\n", left);
   print(stdout, "{}\n", summary(scene));
 }
 

@@ -54,6 +54,10 @@ struct PairReport {
   // also deviate by its unobserved motion. The bound equals `lower` for a pair that was not known
   // at the last tick. It is -infinity for an unknown pair, and after a discontinuity of 10 km.
   double swept_lower = 0.0;
+  // m: by which `lower` is below the bound for the model as stated, because of the errors that the
+  // cell states (config/KEYS.md). `distance`, witnesses and normal are those of the model. NaN if
+  // the pair is unknown.
+  double model_error = 0.0;
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN if no translation separates them
   // Positive when approaching; includes the rotation at the witness points. It is NaN without a

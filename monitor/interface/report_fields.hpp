@@ -52,6 +52,7 @@ struct PairFields {
     visit(Field{"lower"}, pair.lower...);
     visit(Field{"upper"}, pair.upper...);
     visit(Field{"swept_lower"}, pair.swept_lower...);
+    visit(Field{"model_error"}, pair.model_error...);
     visit(Field{"witness_a"}, pair.witness_a...);
     visit(Field{"witness_b"}, pair.witness_b...);
     visit(Field{"normal"}, pair.normal...);

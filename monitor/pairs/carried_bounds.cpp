@@ -63,7 +63,7 @@ DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,
   const Sphere& a = part_a.sphere_in_world;
   const Sphere& b = part_b.sphere_in_world;
   const double centres = (a.centre - b.centre).norm();
-  const double radii = rounded_up(a.radius + b.radius);
+  const double radii = rounded_up(a.radius + b.radius + table.largest_error(part_pair));
   bounds.lower = std::max(bounds.lower, rounded_down(rounded_down(centres) - radii));
   bounds.upper = std::min(bounds.upper, rounded_up(rounded_up(centres) + radii));
   return bounds;

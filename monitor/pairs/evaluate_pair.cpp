@@ -1,6 +1,7 @@
 #include "monitor/pairs/evaluate_pair.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/model/radii.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
@@ -38,6 +39,33 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
   return {rounded_up(a.displacement + b.displacement), a.bend + b.bend};
 }
 
+// Bounds of a part pair by its direction, for all postures within the stated errors. `exact`: for
+// the model as stated. Two points of the bodies are apart by the distance and the error along the
+// direction, and by the whole error across it.
+void note_errors(const Queried& queried, DistanceStatus status, const DistanceBounds& exact,
+                 bool was_last_tick, const PairMotion& motion, const OpenTick& tick) noexcept {
+  ErrorBounds& errors = tick.table.errors[queried.part_pair];
+  const double lower_last_tick = was_last_tick ? errors.lower : -kInfinity;
+  errors.lower_before = lower_last_tick;
+  errors.lower = -kInfinity;
+  errors.upper = kInfinity;
+  errors.loss = errors.between.largest;
+  errors.drift = 0.0;
+  const Vec3& normal = queried.evaluation.closest.normal;
+  if (normal.isZero(0.0) || !std::isfinite(exact.lower)) return;
+  const ErrorAlong along =
+      tick.errors->along(queried.a, queried.b, normal, errors.between, motion.displacement);
+  errors.loss = along.loss;
+  errors.drift = along.drift;
+  errors.lower = rounded_down(exact.lower - along.loss);
+  if (status != DistanceStatus::kConverged || !(exact.lower > 0.0)) return;
+  const double largest = errors.between.largest;
+  // The points are not exactly across the direction from each other.
+  const double skew = std::sqrt(2.0 * (1.0 - exact.lower / exact.upper)) * largest;
+  const double most = rounded_up(exact.upper + (exact.upper - exact.lower) + along.loss + skew);
+  errors.upper = rounded_up(rounded_up(std::sqrt(most * most + largest * largest)));
+}
+
 // Writes a query's answer into the table. Returns a lower bound of the distance since the last
 // tick. It follows from the directions of this evaluation and of one in the last tick. -infinity:
 // they prove none.
@@ -51,7 +79,8 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   PairTable& table = tick.table;
   const auto& [part_pair, a, b, evaluation] = queried;
   // The carried bounds are true as well, and a query that was cut short may be looser.
-  const DistanceBounds bounds = for_exact_poses(found, a, b);
+  const DistanceBounds exact = for_exact_poses(found, a, b);
+  const DistanceBounds bounds = widened(exact, table.largest_error(part_pair));
   const double lower = std::max(known.lower, bounds.lower);
   const double upper = std::min(known.upper, bounds.upper);
   table.lower[part_pair] = lower;
@@ -71,9 +100,16 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   evaluation.status = found.status;
   const bool was_last_tick = table.evaluations.cycle(part_pair) + 1 == tick.cycle;
   table.evaluations.set_cycle(part_pair, tick.cycle);
+  if (tick.errors != nullptr) {
+    note_errors(queried, found.status, exact, was_last_tick, motion, tick);
+    closest.lower =
+        found.status == DistanceStatus::kConverged ? table.errors[part_pair].lower : -kInfinity;
+  }
   if (!was_last_tick) return -kInfinity;
-  return lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
-                             motion.displacement, motion.bend);
+  const double between =
+      lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
+                          motion.displacement, motion.bend);
+  return tick.errors == nullptr ? between : between - table.errors[part_pair].drift;
 }
 
 // The same for what a sensor sees. Its direction separates no more than the nearest element, so it
@@ -83,8 +119,9 @@ double query_cloud(std::uint32_t part_pair, const OpenTick& tick, Budget& budget
   const CloudPairs::Answer found = tick.clouds->query(
       part_pair, tick.parts[table.part_a(part_pair)], tick.parts[table.part_b(part_pair)]);
   budget.spend();
-  const double lower = std::max(table.lower[part_pair], found.bounds.lower);
-  const double upper = std::min(table.upper[part_pair], found.bounds.upper);
+  const DistanceBounds bounds = widened(found.bounds, table.largest_error(part_pair));
+  const double lower = std::max(table.lower[part_pair], bounds.lower);
+  const double upper = std::min(table.upper[part_pair], bounds.upper);
   table.lower[part_pair] = lower;
   table.upper[part_pair] = upper;
   Evaluation& evaluation = table.evaluations.of_query(part_pair, tick.cycle);
@@ -253,6 +290,7 @@ DistanceBounds queried_bounds(std::uint32_t pair, double level, const TickView& 
       bounds = for_exact_poses(
           distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part, tracking), a, b);
     }
+    bounds = widened(bounds, table.largest_error(p));
     all.lower = std::min(all.lower, bounds.lower);
     all.upper = std::min(all.upper, bounds.upper);
     if (all.upper < level) break;

@@ -11,7 +11,9 @@ void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   swept_lower_ = std::min(swept_lower_, bounds.swept_lower);
   if (!is_known(bounds.status)) return;
 
-  const bool tight = is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper);
+  // Stated errors leave more open than any work could take away.
+  const double stated = bounds.model_error + bounds.model_excess;
+  const bool tight = is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper - stated);
   if (!tight && bounds.lower < loose_lower_) {
     if (pair != loose_pair_) next_loose_lower_ = loose_lower_;
     loose_lower_ = bounds.lower;

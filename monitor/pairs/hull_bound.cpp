@@ -46,7 +46,8 @@ double HullBound::lower(std::uint32_t pair, const TickView& view, Budget& budget
   const DistanceResult found =
       distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold,
                {.depth = false});
-  return rounded_down(found.lower - placing_error(a, b));
+  const double model_error = view.pairs.largest_error(view.pairs.first_part_pair(pair));
+  return rounded_down(found.lower - rounded_up(placing_error(a, b) + model_error));
 }
 
 const PosedPart& HullBound::model(std::uint32_t object, const TickView& view) noexcept {

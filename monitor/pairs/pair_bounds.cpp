@@ -132,6 +132,40 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
   };
 }
 
+// Replaces bounds that hold for all postures within the stated errors by those along the directions
+// of this tick's evaluations.
+void narrow(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
+            const TickView& view, SweptPrecision precision, PairBounds& bounds) noexcept {
+  const PairTable& table = view.pairs;
+  const ErrorBounds& closest = table.errors[bounds.part_pair];
+  bounds.model_error = bounds.model_excess = closest.between.largest;
+  if (!a.plain || !b.plain || !is_evaluated(pair, view)) return;
+  const double lower_last_tick = table.entries[pair].lower_before;
+  double lower = kInfinity, before = kInfinity, drift = 0.0;
+  const std::uint32_t end = table.end_part_pair(pair);
+  for (std::uint32_t part_pair = table.first_part_pair(pair); part_pair < end; ++part_pair) {
+    const bool is_new = table.evaluations.cycle(part_pair) == view.cycle;
+    const ErrorBounds& errors = table.errors[part_pair];
+    lower = std::min(
+        lower, is_new ? std::max(table.lower[part_pair], errors.lower) : table.lower[part_pair]);
+    before =
+        std::min(before, is_new ? std::max(lower_last_tick, errors.lower_before) : lower_last_tick);
+    if (is_new) drift = std::max(drift, errors.drift);
+  }
+  if (table.evaluations.cycle(bounds.part_pair) == view.cycle) {
+    bounds.model_error = closest.loss;
+    const double upper = std::min(bounds.upper, closest.upper);
+    bounds.model_excess -= std::max(0.0, bounds.upper - upper);
+    bounds.upper = std::max(upper, lower);
+    bounds.swept_upper = std::min(bounds.swept_upper, bounds.upper);
+  }
+  bounds.lower = std::max(bounds.lower, lower);
+  const double swept =
+      lower_between_ticks(a, b, before, lower, lower_by_evaluations(pair, view), precision);
+  bounds.swept_lower = std::max(bounds.swept_lower, rounded_down(swept - drift));
+  bounds.swept_lower = std::min(bounds.swept_lower, bounds.lower);
+}
+
 // Widens the bounds by the unobserved motion of late objects.
 void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
                        PairBounds& bounds) noexcept {
@@ -157,7 +191,7 @@ PairReport unknown_report() noexcept {
   report.status = PairStatus::kUnknown;
   report.lower = report.swept_lower = -kInfinity;
   report.upper = kInfinity;
-  report.distance = report.closing_speed = report.time_to_contact = kNan;
+  report.distance = report.closing_speed = report.time_to_contact = report.model_error = kNan;
   report.witness_a = report.witness_b = report.normal = Vec3::Constant(kNan);
   return report;
 }
@@ -179,7 +213,9 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
   const TrackedObject& b = view.objects[entry.object_b];
   const bool carried = is_carried(pair, view);
   if (a.plain && b.plain && carried && view.pairs.part_pairs_of(pair) == 1) {
-    return bounds_of_one_part_pair(pair, a, b, view, precision);
+    PairBounds bounds = bounds_of_one_part_pair(pair, a, b, view, precision);
+    if (view.errors != nullptr) narrow(pair, a, b, view, precision, bounds);
+    return bounds;
   }
   PairBounds bounds;
   if (a.absent || b.absent) bounds.status = PairStatus::kAbsent;
@@ -192,6 +228,7 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
   bounds.part_pair = closest_part_pair(pair, view.pairs);
   bounds.evaluated_cycle = view.pairs.evaluations.cycle(bounds.part_pair);
   bounds.status = evaluated_status(pair, bounds.part_pair, view);
+  if (view.errors != nullptr) narrow(pair, a, b, view, precision, bounds);
   if (!a.plain || !b.plain) count_lateness_in(a, b, bounds);
   return bounds;
 }
@@ -212,6 +249,7 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   report.lower = bounds.lower;
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;
+  report.model_error = bounds.model_error;
   const ClosestPoints& closest = table.evaluations[bounds.part_pair].closest;
   report.part_a = view.parts[table.part_a(bounds.part_pair)].index_in_object;
   report.part_b = view.parts[table.part_b(bounds.part_pair)].index_in_object;

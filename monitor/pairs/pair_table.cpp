@@ -35,6 +35,21 @@ PairTable::PairTable(const Scene& scene, const std::vector<PosedPart>& parts)
     for (std::uint32_t i = first_part_pair(pair); i < end_part_pair(pair); ++i) evaluations.keep(i);
   }
   evaluations.share();
+  state_errors(scene);
+}
+
+void PairTable::state_errors(const Scene& scene) {
+  const StatedErrors stated(scene);
+  if (!stated.any()) return;
+  errors.reserve(lower.size());
+  for (const ObjectPair& pair : scene.pairs) {
+    const ErrorsBetween between = stated.between(pair.first, pair.second);
+    most_error_ = std::max(most_error_, between.largest);
+    const std::size_t parts =
+        scene.objects[pair.first].parts.size() * scene.objects[pair.second].parts.size();
+    for (std::size_t i = 0; i < parts; ++i)
+      errors.push_back({.between = between, .loss = between.largest});
+  }
 }
 
 void PairTable::number_part_pairs(const Scene& scene, const std::vector<PosedPart>& parts) {

@@ -11,7 +11,9 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/stated_errors.hpp"
 #include "core/distance.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/large_column.hpp"
 #include "monitor/bodies/posed_part.hpp"
 #include "monitor/inputs/checksum.hpp"
@@ -28,6 +30,12 @@ struct DistanceBounds {
   double lower = -kInfinity, upper = kInfinity;  // m
 };
 
+// Bounds of a distance that may be larger or smaller by this, m.
+[[nodiscard]] inline DistanceBounds widened(const DistanceBounds& bounds, double by) noexcept {
+  if (by == 0.0) return bounds;
+  return {rounded_down(bounds.lower - by), rounded_up(bounds.upper + by)};
+}
+
 // All that ticks ask of an object pair whether it is evaluated or not, in one cache line.
 struct alignas(64) PairEntry {
   std::uint32_t object_a = 0, object_b = 0;
@@ -42,12 +50,32 @@ struct alignas(64) PairEntry {
   std::uint64_t refreshed_cycle = 0;
 };
 
+// What the stated errors of the model do to a part pair. The table's bounds hold for every posture
+// within those errors, since they are widened by `between.largest`. The others are of the last
+// evaluation, whose direction leaves less open.
+struct ErrorBounds {
+  ErrorsBetween between;      // of the two objects
+  double loss = 0.0;          // m: by which `lower` is below the bound for the model as stated
+  double lower = -kInfinity;  // m
+  double lower_before = -kInfinity;  // that of the tick before, if it was evaluated then, too
+  double upper = kInfinity;          // m
+  double drift = 0.0;                // ErrorAlong::drift, m
+};
+
 struct PairTable {
   LargeColumn<PairEntry> entries;  // as in Scene::pairs
 
   // By part pair.
   LargeColumn<double> lower, upper;  // true at carried_at, m
   Evaluations evaluations;
+  LargeColumn<ErrorBounds> errors;  // empty: the scene states none
+
+  // The stated errors change the distance of a part pair by no more than this, m.
+  [[nodiscard]] double largest_error(std::uint32_t part_pair) const noexcept {
+    return errors.empty() ? 0.0 : errors[part_pair].between.largest;
+  }
+  // The largest of them, m.
+  [[nodiscard]] double most_error() const noexcept { return most_error_; }
 
   PairTable(const Scene& scene, const std::vector<PosedPart>& parts);
   [[nodiscard]] std::uint32_t pairs() const noexcept {
@@ -76,7 +104,9 @@ struct PairTable {
 
  private:
   void number_part_pairs(const Scene& scene, const std::vector<PosedPart>& parts);
+  void state_errors(const Scene& scene);
 
+  double most_error_ = 0.0;
   // Every object has one part: a pair is its part pair, and an object is its part. The columns are
   // empty then.
   bool all_single_ = false;

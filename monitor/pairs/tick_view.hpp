@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "monitor/bodies/model_errors.hpp"
 #include "monitor/pairs/cloud_pairs.hpp"
 #include "monitor/pairs/pair_table.hpp"
 
@@ -18,8 +19,9 @@ struct TickView {
   const std::vector<PosedPart>& parts;
   std::uint64_t cycle;  // counts ticks from 1
   const PairTable& pairs;
-  std::int64_t now_ns = 0;       // the time of the tick
-  CloudPairs* clouds = nullptr;  // null: the scene has no sensors
+  std::int64_t now_ns = 0;              // the time of the tick
+  CloudPairs* clouds = nullptr;         // null: the scene has no sensors
+  const ModelErrors* errors = nullptr;  // null: the scene states none
 };
 
 // A tick whose pairs are still being carried and evaluated. Functions that take this one write to
@@ -29,8 +31,8 @@ struct OpenTick : TickView {
 
   OpenTick(std::span<const TrackedObject> the_objects, const std::vector<PosedPart>& the_parts,
            std::uint64_t the_cycle, PairTable& the_table, std::int64_t the_time = 0,
-           CloudPairs* the_clouds = nullptr) noexcept
-      : TickView{the_objects, the_parts, the_cycle, the_table, the_time, the_clouds},
+           CloudPairs* the_clouds = nullptr, const ModelErrors* the_errors = nullptr) noexcept
+      : TickView{the_objects, the_parts, the_cycle, the_table, the_time, the_clouds, the_errors},
         table(the_table) {}
 };
 

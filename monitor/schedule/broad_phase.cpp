@@ -236,7 +236,8 @@ const Sphere& BroadPhase::sphere_of(Body& body) noexcept {
 DistanceBounds BroadPhase::by_spheres(std::uint32_t pair) noexcept {
   const Sphere& a = sphere_of(bodies_[ends(pair).a]);
   const Sphere& b = sphere_of(bodies_[ends(pair).b]);
-  return {.lower = least_between(a, b), .upper = most_between(a, b)};
+  const double error = table_.largest_error(table_.first_part_pair(pair));
+  return widened({.lower = least_between(a, b), .upper = most_between(a, b)}, error);
 }
 
 // The horizon is raised by d as if every object had moved by d.

@@ -50,6 +50,7 @@ SweptSearch::SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept
       b_(view.parts[view.pairs.part_b(part_pair)]),
       motion_a_(view.objects[a_.object].interpolated()),
       motion_b_(view.objects[b_.object].interpolated()),
+      model_error_(view.pairs.largest_error(part_pair)),
       directed_(a_.keeps_direction && b_.keeps_direction),
       tracking_(view.pairs.evaluations[part_pair].tracking) {
   place_between(motion_a_, 0.0, a_);
@@ -98,6 +99,7 @@ SweptSearch::Instant SweptSearch::query_at(double s, Budget& budget) noexcept {
     bounds = for_exact_poses(found, a_, b_);
     normal_in_a = found.normal;
   }
+  bounds = widened(bounds, model_error_);
   budget.spend();
   Instant instant{.s = s, .lower = bounds.lower, .upper = bounds.upper};
   const PosedPart& other = from_b_ ? a_ : b_;

@@ -52,8 +52,9 @@ class SweptSearch {
   CloudPairs* clouds_;  // null: no part is what a sensor sees
   PosedPart a_, b_;
   InterpolatedMotion motion_a_, motion_b_;
-  bool from_b_ = false;    // A moves relative to B's object, not B relative to A's, because that
-                           // motion is slower
+  double model_error_ = 0.0;  // m: PairTable::largest_error()
+  bool from_b_ = false;       // A moves relative to B's object, not B relative to A's, because that
+                              // motion is slower
   bool directed_ = false;  // a separating direction goes on separating bodies that only translate
   RelativeMotion relative_;
   double direction_error_ = 0.0;  // of a sphere centre's coordinate along a normal, m

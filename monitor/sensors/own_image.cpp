@@ -22,7 +22,7 @@ double error_of(const PastPose& past, const Part& part) noexcept {
 
 }  // namespace
 
-OwnImage::OwnImage(const Scene& scene) : scene_(scene) {
+OwnImage::OwnImage(const Scene& scene) : scene_(scene), errors_(scene) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
     if (!is_of_a_robot(scene.robots, scene.robots[robot])) continue;
     const auto carrier = static_cast<std::uint32_t>(&carrier_of(scene.robots, scene.robots[robot]) -
@@ -80,7 +80,8 @@ void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& p
     const PastPose past = place_of(each, postures);
     if (!past.known) continue;
     for (const Part& part : scene_.objects[each.object].parts) {
-      const double error = place_error + error_of(past, part);
+      const double error =
+          place_error + error_of(past, part) + errors_.largest(each.object, sensor.object);
       const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
       const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
       // The distance of an organised point to its neighbours says nothing about whose image it is.

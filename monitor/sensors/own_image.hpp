@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/stated_errors.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
 #include "monitor/sensors/posture_history.hpp"
 
@@ -70,6 +71,7 @@ class OwnImage {
                    SlabBody& body, Unseen& unseen, HiddenNear& near) const;
 
   const Scene& scene_;
+  StatedErrors errors_;
   std::vector<Body> bodies_;                     // in ascending order of objects
   std::vector<std::uint32_t> groups_;            // the robot of each
   std::vector<std::unique_ptr<Unseen>> unseen_;  // by sensor; null: not asked for

@@ -54,9 +54,10 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.add_presence_changes();
   const Displacements& displaced = s.displacer.result();
   pose_parts(s.inputs.objects, displaced.changed, s.first_part, s.parts);
+  if (s.errors.any()) s.errors.place(s.inputs.objects, s.inputs.robots);
 
   const OpenTick tick(s.inputs.objects, s.parts, s.inputs.cycle, s.table, s.inputs.time.now_ns,
-                      s.clouds.get());
+                      s.clouds.get(), s.errors.any() ? &s.errors : nullptr);
   check_displaced(displaced.changed, s.first_part, tick);
 
   s.contacts.begin_tick(s.inputs.cycle, s.inputs.time.now_ns);
@@ -81,7 +82,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
   s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
-  check_report(s.report);
+  check_report(s.report, s.table.most_error());
   return s.report;
 }
 

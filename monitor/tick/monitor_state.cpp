@@ -31,6 +31,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
       inputs(initial_inputs(the_scene)),
       displacer(the_scene),
       parts(parts_of(the_scene)),
+      errors(the_scene),
       table(the_scene, parts),
       scheduler(the_scene, share, parts, table, zone_levels),
       culling(the_scene, parts, table, zone_levels, UrgencyBins::distances_ahead(the_scene),

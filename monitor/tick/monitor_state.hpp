@@ -36,6 +36,7 @@ struct Monitor::State {
   std::vector<std::uint32_t> presence_changed;  // objects, since the last tick
   Displacer displacer;                          // displace
   std::vector<PosedPart> parts;                 // pose
+  ModelErrors errors;                           // pose
   PairTable table;                              // cull, evaluate and refresh
   Scheduler scheduler;                          // schedule, evaluate and refresh
   Culling culling;                              // cull, evaluate, refresh and cull again
@@ -62,7 +63,13 @@ struct Monitor::State {
   State(const Scene& the_scene, const KnownHulls& known_hulls);
 
   [[nodiscard]] TickView view() const noexcept {
-    return {inputs.objects, parts, inputs.cycle, table, inputs.time.now_ns, clouds.get()};
+    return {inputs.objects,
+            parts,
+            inputs.cycle,
+            table,
+            inputs.time.now_ns,
+            clouds.get(),
+            errors.any() ? &errors : nullptr};
   }
   void make_absent(std::uint32_t object) noexcept;
   void note_presence(std::uint32_t object) noexcept;

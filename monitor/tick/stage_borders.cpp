@@ -63,7 +63,7 @@ void check_updated(const Culling& culling, const TickView& view) noexcept {
 }
 
 // The four counts were computed as differences: a negative one would exceed the total.
-void check_report(const Report& report) noexcept {
+void check_report(const Report& report, double most_error) noexcept {
   if constexpr (!kInvariantsChecked) return;
   const std::uint64_t counted = std::uint64_t{report.evaluated} + report.carried + report.stale +
                                 report.unknown + absent_pairs(report);
@@ -72,7 +72,7 @@ void check_report(const Report& report) noexcept {
   CLEARANCE_INVARIANT(!report.minimum_certified || report.minimum_known);
   CLEARANCE_INVARIANT(!report.minimum_known || report.lower_all <= report.minimum.lower);
   CLEARANCE_INVARIANT(!report.minimum_certified ||
-                      report.lower_all >= report.minimum.lower - kTightGap);
+                      report.lower_all >= report.minimum.lower - kTightGap - most_error);
   CLEARANCE_INVARIANT(report.oldest_evaluation_cycles <= report.cycle);
   if (!costly) return;
   check_zones(report.zones);

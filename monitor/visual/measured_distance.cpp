@@ -27,12 +27,14 @@ PairStatus status_of(DistanceStatus status) {
   return PairStatus::kUnknown;
 }
 
-// The distance of two parts in `nearest`, if it is less than what is there.
-void take_nearer(const PosedPart& a, const PosedPart& b, MeasuredDistance& nearest) {
+// The distance of two parts in `nearest`, if it is less than what is there. No stated error changes
+// it by more than `model_error`, m.
+void take_nearer(const PosedPart& a, const PosedPart& b, double model_error,
+                 MeasuredDistance& nearest) {
   TrackingState cold;
   const DistanceResult found =
       distance(*a.shape, *b.shape, relative_pose(a.world_from_part, b.world_from_part), cold);
-  const DistanceBounds exact = for_exact_poses(found, a, b);
+  const DistanceBounds exact = widened(for_exact_poses(found, a, b), model_error);
   nearest.lower = std::min(nearest.lower, exact.lower);
   if (!(exact.upper < nearest.upper)) return;
   nearest.upper = exact.upper;
@@ -64,7 +66,7 @@ MeasuredDistance MeasuredDistances::between(std::uint32_t a, std::uint32_t b,
   for (const PosedPart& part_a : of_a) {
     for (const PosedPart& part_b : of_b) {
       if (least_between(part_a.sphere_in_world, part_b.sphere_in_world) > nearest.upper) continue;
-      take_nearer(part_a, part_b, nearest);
+      take_nearer(part_a, part_b, errors_.largest(a, b), nearest);
     }
   }
   if (nearest.status == PairStatus::kUnknown) return {};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/stated_errors.hpp"
 #include "monitor/bodies/posed_part.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/visual/object_poses.hpp"
@@ -27,7 +28,7 @@ class MeasuredDistances {
  public:
   // `scene` must outlive this.
   explicit MeasuredDistances(const Scene& scene)
-      : scene_(scene), parts_(parts_of(scene)), first_(first_parts(scene)) {}
+      : scene_(scene), errors_(scene), parts_(parts_of(scene)), first_(first_parts(scene)) {}
 
   // Unknown for one object alone, for what a sensor sees, for numbers that the scene does not have,
   // and while the pose of one of the objects is missing, late or contradicted.
@@ -36,6 +37,7 @@ class MeasuredDistances {
 
  private:
   const Scene& scene_;
+  StatedErrors errors_;
   std::vector<PosedPart> parts_;
   std::vector<std::uint32_t> first_;
 };

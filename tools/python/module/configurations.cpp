@@ -45,6 +45,7 @@ bool is_length(JointType type, std::uint32_t variable) noexcept {
 
 Configurations::Configurations(const Scene& scene)
     : scene_(scene),
+      errors_(scene),
       kinematics_(scene.robots),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
@@ -141,7 +142,8 @@ void Configurations::query(const Pair& pair, std::uint32_t part_pair, Closest& c
   const PosedPart& b = parts_[first_part_[pair.b] + part_pair % parts_of_b];
   const DistanceResult found = distance(*a.shape, *b.shape, a.world_from_part, b.world_from_part,
                                         states_[pair.first_state + part_pair]);
-  const DistanceBounds bounds = for_exact_poses(found, a, b);
+  const DistanceBounds bounds =
+      widened(for_exact_poses(found, a, b), errors_.largest(pair.a, pair.b));
   if (bounds.upper < closest.upper || closest.lower == kInfinity) {
     closest.part_pair = part_pair;
     closest.found = found;

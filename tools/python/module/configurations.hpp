@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "config/scene/stated_errors.hpp"
 #include "core/distance.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
 #include "monitor/bodies/joint_screw.hpp"
@@ -74,6 +75,7 @@ class Configurations {
                      double* rates) noexcept;
 
   const Scene& scene_;
+  StatedErrors errors_;
   ForwardKinematics kinematics_;
   std::vector<TrackedVariable> variables_;
   std::vector<double> least_, largest_;        // plausible positions, by variable

@@ -113,8 +113,8 @@ struct FieldText {
 constexpr FieldText kTexts[] = {
     {"pairs", R"(Records of the published pairs.
 
-Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, witness_a,
-witness_b, normal, closing_speed, time_to_contact, age_a_ns, age_b_ns, evaluated_cycle and
+Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, model_error,
+witness_a, witness_b, normal, closing_speed, time_to_contact, age_a_ns, age_b_ns, evaluated_cycle and
 refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)"},
     {"minimum", "The record of the pair with the smallest upper bound; see minimum_known."},
     {"contacts",

@@ -1,0 +1,291 @@
+// The stated errors of the model are part of every bound. The oracle is a machine whose bodies are
+// displaced by errors within the stated ones, joint by joint, and fresh queries of its bodies.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "monitor/tick/monitor.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/monitor/tick/fresh_distance.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
+#include "tests/monitor/tick/true_bodies.hpp"
+#include "tests/shared/places.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
+
+namespace clearance {
+namespace {
+
+using test::drawn_errors;
+using test::DrawnErrors;
+using test::fresh_distance;
+using test::joint;
+using test::kStart;
+using test::kTick;
+using test::ScratchFolder;
+using test::true_poses;
+using test::write_text;
+
+// The oracle rounds poses that errors have displaced.
+constexpr double kOracle = 1e-9;
+
+// An arm on a table that holds a part; a vice that stands on the table; a cart with a robot; a
+// sliding finger; a floor without end.
+std::string workshop(const std::string& errors) {
+  return "name: workshop\nunits: {length: mm, angle: deg}\n"
+         "objects:\n"
+         "  - {name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: -1500}}\n"
+         "  - {name: table, fixed: true, box: {size: [1200, 800, 50]}, pose: {xyz: [300, 0, "
+         "-400]}}\n"
+         "  - {name: vice, box: {size: [100, 150, 120]}, attached: {to: table, pose: {xyz: [400, "
+         "100, 85]}}}\n"
+         "  - {name: cart, may_jump: true, box: {size: [600, 400, 200]}}\n"
+         "  - {name: part, cylinder: {radius: 40, length: 150}, attached: {to: a_finger, pose: "
+         "{xyz: "
+         "[0, 0, -120]}}}\n"
+         "robots:\n"
+         "  - {name: a, urdf: scara.urdf, prefix: a_, base: {on: table, pose: {xyz: [-300, 0, "
+         "600]}}}\n"
+         "  - {name: b, urdf: scara.urdf, prefix: b_, base: {on: cart, pose: {xyz: [0, 0, 700]}}}\n"
+         "pairs: [{between: [a, a]}, {between: [b, b]}, {between: [a, b]}, {between: [part, "
+         "vice]}, "
+         "{between: [a, vice]}, {between: [a, floor]}, {between: [b, floor]}, {between: [b, "
+         "table]}, "
+         "{between: [cart, vice]}, {between: [cart, floor]}, {between: [part, b]}, {between: "
+         "[part, "
+         "floor]}]\n" +
+         errors;
+}
+
+const std::string kErrors =
+    "errors:\n"
+    "  joints: {position: 0.05, slide: 0.4, translation: 0.3, rotation: 0.02}\n"
+    "  bases: {translation: 1, rotation: 0.1}\n"
+    "  fixed: {translation: 2, rotation: 0.1}\n"
+    "  poses: {translation: 3, rotation: 0.3}\n"
+    "  attached: {translation: 1.5, rotation: 0.5}\n"
+    "  except: [{object: floor, translation: 1, rotation: 0}, {joint: b_elbow, position: 0.5}]\n";
+
+Scene workshop_scene(const std::string& errors) {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", test::kScaraUrdf);
+  return scene_of(workshop(errors), folder / "cell.yaml");
+}
+
+std::string text_in(const std::string& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+Scene two_arms_with(const std::string& errors) {
+  const std::string file = test::places::sources() + "/config/cells/seven_joint_arms.yaml";
+  return scene_of(text_in(file) + errors, file);
+}
+
+// A cell whose joints and objects wander, and the machine behind it.
+class Wandering {
+ public:
+  Wandering(const Scene& scene, std::uint64_t seed)
+      : scene_(scene), random_(seed), monitor_(scene), sent_(scene.objects.size()) {
+    for (const JointVariable& variable : scene.variables) {
+      const double low = std::max(variable.lower, -3.0), high = std::min(variable.upper, 3.0);
+      positions_.push_back(random_.uniform(low, high));
+    }
+    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+      if (scene.objects[i].name == "cart") sent_[i] = random_.pose(1.2);
+    }
+  }
+
+  const Report& tick() {
+    now_ += kTick;
+    std::vector<JointSample> joints;
+    for (std::uint32_t v = 0; v < positions_.size(); ++v) {
+      const JointVariable& of = scene_.variables[v];
+      const double step = random_.uniform(-1e-3, 1e-3) * std::min(1.0, of.plausible_speed());
+      positions_[v] = std::clamp(positions_[v] + step, of.lower, of.upper);
+      joints.push_back(joint(v, positions_[v], now_));
+    }
+    std::vector<PoseSample> poses;
+    for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
+      if (scene_.objects[i].name != "cart") continue;
+      sent_[i].position += random_.in_box(1e-3);
+      poses.push_back(test::sample(i, sent_[i], now_));
+    }
+    return monitor_.tick(poses, joints, now_);
+  }
+
+  [[nodiscard]] std::vector<Pose> truth(const DrawnErrors& errors) const {
+    return true_poses(scene_, positions_, sent_, errors);
+  }
+  [[nodiscard]] Random& random() noexcept { return random_; }
+  [[nodiscard]] const Monitor& monitor() const noexcept { return monitor_; }
+
+ private:
+  const Scene& scene_;
+  Random random_;
+  Monitor monitor_;
+  std::vector<double> positions_;
+  std::vector<Pose> sent_;
+  std::int64_t now_ = kStart;
+};
+
+// How many true distances were compared with bounds.
+std::size_t compare(const Scene& scene, std::uint64_t seed, int ticks, int machines) {
+  Wandering cell(scene, seed);
+  std::size_t compared = 0;
+  for (int t = 0; t < ticks; ++t) {
+    const Report& report = cell.tick();
+    for (int m = 0; m < machines; ++m) {
+      const std::vector<Pose> poses = cell.truth(drawn_errors(scene, cell.random()));
+      double least = kInfinity;
+      for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+        const PairReport pair = cell.monitor().pair(p);
+        if (!(pair.status < PairStatus::kUnknown)) {
+          ADD_FAILURE() << "pair " << p << " is not known";
+          return compared;
+        }
+        const auto [a, b] = std::pair(scene.pairs[p].first, scene.pairs[p].second);
+        const auto truth = fresh_distance(scene.objects[a], poses[a], scene.objects[b], poses[b]);
+        least = std::min(least, truth.upper);
+        EXPECT_LE(pair.lower, truth.upper + kOracle)
+            << scene.objects[a].name << " - " << scene.objects[b].name << ", seed " << seed;
+        EXPECT_GE(pair.upper, truth.lower - kOracle)
+            << scene.objects[a].name << " - " << scene.objects[b].name << ", seed " << seed;
+        EXPECT_LE(pair.swept_lower, pair.lower);
+        compared += 1;
+        if (testing::Test::HasFailure()) return compared;
+      }
+      EXPECT_LE(report.lower_all, least + kOracle);
+    }
+  }
+  return compared;
+}
+
+TEST(ModelErrors, NoMachineWithinTheStatedErrorsLeavesTheBounds) {
+  const Scene scene = workshop_scene(kErrors);
+  std::size_t compared = 0;
+  for (std::uint64_t seed = 0; seed < repeats(40) && !HasFailure(); ++seed)
+    compared += compare(scene, seed, 4, 10);
+  RecordProperty("compared", static_cast<int>(compared));
+  EXPECT_GE(compared, 4'000u);
+}
+
+TEST(ModelErrors, NoPairOfArmsWithinTheirErrorsLeavesTheBounds) {
+  const Scene scene = two_arms_with(
+      "errors:\n  joints: {position: 0.0002, translation: 0.0003, rotation: 0.0001}\n"
+      "  bases: {translation: 0.001, rotation: 0.0005}\n  fixed: {translation: 0.001}\n");
+  std::size_t compared = 0;
+  for (std::uint64_t seed = 0; seed < repeats(8) && !HasFailure(); ++seed)
+    compared += compare(scene, seed, 3, 4);
+  EXPECT_GE(compared, 2'000u);
+}
+
+// The errors that bring two objects nearest: every single one is as large as it may be, against the
+// gradient of their distance.
+DrawnErrors worst_errors(const Scene& scene, const Wandering& cell, const ObjectPair& pair) {
+  constexpr double kStep = 1e-6;
+  Random none(0);
+  DrawnErrors errors = drawn_errors(Scene(scene), none);
+  for (auto& place : errors.bases) place = {};
+  for (auto& place : errors.objects) place = {};
+  for (auto& joints : errors.frames) std::ranges::fill(joints, DrawnErrors::Place{});
+  for (auto& joints : errors.positions) std::ranges::fill(joints, 0.0);
+  const DrawnErrors exact = errors;
+  const auto distance_with = [&](const DrawnErrors& some) {
+    const std::vector<Pose> poses = cell.truth(some);
+    return fresh_distance(scene.objects[pair.first], poses[pair.first], scene.objects[pair.second],
+                          poses[pair.second])
+        .upper;
+  };
+  const auto slope = [&](DrawnErrors& some, double& number) {
+    number = kStep;
+    const double up = distance_with(some);
+    number = -kStep;
+    const double down = distance_with(some);
+    number = 0.0;
+    return (up - down) / (2.0 * kStep);
+  };
+  DrawnErrors probe = exact;
+  const auto choose = [&](Vec3& at, Vec3& chosen, double most) {
+    if (most == 0.0) return;
+    Vec3 gradient;
+    for (int i = 0; i < 3; ++i) gradient[i] = slope(probe, at[i]);
+    if (gradient.norm() > 1e-9) chosen = -most * gradient.normalized();
+  };
+  const auto choose_place = [&](DrawnErrors::Place& at, DrawnErrors::Place& chosen,
+                                const PlaceError& most) {
+    choose(at.shift, chosen.shift, most.translation);
+    choose(at.turn, chosen.turn, most.rotation);
+  };
+  for (std::size_t i = 0; i < scene.objects.size(); ++i)
+    choose_place(probe.objects[i], errors.objects[i], scene.objects[i].place_error);
+  for (std::size_t r = 0; r < scene.robots.size(); ++r) {
+    choose_place(probe.bases[r], errors.bases[r], scene.robots[r].base_error);
+    for (std::size_t j = 0; j < scene.robots[r].joints.size(); ++j) {
+      const RobotJoint& joint = scene.robots[r].joints[j];
+      choose_place(probe.frames[r][j], errors.frames[r][j], joint.error.frame);
+      const double most =
+          joint.type == JointType::kPrismatic ? joint.error.slide : joint.error.position;
+      const double falls = slope(probe, probe.positions[r][j]);
+      errors.positions[r][j] = falls > 0.0 ? -most : most;
+    }
+  }
+  return errors;
+}
+
+// Of all pairs that are apart, in random postures: the model error that is reported, over the
+// largest that a machine has.
+std::vector<double> excesses(const Scene& scene, std::uint64_t seeds) {
+  std::vector<double> ratios;
+  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+    Wandering cell(scene, seed);
+    for (int t = 0; t < 2; ++t) cell.tick();
+    for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+      const PairReport pair = cell.monitor().pair(p);
+      if (pair.status != PairStatus::kConverged || pair.distance < 0.005) continue;
+      const std::vector<Pose> poses = cell.truth(worst_errors(scene, cell, scene.pairs[p]));
+      const auto [a, b] = std::pair(scene.pairs[p].first, scene.pairs[p].second);
+      const double truth =
+          fresh_distance(scene.objects[a], poses[a], scene.objects[b], poses[b]).lower;
+      EXPECT_LE(pair.lower, truth + kOracle)
+          << scene.objects[a].name << " - " << scene.objects[b].name << ", seed " << seed;
+      if (pair.distance - truth > 1e-6)
+        ratios.push_back(pair.model_error / (pair.distance - truth));
+    }
+  }
+  std::ranges::sort(ratios);
+  return ratios;
+}
+
+TEST(ModelErrors, OfTwoArmsAreAtMostAFewPercentAboveTheWorstMachine) {
+  Scene scene =
+      two_arms_with("errors: {joints: {position: 0.0002, translation: 0.0003}}\n");
+  scene.evaluate_all = true;
+  const std::vector<double> ratios = excesses(scene, repeats(40));
+  ASSERT_GT(ratios.size(), 500u);
+  EXPECT_LT(ratios[ratios.size() / 2], 1.02);
+  EXPECT_LT(ratios[ratios.size() * 99 / 100], 1.15);
+  std::printf("%zu %g %g %g %g\n", ratios.size(), ratios[0], ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100], ratios.back());
+}
+
+TEST(ModelErrors, WithoutAnyTheReportIsTheSame) {
+  const Scene with = workshop_scene("errors: {joints: {position: 0}}\n"),
+              without = workshop_scene("");
+  Wandering one(with, 3), other(without, 3);
+  for (int t = 0; t < 5; ++t) {
+    const Report &a = one.tick(), &b = other.tick();
+    EXPECT_EQ(a.lower_all, b.lower_all);
+    EXPECT_EQ(a.minimum.upper, b.minimum.upper);
+    EXPECT_EQ(b.minimum.model_error, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace clearance
