@@ -1,6 +1,8 @@
 // Sources come in the order objects, robots, sensors, so that each one comes after what carries it.
 #include "config/scene/stated_errors.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -43,6 +45,7 @@ ErrorSource of_joint(const RobotJoint& joint, std::uint32_t robot, std::uint32_t
   source.on_link = true;
   source.robot = robot;
   source.link = link;
+  source.joint = link - 1;
   if (variables_of(joint.type) > 1) return source;
   source.link = joint.parent;
   source.origin = joint.parent_from_joint.position;
@@ -132,6 +135,18 @@ class StatedErrors::ChainWalk {
   std::map<std::uint32_t, std::pair<std::uint32_t, std::uint32_t>> links_;  // by object
   std::vector<Met> met_;
 };
+
+std::string text_of(const ErrorSource& source, const Scene& scene) {
+  if (!source.on_link) {
+    const Object& object = scene.objects[source.object];
+    return fmt::format("the {} '{}'", object.is_seen() ? "mount of" : "place of", object.name);
+  }
+  const Robot& robot = scene.robots[source.robot];
+  if (source.joint != ErrorSource::kNone)
+    return fmt::format("the joint '{}'", robot.joints[source.joint].name);
+  return robot.is_attached ? fmt::format("the grasp of '{}'", robot.name)
+                           : fmt::format("the base of '{}'", robot.name);
+}
 
 StatedErrors::StatedErrors(const Scene& scene) : objects_(scene.objects.size()) {
   for (std::size_t i = 0; i < objects_.size(); ++i) {

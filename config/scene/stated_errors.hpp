@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include "config/scene/place_error.hpp"
@@ -23,6 +24,8 @@ struct ErrorSource {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t parent = kNone;  // index of an earlier source
   std::uint32_t depth = 1;       // sources from the root to this one
+  // The joint that is the source: index into Robot::joints; kNone: the robot's base.
+  std::uint32_t joint = kNone;
   bool on_link = false;
   std::uint32_t object = 0;           // else
   std::uint32_t robot = 0, link = 0;  // with on_link
@@ -35,6 +38,9 @@ struct ErrorSource {
   // The largest angle by which it turns what it carries, rad.
   [[nodiscard]] double angle() const noexcept { return rotation + turn; }
 };
+
+// Names a source for people: "the joint 'elbow'", "the base of 'arm'", "the object 'table'".
+[[nodiscard]] std::string text_of(const ErrorSource& source, const Scene& scene);
 
 // What stated errors do to the distance of two objects.
 struct ErrorsBetween {

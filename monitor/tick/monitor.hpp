@@ -5,10 +5,12 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "config/scene/carrier.hpp"
 #include "config/scene/scene.hpp"
 #include "config/scene/scene_map.hpp"
+#include "config/scene/stated_errors.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
@@ -59,6 +61,12 @@ struct SensorFrame {
   // Frames of the same content are the same to the bit. 0: not known.
   std::uint64_t content = 0;
   Carrier carrier = {};  // what has placed it: while that is unknown, so is what the frame shows
+};
+
+// The part of a pair's model error that one source has, m (config/scene/stated_errors.hpp).
+struct ErrorShare {
+  std::uint32_t source = 0;  // index into StatedErrors::sources()
+  double metres = 0.0;
 };
 
 class Monitor {
@@ -135,6 +143,11 @@ class Monitor {
   [[nodiscard]] bool uses(const SeenCloud* cloud) const noexcept;
   // The frame of a sensor that the last tick used; its cloud is null: none.
   [[nodiscard]] SensorFrame frame_in_use(std::uint32_t sensor) const noexcept;
+
+  // What the pair's model error at its last evaluation consists of, by source, the largest first;
+  // of first order. Empty: nothing is stated for it, or it was never evaluated. Allocates.
+  [[nodiscard]] std::vector<ErrorShare> error_shares(std::uint32_t pair) const;
+  [[nodiscard]] const StatedErrors& stated_errors() const noexcept;
 
   // Any pair at the last tick, whether it is published or not. All are unknown before the first
   // tick.
