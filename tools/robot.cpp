@@ -4,8 +4,6 @@
 // or compares the distances to what cameras see with the truth.
 #include <fmt/format.h>
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -20,7 +18,7 @@
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -210,7 +208,7 @@ class Cameras {
           const JointMotion& motion, const SimulationTime& time) {
     if (cell.scene.sensors.empty() || arguments.cameras.rate_hz == 0.0) return;
     if (const std::string fault = fault_of(cell, arguments.cameras); !fault.empty()) {
-      spdlog::warn("no camera is simulated: {}", fault);
+      log_text(LogLevel::kWarn, fmt::format("no camera is simulated: {}", fault));
       return;
     }
     const SimulatedWorld world(cell, motion, people_of(cell, arguments));
@@ -219,8 +217,10 @@ class Cameras {
                      [this](const SentFrame& frame) {
                        if (truth_) truth_->sent(frame);
                      });
-    spdlog::info("{} of {} x {} pixels at {} Hz", counted(cell.scene.sensors.size(), "camera"),
-                 arguments.cameras.columns, arguments.cameras.rows, arguments.cameras.rate_hz);
+    log_text(
+        LogLevel::kInfo,
+        fmt::format("{} of {} x {} pixels at {} Hz", counted(cell.scene.sensors.size(), "camera"),
+                    arguments.cameras.columns, arguments.cameras.rows, arguments.cameras.rate_hz));
   }
 
   void tell() {
@@ -238,12 +238,14 @@ class Cameras {
     for (const std::string& text : arguments.people) {
       people.emplace_back(std::get<WalkingPath>(read_walking_path(text)), arguments.person_speed);
       const double fastest = people.back().max_speed();
-      spdlog::info("a person walks; no point of it is faster than {:.2f} m/s", fastest);
+      log_text(LogLevel::kInfo,
+               fmt::format("a person walks; no point of it is faster than {:.2f} m/s", fastest));
       for (const Sensor& sensor : cell.scene.sensors) {
         const double stated = cell.scene.objects[sensor.object].max_speed;
         if (stated < fastest)
-          spdlog::warn("{} states a max_speed of {} m/s, which this person exceeds", sensor.name,
-                       stated);
+          log_text(LogLevel::kWarn,
+                   fmt::format("{} states a max_speed of {} m/s, which this person exceeds",
+                               sensor.name, stated));
       }
     }
     return people;
@@ -259,7 +261,7 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   // Every later thread inherits this, Cyclone's as well.
   if (arguments.priority > 0) {
     if (const Refusal refusal = use_fifo_scheduling(arguments.priority)) {
-      spdlog::warn("{}", *refusal);
+      log_text(LogLevel::kWarn, *refusal);
     }
   }
   route_dds_log();
@@ -271,8 +273,9 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   SimulatedRobot robot(cell, connection, arguments.robot, motion);
   std::optional<LatencyMeter> latency;
   if (arguments.latency) latency.emplace(connection);
-  spdlog::info("source '{}' sends {} at {} Hz on {}", arguments.robot.source, inputs_of(robot),
-               arguments.rate_hz, connection.where());
+  log_text(LogLevel::kInfo,
+           fmt::format("source '{}' sends {} at {} Hz on {}", arguments.robot.source,
+                       inputs_of(robot), arguments.rate_hz, connection.where()));
   Cameras cameras(cell, connection, arguments, motion, time);
 
   std::atomic<bool> stop{false}, done{false};
@@ -323,10 +326,12 @@ int run(int argc, char** argv, StopSignal& signal) {
     print(stderr, "clearance-robot: {}\n", log.error());
     return kBadCell;
   }
-  if (!log.note().empty()) spdlog::warn("{}: {}", arguments.joints, log.note());
+  if (!log.note().empty())
+    log_text(LogLevel::kWarn, fmt::format("{}: {}", arguments.joints, log.note()));
   if (arguments.seconds == 0.0) {
     arguments.seconds = log.seconds();
-    spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);
+    log_text(LogLevel::kInfo, fmt::format("{} lasts {:.3f} s; after that this ends",
+                                          arguments.joints, arguments.seconds));
   }
   return run_robot(
       *cell, arguments, [log](double t_s, auto& joints) mutable { log.at(t_s, joints); }, signal);

@@ -11,7 +11,7 @@
 #include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
